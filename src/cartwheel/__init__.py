@@ -1,0 +1,1 @@
+"""Cartwheel simulates the robot you described."""

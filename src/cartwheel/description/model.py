@@ -1,0 +1,401 @@
+"""What a robot or world description says, in frozen dataclasses that know no MuJoCo.
+
+SI units. Frames follow SDF: a link's pose is given in its model, a visual's, collision's,
+inertial's and sensor's in its link, a joint's in its child link (`Joint.pose`).
+Every element carries the place in the user's file that made it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Literal
+
+from cartwheel.errors import Diagnostic, Origin
+from cartwheel.geometry import Pose, Vec3
+
+Rgba = tuple[float, float, float, float]
+"""Red, green, blue, alpha, each 0 to 1."""
+
+JointType = Literal[
+    "fixed", "revolute", "continuous", "prismatic", "ball", "universal", "screw", "floating", "planar"
+]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Element:
+    """A parameter subtree of a plugin or sensor, as written: read once, by its owner."""
+
+    tag: str
+    text: str = ""
+    attributes: tuple[tuple[str, str], ...] = ()
+    children: tuple[Element, ...] = ()
+    origin: Origin
+
+    def find(self, path: str) -> Element | None:
+        """The first descendant at a path such as ``image/width``."""
+        tag, _, rest = path.partition("/")
+        for child in self.children:
+            if child.tag == tag:
+                return child.find(rest) if rest else child
+        return None
+
+    def find_all(self, tag: str) -> Iterator[Element]:
+        """The direct children of that tag."""
+        return (child for child in self.children if child.tag == tag)
+
+    def attribute(self, name: str) -> str | None:
+        """The value of an attribute."""
+        return dict(self.attributes).get(name)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Box:
+    size: Vec3
+    """Full edge lengths."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Cylinder:
+    radius: float
+    length: float
+    """Along z, centred."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Sphere:
+    radius: float
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Capsule:
+    radius: float
+    length: float
+    """Of the cylindrical part, along z, centred."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Cone:
+    radius: float
+    length: float
+    """Along z, centred, tip up."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Ellipsoid:
+    radii: Vec3
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Plane:
+    normal: Vec3 = (0.0, 0.0, 1.0)
+    size: tuple[float, float] = (100.0, 100.0)
+    """Drawn size; collision reaches without end."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Mesh:
+    uri: str
+    """As written."""
+    path: Path
+    """The file found for it; exists."""
+    scale: Vec3 = (1.0, 1.0, 1.0)
+    submesh: str | None = None
+    center_submesh: bool = False
+    convex_decomposition: bool = False
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Heightmap:
+    path: Path
+    size: Vec3
+    position: Vec3 = (0.0, 0.0, 0.0)
+    texture: Path | None = None
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Polyline:
+    points: tuple[tuple[float, float], ...]
+    height: float
+
+
+Shape = (
+    Box | Cylinder | Sphere | Capsule | Cone | Ellipsoid | Plane | Mesh | Heightmap | Polyline
+)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Material:
+    name: str = ""
+    """URDF material or Gazebo script name, as written."""
+    diffuse: Rgba | None = None
+    """None where the mesh's own colours are to be kept."""
+    specular: float = 0.1
+    emissive: Rgba = (0.0, 0.0, 0.0, 1.0)
+    texture: Path | None = None
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Surface:
+    """Contact parameters as Gazebo's ODE understands them; None where not stated."""
+
+    mu1: float | None = None
+    mu2: float | None = None
+    fdir1: Vec3 | None = None
+    slip1: float | None = None
+    slip2: float | None = None
+    torsional: float | None = None
+    kp: float | None = None
+    """N/m."""
+    kd: float | None = None
+    """N s/m."""
+    min_depth: float | None = None
+    """m."""
+    max_vel: float | None = None
+    """m/s."""
+    max_contacts: int | None = None
+    restitution: float | None = None
+    collide_bitmask: int | None = None
+    collide_without_contact: bool = False
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Visual:
+    name: str
+    pose: Pose = Pose()
+    shape: Shape
+    material: Material = Material()
+    transparency: float = 0.0
+    cast_shadows: bool = True
+    laser_retro: float | None = None
+    origin: Origin
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Collision:
+    name: str
+    """Unique in its link; Gazebo's spelling for a URDF: ``<link>_collision``, then ``_1``, …"""
+    aliases: tuple[str, ...] = ()
+    """Other spellings by which a sensor may name it, the lumped and the pre-lumping ones among them."""
+    pose: Pose = Pose()
+    shape: Shape
+    surface: Surface = Surface()
+    laser_retro: float | None = None
+    origin: Origin
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Inertial:
+    mass: float
+    """kg, above 0."""
+    pose: Pose = Pose()
+    """Of the centre of mass and the axes of the inertia, in the link."""
+    ixx: float
+    iyy: float
+    izz: float
+    ixy: float = 0.0
+    ixz: float = 0.0
+    iyz: float = 0.0
+    """kg m²."""
+    origin: Origin
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class CameraIntrinsics:
+    """What SDF's ``<camera>`` says of one lens."""
+
+    name: str = ""
+    pose: Pose = Pose()
+    horizontal_fov: float = 1.047
+    """rad."""
+    width: int = 320
+    height: int = 240
+    format: str = "R8G8B8"
+    near: float = 0.1
+    far: float = 100.0
+    """m."""
+    k1: float = 0.0
+    k2: float = 0.0
+    k3: float = 0.0
+    p1: float = 0.0
+    p2: float = 0.0
+    distortion_center: tuple[float, float] = (0.5, 0.5)
+    noise_mean: float = 0.0
+    noise_stddev: float = 0.0
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class PluginTag:
+    """A ``<plugin>`` as written."""
+
+    name: str
+    filename: str
+    element: Element
+    origin: Origin
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Sensor:
+    name: str
+    type: str
+    """SDF's word: camera, depth, imu, contact, ray, gpu_lidar, …"""
+    link: str
+    """The URDF's own link name, also where Gazebo would have lumped it away."""
+    pose: Pose = Pose()
+    update_rate: float = 0.0
+    """Hz; 0 is every step."""
+    always_on: bool = False
+    visualize: bool = False
+    topic: str | None = None
+    cameras: tuple[CameraIntrinsics, ...] = ()
+    collisions: tuple[str, ...] = ()
+    """The collision names that a contact sensor asks for, as written."""
+    plugins: tuple[PluginTag, ...] = ()
+    element: Element
+    """All of it, for the parameters of rarer types."""
+    origin: Origin
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Light:
+    name: str
+    type: Literal["directional", "point", "spot"] = "directional"
+    pose: Pose = Pose()
+    diffuse: Rgba = (0.8, 0.8, 0.8, 1.0)
+    specular: Rgba = (0.2, 0.2, 0.2, 1.0)
+    direction: Vec3 = (-0.5, 0.1, -0.9)
+    range: float = 10.0
+    attenuation: Vec3 = (1.0, 0.0, 0.0)
+    """Constant, linear, quadratic."""
+    spot_angle: float = 1.0
+    """Outer angle, rad."""
+    cast_shadows: bool = True
+    origin: Origin
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Link:
+    name: str
+    pose: Pose = Pose()
+    """In the model, at zero joint positions."""
+    inertial: Inertial | None = None
+    visuals: tuple[Visual, ...] = ()
+    collisions: tuple[Collision, ...] = ()
+    sensors: tuple[Sensor, ...] = ()
+    lights: tuple[Light, ...] = ()
+    gravity: bool = True
+    self_collide: bool | None = None
+    kinematic: bool = False
+    linear_damping: float = 0.0
+    angular_damping: float = 0.0
+    """Fraction of velocity taken per step of Gazebo, as SDF's ``<velocity_decay>``."""
+    origin: Origin
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Axis:
+    xyz: Vec3 = (0.0, 0.0, 1.0)
+    """Unit vector in the joint frame."""
+    lower: float | None = None
+    upper: float | None = None
+    """rad or m; None is unlimited."""
+    effort: float | None = None
+    """N m or N; None is unlimited."""
+    velocity: float | None = None
+    """rad/s or m/s; None is unlimited."""
+    damping: float = 0.0
+    """N m s/rad or N s/m."""
+    friction: float = 0.0
+    """N m or N."""
+    spring_stiffness: float = 0.0
+    spring_reference: float = 0.0
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Mimic:
+    joint: str
+    multiplier: float = 1.0
+    offset: float = 0.0
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Joint:
+    name: str
+    type: JointType
+    parent: str
+    """A link, or ``world``."""
+    child: str
+    pose: Pose = Pose()
+    """The joint frame in the child link; identity for a URDF."""
+    axis: Axis = Axis()
+    axis2: Axis | None = None
+    mimic: Mimic | None = None
+    thread_pitch: float | None = None
+    stop_cfm: float | None = None
+    stop_erp: float | None = None
+    provide_feedback: bool = False
+    preserve_fixed: bool = False
+    implicit_spring_damper: bool = False
+    origin: Origin
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class RobotDescription:
+    """One model: a robot, or a thing in the world."""
+
+    name: str
+    links: tuple[Link, ...]
+    joints: tuple[Joint, ...] = ()
+    plugins: tuple[PluginTag, ...] = ()
+    static: bool = False
+    self_collide: bool = False
+    pose: Pose = Pose()
+    """Where its file puts it in the world."""
+    canonical_link: str
+    """The link whose frame is the model's as Gazebo reports it: a URDF's root."""
+    transmissions: tuple[Element, ...] = ()
+    ros2_control: tuple[Element, ...] = ()
+    diagnostics: tuple[Diagnostic, ...] = ()
+    text: str = ""
+    """The expanded XML, what ROS calls robot_description."""
+    origin: Origin
+
+    def link(self, name: str) -> Link | None:
+        """The link of that name."""
+        return next((link for link in self.links if link.name == name), None)
+
+    def joint(self, name: str) -> Joint | None:
+        """The joint of that name."""
+        return next((joint for joint in self.joints if joint.name == name), None)
+
+    @property
+    def mass(self) -> float:
+        """kg, of all links."""
+        return sum(link.inertial.mass for link in self.links if link.inertial)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Physics:
+    max_step_size: float | None = None
+    """s; None where the world does not state it."""
+    real_time_factor: float | None = None
+    real_time_update_rate: float | None = None
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class WorldDescription:
+    name: str
+    models: tuple[RobotDescription, ...] = ()
+    lights: tuple[Light, ...] = ()
+    gravity: Vec3 = (0.0, 0.0, -9.8)
+    magnetic_field: Vec3 = (6e-06, 2.3e-05, -4.2e-05)
+    """T, east-north-up, Gazebo's default."""
+    ambient: Rgba = (0.4, 0.4, 0.4, 1.0)
+    background: Rgba = (0.7, 0.7, 0.7, 1.0)
+    shadows: bool = True
+    physics: Physics = Physics()
+    plugins: tuple[PluginTag, ...] = ()
+    spherical_coordinates: Element | None = None
+    diagnostics: tuple[Diagnostic, ...] = ()
+    origin: Origin = field(default_factory=lambda: Origin(file="<empty>"))

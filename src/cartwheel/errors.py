@@ -1,0 +1,111 @@
+"""The errors a user sees: what is wrong, where, and what to write instead."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Literal
+
+Severity = Literal["info", "warning", "error"]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Origin:
+    """The place in a user's file that made an element."""
+
+    file: str
+    line: int = 0
+    """One-based; 0 where only the file is known."""
+    stack: tuple[str, ...] = ()
+    """Where the enclosing xacro macros were called, innermost first, each as ``file:line macro``."""
+
+    def __str__(self) -> str:
+        return f"{self.file}:{self.line}" if self.line else self.file
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Diagnostic:
+    """Something a user should know about a file that nevertheless loads."""
+
+    severity: Severity
+    message: str
+    origin: Origin | None = None
+
+    def __str__(self) -> str:
+        place = f"{self.origin}: " if self.origin else ""
+        return f"{place}{self.severity}: {self.message}"
+
+
+class CartwheelError(Exception):
+    """Base of every error that is the user's to mend; the command line prints it and exits with 2.
+
+    Args:
+        message: One sentence without its place.
+        origin: The place in the user's file.
+        hint: The likely fix, a sentence of its own.
+    """
+
+    def __init__(
+        self, message: str, *, origin: Origin | None = None, hint: str | None = None
+    ) -> None:
+        self.message = message
+        self.origin = origin
+        self.hint = hint
+        super().__init__(message)
+
+    def __str__(self) -> str:
+        text = f"{self.origin}: {self.message}" if self.origin else self.message
+        if self.hint:
+            text += f"\n  {self.hint}"
+        if self.origin:
+            text += "".join(f"\n  in {frame}" for frame in self.origin.stack)
+        return text
+
+
+class DescriptionError(CartwheelError):
+    """A robot or world description that cannot be used."""
+
+
+class WorldError(CartwheelError):
+    """A model that cannot be built, spawned or deleted."""
+
+
+class SimulationError(CartwheelError):
+    """A simulation that cannot go on."""
+
+
+class PluginError(CartwheelError):
+    """A plugin or sensor whose parameters make no sense."""
+
+
+class GraphError(CartwheelError):
+    """A topic, service or message that does not fit."""
+
+
+class ControlError(CartwheelError):
+    """A running simulation that cannot be reached or refuses a request."""
+
+
+class UnknownNameError(CartwheelError):
+    """A name that does not exist; says which do and which was likely meant."""
+
+    def __init__(
+        self, kind: str, name: str, existing: Iterable[str], *, origin: Origin | None = None
+    ) -> None:
+        known = sorted(set(existing))
+        super().__init__(
+            f'{kind} "{name}" does not exist', origin=origin, hint=suggestion(name, known)
+        )
+
+
+def suggestion(name: str, existing: Iterable[str]) -> str:
+    """A sentence that names the likely meant one of `existing`, or lists them."""
+    known = list(existing)
+    if not known:
+        return "There are none."
+    close = difflib.get_close_matches(name, known, n=1, cutoff=0.6)
+    if close:
+        return f'Did you mean "{close[0]}"?'
+    shown = ", ".join(known[:12])
+    return f"There are: {shown}{', …' if len(known) > 12 else ''}."

@@ -1,0 +1,213 @@
+"""Poses and rotations: the only place where quaternion orders are converted.
+
+Quaternions are ``(x, y, z, w)`` as in ROS; MuJoCo's ``(w, x, y, z)`` passes through
+`to_wxyz` and `from_wxyz`. Roll, pitch and yaw are fixed-axis angles as in URDF and SDF:
+``R = Rz(yaw) Ry(pitch) Rx(roll)``. Metres and radians.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Vec3 = tuple[float, float, float]
+Quat = tuple[float, float, float, float]
+"""``(x, y, z, w)``."""
+Array = NDArray[np.float64]
+
+IDENTITY: Quat = (0.0, 0.0, 0.0, 1.0)
+
+
+def to_wxyz(q: Sequence[float]) -> Quat:
+    """``(x, y, z, w)`` to MuJoCo's and viser's ``(w, x, y, z)``."""
+    return (float(q[3]), float(q[0]), float(q[1]), float(q[2]))
+
+
+def from_wxyz(q: Sequence[float]) -> Quat:
+    """MuJoCo's and viser's ``(w, x, y, z)`` to ``(x, y, z, w)``."""
+    return (float(q[1]), float(q[2]), float(q[3]), float(q[0]))
+
+
+def quat_from_rpy(roll: float, pitch: float, yaw: float) -> Quat:
+    """Rotation of fixed-axis roll, pitch, yaw in radians."""
+    cr, sr = math.cos(roll / 2), math.sin(roll / 2)
+    cp, sp = math.cos(pitch / 2), math.sin(pitch / 2)
+    cy, sy = math.cos(yaw / 2), math.sin(yaw / 2)
+    return (
+        sr * cp * cy - cr * sp * sy,
+        cr * sp * cy + sr * cp * sy,
+        cr * cp * sy - sr * sp * cy,
+        cr * cp * cy + sr * sp * sy,
+    )
+
+
+def rpy_from_quat(q: Sequence[float]) -> Vec3:
+    """Fixed-axis roll, pitch, yaw in radians; pitch within ±π/2."""
+    x, y, z, w = q
+    sin_pitch = max(-1.0, min(1.0, 2 * (w * y - z * x)))
+    if abs(sin_pitch) > 1 - 1e-12:
+        # Gimbal lock: roll and yaw turn about the same axis, so all of it is yaw.
+        yaw = math.atan2(-2 * (x * y - w * z), 1 - 2 * (x * x + z * z))
+        return 0.0, math.copysign(math.pi / 2, sin_pitch), yaw
+    return (
+        math.atan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y)),
+        math.asin(sin_pitch),
+        math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z)),
+    )
+
+
+def yaw_of(q: Sequence[float]) -> float:
+    """Heading in radians of a rotation, about the world's z axis."""
+    x, y, z, w = q
+    return math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
+
+
+def quat_multiply(a: Sequence[float], b: Sequence[float]) -> Quat:
+    """Rotation `b` first, then `a`."""
+    ax, ay, az, aw = a
+    bx, by, bz, bw = b
+    return (
+        aw * bx + ax * bw + ay * bz - az * by,
+        aw * by - ax * bz + ay * bw + az * bx,
+        aw * bz + ax * by - ay * bx + az * bw,
+        aw * bw - ax * bx - ay * by - az * bz,
+    )
+
+
+def quat_conjugate(q: Sequence[float]) -> Quat:
+    """The inverse of a unit quaternion."""
+    return (-q[0], -q[1], -q[2], q[3])
+
+
+def quat_normalize(q: Sequence[float]) -> Quat:
+    """A unit quaternion; raises ValueError for one of length zero or not finite."""
+    norm = math.sqrt(sum(c * c for c in q))
+    if not math.isfinite(norm) or norm < 1e-12:
+        raise ValueError("a quaternion of length zero is no rotation")
+    x, y, z, w = (float(c) / norm for c in q)
+    return (x, y, z, w)
+
+
+def rotate(q: Sequence[float], v: Sequence[float]) -> Vec3:
+    """Vector `v` turned by rotation `q`."""
+    x, y, z, w = q
+    vx, vy, vz = v
+    tx, ty, tz = 2 * (y * vz - z * vy), 2 * (z * vx - x * vz), 2 * (x * vy - y * vx)
+    return (
+        vx + w * tx + y * tz - z * ty,
+        vy + w * ty + z * tx - x * tz,
+        vz + w * tz + x * ty - y * tx,
+    )
+
+
+def quat_from_axis_angle(axis: Sequence[float], angle: float) -> Quat:
+    """Rotation by `angle` radians about `axis`, of any length but zero."""
+    norm = math.sqrt(sum(c * c for c in axis))
+    if norm < 1e-12:
+        raise ValueError("an axis of length zero gives no direction")
+    s = math.sin(angle / 2) / norm
+    return (axis[0] * s, axis[1] * s, axis[2] * s, math.cos(angle / 2))
+
+
+def quat_from_matrix(matrix: Array) -> Quat:
+    """Rotation of a 3x3 orthonormal matrix."""
+    m = matrix
+    trace = float(m[0, 0] + m[1, 1] + m[2, 2])
+    if trace > 0:
+        s = 2 * math.sqrt(trace + 1)
+        q = ((m[2, 1] - m[1, 2]) / s, (m[0, 2] - m[2, 0]) / s, (m[1, 0] - m[0, 1]) / s, s / 4)
+    else:
+        i = int(np.argmax(np.diagonal(m)))
+        j, k = (i + 1) % 3, (i + 2) % 3
+        s = 2 * math.sqrt(max(0.0, 1 + m[i, i] - m[j, j] - m[k, k]))
+        part = [0.0, 0.0, 0.0]
+        part[i], part[j], part[k] = s / 4, (m[j, i] + m[i, j]) / s, (m[k, i] + m[i, k]) / s
+        q = (part[0], part[1], part[2], (m[k, j] - m[j, k]) / s)
+    return quat_normalize([float(c) for c in q])
+
+
+def matrix_from_quat(q: Sequence[float]) -> Array:
+    """3x3 rotation matrix."""
+    x, y, z, w = q
+    return np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+        ]
+    )
+
+
+def quat_between(source: Sequence[float], target: Sequence[float]) -> Quat:
+    """The shortest rotation that turns direction `source` into direction `target`."""
+    a = np.asarray(source, dtype=float)
+    b = np.asarray(target, dtype=float)
+    a, b = a / np.linalg.norm(a), b / np.linalg.norm(b)
+    w = 1 + float(a @ b)
+    if w < 1e-9:
+        helper = np.array([1.0, 0, 0]) if abs(a[0]) < 0.9 else np.array([0, 1.0, 0])
+        return quat_from_axis_angle(np.cross(a, helper).tolist(), math.pi)
+    x, y, z = np.cross(a, b)
+    return quat_normalize((float(x), float(y), float(z), w))
+
+
+@dataclass(frozen=True, slots=True)
+class Pose:
+    """A frame within another: position in metres, orientation ``(x, y, z, w)``."""
+
+    position: Vec3 = (0.0, 0.0, 0.0)
+    orientation: Quat = IDENTITY
+
+    @classmethod
+    def from_xyz_rpy(cls, xyz: Sequence[float], rpy: Sequence[float] = (0, 0, 0)) -> Pose:
+        """A pose as URDF's ``<origin xyz rpy>`` and SDF's ``<pose>`` state it."""
+        x, y, z = (float(c) for c in xyz)
+        return cls((x, y, z), quat_from_rpy(*(float(a) for a in rpy)))
+
+    @property
+    def x(self) -> float:
+        """Metres."""
+        return self.position[0]
+
+    @property
+    def y(self) -> float:
+        """Metres."""
+        return self.position[1]
+
+    @property
+    def z(self) -> float:
+        """Metres."""
+        return self.position[2]
+
+    @property
+    def rpy(self) -> Vec3:
+        """Fixed-axis roll, pitch and yaw in radians."""
+        return rpy_from_quat(self.orientation)
+
+    @property
+    def yaw(self) -> float:
+        """Heading in radians."""
+        return yaw_of(self.orientation)
+
+    def __matmul__(self, other: Pose) -> Pose:
+        """`other`, given in this frame, in the frame that this one is given in."""
+        dx, dy, dz = rotate(self.orientation, other.position)
+        x, y, z = self.position
+        return Pose(
+            (x + dx, y + dy, z + dz), quat_multiply(self.orientation, other.orientation)
+        )
+
+    def inverse(self) -> Pose:
+        """The outer frame within this one."""
+        q = quat_conjugate(self.orientation)
+        x, y, z = rotate(q, self.position)
+        return Pose((-x, -y, -z), q)
+
+    def apply(self, point: Sequence[float]) -> Vec3:
+        """A point of this frame in the outer one."""
+        dx, dy, dz = rotate(self.orientation, point)
+        return (self.position[0] + dx, self.position[1] + dy, self.position[2] + dz)
