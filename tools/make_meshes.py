@@ -1,0 +1,647 @@
+#!/usr/bin/env python3
+"""Write every mesh of the repository: the rosbots cart's and those of the models.
+
+The shapes are built here from numbers, so a mesh is changed by changing this file and running it:
+
+    python tools/make_meshes.py            # writes the files in place
+    python tools/make_meshes.py --to DIR   # writes the same tree under DIR
+
+Two runs give identical bytes. Units are metres, z is up; a mesh stands in its link's frame.
+The triangle counts stay low because a processor without a GPU draws the cart 30 times a second.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+REPOSITORY = Path(__file__).resolve().parent.parent
+CART_MESHES = "robots/rosbots_description/meshes"
+
+# Corners between faces that meet at more than this are drawn sharp.
+SMOOTH_ANGLE = math.radians(40)
+
+
+@dataclass(frozen=True)
+class Material:
+    """A colour with a name, in Collada's lambert-with-highlight model."""
+
+    name: str
+    diffuse: tuple[float, float, float]
+    specular: float = 0.1
+    shininess: float = 20.0
+
+
+BLUE = Material("blue_paint", (0.08, 0.26, 0.62), 0.25, 40)
+WOOD = Material("wood", (0.66, 0.46, 0.26), 0.03)
+WOOD_DARK = Material("wood_dark", (0.56, 0.37, 0.20), 0.03)
+GRAPHITE = Material("graphite", (0.17, 0.18, 0.20), 0.2)
+RUBBER = Material("rubber", (0.06, 0.06, 0.065), 0.03)
+STEEL = Material("steel", (0.66, 0.68, 0.71), 0.5, 60)
+RIM = Material("rim", (0.82, 0.83, 0.85), 0.4, 50)
+YELLOW = Material("yellow", (0.96, 0.72, 0.08), 0.1)
+LAMP = Material("lamp", (0.97, 0.96, 0.88), 0.6, 80)
+RED = Material("red", (0.75, 0.06, 0.05), 0.3)
+WHITE = Material("white", (0.86, 0.87, 0.89), 0.2)
+GLASS = Material("glass", (0.05, 0.09, 0.22), 0.9, 100)
+ORANGE = Material("orange", (0.95, 0.35, 0.04), 0.1)
+
+
+@dataclass
+class Solid:
+    """Triangles: `vertices` (n, 3) in metres, `faces` (m, 3) counter-clockwise from outside."""
+
+    vertices: np.ndarray
+    faces: np.ndarray
+
+    def moved(self, x: float = 0.0, y: float = 0.0, z: float = 0.0) -> Solid:
+        return Solid(self.vertices + np.array([x, y, z]), self.faces)
+
+    def turned(self, axis: str, angle: float) -> Solid:
+        """Rotated about a coordinate axis by an angle in radians."""
+        c, s = math.cos(angle), math.sin(angle)
+        i, j = {"x": (1, 2), "y": (2, 0), "z": (0, 1)}[axis]
+        rotation = np.eye(3)
+        rotation[i, i], rotation[i, j], rotation[j, i], rotation[j, j] = c, -s, s, c
+        return Solid(self.vertices @ rotation.T, self.faces)
+
+    def mirrored_y(self) -> Solid:
+        return Solid(self.vertices * [1, -1, 1], self.faces[:, ::-1])
+
+    def scaled(self, factor: float) -> Solid:
+        return Solid(self.vertices * factor, self.faces)
+
+
+def joined(solids: Iterable[Solid]) -> Solid:
+    vertices, faces, offset = [], [], 0
+    for solid in solids:
+        vertices.append(solid.vertices)
+        faces.append(solid.faces + offset)
+        offset += len(solid.vertices)
+    return Solid(np.concatenate(vertices), np.concatenate(faces))
+
+
+# Shapes
+
+
+def loft(rings: Sequence[np.ndarray], cap: bool = True) -> Solid:
+    """A skin over rings of equally many points, each seen counter-clockwise from the last one's
+    side; `cap` closes both ends, whose rings must be convex."""
+    n = len(rings[0])
+    faces = []
+    for k in range(len(rings) - 1):
+        for i in range(n):
+            a, b = k * n + i, k * n + (i + 1) % n
+            faces += [(a, b, b + n), (a, b + n, a + n)]
+    if cap:
+        last = (len(rings) - 1) * n
+        for i in range(1, n - 1):
+            faces += [(0, i + 1, i), (last, last + i, last + i + 1)]
+    return Solid(np.concatenate(rings), np.array(faces))
+
+
+def rounded_rectangle(x: float, y: float, radius: float, segments: int) -> np.ndarray:
+    """Outline points (n, 2), counter-clockwise, of a rectangle x by y with round corners."""
+    points = []
+    for corner, (sx, sy) in enumerate([(1, 1), (-1, 1), (-1, -1), (1, -1)]):
+        for k in range(segments + 1):
+            angle = math.pi / 2 * (corner + k / segments)
+            points.append(
+                (
+                    sx * (x / 2 - radius) + radius * math.cos(angle),
+                    sy * (y / 2 - radius) + radius * math.sin(angle),
+                )
+            )
+    return np.array(points)
+
+
+def slab(
+    x: float, y: float, z: float, radius: float, bevel: float, segments: int = 4, foot: float = 0.0
+) -> Solid:
+    """A plate with round corners and bevelled edges, centred; `foot` draws its lower rim in."""
+    rings = []
+    for height, inset in (
+        (-z / 2, bevel + foot),
+        (-z / 2 + bevel, foot),
+        (z / 2 - bevel, 0.0),
+        (z / 2, bevel),
+    ):
+        outline = rounded_rectangle(
+            x - 2 * inset, y - 2 * inset, max(radius - inset, 0.002), segments
+        )
+        rings.append(np.column_stack([outline, np.full(len(outline), height)]))
+    return loft(rings)
+
+
+def box(x: float, y: float, z: float) -> Solid:
+    """A sharp box, centred."""
+    outline = np.array([(x, y), (-x, y), (-x, -y), (x, -y)]) / 2
+    return loft([np.column_stack([outline, np.full(4, h)]) for h in (-z / 2, z / 2)])
+
+
+def bar(x: float, y: float, z: float, bevel: float) -> Solid:
+    """A box with its edges along x bevelled, centred: a board, seen from its ends."""
+    b = bevel
+    outline = [
+        (y / 2, z / 2 - b), (y / 2 - b, z / 2), (-y / 2 + b, z / 2), (-y / 2, z / 2 - b),
+        (-y / 2, -z / 2 + b), (-y / 2 + b, -z / 2), (y / 2 - b, -z / 2), (y / 2, -z / 2 + b),
+    ]  # fmt: skip
+    return loft([np.array([(end, py, pz) for py, pz in outline]) for end in (-x / 2, x / 2)])
+
+
+def lathe(profile: Sequence[tuple[float, float]], segments: int, closed: bool = False) -> Solid:
+    """A profile of (radius, height) points, from the bottom up, turned about z; a profile that is
+    closed makes a ring; points on the axis make a pole."""
+    points = [*profile, profile[0]] if closed else list(profile)
+    angles = 2 * math.pi * np.arange(segments) / segments
+    circle = np.column_stack([np.cos(angles), np.sin(angles)])
+    vertices: list[np.ndarray] = []
+    rows = []
+    count = 0
+    for radius, height in points:
+        if radius == 0.0:
+            vertices.append(np.array([[0.0, 0.0, height]]))
+            rows.append([count] * segments)
+            count += 1
+        else:
+            vertices.append(np.column_stack([circle * radius, np.full(segments, height)]))
+            rows.append(list(range(count, count + segments)))
+            count += segments
+    faces = []
+    for low, high in zip(rows, rows[1:]):
+        for i in range(segments):
+            j = (i + 1) % segments
+            if low[i] != low[j]:
+                faces.append((low[i], low[j], high[j]))
+            if high[i] != high[j]:
+                faces.append((low[i], high[j], high[i]))
+    return Solid(np.concatenate(vertices), np.array(faces))
+
+
+def rod(radius: float, length: float, segments: int, bevel: float = 0.0) -> Solid:
+    """A cylinder along z, centred, with bevelled ends."""
+    h = length / 2
+    if bevel:
+        profile = [(0.0, -h), (radius - bevel, -h), (radius, -h + bevel)]
+        profile += [(radius, h - bevel), (radius - bevel, h), (0.0, h)]
+    else:
+        profile = [(0.0, -h), (radius, -h), (radius, h), (0.0, h)]
+    return lathe(profile, segments)
+
+
+def tube(path: Sequence[tuple[float, float, float]], radius: float, segments: int) -> Solid:
+    """A round bar swept along a plane path, mitred at its bends."""
+    points = np.array(path, dtype=float)
+    directions = np.diff(points, axis=0)
+    directions /= np.linalg.norm(directions, axis=1)[:, None]
+    normal = np.cross(directions[0], directions[-1])
+    if np.linalg.norm(normal) < 1e-9:
+        normal = np.cross(directions[0], [0.0, 0.0, 1.0])
+        if np.linalg.norm(normal) < 1e-9:
+            normal = np.array([1.0, 0.0, 0.0])
+    normal /= np.linalg.norm(normal)
+    angles = 2 * math.pi * np.arange(segments) / segments
+    rings = []
+    for k, point in enumerate(points):
+        before = directions[max(k - 1, 0)]
+        after = directions[min(k, len(directions) - 1)]
+        tangent = (before + after) / np.linalg.norm(before + after)
+        across = np.cross(tangent, normal)
+        widen = 1 / max(float(np.dot(tangent, after)), 0.5)
+        rings.append(
+            point
+            + radius * np.outer(np.cos(angles), normal)
+            + radius * widen * np.outer(np.sin(angles), across)
+        )
+    return outward(loft(rings))
+
+
+def outward(solid: Solid) -> Solid:
+    """The closed solid with its faces turned to the outside."""
+    a, b, c = (solid.vertices[solid.faces[:, k]] for k in range(3))
+    volume = np.einsum("ij,ij->", a, np.cross(b, c))
+    return solid if volume > 0 else Solid(solid.vertices, solid.faces[:, ::-1])
+
+
+def bend(
+    start: tuple[float, float], corner: tuple[float, float], end: tuple[float, float],
+    radius: float, segments: int,
+) -> list[tuple[float, float]]:  # fmt: skip
+    """Points of the arc that rounds a right-angled corner between two straight runs."""
+    corner_, start_, end_ = np.array(corner), np.array(start), np.array(end)
+    to_start = (start_ - corner_) / np.linalg.norm(start_ - corner_)
+    to_end = (end_ - corner_) / np.linalg.norm(end_ - corner_)
+    centre = corner_ + radius * (to_start + to_end)
+    points = []
+    for k in range(segments + 1):
+        angle = math.pi / 2 * k / segments
+        point = centre - radius * (to_end * math.cos(angle) + to_start * math.sin(angle))
+        points.append((float(point[0]), float(point[1])))
+    return points
+
+
+# Collada
+
+
+@dataclass
+class Mesh:
+    """Solids with a material each, written as one Collada file."""
+
+    path: str
+    parts: list[tuple[Material, Solid]] = field(default_factory=list)
+
+    def add(self, material: Material, *solids: Solid) -> None:
+        self.parts += [(material, solid) for solid in solids]
+
+    def by_material(self) -> list[tuple[Material, Solid]]:
+        materials: dict[Material, list[Solid]] = {}
+        for material, solid in self.parts:
+            materials.setdefault(material, []).append(solid)
+        return [(material, joined(solids)) for material, solids in materials.items()]
+
+    def triangles(self) -> int:
+        return sum(len(solid.faces) for _, solid in self.parts)
+
+    def write(self, root: Path) -> None:
+        target = root / self.path
+        target.parent.mkdir(parents=True, exist_ok=True)
+        target.write_text(collada(self.by_material()), encoding="utf-8", newline="\n")
+
+
+def corner_normals(solid: Solid) -> np.ndarray:
+    """One normal per corner (m, 3, 3): the area-weighted mean of the faces around its vertex that
+    meet its own face at less than SMOOTH_ANGLE."""
+    corners = solid.vertices[solid.faces]
+    area = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    unit = area / np.linalg.norm(area, axis=1)[:, None]
+    around: dict[tuple[float, ...], list[int]] = {}
+    keys = [[tuple(np.round(p, 6) + 0.0) for p in face] for face in corners]
+    for index, face in enumerate(keys):
+        for key in face:
+            around.setdefault(key, []).append(index)
+    normals = np.empty_like(corners)
+    limit = math.cos(SMOOTH_ANGLE)
+    for index, face in enumerate(keys):
+        for k, key in enumerate(face):
+            near = [other for other in around[key] if unit[other] @ unit[index] > limit]
+            total = area[near].sum(axis=0)
+            normals[index, k] = total / np.linalg.norm(total)
+    return normals
+
+
+def numbers(values: np.ndarray, digits: int) -> str:
+    """Numbers as short text; rounding also removes what differs between processors."""
+    rounded = np.round(values, digits) + 0.0
+    return " ".join(f"{value:.{digits}f}".rstrip("0").rstrip(".") for value in rounded.ravel())
+
+
+def source(identifier: str, values: np.ndarray, digits: int) -> str:
+    return f"""\
+        <source id="{identifier}">
+          <float_array id="{identifier}-array" count="{values.size}">{numbers(values, digits)}</float_array>
+          <technique_common>
+            <accessor source="#{identifier}-array" count="{len(values)}" stride="3">
+              <param name="X" type="float"/>
+              <param name="Y" type="float"/>
+              <param name="Z" type="float"/>
+            </accessor>
+          </technique_common>
+        </source>
+"""
+
+
+def effect(material: Material) -> str:
+    red, green, blue = (f"{value:g}" for value in material.diffuse)
+    shine = f"{material.specular:g}"
+    return f"""\
+    <effect id="{material.name}-effect">
+      <profile_COMMON>
+        <technique sid="common">
+          <phong>
+            <emission><color>0 0 0 1</color></emission>
+            <ambient><color>{red} {green} {blue} 1</color></ambient>
+            <diffuse><color>{red} {green} {blue} 1</color></diffuse>
+            <specular><color>{shine} {shine} {shine} 1</color></specular>
+            <shininess><float>{material.shininess:g}</float></shininess>
+          </phong>
+        </technique>
+      </profile_COMMON>
+    </effect>
+"""
+
+
+def geometry(material: Material, solid: Solid) -> str:
+    name = material.name
+    points, point_index = np.unique(
+        np.round(solid.vertices[solid.faces].reshape(-1, 3), 6) + 0.0, axis=0, return_inverse=True
+    )
+    normals, normal_index = np.unique(
+        np.round(corner_normals(solid).reshape(-1, 3), 4) + 0.0, axis=0, return_inverse=True
+    )
+    index = np.column_stack([point_index.ravel(), normal_index.ravel()]).ravel()
+    return f"""\
+    <geometry id="{name}-mesh" name="{name}">
+      <mesh>
+{source(f"{name}-positions", points, 6)}{source(f"{name}-normals", normals, 4)}\
+        <vertices id="{name}-vertices">
+          <input semantic="POSITION" source="#{name}-positions"/>
+        </vertices>
+        <triangles material="{name}" count="{len(solid.faces)}">
+          <input semantic="VERTEX" source="#{name}-vertices" offset="0"/>
+          <input semantic="NORMAL" source="#{name}-normals" offset="1"/>
+          <p>{" ".join(map(str, index))}</p>
+        </triangles>
+      </mesh>
+    </geometry>
+"""
+
+
+def node(material: Material) -> str:
+    name = material.name
+    return f"""\
+      <node id="{name}-node" name="{name}">
+        <instance_geometry url="#{name}-mesh">
+          <bind_material>
+            <technique_common>
+              <instance_material symbol="{name}" target="#{name}-material"/>
+            </technique_common>
+          </bind_material>
+        </instance_geometry>
+      </node>
+"""
+
+
+def collada(parts: Sequence[tuple[Material, Solid]]) -> str:
+    # The format demands a date; a fixed one keeps two runs identical.
+    materials = [material for material, _ in parts]
+    library = "".join(
+        f'    <material id="{m.name}-material" name="{m.name}">'
+        f'<instance_effect url="#{m.name}-effect"/></material>\n'
+        for m in materials
+    )
+    return f"""\
+<?xml version="1.0" encoding="utf-8"?>
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+  <asset>
+    <contributor><authoring_tool>tools/make_meshes.py</authoring_tool></contributor>
+    <created>2000-01-01T00:00:00</created>
+    <modified>2000-01-01T00:00:00</modified>
+    <unit name="meter" meter="1"/>
+    <up_axis>Z_UP</up_axis>
+  </asset>
+  <library_effects>
+{"".join(map(effect, materials))}  </library_effects>
+  <library_materials>
+{library}  </library_materials>
+  <library_geometries>
+{"".join(geometry(m, solid) for m, solid in parts)}  </library_geometries>
+  <library_visual_scenes>
+    <visual_scene id="scene" name="scene">
+{"".join(map(node, materials))}    </visual_scene>
+  </library_visual_scenes>
+  <scene>
+    <instance_visual_scene url="#scene"/>
+  </scene>
+</COLLADA>
+"""
+
+
+# The cart. These repeat numbers of rosbots.xacro; tests/robots compares the meshes with it.
+
+WHEEL_RADIUS = 0.26
+WHEEL_WIDTH = 0.10
+CHASSIS_X, CHASSIS_LENGTH, CHASSIS_WIDTH = 0.10, 1.00, 0.90
+CHASSIS_BOTTOM, CHASSIS_TOP = 0.14, 0.36
+CASTER_RADIUS = 0.10
+CASTER_X = 0.45
+HANDLE_X, HANDLE_WIDTH, HANDLE_HEIGHT = -0.37, 0.70, 0.62
+MAST_X, MAST_Y, MAST_HEIGHT = 0.42, -0.03, 0.32
+TUBE_RADIUS = 0.018
+
+
+def wheel() -> Mesh:
+    """Axis along y, outer side +y: tyre with lugs, rim with five double spokes, yellow cap."""
+    mesh = Mesh(f"{CART_MESHES}/wheel.dae")
+    half, depth = WHEEL_WIDTH / 2, 0.009
+    tread = WHEEL_RADIUS - depth
+    segments = 36
+
+    def upright(solid: Solid) -> Solid:
+        return solid.turned("x", -math.pi / 2)  # z, the lathe's axis, becomes y
+
+    tyre = [
+        (0.196, -half + 0.012), (0.222, -half), (tread - 0.008, -half + 0.010),
+        (tread, -half + 0.024), (tread, half - 0.024), (tread - 0.008, half - 0.010),
+        (0.222, half), (0.196, half - 0.012),
+    ]  # fmt: skip
+    mesh.add(RUBBER, upright(lathe(tyre, segments, closed=True)))
+
+    # Lugs in two staggered rows, slanted as on a tractor tyre. The outer corners lie on the
+    # wheel's radius, which is where the collision cylinder ends.
+    count = 18
+    for row in (-1, 1):
+        for k in range(count):
+            angle = 2 * math.pi * (k + (0.5 if row > 0 else 0.0)) / count
+            inner, outer, low = 0.003 * row, row * (half - 0.004), tread - 0.004
+            lug = []
+            for side, slant in ((inner, 0.0), (outer, 0.5)):
+                shift = 2 * math.pi * slant / count
+                top = WHEEL_RADIUS if slant == 0.0 else WHEEL_RADIUS - 0.004
+                ring = [(low, 0.068), (top, 0.052), (top, -0.052), (low, -0.068)]
+                lug.append(
+                    np.array(
+                        [
+                            (r * math.cos(angle + shift + w), r * math.sin(angle + shift + w), side)
+                            for r, w in ring
+                        ]
+                    )
+                )
+            solid = outward(loft(lug))
+            # The face that lies in the tyre is never seen.
+            hidden = {frozenset((0, 3, 7)), frozenset((3, 0, 4)), frozenset((0, 3, 4)),
+                      frozenset((0, 7, 4)), frozenset((3, 7, 4)), frozenset((3, 4, 0))}  # fmt: skip
+            keep = [face for face in solid.faces if frozenset(map(int, face)) not in hidden]
+            mesh.add(RUBBER, upright(Solid(solid.vertices, np.array(keep))))
+
+    rim = [
+        (0.176, -half + 0.016), (0.204, -half + 0.006), (0.204, half - 0.006),
+        (0.176, half - 0.016), (0.184, 0.0),
+    ]  # fmt: skip
+    mesh.add(RIM, upright(lathe(rim, segments, closed=True)))
+
+    hub = [
+        (0.0, -half), (0.045, -half), (0.052, -half + 0.010), (0.052, half - 0.028),
+        (0.040, half - 0.016), (0.0, half - 0.016),
+    ]  # fmt: skip
+    mesh.add(GRAPHITE, upright(lathe(hub, 20)))
+    mesh.add(YELLOW, upright(rod(0.030, 0.020, 16, 0.004).moved(z=half - 0.012)))
+
+    for k in range(5):
+        for split in (-0.020, 0.020):
+            spoke = bar(0.142, 0.020, 0.030, 0.006).turned("z", split * 3.0)
+            spoke = spoke.moved(0.115, split * 1.25, 0.012)
+            mesh.add(RIM, upright(spoke.turned("z", 2 * math.pi * k / 5)))
+        bolt = rod(0.006, 0.008, 6).moved(0.042, 0.0, half - 0.018)
+        mesh.add(STEEL, upright(bolt.turned("z", 2 * math.pi * (k + 0.5) / 5)))
+    # One red valve, so that one turn can be told from another.
+    mesh.add(RED, upright(rod(0.007, 0.03, 8).moved(0.168, 0.0, 0.030).turned("z", math.pi / 5)))
+    return mesh
+
+
+def chassis() -> Mesh:
+    """What Gazebo paints blue: tub, platform rim and stakes."""
+    mesh = Mesh(f"{CART_MESHES}/chassis.dae")
+    height = CHASSIS_TOP - CHASSIS_BOTTOM
+    tub = slab(
+        CHASSIS_LENGTH - 0.05, CHASSIS_WIDTH - 0.05, height - 0.03, 0.09, 0.012, 5, foot=0.05
+    )
+    mesh.add(BLUE, tub.moved(CHASSIS_X, 0, CHASSIS_BOTTOM + (height - 0.03) / 2))
+    rim = slab(CHASSIS_LENGTH, CHASSIS_WIDTH, 0.045, 0.11, 0.012, 6)
+    mesh.add(BLUE, rim.moved(CHASSIS_X, 0, CHASSIS_TOP - 0.0225))
+    for x, y in stakes():
+        stake = slab(0.05, 0.03, 0.20, 0.008, 0.006, 2)
+        mesh.add(BLUE, stake.moved(x, y, CHASSIS_TOP + 0.09))
+    return mesh
+
+
+def stakes() -> list[tuple[float, float]]:
+    """Where the posts that hold the side boards stand, in base_link."""
+    return [(x, side * 0.415) for side in (-1, 1) for x in (-0.30, 0.10, 0.50)]
+
+
+def frame() -> Mesh:
+    """In frame_link, on the platform: planks, boards, handle, mast; and, below, bumper and lamps."""
+    mesh = Mesh(f"{CART_MESHES}/frame.dae")
+
+    planks, gap, run = 6, 0.006, 0.76
+    width = run / planks
+    for k in range(planks):
+        length = 0.92 if k in (0, planks - 1) else 0.95
+        plank = bar(length, width - gap, 0.016, 0.003)
+        mesh.add(
+            WOOD if k % 2 else WOOD_DARK, plank.moved(CHASSIS_X, (k + 0.5) * width - run / 2, 0.006)
+        )
+
+    for side in (-1, 1):
+        for height, wood in ((0.060, WOOD_DARK), (0.138, WOOD)):
+            board = bar(0.90, 0.018, 0.062, 0.004)
+            mesh.add(wood, board.moved(CHASSIS_X, side * 0.392, height))
+
+    # Handle: one bent tube with a cross bar and a grip.
+    half, radius = HANDLE_WIDTH / 2 - TUBE_RADIUS, 0.10
+    top = HANDLE_HEIGHT - TUBE_RADIUS
+    outline = [(-half, 0.0)]
+    outline += bend((-half, 0.0), (-half, top), (half, top), radius, 5)
+    outline += bend((-half, top), (half, top), (half, 0.0), radius, 5)
+    outline += [(half, 0.0)]
+    mesh.add(GRAPHITE, tube([(HANDLE_X, y, z) for y, z in outline], TUBE_RADIUS, 10))
+    for height in (0.20, 0.36):
+        cross = tube([(HANDLE_X, -half, height), (HANDLE_X, half, height)], 0.012, 8)
+        mesh.add(GRAPHITE, cross)
+    grip = rod(TUBE_RADIUS + 0.005, 0.40, 12, 0.004).turned("x", math.pi / 2)
+    mesh.add(RUBBER, grip.moved(HANDLE_X, 0, top))
+    for side in (-1, 1):
+        mesh.add(STEEL, rod(0.036, 0.014, 12, 0.003).moved(HANDLE_X, side * half, 0.018))
+
+    # Mast with flange and the joint under the camera.
+    mesh.add(STEEL, rod(0.045, 0.014, 14, 0.003).moved(MAST_X, MAST_Y, 0.018))
+    mesh.add(GRAPHITE, rod(TUBE_RADIUS, MAST_HEIGHT, 12).moved(MAST_X, MAST_Y, MAST_HEIGHT / 2))
+    mesh.add(YELLOW, rod(TUBE_RADIUS + 0.005, 0.045, 12, 0.004).moved(MAST_X, MAST_Y, 0.30))
+    mesh.add(RUBBER, rod(0.011, 0.03, 8).moved(MAST_X, MAST_Y, 0.335))
+
+    # Bumper: a rubber band around the tub.
+    band = rounded_rectangle(CHASSIS_LENGTH, CHASSIS_WIDTH, 0.11, 6)
+    rings = []
+    for height, inset in ((0.0, 0.05), (0.0, 0.008), (0.012, 0.0), (0.048, 0.0), (0.06, 0.008), (0.06, 0.05)):  # fmt: skip
+        scale = 1 - 2 * inset / np.array([CHASSIS_LENGTH, CHASSIS_WIDTH])
+        rings.append(np.column_stack([band * scale, np.full(len(band), height)]))
+    bumper = loft(rings, cap=False).moved(CHASSIS_X, 0, 0.165 - CHASSIS_TOP)
+    mesh.add(RUBBER, bumper)
+
+    front, rear = CHASSIS_X + CHASSIS_LENGTH / 2, CHASSIS_X - CHASSIS_LENGTH / 2
+    for side in (-1, 1):
+        lamp = slab(0.05, 0.13, 0.020, 0.009, 0.004, 2).turned("y", math.pi / 2)
+        mesh.add(LAMP, lamp.moved(front - 0.024, side * 0.26, 0.272 - CHASSIS_TOP))
+        light = slab(0.05, 0.10, 0.020, 0.009, 0.004, 2).turned("y", math.pi / 2)
+        mesh.add(RED, light.moved(rear + 0.024, side * 0.27, 0.272 - CHASSIS_TOP))
+        axle = rod(0.028, 0.10, 12).turned("x", math.pi / 2)
+        mesh.add(STEEL, axle.moved(0, side * 0.46, WHEEL_RADIUS - CHASSIS_TOP))
+    return mesh
+
+
+def caster() -> Mesh:
+    """A ball in a cup, about the ball's centre."""
+    mesh = Mesh(f"{CART_MESHES}/caster.dae")
+    rings = 7
+    profile = [(0.0, -CASTER_RADIUS)]
+    for k in range(1, rings):
+        angle = -math.pi / 2 + k * math.radians(100) / (rings - 1)
+        profile.append((CASTER_RADIUS * math.cos(angle), CASTER_RADIUS * math.sin(angle)))
+    mesh.add(STEEL, lathe(profile, 20))
+    cup = [
+        (0.101, 0.000), (0.112, 0.002), (0.116, 0.030), (0.100, 0.075), (0.0, 0.080),
+    ]  # fmt: skip
+    mesh.add(GRAPHITE, lathe(cup, 20))
+    return mesh
+
+
+def camera() -> Mesh:
+    """Looks along +x from the origin; drawn at a quarter of its size, as the tutorials have it."""
+    mesh = Mesh(f"{CART_MESHES}/camera.dae")
+
+    def add(material: Material, solid: Solid) -> None:
+        mesh.add(material, solid.scaled(0.25))
+
+    def along_x(solid: Solid) -> Solid:
+        return solid.turned("y", math.pi / 2)
+
+    add(WHITE, along_x(slab(0.076, 0.116, 0.078, 0.016, 0.005, 3)).moved(-0.077, 0, 0.002))
+    add(GRAPHITE, along_x(slab(0.066, 0.106, 0.008, 0.012, 0.003, 3)).moved(-0.036, 0, 0.002))
+    barrel = [(0.034, -0.036), (0.034, -0.010), (0.031, -0.004), (0.026, -0.004), (0.023, -0.014)]
+    add(GRAPHITE, along_x(lathe(barrel, 20)))
+    add(STEEL, along_x(lathe([(0.0345, -0.024), (0.0355, -0.022), (0.0355, -0.016), (0.0345, -0.014)], 20)))
+    add(GLASS, along_x(lathe([(0.023, -0.014), (0.015, -0.0105), (0.0, -0.009)], 20)))
+    add(RED, along_x(rod(0.004, 0.006, 8)).moved(-0.032, 0.044, 0.026))
+    visor = bar(0.104, 0.124, 0.006, 0.002).moved(-0.060, 0, 0.041)
+    add(BLUE, visor)
+    add(GRAPHITE, box(0.050, 0.050, 0.014).moved(-0.066, 0, -0.041))
+    return mesh
+
+
+def traffic_cone() -> Mesh:
+    """0.5 m high, standing on z = 0."""
+    mesh = Mesh("models/traffic_cone/meshes/traffic_cone.dae")
+    mesh.add(RUBBER, slab(0.30, 0.30, 0.03, 0.04, 0.006, 3).moved(z=0.015))
+
+    def radius(height: float) -> float:
+        return 0.115 - (height - 0.03) * (0.115 - 0.022) / 0.47
+
+    def belt(low: float, high: float) -> Solid:
+        return lathe([(radius(low), low), (radius(high), high)], 24)
+
+    mesh.add(ORANGE, belt(0.03, 0.17), belt(0.25, 0.33), belt(0.39, 0.50))
+    mesh.add(ORANGE, lathe([(radius(0.50), 0.50), (0.0, 0.50)], 24))
+    mesh.add(WHITE, belt(0.17, 0.25), belt(0.33, 0.39))
+    return mesh
+
+
+def all_meshes() -> list[Mesh]:
+    return [wheel(), chassis(), frame(), caster(), camera(), traffic_cone()]
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("--to", type=Path, default=REPOSITORY, help="folder to write under")
+    arguments = parser.parse_args()
+    for mesh in all_meshes():
+        mesh.write(arguments.to)
+        print(f"{mesh.triangles():6d} triangles  {mesh.path}")
+
+
+if __name__ == "__main__":
+    main()
