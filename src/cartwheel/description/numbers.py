@@ -1,0 +1,107 @@
+"""Numbers, vectors and truth values as descriptions write them, and what is wrong with them."""
+
+from __future__ import annotations
+
+import difflib
+import math
+import re
+from collections.abc import Iterable
+
+from cartwheel.errors import DescriptionError, Origin
+
+_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\Z", re.ASCII)
+_INFINITE = re.compile(r"[+-]?inf(inity)?\Z", re.IGNORECASE)
+_TRUE = frozenset({"true", "1", "yes", "on"})
+_FALSE = frozenset({"false", "0", "no", "off"})
+
+
+def number(text: str, label: str, origin: Origin, *, infinite: bool = False) -> float:
+    """A finite number, or one of either infinity where those are allowed.
+
+    Args:
+        text: As written.
+        label: What the number is, for the error.
+        origin: Where it stands.
+        infinite: Whether ``inf`` has a meaning there, as it has for limits.
+    """
+    value = text.strip()
+    if _NUMBER.match(value):
+        result = float(value)
+        if math.isfinite(result) or infinite:
+            return result
+        raise DescriptionError(f"{label} {_quoted(value)} is too large", origin=origin)
+    if _INFINITE.match(value):
+        if infinite:
+            return float(value)
+        raise DescriptionError(f"{label} {_quoted(value)} is not a finite number", origin=origin)
+    if value.lower().lstrip("+-") == "nan":
+        raise DescriptionError(f"{label} {_quoted(value)} is not a finite number", origin=origin)
+    if not value:
+        raise DescriptionError(f"{label} is empty where a number is needed", origin=origin)
+    raise DescriptionError(
+        f"{label} {_quoted(value)} is not a number", origin=origin, hint=_number_hint(value)
+    )
+
+
+def integer(text: str, label: str, origin: Origin) -> int:
+    """A whole number; ``10.0`` is one."""
+    value = number(text, label, origin)
+    if value != int(value):
+        raise DescriptionError(
+            f"{label} {_quoted(text.strip())} is not a whole number", origin=origin
+        )
+    return int(value)
+
+
+def vector(text: str, size: int, label: str, origin: Origin) -> tuple[float, ...]:
+    """`size` finite numbers with white space between."""
+    if "," in text:
+        raise DescriptionError(
+            f"{label} {_quoted(text.strip())} is no list of numbers",
+            origin=origin,
+            hint="Numbers are separated by spaces, and decimals are written with a point.",
+        )
+    parts = text.split()
+    values = tuple(number(part, label, origin) for part in parts)
+    if len(values) != size:
+        raise DescriptionError(
+            f"{label} {_quoted(text.strip())} has {len(values)} numbers, {size} are needed",
+            origin=origin,
+        )
+    return values
+
+
+def boolean(text: str, label: str, origin: Origin) -> bool:
+    """A truth value in any of the spellings that Gazebo's files use."""
+    value = text.strip().lower()
+    if value in _TRUE:
+        return True
+    if value in _FALSE:
+        return False
+    raise DescriptionError(
+        f"{label} {_quoted(text.strip())} is neither true nor false",
+        origin=origin,
+        hint="Allowed are true, false, 1 and 0.",
+    )
+
+
+def likely(name: str, known: Iterable[str]) -> str | None:
+    """The one of `known` that a mistyped name likely means; letter case counts for nothing."""
+    by_lower = {candidate.lower(): candidate for candidate in sorted(known, reverse=True)}
+    close = difflib.get_close_matches(name.lower(), by_lower, n=1, cutoff=0.7)
+    return by_lower[close[0]] if close else None
+
+
+def _quoted(value: str) -> str:
+    return f'"{value}"' if len(value) <= 80 else f'"{value[:77]}…"'
+
+
+def _number_hint(value: str) -> str | None:
+    if "${" in value or "$(" in value:
+        return (
+            "It is a xacro expression, which a plain URDF does not evaluate. Is "
+            'xmlns:xacro="http://www.ros.org/wiki/xacro" missing in <robot>?'
+        )
+    if _NUMBER.match(value.replace(",", ".", 1)):
+        return f'Decimals are written with a point: "{value.replace(",", ".", 1)}".'
+    return None

@@ -1,0 +1,369 @@
+"""Finds what descriptions refer to: packages, models, meshes and the files shipped here.
+
+Nobody should have to source a workspace first, so a package is looked for around the
+file that names it before the environment variables of ROS 1, ROS 2 and Gazebo are asked.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from functools import lru_cache
+from pathlib import Path
+from urllib.parse import unquote
+
+from cartwheel.description import numbers
+from cartwheel.errors import DescriptionError, Origin
+
+MAX_ENTRIES = 500
+"""A folder with more entries is no workspace; only these are looked at."""
+MAX_LEVELS_UP = 5
+"""How far above the file, or above its package, a workspace may begin."""
+
+_ROS1 = "ROS_PACKAGE_PATH"
+_PREFIXES = ("AMENT_PREFIX_PATH", "CMAKE_PREFIX_PATH", "COLCON_PREFIX_PATH")
+_MODELS = ("GAZEBO_MODEL_PATH", "GZ_SIM_RESOURCE_PATH", "IGN_GAZEBO_RESOURCE_PATH", "SDF_PATH")
+_RESOURCES = ("GAZEBO_RESOURCE_PATH", "GZ_SIM_RESOURCE_PATH", "IGN_GAZEBO_RESOURCE_PATH")
+_IGNORED = frozenset({"CATKIN_IGNORE", "COLCON_IGNORE", "AMENT_IGNORE"})
+_SKIPPED = frozenset({"build", "devel", "log", "node_modules", "__pycache__", "proc", "sys", "dev"})
+_NAME = re.compile(rb"<name>\s*([^<>\s]+)\s*</name>")
+_COMMENT = re.compile(rb"<!--.*?-->", re.DOTALL)
+_FIND = re.compile(r"\$\(find(?:-pkg-share)?\s+([^\s()]+)\s*\)")
+
+
+def share() -> Path:
+    """The folder that holds the shipped ``robots``, ``worlds`` and ``models``.
+
+    The repository's root in a checkout, ``cartwheel/share`` in an installed package.
+    """
+    package = Path(__file__).resolve().parent.parent
+    installed = package / "share"
+    return installed if installed.is_dir() else package.parent.parent
+
+
+class Packages:
+    """Resolves the URIs of one description.
+
+    Args:
+        file: The description; the workspace around it is searched first. None for a text
+            that has no file: the current folder stands in for it.
+        package_path: Further folders, searched before everything else: packages themselves,
+            folders of packages, or folders of models.
+        environment: For tests; `os.environ` otherwise.
+    """
+
+    def __init__(
+        self,
+        file: Path | None = None,
+        package_path: Sequence[Path] = (),
+        environment: Mapping[str, str] | None = None,
+    ) -> None:
+        self.file = file.absolute() if file is not None else None
+        self.package_path = tuple(Path(path).expanduser().absolute() for path in package_path)
+        self._environment = os.environ if environment is None else environment
+        self._found: dict[str, Path | None] = {}
+
+    @property
+    def folder(self) -> Path:
+        """Where relative paths begin: the description's folder."""
+        return self.file.parent if self.file is not None else Path.cwd()
+
+    def find(self, name: str, origin: Origin | None = None) -> Path:
+        """The folder of a package: its source, or its ``share`` where it is installed.
+
+        Raises:
+            DescriptionError: Where there is none; says where it was looked for.
+        """
+        if name not in self._found:
+            self._found[name] = self._search(name)
+        found = self._found[name]
+        if found is None:
+            raise DescriptionError(
+                f'the package "{name}" was not found', origin=origin, hint=self._missing(name)
+            )
+        return found
+
+    def find_model(self, name: str, origin: Origin | None = None) -> Path:
+        """The folder of a Gazebo model, or of a package of that name.
+
+        Raises:
+            DescriptionError: Where there is neither; says where it was looked for.
+        """
+        if _is_plain(name):
+            for folder in self.model_folders():
+                if _is_dir(folder / name):
+                    return folder / name
+            if name not in self._found:
+                self._found[name] = self._search(name)
+            if (found := self._found[name]) is not None:
+                return found
+        names = {entry.name for folder in self.model_folders() for entry in _folders(folder)}
+        near = numbers.likely(name, names)
+        hint = f'Did you mean "{near}"? ' if near else ""
+        hint += "Searched: " + _listed(self.model_folders())
+        hint += ". Add its folder to GAZEBO_MODEL_PATH or to the package path."
+        raise DescriptionError(f'the model "{name}" was not found', origin=origin, hint=hint)
+
+    def resolve(
+        self, uri: str, origin: Origin | None = None, *, what: str = "file", folder: bool = False
+    ) -> Path:
+        """The existing file, or model folder, that a URI means.
+
+        Args:
+            uri: ``package://``, ``model://``, ``file://``, ``$(find pkg)/…``, an absolute
+                path, or a path relative to the file that names it.
+            origin: Where the URI stands.
+            what: What it is, for the error.
+            folder: Whether a folder is as welcome as a file, as for an included model.
+
+        Raises:
+            DescriptionError: Where there is no such file; says where it was looked for.
+        """
+        candidates = list(self._candidates(uri.strip(), origin))
+        for path in candidates:
+            if _is_file(path) or (folder and _is_dir(path)):
+                return path
+            plain = Path(unquote(str(path)))
+            if plain != path and _is_file(plain):
+                return plain
+        raise DescriptionError(
+            f'the {what} "{uri}" does not exist', origin=origin, hint=_absent(candidates)
+        )
+
+    def model_folders(self) -> list[Path]:
+        """The folders in which Gazebo models are looked for, in this order."""
+        folders = list(self.package_path)
+        for folder in self._ancestors():
+            folders += [folder, folder / "models"]
+        for variable in _MODELS:
+            folders += self._paths(variable)
+        folders += [Path("~/.gazebo/models").expanduser(), share() / "models", share() / "robots"]
+        return list(dict.fromkeys(folder for folder in folders if _is_dir(folder)))
+
+    def _candidates(self, uri: str, origin: Origin | None) -> Iterator[Path]:
+        uri = _FIND.sub(lambda match: str(self.find(match[1], origin)), uri)
+        scheme, separator, rest = uri.partition("://")
+        if not separator:
+            yield from self._relative(uri, origin)
+            return
+        if scheme in ("http", "https"):
+            raise DescriptionError(
+                f'"{uri}" is on the network; nothing is downloaded',
+                origin=origin,
+                hint="Download it, and name it by model:// or package://.",
+            )
+        if scheme == "file":
+            yield from self._relative(rest, origin)
+            return
+        name, _, path = rest.partition("/")
+        if scheme not in ("package", "model"):
+            raise DescriptionError(
+                f'"{uri}" has the unknown scheme "{scheme}"',
+                origin=origin,
+                hint="Known are package://, model:// and file://.",
+            )
+        if not name:
+            raise DescriptionError(f'"{uri}" names no {scheme}', origin=origin)
+        yield (
+            self.find(name, origin) if scheme == "package" else self.find_model(name, origin)
+        ) / path
+
+    def _relative(self, path: str, origin: Origin | None) -> Iterator[Path]:
+        if not path:
+            raise DescriptionError("a file name is empty", origin=origin)
+        given = Path(path)
+        if given.is_absolute():
+            yield given
+            return
+        folders = [self.folder]
+        if origin is not None and not origin.file.startswith("<"):
+            folders.insert(0, Path(origin.file).absolute().parent)
+        for variable in _RESOURCES:
+            folders += self._paths(variable)
+        yield from dict.fromkeys(folder / given for folder in (*folders, *self.package_path))
+
+    def _search(self, name: str) -> Path | None:
+        if not _is_plain(name):
+            return None
+        searches: tuple[Callable[[], Iterator[Path]], ...] = (
+            lambda: iter(self.package_path),
+            self._workspaces,
+            self._environment_roots,
+            lambda: iter((share() / "robots", share() / "models")),
+        )
+        # A folder with the right name but without package.xml is what remains when somebody
+        # copied a description out of its workspace: second choice, but better than failing.
+        bare: Path | None = None
+        for roots in searches:
+            for root in roots():
+                found = _package_in(root, name)
+                if found is not None and _package_name(found) == name:
+                    return found
+                bare = bare or found
+        return bare
+
+    def _environment_roots(self) -> Iterator[Path]:
+        yield from self._paths(_ROS1)
+        for variable in _PREFIXES:
+            for prefix in self._paths(variable):
+                yield prefix / "share"
+        for variable in _MODELS:
+            yield from self._paths(variable)
+
+    def _paths(self, variable: str) -> list[Path]:
+        value = self._environment.get(variable, "")
+        return [Path(part).expanduser() for part in value.split(os.pathsep) if part]
+
+    def _ancestors(self) -> list[Path]:
+        """The folders above the file, nearest first, that may be a workspace."""
+        parents = [self.folder, *self.folder.parents]
+        home = Path.home()
+        levels = MAX_LEVELS_UP
+        for index, parent in enumerate(parents):
+            if (parent / "package.xml").is_file():
+                levels = max(levels, index + MAX_LEVELS_UP)
+        chosen = []
+        for parent in parents[:levels]:
+            # Neither the root nor the folder of all homes is one, and they are slow to read.
+            if parent in (home, home.parent) or parent == Path(parent.anchor):
+                break
+            chosen.append(parent)
+        return chosen or parents[:1]
+
+    def _workspaces(self) -> Iterator[Path]:
+        yield from self._ancestors()
+
+    def _missing(self, name: str) -> str:
+        roots = [*self.package_path, *self._ancestors(), *self._environment_roots()]
+        known = {found for root in (*roots, share() / "robots") for found in _names_in(root)}
+        near = numbers.likely(name, known)
+        hint = f'Did you mean "{near}"? ' if near else ""
+        return (
+            f"{hint}Searched: {_listed([*roots, share() / 'robots'])}. "
+            f"Source its workspace, or add its folder to the package path."
+        )
+
+
+def _package_in(root: Path, name: str) -> Path | None:
+    """The package of that name that `root` is or holds, at most one folder between."""
+    if root.name == name and _is_dir(root):
+        return root
+    if _package_name(root) == name:
+        return root
+    by_name = None
+    for folder in _nested(root):
+        if _package_name(folder) == name:
+            return folder
+        if by_name is None and folder.name == name:
+            by_name = folder
+    return by_name
+
+
+def _nested(root: Path) -> Iterator[Path]:
+    """The folders in which a package of the workspace at `root` may lie, nearest first."""
+    first = list(_folders(root))
+    yield from first
+    for folder in first:
+        if _package_name(folder) is not None:
+            continue
+        second = list(_folders(folder))
+        yield from second
+        if folder.name in ("src", "install", "share"):
+            for inner in second:
+                if _package_name(inner) is None:
+                    yield from _folders(inner)
+                    yield from _folders(inner / "share")
+
+
+def _names_in(root: Path) -> Iterator[str]:
+    for folder in (root, *_nested(root)):
+        found = _package_name(folder)
+        if found is not None:
+            yield found
+
+
+@lru_cache(maxsize=4096)
+def _listing(folder: Path, _changed: int) -> tuple[Path, ...]:
+    names = []
+    try:
+        with os.scandir(folder) as entries:
+            for count, entry in enumerate(entries):
+                if count >= MAX_ENTRIES:
+                    break
+                if entry.name in _IGNORED:
+                    return ()
+                hidden = entry.name.startswith(".") or entry.name in _SKIPPED
+                if not hidden and entry.is_dir():
+                    names.append(entry.name)
+    except OSError:
+        return ()
+    return tuple(folder / name for name in sorted(names))
+
+
+def _folders(folder: Path) -> tuple[Path, ...]:
+    """The folders in a folder, those aside that hold no packages."""
+    try:
+        changed = folder.stat().st_mtime_ns
+    except (OSError, ValueError):
+        return ()
+    return _listing(folder, changed)
+
+
+@lru_cache(maxsize=4096)
+def _declared_name(manifest: Path, _changed: int) -> str | None:
+    try:
+        with manifest.open("rb") as file:
+            match = _NAME.search(_COMMENT.sub(b"", file.read(16384)))
+    except OSError:
+        return None
+    return match[1].decode("utf-8", "replace") if match else manifest.parent.name
+
+
+def _package_name(folder: Path) -> str | None:
+    """The name that the folder's package.xml states; None where there is none."""
+    manifest = folder / "package.xml"
+    try:
+        changed = manifest.stat().st_mtime_ns
+    except (OSError, ValueError):
+        return None
+    return _declared_name(manifest, changed)
+
+
+def _is_plain(name: str) -> bool:
+    return bool(name) and name not in (".", "..") and "/" not in name and "\0" not in name
+
+
+def _is_file(path: Path) -> bool:
+    try:
+        return path.is_file()
+    except (OSError, ValueError):
+        return False
+
+
+def _is_dir(path: Path) -> bool:
+    try:
+        return path.is_dir()
+    except (OSError, ValueError):
+        return False
+
+
+def _absent(candidates: Sequence[Path]) -> str:
+    """Where a file was looked for, and which one there was likely meant."""
+    for path in candidates:
+        try:
+            names = [
+                entry.name for _, entry in zip(range(2000), path.parent.iterdir(), strict=False)
+            ]
+        except (OSError, ValueError):
+            continue
+        near = numbers.likely(path.name, names)
+        if near:
+            return f'Did you mean "{near}"? Looked for {_listed(candidates)}.'
+    return f"Looked for {_listed(candidates)}."
+
+
+def _listed(paths: Iterable[Path]) -> str:
+    shown = list(dict.fromkeys(str(path) for path in paths))
+    more = f", and {len(shown) - 8} more" if len(shown) > 8 else ""
+    return (", ".join(shown[:8]) or "nowhere") + more
