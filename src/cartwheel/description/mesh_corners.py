@@ -1,0 +1,64 @@
+"""Corners that index position, normal and texture coordinate apart, into common vertices.
+
+OBJ and COLLADA number the three separately; renderers and physics want one index for all.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cartwheel.description.mesh_polygons import triangulate
+from cartwheel.description.submesh import Submesh, build_submesh
+
+if TYPE_CHECKING:
+    from cartwheel.description.model import Rgba
+
+Indices = NDArray[np.int64]
+
+
+def weld(
+    name: str,
+    counts: Indices,
+    points: tuple[NDArray[Any], Indices],
+    *,
+    normals: tuple[NDArray[Any], Indices] | None = None,
+    uv: tuple[NDArray[Any], Indices] | None = None,
+    rgba: Rgba | None = None,
+    texture: Path | bytes | None = None,
+) -> Submesh | None:
+    """A submesh of polygons; None where no triangle is left.
+
+    Args:
+        name: The submesh's.
+        counts: Corners of each polygon.
+        points: The positions (n, 3), and for each corner its index among them.
+        normals: Likewise; (k, 3).
+        uv: Likewise; (k, 2).
+        rgba: Diffuse colour.
+        texture: Image.
+
+    Raises:
+        ValueError: an index points outside its table, or the polygons do not fit the corners.
+    """
+    tables = [points, *(table for table in (normals, uv) if table is not None)]
+    for values, indices in tables:
+        if indices.size and (indices.min() < 0 or indices.max() >= len(values)):
+            raise ValueError(f"a face asks for entry {int(indices.max())} of {len(values)}")
+    key = points[1]
+    for values, indices in tables[1:]:
+        key = key * max(1, len(values)) + indices
+    _, first, inverse = np.unique(key, return_index=True, return_inverse=True)
+    triangles = triangulate(counts, points[0][points[1]])
+    return build_submesh(
+        name,
+        points[0][points[1][first]],
+        inverse.reshape(-1)[triangles],
+        normals=normals[0][normals[1][first]] if normals else None,
+        uv=uv[0][uv[1][first]] if uv else None,
+        rgba=rgba,
+        texture=texture,
+    )

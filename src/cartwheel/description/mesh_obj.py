@@ -1,0 +1,193 @@
+"""Wavefront OBJ files and their material libraries."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cartwheel.description.mesh_corners import weld
+from cartwheel.description.model import Rgba
+from cartwheel.description.submesh import Submesh
+
+_IGNORED = frozenset({"s", "g", "l", "p", "vp", "#", "mg"})
+
+
+@dataclass(slots=True)
+class _Material:
+    rgba: Rgba | None = None
+    texture: Path | None = None
+
+
+@dataclass(slots=True)
+class _Group:
+    """Faces of one object and material, each a line as written, made absolute."""
+
+    name: str
+    material: str
+    faces: list[bytes] = field(default_factory=list)
+
+
+def read_obj(path: Path, data: bytes, notes: list[str]) -> list[Submesh]:
+    """One submesh for each object and material.
+
+    Args:
+        path: The file; its libraries and images lie beside it.
+        data: Its content.
+        notes: Receives what is left out.
+
+    Raises:
+        ValueError: what is wrong with the file.
+    """
+    tables: dict[bytes, list[bytes]] = {b"v": [], b"vt": [], b"vn": []}
+    groups: dict[tuple[str, str], _Group] = {}
+    libraries: list[str] = []
+    name, material = "", ""
+    for line in data.replace(b"\\\r\n", b" ").replace(b"\\\n", b" ").split(b"\n"):
+        key, _, rest = line.strip().partition(b" ")
+        if key in tables:
+            tables[key].append(rest)
+        elif key == b"f":
+            group = groups.setdefault((name, material), _Group(name, material))
+            group.faces.append(_absolute(rest, tables) if b"-" in rest else rest)
+        elif key == b"o":
+            name = rest.strip().decode(errors="replace")
+        elif key == b"usemtl":
+            material = rest.strip().decode(errors="replace")
+        elif key == b"mtllib":
+            libraries.append(rest.strip().decode(errors="replace"))
+        elif key and not key.startswith(b"#") and key.decode(errors="replace") not in _IGNORED:
+            note = f'the statement "{key[:20].decode(errors="replace")}" is not understood'
+            if note not in notes:
+                notes.append(note)
+    points = _table(tables[b"v"], 3, "v")
+    uv = _table(tables[b"vt"], 2, "vt")
+    normals = _table(tables[b"vn"], 3, "vn")
+    materials = _materials(path, libraries, notes)
+    result: list[Submesh] = []
+    for group in groups.values():
+        counts, corners = _corners(group.faces)
+        look = materials.get(group.material, _Material())
+        has_uv = bool(len(uv)) and bool((corners[:, 1] >= 0).all())
+        has_normals = bool(len(normals)) and bool((corners[:, 2] >= 0).all())
+        submesh = weld(
+            group.name or group.material,
+            counts,
+            (points, corners[:, 0]),
+            uv=(uv, corners[:, 1]) if has_uv else None,
+            normals=(normals, corners[:, 2]) if has_normals else None,
+            rgba=look.rgba,
+            texture=look.texture if has_uv else None,
+        )
+        if submesh is not None:
+            result.append(submesh)
+    return result
+
+
+def _table(rows: list[bytes], width: int, key: str) -> NDArray[np.float64]:
+    """The numbers of all statements of a kind; colours or weights after them are left out."""
+    if not rows:
+        return np.zeros((0, width))
+    words = b" ".join(rows).split()
+    try:
+        if len(words) == width * len(rows) and len(rows[0].split()) == width:
+            return np.array(words, dtype="S").astype(np.float64).reshape(-1, width)
+        return np.array([[float(w) for w in row.split()[:width]] for row in rows], dtype=np.float64)
+    except ValueError:
+        raise ValueError(f'a "{key}" statement has not {width} numbers') from None
+
+
+def _absolute(face: bytes, tables: dict[bytes, list[bytes]]) -> bytes:
+    """Negative indices count back from the last statement so far."""
+    words = []
+    for word in face.split():
+        parts = word.split(b"/")
+        for i, key in enumerate((b"v", b"vt", b"vn")[: len(parts)]):
+            if parts[i].startswith(b"-"):
+                parts[i] = str(len(tables[key]) + 1 + _index(parts[i])).encode()
+        words.append(b"/".join(parts))
+    return b" ".join(words)
+
+
+def _index(word: bytes) -> int:
+    try:
+        return int(word)
+    except ValueError:
+        raise ValueError(f'"{word[:20].decode(errors="replace")}" is no index') from None
+
+
+def _corners(faces: list[bytes]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Corners of each face, and (corners, 3) indices of v, vt and vn; -1 where not given."""
+    split = [face.split() for face in faces]
+    counts = np.array([len(words) for words in split], dtype=np.int64)
+    words = [word for row in split for word in row]
+    slashes = {word.count(b"/") for word in words}
+    corners = np.full((len(words), 3), -1, dtype=np.int64)
+    if not words:
+        return counts, corners
+    if len(slashes) == 1 and (width := slashes.pop() + 1) <= 3:
+        flat = b"/".join(words)
+        if width == 3:
+            flat = flat.replace(b"//", b"/0/")
+        try:
+            numbers = np.array(flat.split(b"/"), dtype="S").astype(np.int64)
+        except ValueError:
+            raise ValueError("a face names something that is no index") from None
+        corners[:, :width] = numbers.reshape(-1, width) - 1
+    else:
+        for row, word in enumerate(words):
+            for column, part in enumerate(word.split(b"/")[:3]):
+                if part:
+                    corners[row, column] = _index(part) - 1
+    return counts, corners
+
+
+def _materials(path: Path, libraries: list[str], notes: list[str]) -> dict[str, _Material]:
+    found: dict[str, _Material] = {}
+    for library in libraries:
+        file = path.parent / library
+        try:
+            text = file.read_text(errors="replace")
+        except (OSError, ValueError):
+            notes.append(f'the material library "{library}" does not exist; its colours are lost')
+            continue
+        _read_library(file, text, found, notes)
+    return found
+
+
+def _read_library(file: Path, text: str, found: dict[str, _Material], notes: list[str]) -> None:
+    current = _Material()
+    for line in text.splitlines():
+        key, _, rest = line.strip().partition(" ")
+        rest = rest.strip()
+        key = key.lower()
+        if key == "newmtl":
+            current = found.setdefault(rest, _Material())
+        elif key == "kd":
+            values = _fractions(rest, 3)
+            alpha = current.rgba[3] if current.rgba else 1.0
+            if values:
+                current.rgba = (values[0], values[1], values[2], alpha)
+        elif key in ("d", "tr"):
+            values = _fractions(rest, 1)
+            if values:
+                r, g, b, _ = current.rgba or (0.8, 0.8, 0.8, 1.0)
+                current.rgba = (r, g, b, values[0] if key == "d" else 1 - values[0])
+        elif key == "map_kd":
+            # Options stand before the name, which may itself contain spaces.
+            name = rest.split()[-1] if rest.startswith("-") else rest
+            image = file.parent / name.replace("\\", "/")
+            if image.is_file():
+                current.texture = image
+            else:
+                notes.append(f'texture "{name}" does not exist')
+
+
+def _fractions(text: str, count: int) -> list[float]:
+    try:
+        values = [max(0.0, min(1.0, float(word))) for word in text.split()[:count]]
+    except ValueError:
+        return []
+    return values if len(values) == count else []

@@ -1,0 +1,70 @@
+"""STL files, binary and ASCII."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+
+from cartwheel.description.submesh import Submesh, build_submesh, unique_rows
+
+_HEADER = 84
+_RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+_VERTEX = re.compile(rb"vertex\s+(\S+)\s+(\S+)\s+(\S+)", re.IGNORECASE)
+
+
+def read_stl(data: bytes) -> list[Submesh]:
+    """The file's triangles as one submesh, equal corners merged.
+
+    Its facet normals are left out: they are often zero and always follow from the corners.
+
+    Raises:
+        ValueError: what is wrong with the file.
+    """
+    corners = _read_ascii(data) if _is_ascii(data) else _read_binary(data)
+    if not np.isfinite(corners).all():
+        raise ValueError("a vertex is not a finite number")
+    first, inverse = unique_rows(corners)
+    submesh = build_submesh("", corners[first], inverse.reshape(-1, 3))
+    return [submesh] if submesh else []
+
+
+def _is_ascii(data: bytes) -> bool:
+    """Binary files too may begin with "solid": the length that the count asks for decides."""
+    if data.lstrip()[:5].lower() != b"solid":
+        return False
+    if len(data) >= _HEADER:
+        count = int.from_bytes(data[80:84], "little")
+        if len(data) == _HEADER + count * _RECORD.itemsize:
+            return False
+    return b"\0" not in data[:_HEADER] or b"facet" in data[:1024].lower()
+
+
+def _read_binary(data: bytes) -> np.ndarray[tuple[int, int], np.dtype[np.float32]]:
+    if len(data) < _HEADER:
+        raise ValueError(f"is no STL file: {len(data)} bytes, the header alone has {_HEADER}")
+    count = int.from_bytes(data[80:84], "little")
+    present = (len(data) - _HEADER) // _RECORD.itemsize
+    if count > present:
+        raise ValueError(f"is cut off: {count} triangles announced, {present} present")
+    records = np.frombuffer(data, dtype=_RECORD, count=count, offset=_HEADER)
+    return records["corners"].reshape(-1, 3).astype(np.float32)
+
+
+def _read_ascii(data: bytes) -> np.ndarray[tuple[int, int], np.dtype[np.float32]]:
+    found = _VERTEX.findall(data)
+    if len(found) % 3:
+        raise ValueError(f"is cut off: {len(found)} vertices are no whole number of triangles")
+    try:
+        return np.array(found, dtype="S").astype(np.float32).reshape(-1, 3)
+    except ValueError:
+        wrong = next((n for row in found for n in row if not _is_number(n)), b"?")
+        raise ValueError(f'"{wrong[:40].decode(errors="replace")}" is no number') from None
+
+
+def _is_number(text: bytes) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True

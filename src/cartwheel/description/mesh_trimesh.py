@@ -1,0 +1,78 @@
+"""PLY and glTF files through trimesh, which is imported only when one is met."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from cartwheel.description.model import Rgba
+from cartwheel.description.submesh import Submesh, build_submesh
+
+
+def read_with_trimesh(path: Path, data: bytes, _notes: list[str]) -> list[Submesh]:
+    """One submesh for each geometry that the scene shows, placed by its nodes.
+
+    glTF's y axis stays what it is: neither rviz nor Gazebo turns it up to z.
+
+    Raises:
+        Exception: whatever trimesh makes of a damaged file.
+    """
+    import trimesh  # noqa: PLC0415 - a tenth of a second that most robots need not pay
+
+    kind = path.suffix.lower().lstrip(".")
+    resolver = trimesh.resolvers.FilePathResolver(str(path))
+    scene = trimesh.load_scene(io.BytesIO(data), file_type=kind, resolver=resolver, process=False)
+    result: list[Submesh] = []
+    for node in scene.graph.nodes_geometry:
+        transform, key = scene.graph[node]
+        geometry = scene.geometry[key]
+        if not isinstance(geometry, trimesh.Trimesh):
+            continue
+        matrix = np.asarray(transform, dtype=np.float64)
+        linear = matrix[:3, :3]
+        faces = np.asarray(geometry.faces)
+        if np.linalg.det(linear) < 0:
+            faces = faces[:, ::-1]
+        rgba, texture = _look(geometry.visual)
+        uv = getattr(geometry.visual, "uv", None)
+        submesh = build_submesh(
+            str(key),
+            np.asarray(geometry.vertices) @ linear.T + matrix[:3, 3],
+            faces,
+            normals=np.asarray(geometry.vertex_normals) @ np.linalg.inv(linear),
+            uv=uv,
+            rgba=rgba,
+            texture=texture if uv is not None else None,
+        )
+        if submesh is not None:
+            result.append(submesh)
+    return result
+
+
+def _look(visual: Any) -> tuple[Rgba | None, bytes | None]:
+    """Colour and image of what trimesh calls a visual."""
+    if visual.kind in ("vertex", "face"):
+        colours = visual.vertex_colors if visual.kind == "vertex" else visual.face_colors
+        r, g, b, a = (float(c) / 255 for c in np.asarray(colours, dtype=float).mean(axis=0))
+        return (r, g, b, a), None
+    material = getattr(visual, "material", None)
+    if visual.kind != "texture" or material is None:
+        return None, None
+    image = getattr(material, "baseColorTexture", None) or getattr(material, "image", None)
+    colour = getattr(material, "baseColorFactor", None)
+    if colour is None and image is None:
+        colour = getattr(material, "main_color", None)
+    rgba: Rgba | None = None
+    if colour is not None:
+        values = np.asarray(colour)
+        values = values / 255 if values.dtype.kind in "ui" else values
+        r, g, b, a = (float(c) for c in (*values[:3], values[3] if len(values) > 3 else 1.0))
+        rgba = (r, g, b, a)
+    if image is None:
+        return rgba, None
+    stream = io.BytesIO()
+    image.save(stream, format="PNG")
+    return rgba, stream.getvalue()

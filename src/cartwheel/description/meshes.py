@@ -1,0 +1,156 @@
+"""Mesh files into triangles, the way rviz and Gazebo place them.
+
+STL, OBJ and DAE are read here, since they are what robots use and must load within the first
+second; PLY and glTF go through trimesh, which takes a tenth of a second to import alone.
+
+Axes are taken as the file states its coordinates. COLLADA's ``<up_axis>`` is not applied, nor is
+glTF's y-up turned: rviz and Gazebo apply neither, and every published robot's ``rpy`` is written
+to look right there. COLLADA's ``<unit>`` is applied, as both do.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+
+from cartwheel.description import model
+from cartwheel.description.mesh_dae import read_dae
+from cartwheel.description.mesh_obj import read_obj
+from cartwheel.description.mesh_stl import read_stl
+from cartwheel.description.mesh_trimesh import read_with_trimesh
+from cartwheel.description.submesh import (
+    Floats,
+    Ints,
+    MeshError,
+    Submesh,
+    scale_submesh,
+    unique_rows,
+)
+from cartwheel.errors import Origin, suggestion
+
+__all__ = ["MeshError", "Submesh", "convex_hull_input", "load_mesh", "mesh_notes"]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Loaded:
+    submeshes: tuple[Submesh, ...]
+    notes: tuple[str, ...]
+
+
+def load_mesh(mesh: model.Mesh, *, origin: Origin | None = None) -> tuple[Submesh, ...]:
+    """The mesh's submeshes, scaled, in the frame of the visual or collision that shows it.
+
+    Files are read once for each state on disk; the arrays are shared and read-only.
+
+    Args:
+        mesh: The file, its scale, and which submesh of it.
+        origin: The element that asks for it, for the error.
+
+    Raises:
+        MeshError: the file is missing, empty, damaged or of an unknown format.
+    """
+    if not all(np.isfinite(mesh.scale)) or 0.0 in mesh.scale:
+        raise MeshError(mesh.path, f"scale {mesh.scale} flattens it", origin=origin)
+    submeshes = _loaded(mesh.path, origin).submeshes
+    if mesh.submesh is not None:
+        submeshes = _select(mesh, submeshes, origin)
+    return tuple(scale_submesh(submesh, mesh.scale) for submesh in submeshes)
+
+
+def mesh_notes(mesh: model.Mesh) -> tuple[str, ...]:
+    """What of the file is not shown as written: a missing texture, a part that is no surface.
+
+    Raises:
+        MeshError: as `load_mesh`.
+    """
+    return _loaded(mesh.path, None).notes
+
+
+def convex_hull_input(submeshes: Sequence[Submesh]) -> tuple[Floats, Ints]:
+    """All submeshes as one surface, equal vertices merged: what physics makes its hull of.
+
+    Returns:
+        Vertices (n, 3) in metres and faces (m, 3).
+    """
+    if not submeshes:
+        return np.zeros((0, 3), dtype=np.float32), np.zeros((0, 3), dtype=np.int32)
+    offsets = np.cumsum([0, *(len(part.vertices) for part in submeshes)])
+    vertices = np.concatenate([part.vertices for part in submeshes])
+    faces = np.concatenate(
+        [part.faces + offset for part, offset in zip(submeshes, offsets, strict=False)]
+    )
+    first, inverse = unique_rows(vertices)
+    return vertices[first], inverse[faces].astype(np.int32)
+
+
+def _select(
+    mesh: model.Mesh, submeshes: tuple[Submesh, ...], origin: Origin | None
+) -> tuple[Submesh, ...]:
+    chosen = tuple(part for part in submeshes if part.name == mesh.submesh)
+    if not chosen:
+        raise MeshError(
+            mesh.path,
+            f'has no submesh "{mesh.submesh}"',
+            origin=origin,
+            hint=suggestion(mesh.submesh or "", {part.name for part in submeshes}),
+        )
+    if not mesh.center_submesh:
+        return chosen
+    points = np.concatenate([part.vertices for part in chosen])
+    centre = (points.min(axis=0) + points.max(axis=0)) / 2
+    return tuple(replace(part, vertices=part.vertices - centre) for part in chosen)
+
+
+def _loaded(path: Path, origin: Origin | None) -> _Loaded:
+    try:
+        status = path.stat()
+        return _read(path, status.st_mtime_ns, status.st_size)
+    except MeshError as error:
+        raise MeshError(path, error.reason, origin=origin, hint=error.hint) from error
+    except FileNotFoundError:
+        raise MeshError(path, "does not exist", origin=origin) from None
+    except OSError as error:
+        raise MeshError(path, f"cannot be read: {error.strerror}", origin=origin) from error
+
+
+@lru_cache(maxsize=256)
+def _read(path: Path, _mtime_ns: int, size: int) -> _Loaded:
+    """The file as it is; time and size are the cache's, so that an edited file is read anew."""
+    kind = path.suffix.lower().lstrip(".")
+    reader = _READERS.get(kind)
+    if reader is None:
+        known = ", ".join(sorted(_READERS))
+        raise MeshError(
+            path, f'format "{kind}" is not known', hint=f"Convert it to one of: {known}."
+        )
+    if not size:
+        raise MeshError(path, "is empty")
+    notes: list[str] = []
+    try:
+        submeshes = reader(path, path.read_bytes(), notes)
+    except OSError:
+        raise
+    except Exception as error:  # a damaged file may fail anywhere in its reader
+        raise MeshError(path, str(error) or type(error).__name__) from error
+    if not submeshes:
+        raise MeshError(path, "has no triangles")
+    return _Loaded(tuple(submeshes), tuple(notes))
+
+
+def _stl(_path: Path, data: bytes, _notes: list[str]) -> list[Submesh]:
+    return read_stl(data)
+
+
+_READERS: dict[str, Callable[[Path, bytes, list[str]], list[Submesh]]] = {
+    "stl": _stl,
+    "stlb": _stl,
+    "obj": read_obj,
+    "dae": read_dae,
+    "ply": read_with_trimesh,
+    "glb": read_with_trimesh,
+    "gltf": read_with_trimesh,
+}
