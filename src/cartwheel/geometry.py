@@ -197,9 +197,7 @@ class Pose:
         """`other`, given in this frame, in the frame that this one is given in."""
         dx, dy, dz = rotate(self.orientation, other.position)
         x, y, z = self.position
-        return Pose(
-            (x + dx, y + dy, z + dz), quat_multiply(self.orientation, other.orientation)
-        )
+        return Pose((x + dx, y + dy, z + dz), quat_multiply(self.orientation, other.orientation))
 
     def inverse(self) -> Pose:
         """The outer frame within this one."""

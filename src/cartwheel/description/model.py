@@ -19,7 +19,15 @@ Rgba = tuple[float, float, float, float]
 """Red, green, blue, alpha, each 0 to 1."""
 
 JointType = Literal[
-    "fixed", "revolute", "continuous", "prismatic", "ball", "universal", "screw", "floating", "planar"
+    "fixed",
+    "revolute",
+    "continuous",
+    "prismatic",
+    "ball",
+    "universal",
+    "screw",
+    "floating",
+    "planar",
 ]
 
 
@@ -120,9 +128,7 @@ class Polyline:
     height: float
 
 
-Shape = (
-    Box | Cylinder | Sphere | Capsule | Cone | Ellipsoid | Plane | Mesh | Heightmap | Polyline
-)
+Shape = Box | Cylinder | Sphere | Capsule | Cone | Ellipsoid | Plane | Mesh | Heightmap | Polyline
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

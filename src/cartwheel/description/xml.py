@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
+from typing import Protocol
 from xml.parsers import expat
 
 from cartwheel.description import numbers
@@ -381,15 +382,20 @@ class _Builder:
         self._texts[-1].append(text)
 
 
-class _Handler:
-    """What `run_expat` tells of a document; xacro's tree is built by another one than ours."""
+class Handler(Protocol):
+    """Takes what `run_expat` reads; xacro works on another kind of tree than the rest."""
 
-    def start(self, tag: str, attributes: dict[str, str], line: int) -> None: ...
-    def end(self) -> None: ...
-    def data(self, text: str) -> None: ...
+    def start(self, tag: str, attributes: dict[str, str], line: int) -> None:
+        """An element begins in that line."""
+
+    def end(self) -> None:
+        """The innermost element ends."""
+
+    def data(self, text: str) -> None:
+        """A piece of the innermost element's text."""
 
 
-def run_expat(text: str | bytes, file: str, handler: _Builder | _Handler) -> None:
+def run_expat(text: str | bytes, file: str, handler: Handler) -> None:
     """Reads XML and reports malformed text as a `DescriptionError` with its place."""
     parser = expat.ParserCreate()
     parser.buffer_text = True

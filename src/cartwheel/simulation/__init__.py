@@ -1,0 +1,19 @@
+"""The one thread that owns the physics."""
+
+from cartwheel.simulation.handles import CameraHandle, JointHandle, LinkHandle, MotorHandle
+from cartwheel.simulation.simulation import Part, Simulation
+from cartwheel.simulation.snapshot import Contact, PlacedModel, RunState, Scene, Snapshot
+
+__all__ = [
+    "CameraHandle",
+    "Contact",
+    "JointHandle",
+    "LinkHandle",
+    "MotorHandle",
+    "Part",
+    "PlacedModel",
+    "RunState",
+    "Scene",
+    "Simulation",
+    "Snapshot",
+]

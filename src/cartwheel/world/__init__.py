@@ -1,0 +1,6 @@
+"""Descriptions to a compiled MuJoCo model."""
+
+from cartwheel.world.build import Build, build
+from cartwheel.world.entry import CameraMount, ModelEntry, Motor
+
+__all__ = ["Build", "CameraMount", "ModelEntry", "Motor", "build"]

@@ -1,0 +1,311 @@
+"""Topics and services in one process: typed, lazy, as a ROS graph names them.
+
+One thread, the owner (the simulation's), publishes and delivers. Other threads subscribe
+with a `Mailbox`, and hand messages in through `Graph.post`.
+"""
+
+from __future__ import annotations
+
+import re
+import threading
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from cartwheel.errors import GraphError, UnknownNameError
+from cartwheel.graph.mailbox import Mailbox
+
+Callback = Callable[[Any], None]
+Handler = Callable[[Any], Any]
+Qos = Literal["default", "sensor", "latched"]
+
+_NAME = re.compile(r"/[A-Za-z_~][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*\Z")
+
+
+def resolve_name(name: str, namespace: str = "") -> str:
+    """A global topic or service name: ``/…`` stays, anything else goes under the namespace.
+
+    Raises:
+        GraphError: The result is not a name that ROS accepts.
+    """
+    full = name if name.startswith("/") else f"/{namespace.strip('/')}/{name}"
+    full = "/" + "/".join(part for part in full.split("/") if part)
+    if not _NAME.match(full):
+        raise GraphError(
+            f'"{name}" is no valid name',
+            hint="Names hold letters, digits, _ and /, and no part begins with a digit.",
+        )
+    return full
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class TopicInfo:
+    """A topic as a listing shows it."""
+
+    name: str
+    type: str
+    publishers: tuple[str, ...]
+    subscribers: tuple[str, ...]
+    rate: float | None
+    """Hz as stated by its publisher; None where it has none."""
+    qos: Qos
+
+
+class Topic:
+    """A named stream of messages of one type."""
+
+    def __init__(self, name: str, type_name: str) -> None:
+        self.name = name
+        self.type = type_name
+        self.publishers: tuple[Publisher, ...] = ()
+        self.subscriptions: tuple[Subscription, ...] = ()
+        self.latched: Any = None
+
+    def deliver(self, message: Any) -> None:
+        """Hands a message to every subscriber; on the owner's thread."""
+        for subscription in self.subscriptions:
+            subscription.callback(message)
+
+
+class Publisher:
+    """The right to publish on a topic. Make a message only when `wanted`."""
+
+    def __init__(
+        self, graph: Graph, topic: Topic, *, node: str, rate: float | None, qos: Qos
+    ) -> None:
+        self._graph = graph
+        self._topic = topic
+        self.node = node
+        self.rate = rate
+        self.qos = qos
+
+    @property
+    def topic(self) -> str:
+        return self._topic.name
+
+    @property
+    def type(self) -> str:
+        return self._topic.type
+
+    @property
+    def wanted(self) -> bool:
+        """Whether anybody would read a message published now."""
+        return bool(self._topic.subscriptions) or self.qos == "latched"
+
+    def publish(self, message: Any) -> None:
+        """Delivers to all subscribers at once; on the owner's thread."""
+        if self.qos == "latched":
+            self._topic.latched = message
+        self._topic.deliver(message)
+
+    def close(self) -> None:
+        """Takes the publisher off the graph."""
+        self._graph._remove_publisher(self._topic, self)
+
+
+class Subscription:
+    """A callback on a topic, called on the owner's thread."""
+
+    def __init__(self, graph: Graph, topic: Topic, callback: Callback, *, node: str) -> None:
+        self._graph = graph
+        self._topic = topic
+        self.callback = callback
+        self.node = node
+
+    @property
+    def topic(self) -> str:
+        return self._topic.name
+
+    def close(self) -> None:
+        """Takes the subscription off the graph."""
+        self._graph._remove_subscription(self._topic, self)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Service:
+    """A service: `handler` takes a request, returns the response; on the owner's thread."""
+
+    name: str
+    type: str
+    handler: Handler
+    node: str
+
+
+class Graph:
+    """All topics and services of a simulation.
+
+    Args:
+        post: Runs a function on the owner's thread, soon; the simulation gives its own.
+            Without one, functions run at once, for use on a single thread.
+    """
+
+    def __init__(self, post: Callable[[Callable[[], None]], None] | None = None) -> None:
+        self.post: Callable[[Callable[[], None]], None] = post or (lambda function: function())
+        self._lock = threading.RLock()
+        self._topics: dict[str, Topic] = {}
+        self._services: dict[str, Service] = {}
+        self.changed: int = 0
+        """Counts every change of who publishes and subscribes, for those who mirror the graph."""
+
+    def advertise(
+        self,
+        name: str,
+        type_name: str,
+        *,
+        node: str = "cartwheel",
+        rate: float | None = None,
+        qos: Qos = "default",
+    ) -> Publisher:
+        """A publisher on a topic of the ROS 2 type ``pkg/msg/Name``.
+
+        Raises:
+            GraphError: The topic exists with another type, or the name is none.
+        """
+        with self._lock:
+            topic = self._topic(name, type_name)
+            publisher = Publisher(self, topic, node=node, rate=rate, qos=qos)
+            topic.publishers += (publisher,)
+            self.changed += 1
+            return publisher
+
+    def subscribe(
+        self,
+        name: str,
+        callback: Callback,
+        *,
+        type_name: str | None = None,
+        node: str = "cartwheel",
+    ) -> Subscription:
+        """A callback for each message, on the owner's thread, in order of publication.
+
+        Args:
+            name: Topic.
+            callback: Takes the message, which must not be changed.
+            type_name: ``pkg/msg/Name``; needed where the topic does not exist yet.
+            node: Who subscribes, for listings.
+
+        Raises:
+            UnknownNameError: No such topic, and no type given.
+            GraphError: The topic has another type.
+        """
+        with self._lock:
+            if type_name is None:
+                if name not in self._topics:
+                    raise UnknownNameError("topic", name, self._topics)
+                type_name = self._topics[name].type
+            topic = self._topic(name, type_name)
+            subscription = Subscription(self, topic, callback, node=node)
+            topic.subscriptions += (subscription,)
+            self.changed += 1
+            if topic.latched is not None:
+                self.post(lambda: callback(topic.latched))
+            return subscription
+
+    def mailbox(
+        self, name: str, *, size: int = 10, type_name: str | None = None, node: str = "cartwheel"
+    ) -> Mailbox:
+        """A bounded queue of the topic's messages for another thread to read."""
+        box = Mailbox(size)
+        subscription = self.subscribe(name, box.put, type_name=type_name, node=node)
+        box.on_close = subscription.close
+        return box
+
+    def publish(self, name: str, type_name: str, message: Any) -> None:
+        """Delivers one message from any thread: it is handed to the owner."""
+        with self._lock:
+            topic = self._topic(name, type_name)
+        self.post(lambda: topic.deliver(message))
+
+    def serve(
+        self, name: str, type_name: str, handler: Handler, *, node: str = "cartwheel"
+    ) -> Service:
+        """Offers a service of type ``pkg/srv/Name``.
+
+        Raises:
+            GraphError: The name is taken.
+        """
+        with self._lock:
+            if name in self._services:
+                raise GraphError(
+                    f'service "{name}" is offered already by {self._services[name].node}'
+                )
+            service = Service(name=resolve_name(name), type=type_name, handler=handler, node=node)
+            self._services[service.name] = service
+            self.changed += 1
+            return service
+
+    def withdraw(self, service: Service) -> None:
+        """Takes a service off the graph."""
+        with self._lock:
+            self._services.pop(service.name, None)
+            self.changed += 1
+
+    def service(self, name: str) -> Service:
+        """The service of that name.
+
+        Raises:
+            UnknownNameError: There is none.
+        """
+        with self._lock:
+            if name not in self._services:
+                raise UnknownNameError("service", name, self._services)
+            return self._services[name]
+
+    def services(self) -> list[Service]:
+        """All services, by name."""
+        with self._lock:
+            return [self._services[name] for name in sorted(self._services)]
+
+    def topics(self) -> list[TopicInfo]:
+        """All topics that somebody publishes or reads, by name."""
+        with self._lock:
+            return [self._info(topic) for topic in self._live()]
+
+    def topic(self, name: str) -> TopicInfo:
+        """One topic.
+
+        Raises:
+            UnknownNameError: There is none of that name.
+        """
+        with self._lock:
+            if name not in self._topics:
+                raise UnknownNameError("topic", name, [topic.name for topic in self._live()])
+            return self._info(self._topics[name])
+
+    def _live(self) -> Iterator[Topic]:
+        for name in sorted(self._topics):
+            topic = self._topics[name]
+            if topic.publishers or topic.subscriptions:
+                yield topic
+
+    @staticmethod
+    def _info(topic: Topic) -> TopicInfo:
+        return TopicInfo(
+            name=topic.name,
+            type=topic.type,
+            publishers=tuple(publisher.node for publisher in topic.publishers),
+            subscribers=tuple(subscription.node for subscription in topic.subscriptions),
+            rate=next((p.rate for p in topic.publishers if p.rate), None),
+            qos=topic.publishers[0].qos if topic.publishers else "default",
+        )
+
+    def _topic(self, name: str, type_name: str) -> Topic:
+        name = resolve_name(name)
+        topic = self._topics.get(name)
+        if topic is None or not (
+            topic.publishers or topic.subscriptions or topic.type == type_name
+        ):
+            topic = self._topics[name] = Topic(name, type_name)
+        elif topic.type != type_name:
+            raise GraphError(f'topic "{name}" has type {topic.type}, not {type_name}')
+        return topic
+
+    def _remove_publisher(self, topic: Topic, publisher: Publisher) -> None:
+        with self._lock:
+            topic.publishers = tuple(p for p in topic.publishers if p is not publisher)
+            self.changed += 1
+
+    def _remove_subscription(self, topic: Topic, subscription: Subscription) -> None:
+        with self._lock:
+            topic.subscriptions = tuple(s for s in topic.subscriptions if s is not subscription)
+            self.changed += 1

@@ -1,0 +1,125 @@
+"""A plugin's XML parameters, read once into its frozen dataclass."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+import typing
+from collections.abc import Iterable
+from typing import Any, TypeVar, get_args, get_origin
+
+from cartwheel.description.model import Element
+from cartwheel.errors import Diagnostic, PluginError, suggestion
+
+C = TypeVar("C")
+
+_COMMON = {"ros", "robotNamespace", "alwaysOn", "always_on", "robotParam", "rosDebugLevel"}
+"""Read for every plugin by its base, or without meaning here and harmless."""
+_TRUE = {"true", "1", "yes", "on"}
+_FALSE = {"false", "0", "no", "off"}
+
+
+def tag(*names: str, default: Any = dataclasses.MISSING, unit: str = "", doc: str) -> Any:
+    """A dataclass field that is read from the first of these tags that is written.
+
+    Args:
+        names: The tag and its other spellings; ``a/b`` for a nested one.
+        default: When none is written; without one the tag must be there.
+        unit: Of the value, SI.
+        doc: One line for the reference.
+    """
+    metadata = {"tags": names, "unit": unit, "doc": doc}
+    if default is dataclasses.MISSING:
+        return dataclasses.field(metadata=metadata)
+    return dataclasses.field(default=default, metadata=metadata)
+
+
+def read(
+    cls: type[C], element: Element, *, ignore: Iterable[str] = ()
+) -> tuple[C, list[Diagnostic]]:
+    """Fills a parameter dataclass, and reports every tag that is not understood.
+
+    Raises:
+        PluginError: A value of the wrong kind, or a missing tag; with its place.
+    """
+    values: dict[str, Any] = {}
+    known = set(_COMMON) | set(ignore)
+    hints = typing.get_type_hints(cls)
+    for item in dataclasses.fields(cls):  # type: ignore[arg-type]
+        names: tuple[str, ...] = item.metadata["tags"]
+        known |= {name.split("/")[0] for name in names}
+        found = next((child for name in names if (child := element.find(name)) is not None), None)
+        if found is not None:
+            kind = hints[item.name]
+            if get_origin(kind) is tuple and get_args(kind) == (str, Ellipsis):
+                values[item.name] = tuple(
+                    child.text for name in names for child in element.find_all(name)
+                )
+            else:
+                values[item.name] = _value(kind, found)
+        elif item.default is dataclasses.MISSING:
+            raise PluginError(
+                f"<{element.tag}> needs <{names[0]}>: {item.metadata['doc']}", origin=element.origin
+            )
+    diagnostics = [
+        Diagnostic(
+            severity="warning",
+            message=f"<{child.tag}> has no effect: this plugin does not know it. "
+            + suggestion(child.tag, sorted(known - _COMMON)),
+            origin=child.origin,
+        )
+        for child in element.children
+        if child.tag not in known
+    ]
+    return cls(**values), diagnostics
+
+
+def _value(kind: Any, element: Element) -> Any:
+    text = element.text.strip()
+    options = get_args(kind)
+    if type(None) in options:
+        kind = next(option for option in options if option is not type(None))
+        options = get_args(kind)
+    if get_origin(kind) is typing.Literal:
+        if text not in options:
+            raise PluginError(
+                f'<{element.tag}> "{text}" is none of: {", ".join(map(str, options))}',
+                origin=element.origin,
+            )
+        return text
+    if kind is bool:
+        if text.lower() in _TRUE | _FALSE:
+            return text.lower() in _TRUE
+        raise PluginError(
+            f'<{element.tag}> "{text}" is neither true nor false', origin=element.origin
+        )
+    if kind is float:
+        return _number(element, text)
+    if kind is int:
+        number = _number(element, text)
+        if number != int(number):
+            raise PluginError(
+                f'<{element.tag}> "{text}" is not a whole number', origin=element.origin
+            )
+        return int(number)
+    if get_origin(kind) is tuple:
+        numbers = tuple(_number(element, word) for word in text.split())
+        if len(numbers) != len(options):
+            raise PluginError(
+                f'<{element.tag}> "{text}" has {len(numbers)} numbers, not {len(options)}',
+                origin=element.origin,
+            )
+        return numbers
+    return text
+
+
+def _number(element: Element, text: str) -> float:
+    try:
+        number = float(text)
+    except ValueError:
+        raise PluginError(
+            f'<{element.tag}> "{text}" is not a number', origin=element.origin
+        ) from None
+    if not math.isfinite(number):
+        raise PluginError(f'<{element.tag}> "{text}" is not a finite number', origin=element.origin)
+    return number

@@ -1,0 +1,125 @@
+"""Camera images by MuJoCo's renderer, without a display or a GPU."""
+
+from __future__ import annotations
+
+import importlib
+import math
+import os
+from typing import Any
+
+import mujoco
+import numpy as np
+
+from cartwheel.errors import SimulationError
+from cartwheel.simulation.handles import CameraHandle
+from cartwheel.world.bodies import VISUAL_GROUP
+
+_PACKAGES = "libegl1 libegl-mesa0 libgl1-mesa-dri"
+_BACKENDS = {"egl": "mujoco.egl", "osmesa": "mujoco.osmesa"}
+
+Image = np.ndarray[tuple[int, int, int], np.dtype[np.uint8]]
+
+
+class Renderer:
+    """Draws what cameras see. Made at the first image; then bound to each new model.
+
+    For one thread alone: OpenGL contexts belong to the thread that made them.
+    """
+
+    def __init__(self) -> None:
+        self._model: Any = None
+        self._gl: Any = None
+        self._context: Any = None
+        self._scene: Any = None
+        self._size = (0, 0)
+        self._option = mujoco.MjvOption()
+        self._option.geomgroup[:] = 0
+        self._option.geomgroup[VISUAL_GROUP] = 1
+        self._camera = mujoco.MjvCamera()
+        self._camera.type = mujoco.mjtCamera.mjCAMERA_FIXED
+        self._perturb = mujoco.MjvPerturb()
+
+    def bind(self, model: Any) -> None:
+        """Draws this model from now on."""
+        self._model = model
+        self._drop_scene()
+
+    def close(self) -> None:
+        """Frees everything."""
+        self._drop_scene()
+        if self._gl is not None:
+            self._gl.free()
+            self._gl = None
+
+    def render(self, data: Any, camera: CameraHandle) -> Image:
+        """An image through a camera of the bound model, shape (height, width, 3), RGB.
+
+        Raises:
+            SimulationError: No OpenGL; says what to install.
+        """
+        lens = camera.intrinsics
+        self._prepare(lens.width, lens.height)
+        self._camera.fixedcamid = camera.id
+        mujoco.mjv_updateScene(
+            self._model,
+            data,
+            self._option,
+            self._perturb,
+            self._camera,
+            mujoco.mjtCatBit.mjCAT_ALL.value,
+            self._scene,
+        )
+        # Clip planes are each camera's own; MuJoCo has one pair for all. The frustum's
+        # other numbers are given at the near plane.
+        half = lens.near * math.tan(lens.horizontal_fov / 2) * lens.height / lens.width
+        for view in self._scene.camera:
+            view.frustum_near, view.frustum_far = lens.near, lens.far
+            view.frustum_bottom, view.frustum_top = -half, half
+            view.frustum_center = 0.0
+        viewport = mujoco.MjrRect(0, 0, lens.width, lens.height)
+        mujoco.mjr_render(viewport, self._scene, self._context)
+        pixels = np.empty((lens.height, lens.width, 3), dtype=np.uint8)
+        mujoco.mjr_readPixels(pixels, None, viewport, self._context)
+        return np.ascontiguousarray(pixels[::-1])
+
+    def _prepare(self, width: int, height: int) -> None:
+        if self._gl is None:
+            self._gl = _open_gl(width, height)
+        self._gl.make_current()
+        if self._scene is None:
+            self._scene = mujoco.MjvScene(self._model, maxgeom=self._model.ngeom + 100)
+            flags = self._scene.flags
+            for flag in ("SHADOW", "REFLECTION", "FOG", "HAZE"):
+                flags[getattr(mujoco.mjtRndFlag, f"mjRND_{flag}")] = 0
+            self._context = mujoco.MjrContext(self._model, mujoco.mjtFontScale.mjFONTSCALE_50)
+            self._size = (self._context.offWidth, self._context.offHeight)
+            mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN.value, self._context)
+        if width > self._size[0] or height > self._size[1]:
+            self._size = (max(width, self._size[0]), max(height, self._size[1]))
+            mujoco.mjr_resizeOffscreen(*self._size, self._context)
+
+    def _drop_scene(self) -> None:
+        if self._context is not None:
+            self._gl.make_current()
+            self._context.free()
+        self._context = self._scene = None
+
+
+def _open_gl(width: int, height: int) -> Any:
+    """An OpenGL context without a window: EGL, else OSMesa; MUJOCO_GL names one of them."""
+    wanted = os.environ.get("MUJOCO_GL", "").lower()
+    names = [wanted] if wanted in _BACKENDS else list(_BACKENDS)
+    reasons = []
+    for name in names:
+        try:
+            module = importlib.import_module(_BACKENDS[name])
+            context = module.GLContext(width, height)
+            context.make_current()
+        except Exception as error:  # noqa: BLE001 - a missing library shows in many ways
+            reasons.append(f"{name}: {str(error).splitlines()[0] if str(error) else error!r}")
+        else:
+            return context
+    raise SimulationError(
+        f"cameras need OpenGL, which this machine lacks ({'; '.join(reasons)})",
+        hint=f"On Debian or Ubuntu: sudo apt-get install {_PACKAGES}. All but cameras works without.",
+    )

@@ -1,0 +1,427 @@
+"""The owner of the physics: models in and out, time onwards, what is due done."""
+
+from __future__ import annotations
+
+import itertools
+import queue
+from collections.abc import Callable
+from concurrent.futures import Future
+from typing import Any, Protocol, TypeVar
+
+import mujoco
+
+from cartwheel.description.model import RobotDescription, WorldDescription
+from cartwheel.errors import Diagnostic, UnknownNameError, WorldError
+from cartwheel.geometry import Pose, from_wxyz, to_wxyz
+from cartwheel.simulation.clock import Task, to_ns
+from cartwheel.simulation.guard import Guard
+from cartwheel.simulation.part import Part
+from cartwheel.simulation.rendering import Renderer
+from cartwheel.simulation.snapshot import PlacedModel, RunState, Scene, Snapshot
+from cartwheel.world import build
+from cartwheel.world.build import step_of
+from cartwheel.world.entry import ModelEntry, scoped
+
+T = TypeVar("T")
+_GUARD_INTERVAL_NS = 50_000_000
+_OBJ = mujoco.mjtObj
+
+
+class Behaviour(Protocol):
+    """What a plugin is to the simulation."""
+
+    def reset(self) -> None:
+        """Time goes back to zero."""
+
+    def close(self) -> None:
+        """The model leaves the world."""
+
+
+Attach = Callable[[Part], list[Behaviour]]
+"""Makes the plugins of a model that is about to be spawned."""
+
+
+class _Resident:
+    """A model with its part and plugins."""
+
+    def __init__(self, entry: ModelEntry, part: Part) -> None:
+        self.entry = entry
+        self.part = part
+        self.behaviours: list[Behaviour] = []
+
+    def close(self) -> None:
+        for behaviour in self.behaviours:
+            behaviour.close()
+
+
+class Simulation:
+    """Models in a world, stepped.
+
+    One thread, that which calls `advance` or a `Pacer`, owns a simulation; it alone calls
+    its methods. Others use `post` and `call`, and read what `snapshot` gave the owner.
+
+    Args:
+        world: Its own models are spawned at once.
+        attach: Makes a model's plugins.
+        seed: Of all noise.
+    """
+
+    def __init__(
+        self, world: WorldDescription, *, attach: Attach = lambda _: [], seed: int = 0
+    ) -> None:
+        self.world = world
+        self.seed = seed
+        self.step_ns = to_ns(step_of(world))
+        self.run_state = RunState.RUNNING
+        self.speed: float | None = 1.0
+        self.real_time_factor = 0.0
+        self.steps_allowed: int | None = None
+        """Steps until a paused simulation pauses again; None while it is not stepping singly."""
+        self.diagnostics: list[Diagnostic] = list(world.diagnostics)
+        self.renderer = Renderer()
+        self.commands: queue.SimpleQueue[Callable[[], None]] = queue.SimpleQueue()
+        self.on_reset: list[Callable[[], None]] = []
+        """Called after time went back to zero."""
+        self._attach = attach
+        self._residents: dict[str, _Resident] = {}
+        self._tasks: list[Task] = []
+        self._orders = itertools.count()
+        self._step = 0
+        self._guard = Guard()
+        self._guard_due = 0
+        self._version = 0
+        self._compile({})
+        for description in world.models:
+            self.spawn(description, pose=description.pose)
+
+    # -- time
+
+    @property
+    def time_ns(self) -> int:
+        """Simulation time."""
+        return self._step * self.step_ns
+
+    @property
+    def current_step(self) -> int:
+        return self._step
+
+    @property
+    def step_seconds(self) -> float:
+        return float(self.model.opt.timestep)
+
+    def advance(self, target_ns: int) -> None:
+        """Runs to a time: posted commands, then what is due, then the physics, in turns.
+
+        Ends early when a command pauses or stops the run. What is due at the target itself
+        is done by the next call, after the commands that come before it.
+
+        Raises:
+            SimulationError: The state is no longer finite.
+        """
+        target = -(-target_ns // self.step_ns)
+        while self._step < target:
+            self.drain()
+            if self.run_state is not RunState.RUNNING and not self.steps_allowed:
+                return
+            due = self._serve()
+            count = min(target, due) - self._step
+            if self.steps_allowed is not None:
+                count = min(count, self.steps_allowed)
+                self.steps_allowed -= count
+            # The forward pass of this state is done: only its integration is missing.
+            mujoco.mj_implicit(self.model, self.data)
+            if count > 1:
+                mujoco.mj_step(self.model, self.data, count - 1)
+            self._step += count
+            if self._step >= self._guard_due:
+                self._watch()
+
+    def drain(self) -> None:
+        """Runs the commands that other threads posted."""
+        while not self.commands.empty():
+            self.commands.get()()
+
+    def _serve(self) -> int:
+        """Does what is due now; returns the step at which something is due next."""
+        step = self._step
+        afters: list[Callable[[], None]] = []
+        upcoming = step + (1 << 40)
+        for task in self._tasks:
+            if not task.active():
+                continue
+            if task.due < step:
+                task.reset(step)
+            if task.due == step:
+                if task.before is not None:
+                    task.before()
+                if task.after is not None:
+                    afters.append(task.after)
+                task.advance(step)
+            upcoming = min(upcoming, task.due)
+        mujoco.mj_forward(self.model, self.data)
+        for after in afters:
+            after()
+        return upcoming
+
+    def _watch(self) -> None:
+        self._guard_due = self._step + max(1, _GUARD_INTERVAL_NS // self.step_ns)
+        for message in self._guard.check(self.model, self.data):
+            self.diagnostics.append(Diagnostic(severity="warning", message=message))
+        self._guard.keep(self.data)
+
+    def refresh(self) -> None:
+        """Makes poses and contacts those of the present state, for reading between steps."""
+        mujoco.mj_forward(self.model, self.data)
+
+    def pause(self) -> None:
+        """Holds time."""
+        if self.run_state is RunState.RUNNING:
+            self.run_state = RunState.PAUSED
+            self.steps_allowed = None
+
+    def resume(self) -> None:
+        """Lets time go on."""
+        if self.run_state is RunState.PAUSED:
+            self.run_state = RunState.RUNNING
+            self.steps_allowed = None
+
+    def step(self, count: int = 1) -> None:
+        """Lets a paused simulation make `count` steps more."""
+        self.pause()
+        self.steps_allowed = (self.steps_allowed or 0) + count
+
+    def stop(self) -> None:
+        """Ends the run."""
+        self.run_state = RunState.STOPPED
+
+    def set_speed(self, speed: float | None) -> None:
+        """Sets the wanted real-time factor; None is as fast as it can."""
+        self.speed = speed
+
+    def reset(self) -> None:
+        """Takes time back to zero and every model to where it was spawned."""
+        mujoco.mj_resetData(self.model, self.data)
+        self._step = 0
+        self._guard_due = 0
+        self._guard.forget()
+        for resident in self._residents.values():
+            for behaviour in resident.behaviours:
+                behaviour.reset()
+        for task in self._tasks:
+            task.reset(0)
+        self.refresh()
+        for callback in self.on_reset:
+            callback()
+
+    # -- other threads
+
+    def post(self, function: Callable[[], None]) -> None:
+        """Runs a function on the owner's thread, before the next step; from any thread."""
+        self.commands.put(function)
+
+    def call(self, function: Callable[[], T]) -> Future[T]:
+        """Like `post`, with the result or the error; from any thread."""
+        future: Future[T] = Future()
+
+        def run() -> None:
+            try:
+                future.set_result(function())
+            except Exception as error:  # noqa: BLE001 - it is the caller's to handle
+                future.set_exception(error)
+
+        self.post(run)
+        return future
+
+    # -- models
+
+    @property
+    def models(self) -> tuple[str, ...]:
+        """Names of the models, in order of spawning."""
+        return tuple(self._residents)
+
+    def spawn(
+        self, description: RobotDescription, *, name: str | None = None, pose: Pose | None = None
+    ) -> str:
+        """Puts a model into the world; everything else keeps its state.
+
+        Args:
+            description: Of the model.
+            name: In this world; the description's own when None.
+            pose: Of its root link in the world; the description's own when None.
+
+        Returns:
+            The name.
+
+        Raises:
+            WorldError: The name is taken or the model cannot be built; nothing has changed.
+            PluginError: A plugin's parameters make no sense; nothing has changed.
+        """
+        name = name or description.name
+        if not name or "::" in name:
+            raise WorldError(f'"{name}" is no name for a model')
+        if name in self._residents:
+            raise WorldError(
+                f'a model named "{name}" stands in the world already',
+                origin=description.origin,
+                hint=f'Choose another with --model, such as "{self._free_name(name)}", or delete it first.',
+            )
+        entry = ModelEntry(name=name, description=description, pose=pose or description.pose)
+        resident = _Resident(entry, Part(self, entry))
+        try:
+            resident.behaviours = self._attach(resident.part)
+            self._compile({**self._residents, name: resident})
+        except Exception:
+            resident.close()
+            raise
+        self.diagnostics += [*description.diagnostics, *resident.part.diagnostics]
+        return name
+
+    def delete(self, name: str) -> None:
+        """Takes a model out of the world; everything else keeps its state.
+
+        Raises:
+            UnknownNameError: There is no such model.
+        """
+        resident = self._resident(name)
+        self._compile({key: value for key, value in self._residents.items() if key != name})
+        resident.close()
+
+    def pose(self, name: str) -> Pose:
+        """Where a model's canonical link is."""
+        entry = self._resident(name).entry
+        body = self._body_id(name, entry.description.canonical_link)
+        x, y, z = self.data.xpos[body].tolist()
+        return Pose((x, y, z), from_wxyz(self.data.xquat[body].tolist()))
+
+    def set_pose(self, name: str, pose: Pose) -> None:
+        """Moves a model, at rest, to a pose of its canonical link.
+
+        Raises:
+            UnknownNameError: There is no such model.
+        """
+        entry = self._resident(name).entry
+        joint = mujoco.mj_name2id(
+            self.model, _OBJ.mjOBJ_JOINT, scoped(name, entry.description.canonical_link)
+        )
+        if joint < 0:
+            entry.pose = pose
+            self._compile(self._residents)
+            return
+        position, velocity = self.model.jnt_qposadr[joint], self.model.jnt_dofadr[joint]
+        self.data.qpos[position : position + 3] = pose.position
+        self.data.qpos[position + 3 : position + 7] = to_wxyz(pose.orientation)
+        self.data.qvel[velocity : velocity + 6] = 0
+        self.refresh()
+
+    def next_task_order(self) -> int:
+        """A number that rises with each task."""
+        return next(self._orders)
+
+    def _resident(self, name: str) -> _Resident:
+        if name not in self._residents:
+            raise UnknownNameError("model", name, self._residents)
+        return self._residents[name]
+
+    def _free_name(self, name: str) -> str:
+        return next(
+            f"{name}_{i}" for i in itertools.count(1) if f"{name}_{i}" not in self._residents
+        )
+
+    def _body_id(self, name: str, link: str) -> int:
+        return int(mujoco.mj_name2id(self.model, _OBJ.mjOBJ_BODY, scoped(name, link)))
+
+    def _compile(self, residents: dict[str, _Resident]) -> None:
+        """Compiles a new set of models and carries over the state of those that stay."""
+        model = build(self.world, [resident.entry for resident in residents.values()]).model
+        model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_AUTORESET
+        data = mujoco.MjData(model)
+        if self._version:
+            _carry_over(self.model, self.data, model, data)
+        self.model, self.data = model, data
+        self._residents = residents
+        self._version += 1
+        self._guard.forget()
+        self.renderer.bind(model)
+        for resident in residents.values():
+            for handle in resident.part.handles:
+                handle.bind(model, data)
+        self._tasks = sorted(
+            (task for resident in residents.values() for task in resident.part.tasks),
+            key=lambda task: task.order,
+        )
+        self.refresh()
+        self.scene = self._describe()
+
+    # -- what others see
+
+    def _describe(self) -> Scene:
+        bodies = [(resident.entry.name, link.name)
+                  for resident in self._residents.values()
+                  for link in resident.entry.description.links]  # fmt: skip
+        joints = [(resident.entry.name, joint.name)
+                  for resident in self._residents.values() if not resident.entry.description.static
+                  for joint in resident.entry.description.joints
+                  if joint.type in ("revolute", "continuous", "prismatic")]  # fmt: skip
+        self._row_bodies = [self._body_id(*names) for names in bodies]
+        self._row_joints = [
+            int(
+                self.model.jnt_qposadr[
+                    mujoco.mj_name2id(self.model, _OBJ.mjOBJ_JOINT, scoped(*names))
+                ]
+            )
+            for names in joints
+        ]
+        placed = tuple(
+            PlacedModel(
+                name=resident.entry.name,
+                description=resident.entry.description,
+                pose=resident.entry.pose,
+            )
+            for resident in self._residents.values()
+        )
+        return Scene(
+            version=self._version,
+            world=self.world,
+            models=placed,
+            links=tuple(bodies),
+            joints=tuple(joints),
+        )
+
+    def snapshot(self) -> Snapshot:
+        """An immutable copy of the present state."""
+        mujoco.mj_kinematics(self.model, self.data)
+        return Snapshot(
+            scene=self.scene,
+            time_ns=self.time_ns,
+            run_state=self.run_state,
+            speed=self.speed,
+            real_time_factor=self.real_time_factor,
+            positions=self.data.xpos[self._row_bodies],
+            quaternions=self.data.xquat[self._row_bodies],
+            joint_positions=self.data.qpos[self._row_joints],
+        )
+
+    def close(self) -> None:
+        """Ends the run and frees what it holds."""
+        self.stop()
+        for resident in self._residents.values():
+            resident.close()
+        self.renderer.close()
+
+
+def _carry_over(old_model: Any, old: Any, model: Any, data: Any) -> None:
+    """Copies the state of every joint that both models have, by name."""
+    data.time = old.time
+    for index in range(model.njnt):
+        name = mujoco.mj_id2name(model, _OBJ.mjOBJ_JOINT, index)
+        before = mujoco.mj_name2id(old_model, _OBJ.mjOBJ_JOINT, name)
+        if before < 0:
+            continue
+        kind = model.jnt_type[index]
+        sizes = {mujoco.mjtJoint.mjJNT_FREE: (7, 6), mujoco.mjtJoint.mjJNT_BALL: (4, 3)}
+        positions, velocities = sizes.get(kind, (1, 1))
+        a, b = model.jnt_qposadr[index], old_model.jnt_qposadr[before]
+        data.qpos[a : a + positions] = old.qpos[b : b + positions]
+        a, b = model.jnt_dofadr[index], old_model.jnt_dofadr[before]
+        for name in ("qvel", "qacc_warmstart"):
+            getattr(data, name)[a : a + velocities] = getattr(old, name)[b : b + velocities]

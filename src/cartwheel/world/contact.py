@@ -1,0 +1,63 @@
+"""Gazebo's contact parameters as MuJoCo's.
+
+Derivations stand in ``docs/physics.md``. In short:
+
+- Friction of a pair is the smaller of the two coefficients in Gazebo. MuJoCo takes the
+  parameters of the geom with the higher priority: priorities that rise as mu falls keep
+  Gazebo's rule.
+- ``kp`` and ``kd`` are a spring and a damper against the body's mass m: in MuJoCo's terms
+  a time constant 1/(ζω) and a damping ratio ζ with ω = √(kp/m), ζ = kd/(2√(kp m)), no
+  stiffer than a contact can be at this step, and never bouncing where no restitution is asked for.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+from cartwheel.description.model import Surface
+
+DEFAULT_MU = 1.0
+"""Where a description states none, as in Gazebo."""
+DEFAULT_KP = 1e12
+DEFAULT_KD = 1.0
+STIFFEST_TIME_CONSTANT = 0.01
+"""s; a rigid contact, as long as the step is not longer than half of it."""
+SOFTEST_TIME_CONSTANT = 0.1
+"""s; beyond it a body would visibly sink."""
+IMPEDANCE = (0.95, 0.99, 0.0005, 0.5, 2.0)
+"""MuJoCo's solimp: how much of the constraint is kept at and beyond 0.5 mm of depth."""
+
+
+def friction(surface: Surface) -> tuple[float, float, float]:
+    """Sliding, torsional and rolling friction of a geom.
+
+    The isotropic cone takes the mean of mu and mu2 where they differ.
+    """
+    mu1 = DEFAULT_MU if surface.mu1 is None else surface.mu1
+    mu2 = mu1 if surface.mu2 is None else surface.mu2
+    # A coefficient beyond 100 only spoils the conditioning: no wheel slips at 100.
+    return (min(max((mu1 + mu2) / 2, 0.0), 100.0), 0.005, 0.0001)
+
+
+def reference(surface: Surface, mass: float, step: float) -> tuple[float, float]:
+    """MuJoCo's solref: time constant in s and damping ratio.
+
+    Args:
+        surface: Its ``kp`` in N/m and ``kd`` in N s/m, Gazebo's defaults where not stated.
+        mass: Of the model that rests on the contact, kg.
+        step: Of the simulation, s.
+    """
+    kp = DEFAULT_KP if surface.kp is None else max(surface.kp, 1.0)
+    kd = DEFAULT_KD if surface.kd is None else max(surface.kd, 0.0)
+    omega = math.sqrt(kp / max(mass, 1e-3))
+    ratio = max(1.0, kd / (2 * math.sqrt(kp * max(mass, 1e-3))))
+    shortest = max(STIFFEST_TIME_CONSTANT, 2 * step)
+    constant = min(max(1 / (ratio * omega), shortest), SOFTEST_TIME_CONSTANT)
+    return constant, min(ratio, 10.0)
+
+
+def priorities(coefficients: Iterable[float]) -> dict[float, int]:
+    """A MuJoCo priority for each friction coefficient, rising as the coefficient falls."""
+    ordered = sorted(set(coefficients), reverse=True)
+    return {mu: rank for rank, mu in enumerate(ordered)}
