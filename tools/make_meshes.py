@@ -50,6 +50,7 @@ RED = Material("red", (0.75, 0.06, 0.05), 0.3)
 WHITE = Material("white", (0.86, 0.87, 0.89), 0.2)
 GLASS = Material("glass", (0.05, 0.09, 0.22), 0.9, 100)
 ORANGE = Material("orange", (0.95, 0.35, 0.04), 0.1)
+CONCRETE = Material("concrete", (0.58, 0.58, 0.56), 0.03)
 
 
 @dataclass
@@ -435,8 +436,8 @@ def wheel() -> Mesh:
         return solid.turned("x", -math.pi / 2)  # z, the lathe's axis, becomes y
 
     tyre = [
-        (0.196, -half + 0.012), (0.222, -half), (tread - 0.008, -half + 0.010),
-        (tread, -half + 0.024), (tread, half - 0.024), (tread - 0.008, half - 0.010),
+        (0.196, -half + 0.012), (0.222, -half), (tread - 0.012, -half + 0.003),
+        (tread, -half + 0.010), (tread, half - 0.010), (tread - 0.012, half - 0.003),
         (0.222, half), (0.196, half - 0.012),
     ]  # fmt: skip
     mesh.add(RUBBER, upright(lathe(tyre, segments, closed=True)))
@@ -447,7 +448,7 @@ def wheel() -> Mesh:
     for row in (-1, 1):
         for k in range(count):
             angle = 2 * math.pi * (k + (0.5 if row > 0 else 0.0)) / count
-            inner, outer, low = 0.003 * row, row * (half - 0.004), tread - 0.004
+            inner, outer, low = 0.003 * row, row * (half - 0.005), tread - 0.016
             lug = []
             for side, slant in ((inner, 0.0), (outer, 0.5)):
                 shift = 2 * math.pi * slant / count
@@ -462,10 +463,8 @@ def wheel() -> Mesh:
                     )
                 )
             solid = outward(loft(lug))
-            # The face that lies in the tyre is never seen.
-            hidden = {frozenset((0, 3, 7)), frozenset((3, 0, 4)), frozenset((0, 3, 4)),
-                      frozenset((0, 7, 4)), frozenset((3, 7, 4)), frozenset((3, 4, 0))}  # fmt: skip
-            keep = [face for face in solid.faces if frozenset(map(int, face)) not in hidden]
+            # The face between the low corners, 0 and 3 of each ring, lies in the tyre.
+            keep = [face for face in solid.faces if not set(face) <= {0, 3, 4, 7}]
             mesh.add(RUBBER, upright(Solid(solid.vertices, np.array(keep))))
 
     rim = [
@@ -607,8 +606,7 @@ def camera() -> Mesh:
     add(STEEL, along_x(lathe([(0.0345, -0.024), (0.0355, -0.022), (0.0355, -0.016), (0.0345, -0.014)], 20)))
     add(GLASS, along_x(lathe([(0.023, -0.014), (0.015, -0.0105), (0.0, -0.009)], 20)))
     add(RED, along_x(rod(0.004, 0.006, 8)).moved(-0.032, 0.044, 0.026))
-    visor = bar(0.104, 0.124, 0.006, 0.002).moved(-0.060, 0, 0.041)
-    add(BLUE, visor)
+    add(BLUE, bar(0.100, 0.112, 0.006, 0.002).moved(-0.060, 0, 0.042))
     add(GRAPHITE, box(0.050, 0.050, 0.014).moved(-0.066, 0, -0.041))
     return mesh
 
@@ -630,8 +628,38 @@ def traffic_cone() -> Mesh:
     return mesh
 
 
+RAMP_ANGLE = math.radians(12)
+RAMP_PLATFORM, RAMP_WIDTH, RAMP_HEIGHT = 1.4, 1.6, 0.3
+
+
+def ramp() -> Mesh:
+    """A concrete block with yellow edges and treads on its slopes, along x, standing on z = 0."""
+    mesh = Mesh("models/ramp/meshes/ramp.dae")
+    run, flat = RAMP_HEIGHT / math.tan(RAMP_ANGLE), RAMP_PLATFORM / 2
+    side = [(-flat - run, 0.0), (flat + run, 0.0), (flat, RAMP_HEIGHT), (-flat, RAMP_HEIGHT)]
+    ends = [np.array([(x, y, z) for x, z in side]) for y in (-RAMP_WIDTH / 2, RAMP_WIDTH / 2)]
+    mesh.add(CONCRETE, outward(loft(ends)))
+
+    # Paint, a millimetre thick: strips along the edges, cleats across the slopes.
+    slope = math.hypot(run, RAMP_HEIGHT)
+    for edge in (-1, 1):
+        y = edge * (RAMP_WIDTH / 2 - 0.05)
+        mesh.add(YELLOW, box(RAMP_PLATFORM, 0.1, 0.002).moved(0, y, RAMP_HEIGHT))
+        for way in (-1, 1):
+            strip = box(slope, 0.1, 0.002).turned("y", way * RAMP_ANGLE)
+            mesh.add(YELLOW, strip.moved(way * (flat + run / 2), y, RAMP_HEIGHT / 2))
+    for way in (-1, 1):
+        for k in range(8):
+            part = (k + 0.5) / 8
+            cleat = box(0.03, RAMP_WIDTH - 0.3, 0.002).turned("y", way * RAMP_ANGLE)
+            mesh.add(
+                GRAPHITE, cleat.moved(way * (flat + run * part), 0, RAMP_HEIGHT * (1 - part))
+            )
+    return mesh
+
+
 def all_meshes() -> list[Mesh]:
-    return [wheel(), chassis(), frame(), caster(), camera(), traffic_cone()]
+    return [wheel(), chassis(), frame(), caster(), camera(), traffic_cone(), ramp()]
 
 
 def main() -> None:
