@@ -85,6 +85,7 @@ class Simulation:
         self._attach = attach
         self._residents: dict[str, _Resident] = {}
         self._tasks: list[Task] = []
+        self._world_tasks: list[Task] = []
         self._orders = itertools.count()
         self._step = 0
         self._guard = Guard()
@@ -313,6 +314,31 @@ class Simulation:
         self.data.qvel[velocity : velocity + 6] = 0
         self.refresh()
 
+    def schedule(
+        self,
+        rate: float,
+        *,
+        before: Callable[[], None] | None = None,
+        after: Callable[[], None] | None = None,
+        active: Callable[[], bool] = lambda: True,
+    ) -> None:
+        """Does something of the world's at a rate in Hz, whatever models there are; see `Task`."""
+        self._world_tasks.append(
+            Task(
+                rate=rate,
+                before=before,
+                after=after,
+                active=active,
+                step_ns=self.step_ns,
+                order=self.next_task_order(),
+            )
+        )
+        self._gather_tasks()
+
+    def _gather_tasks(self) -> None:
+        tasks = [task for resident in self._residents.values() for task in resident.part.tasks]
+        self._tasks = sorted([*self._world_tasks, *tasks], key=lambda task: task.order)
+
     def next_task_order(self) -> int:
         """A number that rises with each task."""
         return next(self._orders)
@@ -345,10 +371,7 @@ class Simulation:
         for resident in residents.values():
             for handle in resident.part.handles:
                 handle.bind(model, data)
-        self._tasks = sorted(
-            (task for resident in residents.values() for task in resident.part.tasks),
-            key=lambda task: task.order,
-        )
+        self._gather_tasks()
         self.refresh()
         self.scene = self._describe()
 
