@@ -16,6 +16,7 @@ import argparse
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -92,7 +93,8 @@ def joined(solids: Iterable[Solid]) -> Solid:
 
 def loft(rings: Sequence[np.ndarray], cap: bool = True) -> Solid:
     """A skin over rings of equally many points, each seen counter-clockwise from the last one's
-    side; `cap` closes both ends, whose rings must be convex."""
+    side; `cap` closes both ends, whose rings must be convex.
+    """
     n = len(rings[0])
     faces = []
     for k in range(len(rings) - 1):
@@ -122,7 +124,7 @@ def rounded_rectangle(x: float, y: float, radius: float, segments: int) -> np.nd
 
 
 def slab(
-    x: float, y: float, z: float, radius: float, bevel: float, segments: int = 4, foot: float = 0.0
+    x: float, y: float, z: float, radius: float, bevel: float, *, segments: int = 4, foot: float = 0
 ) -> Solid:
     """A plate with round corners and bevelled edges, centred; `foot` draws its lower rim in."""
     rings = []
@@ -157,7 +159,8 @@ def bar(x: float, y: float, z: float, bevel: float) -> Solid:
 
 def lathe(profile: Sequence[tuple[float, float]], segments: int, closed: bool = False) -> Solid:
     """A profile of (radius, height) points, from the bottom up, turned about z; a profile that is
-    closed makes a ring; points on the axis make a pole."""
+    closed makes a ring; points on the axis make a pole.
+    """
     points = [*profile, profile[0]] if closed else list(profile)
     angles = 2 * math.pi * np.arange(segments) / segments
     circle = np.column_stack([np.cos(angles), np.sin(angles)])
@@ -174,7 +177,7 @@ def lathe(profile: Sequence[tuple[float, float]], segments: int, closed: bool = 
             rows.append(list(range(count, count + segments)))
             count += segments
     faces = []
-    for low, high in zip(rows, rows[1:]):
+    for low, high in pairwise(rows):
         for i in range(segments):
             j = (i + 1) % segments
             if low[i] != low[j]:
@@ -276,7 +279,8 @@ class Mesh:
 
 def corner_normals(solid: Solid) -> np.ndarray:
     """One normal per corner (m, 3, 3): the area-weighted mean of the faces around its vertex that
-    meet its own face at less than SMOOTH_ANGLE."""
+    meet its own face at less than SMOOTH_ANGLE.
+    """
     corners = solid.vertices[solid.faces]
     area = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     unit = area / np.linalg.norm(area, axis=1)[:, None]
@@ -285,7 +289,7 @@ def corner_normals(solid: Solid) -> np.ndarray:
     for index, face in enumerate(keys):
         for key in face:
             around.setdefault(key, []).append(index)
-    normals = np.empty_like(corners)
+    normals: np.ndarray = np.zeros(corners.shape)
     limit = math.cos(SMOOTH_ANGLE)
     for index, face in enumerate(keys):
         for k, key in enumerate(face):
@@ -302,9 +306,10 @@ def numbers(values: np.ndarray, digits: int) -> str:
 
 
 def source(identifier: str, values: np.ndarray, digits: int) -> str:
+    text = numbers(values, digits)
     return f"""\
         <source id="{identifier}">
-          <float_array id="{identifier}-array" count="{values.size}">{numbers(values, digits)}</float_array>
+          <float_array id="{identifier}-array" count="{values.size}">{text}</float_array>
           <technique_common>
             <accessor source="#{identifier}-array" count="{len(values)}" stride="3">
               <param name="X" type="float"/>
@@ -412,7 +417,7 @@ def collada(parts: Sequence[tuple[Material, Solid]]) -> str:
 """
 
 
-# The cart. These repeat numbers of rosbots.xacro; tests/robots compares the meshes with it.
+# The cart. These repeat numbers of rosbots.xacro; tests compare the meshes with it.
 
 WHEEL_RADIUS = 0.26
 WHEEL_WIDTH = 0.10
@@ -497,13 +502,19 @@ def chassis() -> Mesh:
     mesh = Mesh(f"{CART_MESHES}/chassis.dae")
     height = CHASSIS_TOP - CHASSIS_BOTTOM
     tub = slab(
-        CHASSIS_LENGTH - 0.05, CHASSIS_WIDTH - 0.05, height - 0.03, 0.09, 0.012, 5, foot=0.05
+        CHASSIS_LENGTH - 0.05,
+        CHASSIS_WIDTH - 0.05,
+        height - 0.03,
+        0.09,
+        0.012,
+        segments=5,
+        foot=0.05,
     )
     mesh.add(BLUE, tub.moved(CHASSIS_X, 0, CHASSIS_BOTTOM + (height - 0.03) / 2))
-    rim = slab(CHASSIS_LENGTH, CHASSIS_WIDTH, 0.045, 0.11, 0.012, 6)
+    rim = slab(CHASSIS_LENGTH, CHASSIS_WIDTH, 0.045, 0.11, 0.012, segments=6)
     mesh.add(BLUE, rim.moved(CHASSIS_X, 0, CHASSIS_TOP - 0.0225))
     for x, y in stakes():
-        stake = slab(0.05, 0.03, 0.20, 0.008, 0.006, 2)
+        stake = slab(0.05, 0.03, 0.20, 0.008, 0.006, segments=2)
         mesh.add(BLUE, stake.moved(x, y, CHASSIS_TOP + 0.09))
     return mesh
 
@@ -514,7 +525,7 @@ def stakes() -> list[tuple[float, float]]:
 
 
 def frame() -> Mesh:
-    """In frame_link, on the platform: planks, boards, handle, mast; and, below, bumper and lamps."""
+    """In frame_link, on the platform: planks, boards, handle, mast; below it bumper and lamps."""
     mesh = Mesh(f"{CART_MESHES}/frame.dae")
 
     planks, gap, run = 6, 0.006, 0.76
@@ -556,7 +567,8 @@ def frame() -> Mesh:
     # Bumper: a rubber band around the tub.
     band = rounded_rectangle(CHASSIS_LENGTH, CHASSIS_WIDTH, 0.11, 6)
     rings = []
-    for height, inset in ((0.0, 0.05), (0.0, 0.008), (0.012, 0.0), (0.048, 0.0), (0.06, 0.008), (0.06, 0.05)):  # fmt: skip
+    profile = [(0.05, 0.0), (0.008, 0.0), (0.0, 0.012), (0.0, 0.048), (0.008, 0.06), (0.05, 0.06)]
+    for inset, height in profile:
         scale = 1 - 2 * inset / np.array([CHASSIS_LENGTH, CHASSIS_WIDTH])
         rings.append(np.column_stack([band * scale, np.full(len(band), height)]))
     bumper = loft(rings, cap=False).moved(CHASSIS_X, 0, 0.165 - CHASSIS_TOP)
@@ -564,9 +576,9 @@ def frame() -> Mesh:
 
     front, rear = CHASSIS_X + CHASSIS_LENGTH / 2, CHASSIS_X - CHASSIS_LENGTH / 2
     for side in (-1, 1):
-        lamp = slab(0.05, 0.13, 0.020, 0.009, 0.004, 2).turned("y", math.pi / 2)
+        lamp = slab(0.05, 0.13, 0.020, 0.009, 0.004, segments=2).turned("y", math.pi / 2)
         mesh.add(LAMP, lamp.moved(front - 0.024, side * 0.26, 0.272 - CHASSIS_TOP))
-        light = slab(0.05, 0.10, 0.020, 0.009, 0.004, 2).turned("y", math.pi / 2)
+        light = slab(0.05, 0.10, 0.020, 0.009, 0.004, segments=2).turned("y", math.pi / 2)
         mesh.add(RED, light.moved(rear + 0.024, side * 0.27, 0.272 - CHASSIS_TOP))
         axle = rod(0.028, 0.10, 12).turned("x", math.pi / 2)
         mesh.add(STEEL, axle.moved(0, side * 0.46, WHEEL_RADIUS - CHASSIS_TOP))
@@ -599,11 +611,15 @@ def camera() -> Mesh:
     def along_x(solid: Solid) -> Solid:
         return solid.turned("y", math.pi / 2)
 
-    add(WHITE, along_x(slab(0.076, 0.116, 0.078, 0.016, 0.005, 3)).moved(-0.077, 0, 0.002))
-    add(GRAPHITE, along_x(slab(0.066, 0.106, 0.008, 0.012, 0.003, 3)).moved(-0.036, 0, 0.002))
+    add(WHITE, along_x(slab(0.076, 0.116, 0.078, 0.016, 0.005, segments=3)).moved(-0.077, 0, 0.002))
+    add(
+        GRAPHITE,
+        along_x(slab(0.066, 0.106, 0.008, 0.012, 0.003, segments=3)).moved(-0.036, 0, 0.002),
+    )
     barrel = [(0.034, -0.036), (0.034, -0.010), (0.031, -0.004), (0.026, -0.004), (0.023, -0.014)]
     add(GRAPHITE, along_x(lathe(barrel, 20)))
-    add(STEEL, along_x(lathe([(0.0345, -0.024), (0.0355, -0.022), (0.0355, -0.016), (0.0345, -0.014)], 20)))
+    ring = [(0.0345, -0.024), (0.0355, -0.022), (0.0355, -0.016), (0.0345, -0.014)]
+    add(STEEL, along_x(lathe(ring, 20)))
     add(GLASS, along_x(lathe([(0.023, -0.014), (0.015, -0.0105), (0.0, -0.009)], 20)))
     add(RED, along_x(rod(0.004, 0.006, 8)).moved(-0.032, 0.044, 0.026))
     add(BLUE, bar(0.100, 0.112, 0.006, 0.002).moved(-0.060, 0, 0.042))
@@ -614,7 +630,7 @@ def camera() -> Mesh:
 def traffic_cone() -> Mesh:
     """0.5 m high, standing on z = 0."""
     mesh = Mesh("models/traffic_cone/meshes/traffic_cone.dae")
-    mesh.add(RUBBER, slab(0.30, 0.30, 0.03, 0.04, 0.006, 3).moved(z=0.015))
+    mesh.add(RUBBER, slab(0.30, 0.30, 0.03, 0.04, 0.006, segments=3).moved(z=0.015))
 
     def radius(height: float) -> float:
         return 0.115 - (height - 0.03) * (0.115 - 0.022) / 0.47
@@ -640,21 +656,19 @@ def ramp() -> Mesh:
     ends = [np.array([(x, y, z) for x, z in side]) for y in (-RAMP_WIDTH / 2, RAMP_WIDTH / 2)]
     mesh.add(CONCRETE, outward(loft(ends)))
 
-    # Paint, a millimetre thick: strips along the edges, cleats across the slopes.
+    # Paint, 3 mm proud lest it flicker: strips along the edges, cleats across the slopes.
     slope = math.hypot(run, RAMP_HEIGHT)
     for edge in (-1, 1):
         y = edge * (RAMP_WIDTH / 2 - 0.05)
-        mesh.add(YELLOW, box(RAMP_PLATFORM, 0.1, 0.002).moved(0, y, RAMP_HEIGHT))
+        mesh.add(YELLOW, box(RAMP_PLATFORM, 0.1, 0.006).moved(0, y, RAMP_HEIGHT))
         for way in (-1, 1):
-            strip = box(slope, 0.1, 0.002).turned("y", way * RAMP_ANGLE)
+            strip = box(slope, 0.1, 0.006).turned("y", way * RAMP_ANGLE)
             mesh.add(YELLOW, strip.moved(way * (flat + run / 2), y, RAMP_HEIGHT / 2))
     for way in (-1, 1):
         for k in range(8):
             part = (k + 0.5) / 8
-            cleat = box(0.03, RAMP_WIDTH - 0.3, 0.002).turned("y", way * RAMP_ANGLE)
-            mesh.add(
-                GRAPHITE, cleat.moved(way * (flat + run * part), 0, RAMP_HEIGHT * (1 - part))
-            )
+            cleat = box(0.03, RAMP_WIDTH - 0.3, 0.006).turned("y", way * RAMP_ANGLE)
+            mesh.add(GRAPHITE, cleat.moved(way * (flat + run * part), 0, RAMP_HEIGHT * (1 - part)))
     return mesh
 
 
