@@ -52,7 +52,8 @@ def read_contacts(model: Any, data: Any, names: Collection[str]) -> list[Contact
                         normal=sign * normal,
                         depth=depth,
                         force=sign * force,
-                        torque=sign * torque,
+                        torque=sign * torque
+                        + np.cross(position - data.xipos[model.geom_bodyid[first]], sign * force),
                     )
                 )
     return found

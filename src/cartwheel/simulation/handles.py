@@ -6,6 +6,7 @@ again, so a plugin keeps its handle for its life. For the simulation's thread al
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import mujoco
@@ -55,13 +56,23 @@ class LinkHandle:
         )
         return six[3:].copy(), six[:3].copy()
 
-    def proper_acceleration(self) -> Array:
-        """What an accelerometer at the link's origin reads: m/s², link axes, gravity's reaction included."""
+    def proper_acceleration(self, offset: Sequence[float] = (0.0, 0.0, 0.0)) -> Array:
+        """What an accelerometer reads: m/s², link axes, gravity's reaction included, shape (3,).
+
+        Args:
+            offset: Where it sits in the link, m.
+        """
         six = np.zeros(6)
         # Fills the accelerations of all bodies, which stepping alone does not need.
         mujoco.mj_rnePostConstraint(self._model, self._data)
         mujoco.mj_objectAcceleration(self._model, self._data, _OBJ.mjOBJ_XBODY, self.id, six, 1)
         acceleration: Array = six[3:]
+        if any(offset):
+            arm = np.asarray(offset, dtype=float)
+            _, rate = self.velocity(local=True)
+            acceleration = (
+                acceleration + np.cross(six[:3], arm) + np.cross(rate, np.cross(rate, arm))
+            )
         return acceleration
 
 

@@ -36,6 +36,7 @@ class Part:
         self.handles: list[Handle] = []
         self.tasks: list[Task] = []
         self.diagnostics: list[Diagnostic] = []
+        self.spawned = False
 
     @property
     def name(self) -> str:
@@ -163,5 +164,8 @@ class Part:
         return self._simulation.renderer.render(self._simulation.data, camera)
 
     def report(self, diagnostic: Diagnostic) -> None:
-        """Tells the user something about this model."""
-        self.diagnostics.append(diagnostic)
+        """Tells the user something about this model; also while it runs."""
+        if self.spawned:
+            self._simulation.report(diagnostic)
+        else:
+            self.diagnostics.append(diagnostic)

@@ -82,6 +82,7 @@ class Simulation:
         self.commands: queue.SimpleQueue[Callable[[], None]] = queue.SimpleQueue()
         self.on_reset: list[Callable[[], None]] = []
         """Called after time went back to zero."""
+        self.on_diagnostic: list[Callable[[Diagnostic], None]] = []
         self._attach = attach
         self._residents: dict[str, _Resident] = {}
         self._tasks: list[Task] = []
@@ -167,7 +168,7 @@ class Simulation:
     def _watch(self) -> None:
         self._guard_due = self._step + max(1, _GUARD_INTERVAL_NS // self.step_ns)
         for message in self._guard.check(self.model, self.data):
-            self.diagnostics.append(Diagnostic(severity="warning", message=message))
+            self.report(Diagnostic(severity="warning", message=message))
         self._guard.keep(self.data)
 
     def refresh(self) -> None:
@@ -274,7 +275,9 @@ class Simulation:
         except Exception:
             resident.close()
             raise
-        self.diagnostics += [*description.diagnostics, *resident.part.diagnostics]
+        resident.part.spawned = True
+        for diagnostic in (*description.diagnostics, *resident.part.diagnostics):
+            self.report(diagnostic)
         return name
 
     def delete(self, name: str) -> None:
@@ -338,6 +341,12 @@ class Simulation:
     def _gather_tasks(self) -> None:
         tasks = [task for resident in self._residents.values() for task in resident.part.tasks]
         self._tasks = sorted([*self._world_tasks, *tasks], key=lambda task: task.order)
+
+    def report(self, diagnostic: Diagnostic) -> None:
+        """Keeps something that the user should know, and tells those who listen."""
+        self.diagnostics.append(diagnostic)
+        for callback in self.on_diagnostic:
+            callback(diagnostic)
 
     def next_task_order(self) -> int:
         """A number that rises with each task."""

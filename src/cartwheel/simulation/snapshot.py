@@ -74,4 +74,4 @@ class Contact:
     force: Array
     """Shape (3,), N, in the world, that the second exerts on the first."""
     torque: Array
-    """Shape (3,), N m, in the world, about the contact point."""
+    """Shape (3,), N m, in the world, on the first about the centre of mass of its link."""

@@ -1,0 +1,114 @@
+"""``libgazebo_ros_bumper.so``: what touches a collision, where and how hard."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+
+from cartwheel.errors import suggestion
+from cartwheel.geometry import Array
+from cartwheel.messages import header, message_class
+from cartwheel.plugins.base import Plugin
+from cartwheel.plugins.parameters import tag
+from cartwheel.simulation import Contact
+from cartwheel.world.entry import scoped
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class BumperParameters:
+    topic: str = tag(
+        "bumperTopicName", "bumper_topic_name", default="bumper_states", doc="ContactsState."
+    )
+    frame: str = tag(
+        "frameName",
+        "frame_name",
+        default="world",
+        doc="Frame id of the messages; their values are in the world, as Gazebo's are.",
+    )
+    update_rate: float = tag(
+        "updateRate", "update_rate", default=0.0, unit="Hz", doc="0 is the sensor's own."
+    )
+
+
+class Bumper(Plugin[BumperParameters]):
+    """Publishes the contacts of a sensor's collisions; empty states while nothing touches.
+
+    Source: gazebo_plugins, gazebo_ros_bumper.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_bumper.so",)
+    parameters: ClassVar[type] = BumperParameters
+    for_sensor: ClassVar[bool] = True
+
+    def configure(self) -> None:
+        assert self.sensor is not None
+        self._collisions = self._resolve_collisions()
+        self._ContactsState = message_class("gazebo_msgs/msg/ContactsState")
+        self._ContactState = message_class("gazebo_msgs/msg/ContactState")
+        self._Wrench = message_class("geometry_msgs/msg/Wrench")
+        self._Vector3 = message_class("geometry_msgs/msg/Vector3")
+        rate = self.config.update_rate or self.sensor.update_rate
+        self._publisher = self.advertise(
+            self.config.topic, "gazebo_msgs/msg/ContactsState", rate=rate or None
+        )
+        self.part.schedule(rate, after=self._publish, active=lambda: self._publisher.wanted)
+
+    def _resolve_collisions(self) -> set[str]:
+        """``link::collision`` of all that the sensor names, in any of Gazebo's spellings."""
+        assert self.sensor is not None
+        spellings: dict[str, str] = {}
+        for link in self.part.description.links:
+            for collision in link.collisions:
+                for name in (*collision.aliases, collision.name):
+                    spellings[name] = scoped(link.name, collision.name)
+                spellings[scoped(link.name, collision.name)] = scoped(link.name, collision.name)
+        found = set()
+        for wanted in self.sensor.collisions:
+            name = wanted.strip()
+            bare = name.rsplit("::", 1)[-1]
+            if name in spellings or bare in spellings:
+                found.add(spellings.get(name) or spellings[bare])
+            else:
+                self.warn(
+                    f'contact sensor "{self.sensor.name}": there is no collision "{name}", '
+                    f"so it would never report. {suggestion(name, spellings)}"
+                )
+        if not self.sensor.collisions:
+            self.warn(
+                f'contact sensor "{self.sensor.name}" names no <collision>, so it never reports'
+            )
+        return found
+
+    def _publish(self) -> None:
+        pairs: dict[tuple[str, str], list[Contact]] = {}
+        for contact in self.part.contacts(self._collisions):
+            pairs.setdefault((contact.first, contact.second), []).append(contact)
+        states = [
+            self._state(first, second, pairs[first, second]) for first, second in sorted(pairs)
+        ]
+        self._publisher.publish(
+            self._ContactsState(header=header(self.part.time_ns, self.config.frame), states=states)
+        )
+
+    def _state(self, first: str, second: str, contacts: list[Contact]) -> Any:
+        force = np.sum([contact.force for contact in contacts], axis=0)
+        torque = np.sum([contact.torque for contact in contacts], axis=0)
+        return self._ContactState(
+            info=f"{first} touches {second} at {self.part.seconds:.6f} s",
+            collision1_name=first,
+            collision2_name=second,
+            wrenches=[self._wrench(contact.force, contact.torque) for contact in contacts],
+            total_wrench=self._wrench(force, torque),
+            contact_positions=[self._vector(contact.position) for contact in contacts],
+            contact_normals=[self._vector(contact.normal) for contact in contacts],
+            depths=np.array([contact.depth for contact in contacts]),
+        )
+
+    def _wrench(self, force: Array, torque: Array) -> Any:
+        return self._Wrench(force=self._vector(force), torque=self._vector(torque))
+
+    def _vector(self, values: Array) -> Any:
+        x, y, z = values.tolist()
+        return self._Vector3(x=x, y=y, z=z)

@@ -1,0 +1,175 @@
+"""``libgazebo_ros_imu.so`` and ``libgazebo_ros_imu_sensor.so``: inertial measurement units.
+
+Both follow REP 145: rates and proper acceleration in the sensor's axes, gravity's reaction
+included, orientation against the world. Gazebo's model plugin turned the rates the wrong
+way and left gravity out.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+
+from cartwheel.errors import PluginError
+from cartwheel.geometry import Array, Pose, matrix_from_quat, quat_from_rpy, quat_multiply
+from cartwheel.messages import header, message_class
+from cartwheel.plugins.base import Plugin
+from cartwheel.plugins.parameters import tag
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ImuParameters:
+    body: str = tag("bodyName", "body_name", "frame_name", doc="Link that carries it.")
+    topic: str = tag("topicName", default="imu", doc="Imu.")
+    service: str = tag("serviceName", default="imu_service", doc="Empty service, accepted.")
+    frame: str = tag("frameName", default="", doc="Frame of the messages; the link's when empty.")
+    noise: float = tag(
+        "gaussianNoise",
+        default=0.0,
+        unit="rad/s, m/s²",
+        doc="Standard deviation of rates and accelerations.",
+    )
+    rpy_offset: tuple[float, float, float] = tag(
+        "rpyOffsets", "rpyOffset", default=(0.0, 0.0, 0.0), unit="rad", doc="Mounting."
+    )
+    xyz_offset: tuple[float, float, float] = tag(
+        "xyzOffset", "xyzOffsets", default=(0.0, 0.0, 0.0), unit="m", doc="Mounting."
+    )
+    update_rate: float = tag(
+        "updateRate", "update_rate", default=0.0, unit="Hz", doc="0 is every step."
+    )
+
+
+class _ImuBase(Plugin[Any]):
+    """Reads a link and publishes what a unit mounted on it measures."""
+
+    def _start(
+        self, *, link: str, mount: Pose, topic: str, frame: str, noise: float, rate: float
+    ) -> None:
+        if rate < 0 or noise < 0:
+            raise PluginError("a rate or noise cannot be below 0", origin=self.tag.origin)
+        self._link = self.part.link(link, origin=self.tag.origin)
+        self._mount = mount
+        self._turn = matrix_from_quat(mount.orientation).T
+        self._frame = frame
+        self._noise = noise
+        self._Imu = message_class("sensor_msgs/msg/Imu")
+        self._Vector3 = message_class("geometry_msgs/msg/Vector3")
+        self._Quaternion = message_class("geometry_msgs/msg/Quaternion")
+        self._covariance = np.diag([noise**2] * 3).ravel()
+        self._publisher = self.advertise(
+            topic, "sensor_msgs/msg/Imu", rate=rate or None, qos="sensor"
+        )
+        self.part.schedule(rate, after=self._measure, active=lambda: self._publisher.wanted)
+        self._start_noise()
+
+    def reset(self) -> None:
+        self._start_noise()
+
+    def _start_noise(self) -> None:
+        self._random = self.part.random(f"imu {self.tag.name}")
+
+    def _measure(self) -> None:
+        orientation = quat_multiply(self._link.pose.orientation, self._mount.orientation)
+        # Rates first: the unit sits on a rigid link, so only its acceleration depends on where.
+        _, rate = self._link.velocity(local=True)
+        acceleration = self._link.proper_acceleration(self._mount.position)
+        rate, acceleration = self._turn @ rate, self._turn @ acceleration
+        if self._noise > 0:
+            rate = rate + self._random.normal(0.0, self._noise, 3)
+            acceleration = acceleration + self._random.normal(0.0, self._noise, 3)
+        x, y, z, w = orientation
+        self._publisher.publish(
+            self._Imu(
+                header=header(self.part.time_ns, self._frame),
+                orientation=self._Quaternion(x=x, y=y, z=z, w=w),
+                orientation_covariance=self._covariance,
+                angular_velocity=self._vector(rate),
+                angular_velocity_covariance=self._covariance,
+                linear_acceleration=self._vector(acceleration),
+                linear_acceleration_covariance=self._covariance,
+            )
+        )
+
+    def _vector(self, values: Array) -> Any:
+        x, y, z = values.tolist()
+        return self._Vector3(x=x, y=y, z=z)
+
+
+class Imu(_ImuBase):
+    """An IMU on a link of the model. Source: gazebo_plugins, gazebo_ros_imu; REP 145."""
+
+    filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_imu.so",)
+    parameters: ClassVar[type] = ImuParameters
+
+    def configure(self) -> None:
+        config: ImuParameters = self.config
+        self._start(
+            link=config.body,
+            mount=Pose(config.xyz_offset, quat_from_rpy(*config.rpy_offset)),
+            topic=config.topic,
+            frame=config.frame or config.body,
+            noise=config.noise,
+            rate=config.update_rate,
+        )
+        empty = message_class("std_srvs/srv/Empty_Response")
+        # Gazebo's accepts the call and does nothing: the simulated unit has no drift to remove.
+        self.serve(config.service, "std_srvs/srv/Empty", lambda _: empty())
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ImuSensorParameters:
+    topic: str = tag("topicName", "topic", default="imu", doc="Imu.")
+    body: str = tag("bodyName", default="", doc="Read and ignored: the sensor's link counts.")
+    frame: str = tag(
+        "frameName", "frame_name", default="", doc="Frame of the messages; the link's when empty."
+    )
+    noise: float = tag(
+        "gaussianNoise",
+        default=0.0,
+        unit="rad/s, m/s²",
+        doc="Standard deviation of rates and accelerations.",
+    )
+    rpy_offset: tuple[float, float, float] = tag(
+        "rpyOffset", "rpyOffsets", default=(0.0, 0.0, 0.0), unit="rad", doc="Mounting."
+    )
+    xyz_offset: tuple[float, float, float] = tag(
+        "xyzOffset", "xyzOffsets", default=(0.0, 0.0, 0.0), unit="m", doc="Mounting."
+    )
+    update_rate: float = tag(
+        "updateRateHZ", "updateRate", default=0.0, unit="Hz", doc="0 is the sensor's own."
+    )
+    initial_orientation: bool = tag(
+        "initialOrientationAsReference",
+        "initial_orientation_as_reference",
+        default=False,
+        doc="Accepted; the orientation is against the world (REP 145).",
+    )
+
+
+class ImuSensor(_ImuBase):
+    """The plugin of an ``imu`` sensor. Source: gazebo_plugins, gazebo_ros_imu_sensor; REP 145."""
+
+    filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_imu_sensor.so",)
+    parameters: ClassVar[type] = ImuSensorParameters
+    for_sensor: ClassVar[bool] = True
+
+    def configure(self) -> None:
+        assert self.sensor is not None
+        config: ImuSensorParameters = self.config
+        offset = Pose(config.xyz_offset, quat_from_rpy(*config.rpy_offset))
+        if config.initial_orientation:
+            self.warn(
+                "<initialOrientationAsReference> has no effect: "
+                "the orientation is against the world, as REP 145 asks"
+            )
+        self._start(
+            link=self.sensor.link,
+            mount=self.sensor.pose @ offset,
+            topic=config.topic,
+            frame=config.frame or self.sensor.link,
+            noise=config.noise,
+            rate=config.update_rate or self.sensor.update_rate,
+        )
