@@ -1,34 +1,54 @@
-"""ROS 2 message classes, rosbags' own and those made from our definitions."""
+"""ROS 2 message classes, rosbags' own and those made from our definitions.
+
+A definition is the text of ROS 1 and ROS 2 alike: the ROS 1 bridge reads the same files
+into its own store, where they have the md5 sums that ROS 1 nodes expect.
+"""
 
 from __future__ import annotations
 
 import functools
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from rosbags.typesys import Stores, get_types_from_msg, get_typestore
-
 from cartwheel.errors import UnknownNameError
 
-_DEFINITIONS = Path(__file__).parent / "definitions"
+DEFINITIONS = Path(__file__).parent / "definitions"
+"""Holds ``<package>/msg/<Name>.msg`` and ``<package>/srv/<Name>.srv``."""
+
+SEPARATOR = "---\n"
+"""Between the request and the response of a service."""
 
 
 @functools.cache
 def store() -> Any:
-    """The typestore: Jazzy's types and ``definitions/<package>/<msg|srv>/``'s."""
+    """The typestore: Jazzy's types and those of `DEFINITIONS`."""
+    # rosbags takes as long to import as the rest of a command does to run, and many
+    # commands see no message.
+    from rosbags.typesys import Stores, get_types_from_msg, get_typestore  # noqa: PLC0415
+
     made = get_typestore(Stores.ROS2_JAZZY)
-    for path in sorted(_DEFINITIONS.glob("*/msg/*.msg")):
-        name = f"{path.parent.parent.name}/msg/{path.stem}"
+    ours: dict[str, Any] = {}
+    for name, text in definitions():
         if name not in made.fielddefs:
-            made.register(get_types_from_msg(path.read_text(), name))
-    for path in sorted(_DEFINITIONS.glob("*/srv/*.srv")):
-        package = path.parent.parent.name
-        request, _, response = path.read_text().partition("---\n")
-        for part, text in (("Request", request), ("Response", response)):
-            name = f"{package}/srv/{path.stem}_{part}"
-            if name not in made.fielddefs:
-                made.register(get_types_from_msg(text, name))
+            # The parser has names of its own for a service's parts: ours count.
+            (ours[name],) = get_types_from_msg(text, name).values()
+    made.register(ours)
     return made
+
+
+def definitions() -> Iterator[tuple[str, str]]:
+    """Our types with their texts: messages, and each service's two parts.
+
+    A service ``pkg/srv/Name`` has the parts ``pkg/srv/Name_Request`` and ``…_Response``.
+    """
+    for path in sorted(DEFINITIONS.glob("*/msg/*.msg")):
+        yield f"{path.parent.parent.name}/msg/{path.stem}", path.read_text()
+    for path in sorted(DEFINITIONS.glob("*/srv/*.srv")):
+        request, _, response = path.read_text().partition(SEPARATOR)
+        service = f"{path.parent.parent.name}/srv/{path.stem}"
+        yield f"{service}_Request", request
+        yield f"{service}_Response", response
 
 
 def type_name(name: str) -> str:
@@ -48,3 +68,18 @@ def message_class(name: str) -> Any:
     if full not in types:
         raise UnknownNameError("message type", name, types)
     return types[full]
+
+
+def service_classes(name: str) -> tuple[Any, Any]:
+    """The request's and the response's class of a service type ``pkg/srv/Name`` or ``pkg/Name``.
+
+    Raises:
+        UnknownNameError: There is no such type.
+    """
+    package, _, rest = name.partition("/")
+    full = name if "/" in rest else f"{package}/srv/{rest}"
+    types = store().types
+    if f"{full}_Request" not in types:
+        known = [key.removesuffix("_Request") for key in types if key.endswith("_Request")]
+        raise UnknownNameError("service type", name, known)
+    return types[f"{full}_Request"], types[f"{full}_Response"]
