@@ -1,0 +1,80 @@
+"""SDF 1.3 to 1.11 into descriptions: a model is a robot, a world a world.
+
+What Gazebo does not say in one place is split over the files beside this one: ``sdf_frames``
+resolves who is placed relative to whom, ``sdf_model``, ``sdf_link``, ``sdf_joint`` and
+``sdf_shapes`` read a model, ``sdf_world``, ``sdf_include`` and ``sdf_state`` what surrounds it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+from pathlib import Path
+
+from cartwheel.description.model import RobotDescription, WorldDescription
+from cartwheel.description.packages import Packages
+from cartwheel.description.sdf_context import NEWEST, Context, read_version
+from cartwheel.description.sdf_model import read_model
+from cartwheel.description.sdf_world import read_world
+from cartwheel.description.xml import Node, unread
+from cartwheel.errors import Diagnostic
+
+__all__ = ["read_sdf"]
+
+
+def read_sdf(
+    root: Node, packages: Packages, *, text: str = ""
+) -> RobotDescription | WorldDescription:
+    """What an ``<sdf>`` document describes.
+
+    Args:
+        root: Its root.
+        packages: Finds the files that it names.
+        text: The document as written, kept with a robot.
+
+    Raises:
+        DescriptionError: it describes neither one model nor one world, or something in it is
+            wrong; names the place and the likely fix.
+    """
+    if root.tag not in ("sdf", "gazebo"):
+        raise root.fail(f"expected <sdf>, but the file begins with <{root.tag}>")
+    including = () if packages.file is None else (Path(packages.file).resolve(),)
+    ctx = Context(packages, read_version(root), including=including)
+    if ctx.version > NEWEST:
+        ctx.tell(
+            "info",
+            f"SDF {ctx.version[0]}.{ctx.version[1]} is newer than {NEWEST[0]}.{NEWEST[1]}: "
+            "what is new in it is not understood",
+            root.origin,
+        )
+    worlds, models = root.all("world"), root.all("model")
+    described: RobotDescription | WorldDescription
+    if worlds:
+        if len(worlds) > 1:
+            raise worlds[1].fail("one file describes one world", "Split the file.")
+        if models:
+            raise models[0].fail("a model beside a world", "Put it into the <world>.")
+        described = read_world(worlds[0], ctx)
+    elif len(models) == 1:
+        model = read_model(models[0], ctx)
+        described = model.describe(model.frames.placed(model.pose, "", model.origin), text)
+        if model.relative_to:
+            ctx.tell(
+                "warning",
+                f'model "{model.name}" is placed relative to "{model.relative_to}", '
+                "which only a world could know",
+                model.origin,
+            )
+    elif models:
+        raise models[1].fail(
+            f"{len(models)} models without a world", "One is a robot; put several into a <world>."
+        )
+    else:
+        raise root.fail("there is neither a <model> nor a <world> in it")
+    diagnostics = tuple(_distinct([*ctx.diagnostics, *unread(root)]))
+    return replace(described, diagnostics=diagnostics)
+
+
+def _distinct(diagnostics: Iterable[Diagnostic]) -> Iterable[Diagnostic]:
+    """Each once: a file included ten times has the same to say ten times."""
+    return dict.fromkeys(diagnostics)

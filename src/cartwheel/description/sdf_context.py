@@ -1,0 +1,129 @@
+"""What all readers of one SDF document share: its version, where its files lie, what is told."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from cartwheel.description import numbers
+from cartwheel.errors import DescriptionError, Diagnostic, Origin, Severity
+from cartwheel.geometry import Pose, Quat, quat_normalize
+
+if TYPE_CHECKING:
+    from cartwheel.description.model import Rgba
+    from cartwheel.description.packages import Packages
+    from cartwheel.description.xml import Node
+
+Version = tuple[int, int]
+OLDEST: Version = (1, 3)
+NEWEST: Version = (1, 12)
+MAX_INCLUDES = 16
+"""Deeper includes are a model that includes itself by a detour."""
+
+
+@dataclass(slots=True)
+class Context:
+    """Shared by the readers of one document; included documents share its diagnostics."""
+
+    packages: Packages
+    version: Version
+    diagnostics: list[Diagnostic] = field(default_factory=list)
+    including: tuple[Path, ...] = ()
+    """The files whose ``<include>`` led here, outermost first."""
+
+    def tell(self, severity: Severity, message: str, origin: Origin | None) -> None:
+        """Adds a diagnostic."""
+        self.diagnostics.append(Diagnostic(severity=severity, message=message, origin=origin))
+
+
+def read_version(root: Node) -> Version:
+    """The version of an ``<sdf>`` root.
+
+    Raises:
+        DescriptionError: there is none, or one whose spelling is another.
+    """
+    text = root.get("version") or ""
+    match = re.fullmatch(r"\s*(\d+)\.(\d+)\s*", text)
+    if root.tag == "gazebo" or (match and (int(match[1]), int(match[2])) < OLDEST):
+        raise root.fail(
+            f'SDF version "{text}" of <{root.tag}> is too old: 1.3 to 1.11 are understood',
+            'Convert it with "gz sdf -c" of Gazebo Classic.',
+        )
+    if not match:
+        raise root.fail(
+            f'<sdf> has no usable version, but "{text}"', 'Write version="1.6", for example.'
+        )
+    return (int(match[1]), int(match[2]))
+
+
+def read_pose(node: Node | None) -> Pose:
+    """A ``<pose>``: ``x y z roll pitch yaw``, in degrees or as a quaternion where it says so."""
+    if node is None or not node.text.strip():
+        return Pose()
+    if node.get("rotation_format") == "quat_xyzw":
+        x, y, z, *q = node.vector(7)
+        try:
+            orientation: Quat = quat_normalize(q)
+        except ValueError as error:
+            raise node.fail(f"pose: {error}") from None
+        return Pose((x, y, z), orientation)
+    values = node.vector(6)
+    angles = values[3:]
+    if node.boolean_of("degrees", False):
+        angles = tuple(math.radians(angle) for angle in angles)
+    return Pose.from_xyz_rpy(values[:3], angles)
+
+
+def reference_of(pose: Node | None) -> str:
+    """The frame that a ``<pose>`` is relative to: 1.7's ``relative_to``, before that ``frame``."""
+    if pose is None:
+        return ""
+    return (pose.get("relative_to") or pose.get("frame") or "").strip()
+
+
+def read_rgba(node: Node) -> Rgba:
+    """A colour of three or four numbers, 0 to 1."""
+    words = node.text.split()
+    if len(words) == 3:
+        values = (*node.vector(3), 1.0)
+    else:
+        values = node.vector(4)
+    r, g, b, a = (max(0.0, min(1.0, value)) for value in values)
+    return (r, g, b, a)
+
+
+def require_name(node: Node) -> str:
+    """The name of an element, which must neither be empty nor one that SDF keeps for itself."""
+    name = node.require("name").strip()
+    if name.startswith("__") and name.endswith("__"):
+        raise node.fail(f'the name "{name}" is reserved', "Choose one without the underscores.")
+    return name
+
+
+def positive(node: Node, what: str) -> float:
+    """The text as a number above zero."""
+    value = node.number()
+    if value <= 0:
+        raise node.fail(f"{what} must be above 0, but is {node.text}")
+    return value
+
+
+def check_unique(kind: str, names: list[tuple[str, Origin]]) -> None:
+    """Refuses a name given twice, telling where it was first used."""
+    seen: dict[str, Origin] = {}
+    for name, origin in names:
+        if name in seen:
+            raise DescriptionError(
+                f'{kind} "{name}" exists twice',
+                origin=origin,
+                hint=f"The first is at {seen[name]}.",
+            )
+        seen[name] = origin
+
+
+def number_in(text: str, node: Node) -> float:
+    """A number written in an attribute or list of that element."""
+    return numbers.number(text, node.tag, node.origin)

@@ -1,0 +1,205 @@
+"""SDF's ``<joint>``: types, axes in whichever frame they are stated, limits."""
+
+from __future__ import annotations
+
+import math
+
+from cartwheel.description.model import Axis, Joint, JointType, Mimic
+from cartwheel.description.sdf_context import Context, require_name
+from cartwheel.description.sdf_frames import WORLD, Frames
+from cartwheel.description.xml import Node
+from cartwheel.errors import DescriptionError, suggestion
+from cartwheel.geometry import Pose, Vec3, quat_conjugate, rotate
+
+_TYPES: dict[str, JointType] = {
+    "revolute": "revolute",
+    "continuous": "continuous",
+    "prismatic": "prismatic",
+    "fixed": "fixed",
+    "ball": "ball",
+    "universal": "universal",
+    # Two axes at right angles in practice: a steered wheel, a cardan joint.
+    "revolute2": "universal",
+    "screw": "screw",
+}
+_UNLIMITED = 1e15
+"""SDF's own default limits are ±1e16."""
+_WITHOUT_AXIS = ("fixed", "ball")
+
+
+def read_joint(node: Node, ctx: Context, frames: Frames, frame: str) -> Joint | None:
+    """A joint with its frame in the child link and its axes in the joint frame.
+
+    Args:
+        node: The element.
+        ctx: The document's.
+        frames: The model's, complete.
+        frame: What the joint's own frame is called among them.
+
+    Returns:
+        None for a type that is not simulated.
+    """
+    name = require_name(node)
+    written = node.require("type").strip()
+    kind = _TYPES.get(written)
+    if written == "gearbox":
+        node.mark()
+        ctx.tell("warning", f'gearbox joint "{name}" is not simulated', node.origin)
+        return None
+    if kind is None:
+        raise node.fail(
+            f'joint "{name}": type "{written}" is not known', suggestion(written, _TYPES)
+        )
+    parent = _end(node, "parent", name, frames)
+    child = _end(node, "child", name, frames)
+    if child == WORLD:
+        raise node.fail(f'joint "{name}": the child cannot be the world', "Swap parent and child.")
+    if parent == child:
+        raise node.fail(f'joint "{name}" joins link "{child}" to itself')
+    in_model = frames.pose(frame, node.origin)
+    axis, axis2 = node.child("axis"), node.child("axis2")
+    first = Axis()
+    if kind not in _WITHOUT_AXIS and axis is None:
+        raise node.fail(f'joint "{name}" of type {written} has no <axis>')
+    if axis is not None:
+        first = _axis(axis, name, ctx, frames, in_model)
+        if kind in _WITHOUT_AXIS:
+            ctx.tell("info", f'joint "{name}": a {written} joint needs no <axis>', axis.origin)
+    second = None
+    if kind == "universal":
+        if axis2 is None:
+            raise node.fail(f'joint "{name}" of type {written} has no <axis2>')
+        second = _axis(axis2, name, ctx, frames, in_model)
+    mimic = _mimic(axis) if axis is not None else None
+    for sensor in node.all("sensor"):
+        sensor.mark()
+        ctx.tell("warning", f'joint "{name}": sensors of joints are not simulated', sensor.origin)
+    ode = node.find("physics/ode")
+    cfm, erp, feedback, damper = None, None, False, False
+    if ode is not None:
+        cfm = ode.optional_number_at("limit/cfm")
+        erp = ode.optional_number_at("limit/erp")
+        feedback = ode.boolean_at("provide_feedback", False)
+        damper = ode.boolean_at("implicit_spring_damper", False) or ode.boolean_at(
+            "cfm_damping", False
+        )
+        for path in ("fudge_factor", "cfm", "erp", "bounce", "max_force", "velocity"):
+            ode.find(path)
+        suspension = ode.child("suspension")
+        if suspension is not None:
+            suspension.mark()
+    provide = node.find("physics/provide_feedback")
+    if provide is not None:
+        feedback = provide.boolean()
+    simbody = node.find("physics/simbody")
+    if simbody is not None:
+        simbody.mark()
+    return Joint(
+        name=name,
+        type=kind,
+        parent=parent,
+        child=child,
+        pose=frames.pose(child, node.origin).inverse() @ in_model,
+        axis=first,
+        axis2=second,
+        mimic=mimic,
+        thread_pitch=_pitch(node) if kind == "screw" else None,
+        stop_cfm=cfm,
+        stop_erp=erp,
+        provide_feedback=feedback,
+        implicit_spring_damper=damper,
+        origin=node.origin,
+    )
+
+
+def child_frame_of(node: Node) -> str:
+    """The frame that a joint's pose is relative to unless it says otherwise."""
+    return node.require_child("child").text.strip()
+
+
+def _end(node: Node, tag: str, joint: str, frames: Frames) -> str:
+    """The link that a ``<parent>`` or ``<child>`` means: a frame means the link it is fixed to."""
+    part = node.require_child(tag)
+    name = part.text.strip()
+    if not name:
+        raise part.fail(f'joint "{joint}": <{tag}> is empty')
+    if name == WORLD:
+        return WORLD
+    try:
+        return frames.link_of(name, part.origin)
+    except DescriptionError as error:
+        if name in frames.names():
+            raise
+        raise part.fail(
+            f'joint "{joint}": {tag} link "{name}" does not exist',
+            suggestion(name, frames.names()),
+        ) from error
+
+
+def _axis(node: Node, joint: str, ctx: Context, frames: Frames, in_model: Pose) -> Axis:
+    xyz_node = node.child("xyz")
+    xyz: Vec3 = xyz_node.vec3() if xyz_node is not None else (0.0, 0.0, 1.0)
+    length = math.sqrt(sum(c * c for c in xyz))
+    if length < 1e-9:
+        raise node.fail(f'joint "{joint}": the axis 0 0 0 has no direction')
+    xyz = (xyz[0] / length, xyz[1] / length, xyz[2] / length)
+    expressed_in = (xyz_node.get("expressed_in") or "").strip() if xyz_node is not None else ""
+    # Until 1.4 axes were always in the model's frame; 1.5 and 1.6 say so where they are.
+    in_model_frame = node.boolean_at("use_parent_model_frame", ctx.version < (1, 5))
+    if in_model_frame or expressed_in:
+        frame = frames.pose(expressed_in, node.origin) if expressed_in else Pose()
+        xyz = rotate(quat_conjugate(in_model.orientation), rotate(frame.orientation, xyz))
+    lower = _limit(node.optional_number_at("limit/lower", infinite=True))
+    upper = _limit(node.optional_number_at("limit/upper", infinite=True))
+    if lower is not None and upper is not None and lower > upper:
+        raise node.fail(
+            f'joint "{joint}": the lower limit {lower:g} is above the upper limit {upper:g}'
+        )
+    for path in ("limit/stiffness", "limit/dissipation", "initial_position"):
+        node.find(path)
+    return Axis(
+        xyz=xyz,
+        lower=lower,
+        upper=upper,
+        effort=_bound(node.optional_number_at("limit/effort", infinite=True)),
+        velocity=_bound(node.optional_number_at("limit/velocity", infinite=True)),
+        damping=node.number_at("dynamics/damping", 0.0),
+        friction=node.number_at("dynamics/friction", 0.0),
+        spring_stiffness=node.number_at("dynamics/spring_stiffness", 0.0),
+        spring_reference=node.number_at("dynamics/spring_reference", 0.0),
+    )
+
+
+def _limit(value: float | None) -> float | None:
+    return None if value is None or abs(value) >= _UNLIMITED else value
+
+
+def _bound(value: float | None) -> float | None:
+    """Effort and velocity: -1 and infinity mean unlimited."""
+    return None if value is None or value < 0 or value >= _UNLIMITED else value
+
+
+def _mimic(axis: Node) -> Mimic | None:
+    """SDF 1.11: q = multiplier (leader - reference) + offset."""
+    node = axis.child("mimic")
+    if node is None:
+        return None
+    node.get("axis")
+    multiplier = node.number_at("multiplier", 1.0)
+    offset = node.number_at("offset", 0.0) - multiplier * node.number_at("reference", 0.0)
+    return Mimic(joint=node.require("joint").strip(), multiplier=multiplier, offset=offset)
+
+
+def _pitch(node: Node) -> float:
+    """Metres along the axis per turn, positive for a right-handed screw.
+
+    The older ``<thread_pitch>`` counts radians per metre with the other sign.
+    """
+    metres = node.child("screw_thread_pitch")
+    old = node.child("thread_pitch")
+    if metres is not None:
+        return metres.number()
+    value = old.number() if old is not None else 1.0
+    if value == 0:
+        raise node.fail("a thread_pitch of 0 is no screw")
+    return -2 * math.pi / value

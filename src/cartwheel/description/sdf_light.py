@@ -1,0 +1,52 @@
+"""SDF's ``<light>``, in a world or in a link."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from cartwheel.description.model import Light
+from cartwheel.description.sdf_context import read_rgba, require_name
+from cartwheel.description.xml import Node
+from cartwheel.geometry import Pose
+
+Kind = Literal["directional", "point", "spot"]
+
+
+def read_light(node: Node, pose: Pose) -> Light:
+    """A light.
+
+    Args:
+        node: The element.
+        pose: Its pose in the world or link, its ``<pose>`` resolved.
+    """
+    default = Light(name="", origin=node.origin)
+    kinds: dict[str, Kind] = {"directional": "directional", "point": "point", "spot": "spot"}
+    kind = kinds.get(node.require("type").strip())
+    if kind is None:
+        raise node.fail(
+            f'light type "{node.attributes["type"]}" is not known',
+            "Allowed are directional, point and spot.",
+        )
+    diffuse, specular = node.child("diffuse"), node.child("specular")
+    direction = node.vec3_at("direction", default.direction)
+    if not any(direction):
+        raise node.fail("the direction of a light must not be 0 0 0")
+    for path in ("spot/inner_angle", "spot/falloff", "visualize", "intensity", "light_on"):
+        node.find(path)  # the renderer has one cone and one brightness
+    return Light(
+        name=require_name(node),
+        type=kind,
+        pose=pose,
+        diffuse=read_rgba(diffuse) if diffuse is not None else default.diffuse,
+        specular=read_rgba(specular) if specular is not None else default.specular,
+        direction=direction,
+        range=node.number_at("attenuation/range", default.range),
+        attenuation=(
+            node.number_at("attenuation/constant", default.attenuation[0]),
+            node.number_at("attenuation/linear", default.attenuation[1]),
+            node.number_at("attenuation/quadratic", default.attenuation[2]),
+        ),
+        spot_angle=node.number_at("spot/outer_angle", default.spot_angle),
+        cast_shadows=node.boolean_at("cast_shadows", kind == "directional"),
+        origin=node.origin,
+    )

@@ -1,0 +1,67 @@
+"""SDF's ``<material>``: stated colours, textures, and Gazebo's named scripts."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from cartwheel.description.model import Material, Rgba
+from cartwheel.description.sdf_context import Context, read_rgba
+from cartwheel.description.xml import Node
+from cartwheel.errors import DescriptionError
+
+
+def read_material(node: Node | None, ctx: Context) -> Material:
+    """A material; one without a colour where the mesh's own are to be kept."""
+    if node is None:
+        return Material()
+    script = node.child("script")
+    name = ""
+    scripted = Material()
+    if script is not None:
+        name = script.text_at("name").strip()
+        uris = [uri.text for uri in script.all("uri")]
+        if name:
+            scripted = _scripted(name, uris, script, ctx)
+    diffuse = _colour(node, "diffuse") or scripted.diffuse or _colour(node, "ambient")
+    specular = _colour(node, "specular")
+    emissive = _colour(node, "emissive")
+    _colour(node, "ambient")
+    for path in ("lighting", "shininess", "double_sided", "render_order"):
+        node.find(path)
+    shader = node.child("shader")
+    if shader is not None:
+        shader.mark()
+    texture = _albedo(node, ctx) or scripted.texture
+    return Material(
+        name=name,
+        diffuse=diffuse,
+        specular=sum(specular[:3]) / 3 if specular else scripted.specular,
+        emissive=emissive or scripted.emissive,
+        texture=texture,
+    )
+
+
+def _colour(node: Node, tag: str) -> Rgba | None:
+    found = node.child(tag)
+    return read_rgba(found) if found is not None else None
+
+
+def _albedo(node: Node, ctx: Context) -> Path | None:
+    """The colour image of a physically based material, of which the rest is not rendered."""
+    pbr = node.child("pbr")
+    if pbr is None:
+        return None
+    image = pbr.find("metal/albedo_map") or pbr.find("specular/albedo_map")
+    pbr.mark()
+    if image is None or not image.text.strip():
+        return None
+    try:
+        return ctx.packages.resolve(image.text, image.origin, what="texture")
+    except DescriptionError as error:
+        ctx.tell("warning", error.message, image.origin)
+        return None
+
+
+def _scripted(name: str, uris: list[str], script: Node, ctx: Context) -> Material:
+    del uris, script, ctx
+    return Material(name=name)

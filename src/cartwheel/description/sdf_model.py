@@ -1,0 +1,254 @@
+"""SDF's ``<model>``: links, joints and nested models, with every pose in the model's frame."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+from cartwheel.description.model import Joint, Link, PluginTag, RobotDescription
+from cartwheel.description.sdf_context import Context, read_pose, reference_of, require_name
+from cartwheel.description.sdf_frames import WORLD, Frames
+from cartwheel.description.sdf_include import Included, open_include
+from cartwheel.description.sdf_joint import child_frame_of, read_joint
+from cartwheel.description.sdf_link import read_link
+from cartwheel.description.sdf_sensors import read_plugin
+from cartwheel.description.xml import Node, unread
+from cartwheel.errors import DescriptionError, Origin, suggestion
+from cartwheel.geometry import Pose
+
+MAX_NESTING = 32
+
+
+@dataclass(slots=True)
+class Model:
+    """A model before it is placed."""
+
+    name: str
+    frames: Frames
+    links: list[Link]
+    joints: list[Joint]
+    plugins: list[PluginTag]
+    static: bool
+    self_collide: bool
+    pose: Pose
+    """Relative to `relative_to`, the placement frame already taken into account."""
+    relative_to: str
+    origin: Origin
+    merge: bool = False
+    nested: list[Model] = field(default_factory=list)
+
+    def describe(self, pose: Pose, text: str = "") -> RobotDescription:
+        """The model as one robot, placed in the world."""
+        return RobotDescription(
+            name=self.name,
+            links=tuple(self.links),
+            joints=tuple(self.joints),
+            plugins=tuple(self.plugins),
+            static=self.static,
+            self_collide=self.self_collide,
+            pose=pose,
+            canonical_link=self.frames.link_of("", self.origin),
+            text=text,
+            origin=self.origin,
+        )
+
+
+def read_included(included: Included) -> Model:
+    """The model that an ``<include>`` brings in, and what its file holds that nobody reads."""
+    model = read_model(included.node, included.ctx, included)
+    included.ctx.diagnostics.extend(unread(included.root))
+    return model
+
+
+def read_model(node: Node, ctx: Context, included: Included | None = None, depth: int = 0) -> Model:
+    """A model.
+
+    Args:
+        node: The ``<model>``.
+        ctx: Of the document that holds it.
+        included: What the ``<include>`` that led here changes.
+        depth: How many models it is nested in.
+
+    Raises:
+        DescriptionError: whatever makes it unusable, with its place.
+    """
+    if depth > MAX_NESTING:
+        raise node.fail("models are nested too deeply")
+    name = require_name(node)
+    if included is not None and included.name:
+        name = included.name
+    frames = Frames("model", name)
+    link_nodes = node.all("link")
+    for link in link_nodes:
+        _add(frames, "link", link)
+    nested = [read_model(each, ctx, depth=depth + 1) for each in node.all("model")]
+    for each in node.all("include"):
+        found = open_include(each, ctx)
+        if found.node.tag == "light":
+            raise each.fail("a light cannot be included in a model", "Include it in the world.")
+        nested.append(read_included(found))
+    for inner in nested:
+        _add_nested(frames, inner)
+    _set_canonical(node, frames, link_nodes, nested)
+    for each in node.all("frame"):
+        _add(frames, "frame", each)
+    joint_nodes = [(each, _add_joint(frames, each, ctx)) for each in node.all("joint")]
+    for known in frames.names():
+        frames.pose(known, node.origin)  # a circle is told even where nobody needs the pose
+    links = [read_link(each, ctx, frames) for each in link_nodes]
+    joints = [read_joint(each, ctx, frames, frame) for each, frame in joint_nodes]
+    stated = included.pose if included is not None and included.pose else node.child("pose")
+    placement = (node.get("placement_frame") or "").strip()
+    if included is not None and included.pose:
+        node.child("pose")
+        placement = included.placement_frame or placement
+    static = node.boolean_at("static", False)
+    for ignored in ("allow_auto_disable", "enable_wind"):
+        node.child(ignored)
+    model = Model(
+        name=name,
+        frames=frames,
+        links=links,
+        joints=[joint for joint in joints if joint is not None],
+        plugins=[read_plugin(each) for each in node.all("plugin")],
+        static=included.static if included is not None and included.static is not None else static,
+        self_collide=node.boolean_at("self_collide", False),
+        pose=read_pose(stated) @ frames.pose(placement, node.origin).inverse(),
+        relative_to=reference_of(stated),
+        origin=included.origin if included is not None else node.origin,
+        merge=included.merge if included is not None else False,
+    )
+    if included is not None:
+        model.plugins.extend(included.plugins)
+    for inner in nested:
+        _flatten(model, inner)
+    if not model.links:
+        raise node.fail(f'model "{name}" has no links')
+    _check_mimics(model)
+    return model
+
+
+def _add(frames: Frames, kind: str, node: Node) -> None:
+    pose = node.child("pose")
+    frames.add(
+        kind,
+        require_name(node),
+        read_pose(pose),
+        relative_to=reference_of(pose),
+        attached_to=(node.get("attached_to") or "").strip() if kind == "frame" else "",
+        origin=node.origin,
+    )
+
+
+def _add_joint(frames: Frames, node: Node, ctx: Context) -> str:
+    """Adds a joint's frame; returns what it is called there."""
+    name = require_name(node)
+    pose = node.child("pose")
+    frame = name
+    if name in frames.names():
+        # Until 1.6 a joint could be called as its link, which many a file still does.
+        frame = f"__joint__{name}"
+        if ctx.version >= (1, 7):
+            ctx.tell("warning", f'joint "{name}" has the name of a link or frame too', node.origin)
+    child = child_frame_of(node)
+    if child == WORLD:
+        raise node.fail(f'joint "{name}": the child cannot be the world', "Swap parent and child.")
+    if child not in frames.names():
+        raise node.fail(
+            f'joint "{name}": child link "{child}" does not exist',
+            suggestion(child, frames.names()),
+        )
+    frames.add(
+        "joint",
+        frame,
+        read_pose(pose),
+        relative_to=reference_of(pose) or child,
+        attached_to=child,
+        origin=node.origin,
+    )
+    return frame
+
+
+def _add_nested(frames: Frames, inner: Model) -> None:
+    if not inner.merge:
+        frames.add_scope(inner.name, inner.frames, inner.pose, inner.relative_to, inner.origin)
+        return
+    # Its frames become ours, all held by one that stands for the model itself.
+    proxy = f"_merged__{inner.name}__model__"
+    inner_link = inner.frames.link_of("", inner.origin)
+    frames.add(
+        "frame",
+        proxy,
+        inner.pose,
+        relative_to=inner.relative_to,
+        attached_to=inner_link,
+        origin=inner.origin,
+    )
+    links = {link.name for link in inner.links}
+    for name in inner.frames.names():
+        frames.add(
+            "link" if name in links else "frame",
+            name,
+            inner.frames.pose(name, inner.origin),
+            relative_to=proxy,
+            attached_to="" if name in links else inner.frames.link_of(name, inner.origin),
+            origin=inner.origin,
+        )
+
+
+def _set_canonical(node: Node, frames: Frames, link_nodes: list[Node], nested: list[Model]) -> None:
+    stated = (node.get("canonical_link") or "").strip()
+    if stated:
+        if stated not in frames.names():
+            raise node.fail(
+                f'canonical link "{stated}" does not exist', suggestion(stated, frames.names())
+            )
+        frames.default_link = frames.link_of(stated, node.origin)
+    elif link_nodes:
+        frames.default_link = require_name(link_nodes[0])
+    elif nested:
+        inner = nested[0]
+        first = inner.frames.link_of("", inner.origin)
+        frames.default_link = first if inner.merge else f"{inner.name}::{first}"
+
+
+def _flatten(model: Model, inner: Model) -> None:
+    """Takes a nested model's parts over, with ``name::`` before theirs unless it is merged."""
+    prefix = "" if inner.merge else f"{inner.name}::"
+    base = model.frames.pose(
+        f"_merged__{inner.name}__model__" if inner.merge else inner.name, inner.origin
+    )
+
+    def scoped(name: str) -> str:
+        return name if name == WORLD else prefix + name
+
+    model.links += [
+        replace(
+            link,
+            name=scoped(link.name),
+            pose=base @ link.pose,
+            sensors=tuple(replace(each, link=scoped(each.link)) for each in link.sensors),
+        )
+        for link in inner.links
+    ]
+    model.joints += [
+        replace(
+            joint,
+            name=scoped(joint.name),
+            parent=scoped(joint.parent),
+            child=scoped(joint.child),
+            mimic=replace(joint.mimic, joint=scoped(joint.mimic.joint)) if joint.mimic else None,
+        )
+        for joint in inner.joints
+    ]
+    model.plugins += inner.plugins
+
+
+def _check_mimics(model: Model) -> None:
+    names = [joint.name for joint in model.joints]
+    for joint in model.joints:
+        if joint.mimic is not None and joint.mimic.joint not in names:
+            raise DescriptionError(
+                f'joint "{joint.name}" mimics "{joint.mimic.joint}", which does not exist',
+                origin=joint.origin,
+                hint=suggestion(joint.mimic.joint, names),
+            )

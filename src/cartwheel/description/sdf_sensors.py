@@ -1,0 +1,97 @@
+"""SDF's ``<sensor>`` and ``<plugin>``, wherever they stand: in SDF or in a URDF's tags."""
+
+from __future__ import annotations
+
+import math
+
+from cartwheel.description.model import CameraIntrinsics, PluginTag, Sensor
+from cartwheel.description.sdf_context import read_pose
+from cartwheel.description.xml import Node, to_element
+from cartwheel.geometry import Pose
+
+
+def read_plugin(node: Node) -> PluginTag:
+    """A plugin with its parameters as written: what they mean is its own to say."""
+    filename = node.require("filename").strip()
+    name = (node.get("name") or "").strip() or filename
+    return PluginTag(name=name, filename=filename, element=to_element(node), origin=node.origin)
+
+
+def read_sensor(node: Node, link: str, pose: Pose | None = None, name: str = "") -> Sensor:
+    """A sensor.
+
+    Args:
+        node: The element.
+        link: The link that carries it.
+        pose: Its pose in the link, where that is known already; else its ``<pose>`` counts.
+        name: Its name where the element states none.
+
+    Raises:
+        DescriptionError: a parameter that no sensor can have.
+    """
+    kind = node.require("type").strip()
+    title = (node.get("name") or "").strip() or name or kind
+    update_rate = node.number_at("update_rate", 0.0)
+    if update_rate < 0:
+        raise node.fail(f'the update_rate of sensor "{title}" must not be below 0')
+    cameras = [read_camera(camera) for camera in node.all("camera")]
+    contact = node.child("contact")
+    collisions = [each.text for each in contact.all("collision")] if contact is not None else []
+    topic = node.text_at("topic").strip()
+    if contact is not None and not topic:
+        topic = contact.text_at("topic").strip().replace("__default_topic__", "")
+    return Sensor(
+        name=title,
+        type=kind,
+        link=link,
+        pose=read_pose(node.child("pose")) if pose is None else pose,
+        update_rate=update_rate,
+        always_on=node.boolean_at("always_on", False),
+        visualize=node.boolean_at("visualize", False),
+        topic=topic or None,
+        cameras=tuple(cameras),
+        collisions=tuple(name for name in collisions if name and name != "__default__"),
+        plugins=tuple(read_plugin(plugin) for plugin in node.all("plugin")),
+        element=to_element(node),
+        origin=node.origin,
+    )
+
+
+def read_camera(node: Node) -> CameraIntrinsics:
+    """One lens; SDF's defaults where it says nothing."""
+    default = CameraIntrinsics()
+    image, clip = node.child("image"), node.child("clip")
+    width = image.integer_at("width", default.width) if image is not None else default.width
+    height = image.integer_at("height", default.height) if image is not None else default.height
+    near = clip.number_at("near", default.near) if clip is not None else default.near
+    far = clip.number_at("far", default.far) if clip is not None else default.far
+    fov = node.number_at("horizontal_fov", default.horizontal_fov)
+    if width < 1 or height < 1 or width * height > 100_000_000:
+        raise node.fail(f"an image of {width} x {height} pixels is impossible")
+    if not 0 < near < far:
+        raise node.fail(f"clip near {near} must be above 0 and below far {far}")
+    if not 0 < fov < 2 * math.pi:
+        raise node.fail(
+            f"horizontal_fov {fov} is no angle of view in radians",
+            f"In degrees it would be {math.radians(fov):.4g}." if fov > 0 else None,
+        )
+    centre = node.find("distortion/center")
+    cx, cy = centre.vector(2) if centre is not None else default.distortion_center
+    return CameraIntrinsics(
+        name=(node.get("name") or "").strip(),
+        pose=read_pose(node.child("pose")),
+        horizontal_fov=fov,
+        width=width,
+        height=height,
+        format=(image.text_at("format") if image is not None else "") or default.format,
+        near=near,
+        far=far,
+        k1=node.number_at("distortion/k1", 0.0),
+        k2=node.number_at("distortion/k2", 0.0),
+        k3=node.number_at("distortion/k3", 0.0),
+        p1=node.number_at("distortion/p1", 0.0),
+        p2=node.number_at("distortion/p2", 0.0),
+        distortion_center=(cx, cy),
+        noise_mean=node.number_at("noise/mean", 0.0),
+        noise_stddev=node.number_at("noise/stddev", 0.0),
+    )

@@ -1,0 +1,94 @@
+"""SDF's ``<state>``: where things had come to when Gazebo saved the world."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from cartwheel.description.model import Light, Link, RobotDescription
+from cartwheel.description.sdf_context import Context, read_pose, require_name
+from cartwheel.description.sdf_model import read_model
+from cartwheel.description.xml import Node
+from cartwheel.geometry import Pose
+
+_NEAR = 1e-3
+"""Metres and radians by which a saved link may differ: Gazebo writes six digits."""
+
+
+def apply_state(
+    node: Node, models: list[RobotDescription], lights: list[Light], ctx: Context
+) -> tuple[list[RobotDescription], list[Light]]:
+    """Models and lights as the state puts them.
+
+    Poses of models and lights are taken over, those of links only where no joint holds them:
+    joint positions are not restored, which is told.
+    """
+    for tag in ("sim_time", "real_time", "wall_time", "iterations"):
+        for each in node.all(tag):
+            each.mark()
+    node.get("world_name")
+    deletions = node.child("deletions")
+    gone = {each.text.strip() for each in deletions.all("name")} if deletions is not None else set()
+    models = [model for model in models if model.name not in gone]
+    lights = [light for light in lights if light.name not in gone]
+    insertions = node.child("insertions")
+    if insertions is not None:
+        for each in insertions.all("model"):
+            model = read_model(each, ctx)
+            models.append(model.describe(model.pose))
+    saved_models = {each.get("name") or "": each for each in node.all("model")}
+    saved_lights = {each.get("name") or "": each for each in node.all("light")}
+    for name in saved_models.keys() - {model.name for model in models}:
+        saved_models[name].mark()
+        ctx.tell("info", f'the state names the unknown model "{name}"', saved_models[name].origin)
+    models = [
+        _moved(model, saved_models[model.name], ctx) if model.name in saved_models else model
+        for model in models
+    ]
+    for name, saved in saved_lights.items():
+        require_name(saved)
+        pose = read_pose(saved.child("pose"))
+        lights = [replace(each, pose=pose) if each.name == name else each for each in lights]
+    return models, lights
+
+
+def _moved(model: RobotDescription, saved: Node, ctx: Context) -> RobotDescription:
+    scale = saved.child("scale")
+    if scale is not None and scale.vec3() != (1.0, 1.0, 1.0):
+        ctx.tell("warning", f'the scale of model "{model.name}" is not applied', scale.origin)
+    stated = saved.child("pose")
+    pose = read_pose(stated) if stated is not None else model.pose
+    links = {each.get("name") or "": each for each in saved.all("link")}
+    jointed = {end for joint in model.joints for end in (joint.parent, joint.child)}
+    moved: list[Link] = []
+    told = False
+    for link in model.links:
+        found = links.get(link.name)
+        place = found.child("pose") if found is not None else None
+        if found is not None:
+            found.mark()
+        if place is None:
+            moved.append(link)
+            continue
+        relative = pose.inverse() @ read_pose(place)
+        if link.name not in jointed and not _near(relative, link.pose):
+            moved.append(replace(link, pose=relative))
+            continue
+        if not told and not _near(relative, link.pose):
+            told = True
+            ctx.tell(
+                "warning",
+                f'the joint positions of model "{model.name}" in the saved state are not restored',
+                saved.origin,
+            )
+        moved.append(link)
+    saved.mark()
+    return replace(model, pose=pose, links=tuple(moved))
+
+
+def _near(a: Pose, b: Pose) -> bool:
+    apart = a.inverse() @ b
+    return bool(
+        np.abs(apart.position).max() < _NEAR and np.abs(apart.orientation[:3]).max() < _NEAR
+    )

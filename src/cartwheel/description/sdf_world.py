@@ -1,0 +1,164 @@
+"""SDF's ``<world>``: its models and lights, gravity, physics, scene and plugins."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from cartwheel.description.model import Light, Physics, WorldDescription
+from cartwheel.description.sdf_context import (
+    Context,
+    read_pose,
+    read_rgba,
+    reference_of,
+    require_name,
+)
+from cartwheel.description.sdf_frames import WORLD, Frames
+from cartwheel.description.sdf_include import Included, open_include
+from cartwheel.description.sdf_light import read_light
+from cartwheel.description.sdf_model import Model, read_included, read_model
+from cartwheel.description.sdf_sensors import read_plugin
+from cartwheel.description.sdf_state import apply_state
+from cartwheel.description.xml import Node, to_element, unread
+from cartwheel.geometry import Vec3
+
+_WITHOUT_COUNTERPART = ("gui", "audio")
+"""Read and left out: they belong to Gazebo's own window."""
+
+
+def read_world(node: Node, ctx: Context) -> WorldDescription:
+    """A world.
+
+    Args:
+        node: The ``<world>``.
+        ctx: The document's.
+
+    Raises:
+        DescriptionError: whatever makes it unusable, with its place.
+    """
+    default = WorldDescription(name="")
+    name = (node.get("name") or "").strip() or "default"
+    frames = Frames(WORLD, name)
+    models, light_nodes = _contents(node, ctx)
+    for model in models:
+        frames.add_scope(model.name, model.frames, model.pose, model.relative_to, model.origin)
+    for each in node.all("frame"):
+        stated = each.child("pose")
+        frames.add(
+            "frame",
+            require_name(each),
+            read_pose(stated),
+            relative_to=reference_of(stated),
+            attached_to=(each.get("attached_to") or "").strip(),
+            origin=each.origin,
+        )
+    placed = [model.describe(frames.pose(model.name, model.origin)) for model in models]
+    lights = [_light(each, included, frames) for each, included in light_nodes]
+    for state in node.all("state"):
+        placed, lights = apply_state(state, placed, lights, ctx)
+    for tag in _WITHOUT_COUNTERPART:
+        for each in node.all(tag):
+            each.mark()
+    for tag in ("wind", "atmosphere"):
+        for each in node.all(tag):
+            each.mark()
+            if each.children and not _still(each):
+                ctx.tell("warning", f"<{tag}> is not simulated", each.origin)
+    physics = _default_physics(node)
+    field = node.child("magnetic_field")
+    scene = node.child("scene")
+    coordinates = node.child("spherical_coordinates")
+    return WorldDescription(
+        name=name,
+        models=tuple(placed),
+        lights=tuple(lights),
+        gravity=_gravity(node, physics, default.gravity),
+        magnetic_field=field.vec3() if field is not None else default.magnetic_field,
+        ambient=_scene_colour(scene, "ambient", default.ambient),
+        background=_scene_colour(scene, "background", default.background),
+        shadows=scene.boolean_at("shadows", True) if scene is not None else True,
+        physics=_physics(physics, ctx) if physics is not None else Physics(),
+        plugins=tuple(read_plugin(each) for each in node.all("plugin")),
+        spherical_coordinates=to_element(coordinates) if coordinates is not None else None,
+        origin=node.origin,
+    )
+
+
+def _contents(node: Node, ctx: Context) -> tuple[list[Model], list[tuple[Node, Included | None]]]:
+    """Models, and lights with the pose that an ``<include>`` gives them."""
+    models: list[Model] = []
+    lights: list[tuple[Node, Included | None]] = []
+    for each in node.children:
+        if each.tag == "model":
+            models.append(read_model(each, ctx))
+        elif each.tag == "light":
+            lights.append((each, None))
+        elif each.tag == "include":
+            included = open_include(each, ctx)
+            if included.node.tag == "light":
+                lights.append((included.node, included))
+            else:
+                models.append(read_included(included))
+    for tag in ("model", "light", "include"):
+        node.all(tag)  # counts them as read
+    return models, lights
+
+
+def _light(node: Node, included: Included | None, frames: Frames) -> Light:
+    stated = node.child("pose")
+    if included is not None and included.pose is not None:
+        stated = included.pose
+    light = read_light(node, frames.placed(read_pose(stated), reference_of(stated), node.origin))
+    if included is None:
+        return light
+    included.ctx.diagnostics.extend(unread(included.root))
+    return replace(light, name=included.name or light.name)
+
+
+def _default_physics(node: Node) -> Node | None:
+    profiles = node.all("physics")
+    for profile in profiles:
+        if profile.boolean_of("default", False):
+            return profile
+    return profiles[0] if profiles else None
+
+
+def _gravity(node: Node, physics: Node | None, default: Vec3) -> Vec3:
+    """In the world since 1.6, in the physics before."""
+    own = node.child("gravity")
+    older = physics.child("gravity") if physics is not None else None
+    if own is not None:
+        return own.vec3()
+    return older.vec3() if older is not None else default
+
+
+def _physics(node: Node, ctx: Context) -> Physics:
+    step = node.child("max_step_size")
+    if step is None and ctx.version < (1, 4):
+        step = node.find("ode/solver/dt")
+    if step is not None and step.number() <= 0:
+        raise step.fail(f"the step must be above 0, but is {step.text}")
+    rate = node.child("real_time_update_rate") or node.child("update_rate")
+    result = Physics(
+        max_step_size=step.number() if step is not None else None,
+        real_time_factor=node.optional_number_at("real_time_factor"),
+        real_time_update_rate=rate.number() if rate is not None else None,
+    )
+    node.mark()  # the rest tunes solvers that are not used here
+    return result
+
+
+def _scene_colour(
+    scene: Node | None, tag: str, default: tuple[float, float, float, float]
+) -> tuple[float, float, float, float]:
+    if scene is None:
+        return default
+    for ignored in ("sky", "fog", "grid", "origin_visual", "shadow_caster_material_name"):
+        for each in scene.all(ignored):
+            each.mark()
+    found = scene.child(tag)
+    return read_rgba(found) if found is not None else default
+
+
+def _still(node: Node) -> bool:
+    """Whether a wind of speed zero is meant, as Gazebo writes into every saved world."""
+    return all(not any(c in "123456789" for c in child.text) for child in node.children)
