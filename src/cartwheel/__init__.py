@@ -1,1 +1,31 @@
-"""Cartwheel simulates the robot you described."""
+"""Cartwheel simulates the robot you described.
+
+    >>> import cartwheel as cw
+    >>> world = cw.World("empty")
+    >>> cart = world.spawn("rosbots.xacro")
+    >>> cart.publish("/part2_cmr/cmd_vel", linear_x=0.5)
+    >>> world.run(seconds=5)
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from cartwheel.errors import CartwheelError
+from cartwheel.geometry import Pose
+
+if TYPE_CHECKING:
+    from cartwheel.api import Model, World
+
+__all__ = ["CartwheelError", "Model", "Pose", "World"]
+__version__ = "0.1.0"
+
+
+def __getattr__(name: str) -> Any:
+    # The physics engine takes a tenth of a second to import: the command line imports it
+    # while it reads files, not before it has looked at its arguments.
+    if name in ("Model", "World"):
+        from cartwheel import api
+
+        return getattr(api, name)
+    raise AttributeError(name)

@@ -317,6 +317,19 @@ class Simulation:
         self.data.qvel[velocity : velocity + 6] = 0
         self.refresh()
 
+    def joint_position(self, name: str, joint: str) -> float:
+        """Position of a joint of one degree of freedom, rad or m.
+
+        Raises:
+            UnknownNameError: There is no such model or joint.
+        """
+        self._resident(name)
+        if (name, joint) not in self.scene.joints:
+            known = [other for model, other in self.scene.joints if model == name]
+            raise UnknownNameError("joint", joint, known)
+        row = self.scene.joints.index((name, joint))
+        return float(self.data.qpos[self._row_joints[row]])
+
     def schedule(
         self,
         rate: float,

@@ -1,0 +1,37 @@
+# Everything a contributor does. `make run` and `make test` set up what is missing.
+VENV ?= .venv
+BIN = $(VENV)/bin
+ARGS ?=
+export VENV
+
+.PHONY: run test lint format bench docs clean
+
+run: ## the cart in the browser, with a post before its camera
+	@tools/setup.sh run
+	@$(BIN)/cartwheel run $(ARGS)
+
+test: ## all tests
+	@tools/setup.sh test
+	@$(BIN)/pytest $(ARGS)
+
+lint: ## style, format and types
+	@tools/setup.sh lint
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+
+format: ## rewrite the sources in the house's format
+	@tools/setup.sh lint
+	$(BIN)/ruff check --fix-only -q .
+	$(BIN)/ruff format -q .
+
+bench: ## speed against the bare physics loop, as a table and benchmarks/results/*.json
+	@tools/setup.sh test
+	@$(BIN)/python -m benchmarks $(ARGS)
+
+docs: ## the parts of docs/ that are made from the code
+	@tools/setup.sh lint
+	@$(BIN)/python tools/make_plugin_reference.py
+
+clean:
+	rm -rf $(VENV) build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis

@@ -1,0 +1,197 @@
+"""Robots in a few lines of Python: a world, what stands in it, and time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+
+from cartwheel import description as descriptions
+from cartwheel.description.model import RobotDescription, WorldDescription
+from cartwheel.errors import DescriptionError, Diagnostic
+from cartwheel.geometry import Pose
+from cartwheel.graph import Graph, Mailbox
+from cartwheel.messages import convert, type_name
+from cartwheel.session import Session
+from cartwheel.simulation.clock import NANOSECONDS, to_ns
+
+
+class Model:
+    """A model in a world, by its name."""
+
+    def __init__(self, world: World, name: str) -> None:
+        self._world = world
+        self.name = name
+
+    @property
+    def pose(self) -> Pose:
+        """Where its root link is in the world."""
+        self._world.session.simulation.refresh()
+        return self._world.session.simulation.pose(self.name)
+
+    @pose.setter
+    def pose(self, pose: Pose) -> None:
+        self._world.session.simulation.set_pose(self.name, pose)
+
+    def joint(self, name: str) -> float:
+        """Position of a joint in rad or m.
+
+        Raises:
+            UnknownNameError: There is no such joint.
+        """
+        return self._world.session.simulation.joint_position(self.name, name)
+
+    def publish(self, topic: str, message: Any = None, **fields: Any) -> None:
+        """`World.publish`."""
+        self._world.publish(topic, message, **fields)
+
+    def delete(self) -> None:
+        """Takes it out of the world."""
+        self._world.session.simulation.delete(self.name)
+
+
+class World:
+    """A simulation to be stepped by the thread that made it.
+
+    Args:
+        world: ``empty``, another shipped world, a file, or a description.
+        seed: Of all noise: the same seed and commands give the same bits.
+        strict: Every warning about a file is an error.
+
+    Raises:
+        DescriptionError: The world's file cannot be used.
+    """
+
+    def __init__(
+        self, world: str | Path | WorldDescription = "empty", *, seed: int = 0, strict: bool = False
+    ) -> None:
+        if not isinstance(world, WorldDescription):
+            world = descriptions.load_world(world)
+        self.session = Session(world, seed=seed, strict=strict)
+
+    def __enter__(self) -> World:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    @property
+    def graph(self) -> Graph:
+        """Its topics and services."""
+        return self.session.graph
+
+    @property
+    def time(self) -> float:
+        """Simulated seconds."""
+        return self.session.simulation.time_ns / NANOSECONDS
+
+    @property
+    def models(self) -> tuple[str, ...]:
+        """Names of what stands in it."""
+        return self.session.simulation.models
+
+    @property
+    def diagnostics(self) -> tuple[Diagnostic, ...]:
+        """What was reported about the files."""
+        return self.session.diagnostics
+
+    def spawn(
+        self,
+        robot: str | Path | RobotDescription,
+        *,
+        name: str | None = None,
+        x: float = 0.0,
+        y: float = 0.0,
+        z: float = 0.0,
+        roll: float = 0.0,
+        pitch: float = 0.0,
+        yaw: float = 0.0,
+        arguments: Mapping[str, str] | None = None,
+        package_path: Sequence[Path] = (),
+    ) -> Model:
+        """Puts a model in the world.
+
+        Args:
+            robot: A xacro, URDF or SDF file, or a description.
+            name: In this world; the description's own when None.
+            x: m, with y and z the place of its root link.
+            y: m.
+            z: m.
+            roll: rad, with pitch and yaw about the world's axes.
+            pitch: rad.
+            yaw: rad.
+            arguments: Of the xacro file.
+            package_path: Folders in which packages are looked for first.
+
+        Raises:
+            DescriptionError: The file cannot be used.
+            WorldError: The name is taken, or the model cannot be built.
+        """
+        if not isinstance(robot, RobotDescription):
+            robot = descriptions.load_robot(robot, arguments=arguments, package_path=package_path)
+        pose = Pose.from_xyz_rpy((x, y, z), (roll, pitch, yaw))
+        return Model(self, self.session.spawn(robot, name=name, pose=pose))
+
+    def model(self, name: str) -> Model:
+        """A model that stands in the world.
+
+        Raises:
+            UnknownNameError: There is none of that name.
+        """
+        self.session.simulation.pose(name)
+        return Model(self, name)
+
+    def run(self, seconds: float) -> None:
+        """Lets simulated time go on, as fast as it can.
+
+        Raises:
+            SimulationError: The simulation diverged.
+        """
+        simulation = self.session.simulation
+        simulation.advance(simulation.time_ns + to_ns(seconds))
+
+    def publish(self, topic: str, message: Any = None, **fields: Any) -> None:
+        """Publishes on a topic that exists.
+
+        Args:
+            topic: Its name.
+            message: A message, a mapping of its fields, or nothing:
+            fields: Then its fields, nested ones joined by ``_``: ``linear_x=0.5``.
+
+        Raises:
+            UnknownNameError: There is no such topic.
+            GraphError: A field that the type does not have.
+        """
+        kind = self.graph.topic(topic).type
+        if fields:
+            message = convert.from_flat(kind, fields)
+        elif isinstance(message, Mapping):
+            message = convert.from_dict(kind, message)
+        self.graph.publish(topic, kind, message)
+
+    def subscribe(
+        self, topic: str, callback: Callable[[Any], None], *, type: str | None = None
+    ) -> None:
+        """Calls `callback` with each message, within `run`."""
+        self.graph.subscribe(topic, callback, type_name=type_name(type) if type else None)
+
+    def mailbox(self, topic: str, *, size: int = 1000) -> Mailbox:
+        """Keeps the topic's messages to be read after `run`."""
+        return self.graph.mailbox(topic, size=size)
+
+    def reset(self) -> None:
+        """Takes time and every model back to the start."""
+        self.session.simulation.reset()
+
+    def close(self) -> None:
+        """Frees what the world holds."""
+        self.session.close()
+
+
+__all__ = ["DescriptionError", "Model", "World"]

@@ -1,0 +1,102 @@
+"""Imports point one way: each room knows only the rooms below it."""
+
+import ast
+from pathlib import Path
+
+import pytest
+
+SOURCE = Path(__file__).parents[2] / "src" / "cartwheel"
+
+# Each room, and the rooms it may import; the leaves are open to all.
+LEAVES = {"errors", "geometry"}
+MAY_IMPORT = {
+    "errors": set(),
+    "geometry": set(),
+    "messages": set(),
+    "graph": {"messages"},
+    "description": set(),
+    "world": {"description"},
+    "simulation": {"description", "world"},
+    "plugins": {"description", "world", "simulation", "messages", "graph"},
+    "session": {"description", "simulation", "messages", "graph", "plugins"},
+    "api": {"description", "simulation", "messages", "graph", "session"},
+    "control": {"description", "simulation", "messages", "graph", "session"},
+    "viewer": {"description", "simulation", "messages", "graph", "session"},
+    "bridges": {"messages", "graph"},
+    "cli": {
+        "description",
+        "world",
+        "simulation",
+        "messages",
+        "graph",
+        "session",
+        "control",
+        "viewer",
+        "bridges",
+        "api",
+        "plugins",
+    },
+}
+
+
+def room_of(path: Path) -> str:
+    return path.relative_to(SOURCE).parts[0].removesuffix(".py")
+
+
+def imported_rooms(path: Path) -> set[tuple[str, int]]:
+    """Every room of ours that a file imports, wherever in the file, with its line."""
+    found = set()
+    for node in ast.walk(ast.parse(path.read_text())):
+        names = []
+        if isinstance(node, ast.Import):
+            names = [alias.name for alias in node.names]
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0, f"{path}:{node.lineno}: a relative import hides its room"
+            module = node.module or ""
+            names = (
+                [f"cartwheel.{alias.name}" for alias in node.names]
+                if module == "cartwheel"
+                else [module]
+            )
+        for name in names:
+            parts = name.split(".")
+            if parts[0] == "cartwheel" and len(parts) > 1:
+                found.add((parts[1], node.lineno))
+    return found
+
+
+FILES = sorted(path for path in SOURCE.rglob("*.py") if path.parent != SOURCE or path.stem != "__init__")
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: str(path.relative_to(SOURCE)))
+def test_a_file_imports_only_rooms_below_its_own(path: Path) -> None:
+    room = room_of(path)
+    assert room in MAY_IMPORT, f"{room} has no place in the order of the rooms"
+    allowed = MAY_IMPORT[room] | LEAVES | {room}
+    wrong = sorted((name, line) for name, line in imported_rooms(path) if name not in allowed)
+    assert not wrong, f"{room} may not import {wrong}"
+
+
+def test_the_order_has_no_cycle() -> None:
+    done: set[str] = set()
+    while len(done) < len(MAY_IMPORT):
+        ready = {room for room, below in MAY_IMPORT.items() if room not in done and below <= done}
+        assert ready, f"a cycle among {set(MAY_IMPORT) - done}"
+        done |= ready
+
+
+def test_wires_and_browser_are_imported_only_in_their_rooms() -> None:
+    homes = {"viser": "viewer", "rospy": "bridges", "cyclonedds": "bridges", "mujoco": None}
+    for path in FILES:
+        for node in ast.walk(ast.parse(path.read_text())):
+            names = []
+            if isinstance(node, ast.Import):
+                names = [alias.name for alias in node.names]
+            elif isinstance(node, ast.ImportFrom):
+                names = [node.module or ""]
+            for name in names:
+                top = name.split(".")[0]
+                if top == "mujoco":
+                    assert room_of(path) in {"world", "simulation", "cli"}, f"{path} imports mujoco"
+                elif top in homes:
+                    assert room_of(path) == homes[top], f"{path} imports {top}"
