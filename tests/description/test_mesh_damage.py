@@ -1,0 +1,88 @@
+"""Damaged mesh files end in a MeshError or a mesh, never in another exception."""
+
+from __future__ import annotations
+
+import importlib.util
+import struct
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from cartwheel.description.meshes import MeshError, load_mesh
+from cartwheel.description.model import Mesh
+
+
+def _sibling(name: str):
+    """Test files are no package, so that they need no names of their own."""
+    spec = importlib.util.spec_from_file_location(name, Path(__file__).with_name(f"{name}.py"))
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+_meshes, _dae = _sibling("test_meshes"), _sibling("test_mesh_dae")
+SAMPLES = {
+    "stl": _meshes.tetra_stl(),
+    "obj": _meshes.OBJ.encode(),
+    "dae": _dae.textured_document().encode(),
+    "ply": b"ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\n"
+    b"property float y\nproperty float z\nelement face 1\n"
+    b"property list uchar int vertex_indices\nend_header\n"
+    + struct.pack("<9fB3i", 0, 0, 0, 1, 0, 0, 0, 1, 0, 3, 0, 1, 2),
+    "glb": _meshes.triangle_glb(),
+}
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    return tmp_path_factory.mktemp("damage")
+
+
+@pytest.mark.parametrize("kind", sorted(SAMPLES))
+def test_samples_are_whole(folder, kind):
+    path = folder / f"whole.{kind}"
+    path.write_bytes(SAMPLES[kind])
+    assert load_mesh(Mesh(uri="", path=path))
+
+
+@pytest.mark.parametrize("kind", sorted(SAMPLES))
+@settings(
+    max_examples=120,
+    derandomize=True,
+    deadline=None,
+    suppress_health_check=[HealthCheck.function_scoped_fixture],
+)
+@given(data=st.data())
+def test_damage(folder, kind, data):
+    whole = SAMPLES[kind]
+    content = bytearray(whole[: data.draw(st.integers(0, len(whole)), label="length")])
+    for _ in range(data.draw(st.integers(0, 6), label="garbled")):
+        if content:
+            place = data.draw(st.integers(0, len(content) - 1))
+            content[place] = data.draw(st.integers(0, 255))
+    path = folder / f"damaged.{kind}"
+    path.write_bytes(content)
+    try:
+        parts = load_mesh(Mesh(uri="", path=path))
+    except MeshError as error:
+        assert error.reason
+        return
+    for part in parts:
+        assert np.isfinite(part.vertices).all()
+        assert part.faces.min() >= 0
+        assert part.faces.max() < len(part.vertices)
+
+
+@pytest.mark.parametrize("kind", sorted(SAMPLES))
+@settings(max_examples=30, derandomize=True, deadline=None)
+@given(content=st.binary(max_size=400))
+def test_noise(folder, kind, content):
+    path = folder / f"noise.{kind}"
+    path.write_bytes(content)
+    try:
+        load_mesh(Mesh(uri="", path=path))
+    except MeshError as error:
+        assert str(path) in str(error)
