@@ -1,0 +1,30 @@
+"""What of the scene is to be seen."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(kw_only=True, slots=True)
+class Display:
+    """The toggles, shared by all browsers."""
+
+    visual: bool = True
+    collision: bool = False
+    transparent: bool = False
+    wireframe: bool = False
+    axes: bool = False
+    """Every link's frame."""
+    names: bool = False
+    """Every link's name."""
+    inertia: bool = False
+    """Centres of mass, and boxes of the same inertia."""
+    grid: bool = True
+    trail: bool = False
+    """Where the robot has been."""
+    camera: bool = True
+    """What the cameras see, as a pyramid with the image at its end."""
+    contacts: bool = False
+    """Points and forces that the bumpers report."""
+    follow: bool = False
+    """The browser's camera goes with the robot."""

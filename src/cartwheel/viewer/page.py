@@ -1,0 +1,182 @@
+"""The page: one web server, one thread that does all of the viewer's work, errors as notes."""
+
+from __future__ import annotations
+
+import json
+import logging
+import queue
+import socket
+import threading
+from collections.abc import Callable, Coroutine
+from pathlib import Path
+from typing import Any, TypeVar
+
+from cartwheel.errors import CartwheelError, ControlError
+
+_log = logging.getLogger(__name__)
+_FOLDER = Path(__file__).parent
+_KEEP_TITLE_SECONDS = 8.0
+
+T = TypeVar("T")
+
+
+def check_port(host: str, port: int) -> None:
+    """Refuses a port that is taken: viser would take the next one without a word.
+
+    Raises:
+        ControlError: It cannot be bound.
+    """
+    try:
+        with socket.create_server((host, port)):
+            pass
+    except (OSError, OverflowError) as error:
+        raise ControlError(
+            f"the viewer cannot listen on {host}:{port}: {getattr(error, 'strerror', None) or error}",
+            hint="Another viewer may be running; choose another port with --port.",
+        ) from error
+
+
+class Page:
+    """What the parts of the viewer share.
+
+    viser calls back on a pool of threads and the simulation on its own; both only leave a
+    note here, and `run` does what they say, one after the other, in order.
+
+    Args:
+        host: Address to listen on.
+        port: 0 takes any that is free.
+        title: Of the browser's tab.
+        keys: That are commands; every other key counts as ``k``.
+    """
+
+    def __init__(self, host: str, port: int, *, title: str, keys: tuple[str, ...] = ()) -> None:
+        # 0.2 s that must not come before the simulation's first clock.
+        import viser  # noqa: PLC0415
+        from viser import _messages  # noqa: PLC0415
+
+        check_port(host, port)
+        self.viser = viser
+        self.server: Any = _quietly(lambda: viser.ViserServer(host, port, verbose=False))
+        self.port = int(self.server.get_port())
+        self.gui: Any = self.server.gui
+        self.scene: Any = self.server.scene
+        self.clients: frozenset[int] = frozenset()
+        """Browsers that are connected now."""
+        self.on_clients: Callable[[], None] = lambda: None
+        """Called when `clients` has changed."""
+        self._jobs: queue.SimpleQueue[tuple[Callable[[], None], int | None] | None]
+        self._jobs = queue.SimpleQueue()
+        self._client: int | None = None
+        self.gui.configure_theme(
+            show_logo=False, show_share_button=False, brand_color=(37, 99, 176)
+        )
+        self.gui.set_panel_label(title)
+        # viser has a message to run a script of one's own in every browser that comes, though
+        # no method for it; its plots are loaded that way.
+        self.gui._websock_interface.queue_message(
+            _messages.RunJavascriptMessage(source=_script(title, keys))
+        )
+        self.server.on_client_connect(self.on(self._connected))
+        self.server.on_client_disconnect(self.on(self._disconnected))
+
+    # -- work
+
+    def run(self, stopped: threading.Event) -> None:
+        """Does what was posted, until `stopped`."""
+        while not stopped.is_set():
+            job = self._jobs.get()
+            if job is None:
+                continue
+            function, self._client = job
+            try:
+                function()
+            except CartwheelError as error:
+                self.show_error(error)
+            except Exception as error:
+                # A fault of the viewer's own must not take the page away from its user.
+                _log.exception("the viewer failed")
+                self.notify("The viewer failed", f"{type(error).__name__}: {error}", color="red")
+
+    def wake(self) -> None:
+        """Lets `run` look whether it is to stop."""
+        self._jobs.put(None)
+
+    def post(self, function: Callable[[], None], *, client: int | None = None) -> None:
+        """Runs a function on the page's thread, soon; from any thread.
+
+        Args:
+            function: What to do.
+            client: The browser that asked for it, and that is told when it fails; None is all.
+        """
+        self._jobs.put((function, client))
+
+    def on(self, function: Callable[[Any], None]) -> Callable[[Any], Coroutine[Any, Any, None]]:
+        """A callback for viser that runs `function(event)` on the page's thread."""
+
+        # A coroutine, as viser runs those in the order of their messages; plain functions go
+        # to a pool, where a quick "stop" may overtake the "go" before it.
+        async def callback(event: Any) -> None:
+            self.post(lambda: function(event), client=getattr(event, "client_id", None))
+
+        return callback
+
+    def then(self, future: Any, function: Callable[[Any], None] = lambda _: None) -> None:
+        """Runs `function(result)` on the page's thread when a simulation's answer is there."""
+        client = self._client
+        future.add_done_callback(
+            lambda done: self.post(lambda: function(done.result()), client=client)
+        )
+
+    # -- notes
+
+    def show_error(self, error: CartwheelError) -> None:
+        """Tells whoever asked what went wrong."""
+        self.notify("That did not work", str(error), color="red", seconds=12.0)
+
+    def notify(
+        self,
+        title: str,
+        body: str,
+        *,
+        color: str | None = None,
+        seconds: float = _KEEP_TITLE_SECONDS,
+    ) -> None:
+        """A note in the corner: for the browser that asked, else for all."""
+        clients = self.server.get_clients()
+        asked = clients.get(self._client) if self._client is not None else None
+        for client in [asked] if asked is not None else clients.values():
+            client.add_notification(title, body, color=color, auto_close_seconds=seconds)
+
+    # -- browsers
+
+    def _connected(self, client: Any) -> None:
+        self.clients |= {client.client_id}
+        self.on_clients()
+
+    def _disconnected(self, client: Any) -> None:
+        self.clients -= {client.client_id}
+        self.on_clients()
+
+    def close(self) -> None:
+        """Ends the web server."""
+        _quietly(self.server.stop)
+
+
+def _script(title: str, keys: tuple[str, ...]) -> str:
+    style = (_FOLDER / "page.css").read_text()
+    script = (_FOLDER / "page.js").read_text()
+    script = script.replace('"__TITLE__"', json.dumps(title))
+    script = script.replace('"__STYLE__"', json.dumps(style))
+    return script.replace("__KEYS__", json.dumps([*keys, " "] if keys else [" "]))
+
+
+def _quietly(function: Callable[[], T]) -> T:
+    """Without viser's own banner: the command line says where the page is."""
+    import rich  # noqa: PLC0415 - viser has imported it already
+
+    console = rich.get_console()
+    before, console.quiet = console.quiet, True
+    try:
+        return function()
+    finally:
+        console.quiet = before

@@ -1,0 +1,123 @@
+"""The world in the browser: models come and go, links move, the light is right."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from cartwheel.description.model import RobotDescription
+from cartwheel.errors import CartwheelError
+from cartwheel.geometry import Pose, from_wxyz
+from cartwheel.simulation.snapshot import Scene, Snapshot
+from cartwheel.viewer.display import Display
+from cartwheel.viewer.model_view import ModelView
+from cartwheel.viewer.page import Page
+
+
+class SceneView:
+    """Follows the snapshots of a simulation.
+
+    Args:
+        page: To draw on.
+        selected: Called with a model's name when it is clicked.
+    """
+
+    def __init__(self, page: Page, *, selected: Callable[[str], None] = lambda _: None) -> None:
+        self._page = page
+        self._selected = selected
+        self.display = Display()
+        self.models: dict[str, ModelView] = {}
+        self.snapshot: Snapshot | None = None
+        """The newest shown."""
+        self._version = -1
+        self._rows: dict[str, slice] = {}
+        set_stage(page)
+        self._grid = add_grid(page)
+
+    def update(self, snapshot: Snapshot) -> bool:
+        """Shows a state; says whether the set of models has changed."""
+        changed = snapshot.scene.version != self._version
+        with self._page.server.atomic():
+            if changed:
+                self._rebuild(snapshot.scene)
+            for name, rows in self._rows.items():
+                self.models[name].move(snapshot.positions[rows], snapshot.quaternions[rows])
+        self.snapshot = snapshot
+        return changed
+
+    def show(self) -> None:
+        """Applies the toggles of `display`."""
+        with self._page.server.atomic():
+            self._grid.visible = self.display.grid
+            for model in self.models.values():
+                model.show(self.display)
+
+    def pose(self, name: str) -> Pose | None:
+        """Where a model's canonical link is; None where there is no such model."""
+        if self.snapshot is None or name not in self._rows:
+            return None
+        return pose_in(self.snapshot, name)
+
+    def _rebuild(self, scene: Scene) -> None:
+        wanted = {placed.name: placed.description for placed in scene.models}
+        for name in [n for n, view in self.models.items() if wanted.get(n) is not view.description]:
+            self.models.pop(name).remove()
+        for name, description in wanted.items():
+            if name not in self.models:
+                self.models[name] = self._add(name, description)
+        self._rows = {}
+        names = [model for model, _ in scene.links]
+        for name in wanted:
+            first = names.index(name)
+            self._rows[name] = slice(first, first + len(wanted[name].links))
+        self._version = scene.version
+
+    def _add(self, name: str, description: RobotDescription) -> ModelView:
+        def problem(error: CartwheelError) -> None:
+            self._page.show_error(error)
+
+        view = ModelView(
+            self._page.scene,
+            name,
+            description,
+            problem=problem,
+            clicked=self._page.on(lambda _: self._selected(name)),
+        )
+        view.show(self.display)
+        return view
+
+
+def pose_in(snapshot: Snapshot, name: str) -> Pose:
+    """Where a model's canonical link is in a snapshot."""
+    placed = next(model for model in snapshot.scene.models if model.name == name)
+    row = snapshot.scene.links.index((name, placed.description.canonical_link))
+    x, y, z = snapshot.positions[row].tolist()
+    return Pose((x, y, z), from_wxyz(snapshot.quaternions[row].tolist()))
+
+
+def set_stage(page: Page) -> None:
+    """Light from above and behind, a soft fill, a horizon: so that shapes and edges read well."""
+    page.scene.world_axes.visible = False
+    page.scene.configure_default_lights(enabled=True, cast_shadow=True)
+    page.scene.configure_environment_map("park", environment_intensity=0.35)
+    page.scene.configure_fog(18.0, 60.0, color=(236, 240, 244))
+    camera = page.server.initial_camera
+    camera.position = (-1.9, -2.3, 1.5)
+    camera.look_at = (0.7, 0.1, 0.1)
+    camera.fov = np.deg2rad(45.0)
+
+
+def add_grid(page: Page) -> Any:
+    """Metres, and halves of them, on the ground."""
+    return page.scene.add_grid(
+        "/grid",
+        infinite_grid=True,
+        cell_size=0.5,
+        section_size=1.0,
+        cell_color=(206, 212, 219),
+        section_color=(176, 185, 196),
+        fade_distance=40.0,
+        shadow_opacity=0.0,
+    )

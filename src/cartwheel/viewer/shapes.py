@@ -1,0 +1,298 @@
+"""Shapes of a description as coloured triangles for the browser."""
+
+from __future__ import annotations
+
+import io
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cartwheel.description.meshes import load_mesh
+from cartwheel.description.model import (
+    Box,
+    Capsule,
+    Collision,
+    Cone,
+    Cylinder,
+    Ellipsoid,
+    Heightmap,
+    Mesh,
+    Plane,
+    Polyline,
+    Rgba,
+    Shape,
+    Sphere,
+    Visual,
+)
+from cartwheel.geometry import Pose, matrix_from_quat, quat_between
+
+Floats = NDArray[np.float32]
+Ints = NDArray[np.int32]
+
+DEFAULT: Rgba = (0.72, 0.74, 0.76, 1.0)
+"""Of what states no colour."""
+_AROUND = 32
+"""Corners of a round thing: smooth at the size of a wheel, light at the size of a fleet."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Surface:
+    """Triangles of one colour; vertices are shared where the surface is to look smooth."""
+
+    vertices: Floats
+    """Shape (n, 3), m."""
+    faces: Ints
+    """Shape (m, 3), counter-clockwise from outside."""
+    rgba: Rgba
+
+
+def surfaces_of_visual(visual: Visual) -> list[Surface]:
+    """A visual in its link's frame.
+
+    Raises:
+        MeshError: Its file cannot be used.
+    """
+    rgba = visual.material.diffuse
+    surfaces = _coloured(visual.shape, rgba)
+    opacity = 1.0 - visual.transparency
+    return [
+        Surface(
+            place(visual.pose, surface.vertices),
+            surface.faces,
+            (*surface.rgba[:3], surface.rgba[3] * opacity),
+        )
+        for surface in surfaces
+    ]
+
+
+def surfaces_of_collision(collision: Collision, rgba: Rgba) -> list[Surface]:
+    """A collision in its link's frame, all in one colour.
+
+    Raises:
+        MeshError: Its file cannot be used.
+    """
+    return [
+        Surface(place(collision.pose, surface.vertices), surface.faces, rgba)
+        for surface in _coloured(collision.shape, rgba)
+    ]
+
+
+def merge(surfaces: Iterable[Surface]) -> list[Surface]:
+    """One surface for each colour: the browser draws few large meshes faster than many small."""
+    by_colour: dict[tuple[int, ...], list[Surface]] = {}
+    for surface in surfaces:
+        key = tuple(round(255 * channel) for channel in surface.rgba)
+        by_colour.setdefault(key, []).append(surface)
+    merged = []
+    for group in by_colour.values():
+        offsets = np.cumsum([0, *(len(surface.vertices) for surface in group)])
+        faces = [
+            surface.faces + offset for surface, offset in zip(group, offsets[:-1], strict=True)
+        ]
+        merged.append(
+            Surface(
+                np.concatenate([surface.vertices for surface in group]).astype(np.float32),
+                np.concatenate(faces).astype(np.int32),
+                group[0].rgba,
+            )
+        )
+    return merged
+
+
+def bounds_of(surfaces: Iterable[Surface]) -> tuple[Floats, Floats] | None:
+    """The lowest and highest corner of all of them, m; None for nothing."""
+    clouds = [surface.vertices for surface in surfaces if len(surface.vertices)]
+    if not clouds:
+        return None
+    points = np.concatenate(clouds)
+    return points.min(axis=0), points.max(axis=0)
+
+
+def place(pose: Pose, vertices: Floats) -> Floats:
+    """Points of a frame in the frame that holds it."""
+    if pose == Pose():
+        return vertices
+    turned = vertices @ matrix_from_quat(pose.orientation).T.astype(np.float32)
+    return np.asarray(turned + np.asarray(pose.position, dtype=np.float32), dtype=np.float32)
+
+
+def _coloured(shape: Shape, rgba: Rgba | None) -> list[Surface]:
+    if not isinstance(shape, Mesh):
+        vertices, faces = triangles_of(shape)
+        return [Surface(vertices, faces, rgba or DEFAULT)]
+    surfaces = []
+    for part in load_mesh(shape):
+        colour = rgba or part.rgba
+        if rgba is None and part.texture is not None:
+            # The mean of the picture: from afar the same, and one mesh for all that share it.
+            colour = _mean_colour(part.texture) or colour
+        surfaces.append(Surface(part.vertices, part.faces, colour or DEFAULT))
+    return surfaces
+
+
+@lru_cache(maxsize=128)
+def _mean_colour(texture: object) -> Rgba | None:
+    from PIL import Image  # noqa: PLC0415 - 20 ms that few descriptions need
+
+    source = io.BytesIO(texture) if isinstance(texture, bytes) else texture
+    try:
+        with Image.open(source) as image:  # type: ignore[arg-type]
+            mean = np.asarray(image.convert("RGBA").resize((16, 16))).reshape(-1, 4).mean(axis=0)
+    except OSError:
+        return None
+    red, green, blue, alpha = (float(channel) / 255 for channel in mean)
+    return (red, green, blue, alpha)
+
+
+@lru_cache(maxsize=256)
+def triangles_of(shape: Shape) -> tuple[Floats, Ints]:
+    """A primitive's vertices and faces in its own frame; edges that are sharp share no vertex."""
+    match shape:
+        case Box(size=size):
+            return _box(size)
+        case Cylinder(radius=radius, length=length):
+            return _lathe([(0, -length / 2), (radius, -length / 2), None,
+                           (radius, -length / 2), (radius, length / 2), None,
+                           (radius, length / 2), (0, length / 2)])  # fmt: skip
+        case Cone(radius=radius, length=length):
+            return _lathe([(0, -length / 2), (radius, -length / 2), None,
+                           (radius, -length / 2), (0, length / 2)])  # fmt: skip
+        case Sphere(radius=radius):
+            return _round(radius, 0.0)
+        case Capsule(radius=radius, length=length):
+            return _round(radius, length)
+        case Ellipsoid(radii=radii):
+            vertices, faces = _round(1.0, 0.0)
+            return vertices * np.asarray(radii, dtype=np.float32), faces
+        case Plane(normal=normal, size=size):
+            x, y = size[0] / 2, size[1] / 2
+            corners = np.array([(-x, -y, 0), (x, -y, 0), (x, y, 0), (-x, y, 0)], dtype=np.float32)
+            pose = Pose((0, 0, 0), quat_between((0, 0, 1), normal))
+            return place(pose, corners), np.array([(0, 1, 2), (0, 2, 3)], dtype=np.int32)
+        case Heightmap():
+            return _heightmap(shape)
+        case Polyline(points=points, height=height):
+            return _prism(points, height)
+    raise TypeError(f"{type(shape).__name__} has no triangles")
+
+
+def _box(size: tuple[float, float, float]) -> tuple[Floats, Ints]:
+    vertices, faces = [], []
+    for axis in range(3):
+        for side in (-1.0, 1.0):
+            u, v = np.eye(3)[(axis + 1) % 3], np.eye(3)[(axis + 2) % 3]
+            if side < 0:
+                u, v = v, u
+            middle = side * np.eye(3)[axis]
+            start = len(vertices)
+            vertices += [middle - u - v, middle + u - v, middle + u + v, middle - u + v]
+            faces += [(start, start + 1, start + 2), (start, start + 2, start + 3)]
+    scaled = np.array(vertices) * np.asarray(size) / 2
+    return scaled.astype(np.float32), np.array(faces, dtype=np.int32)
+
+
+def _lathe(profile: list[tuple[float, float] | None]) -> tuple[Floats, Ints]:
+    """A profile of (radius, z), upwards on the outside, turned about z; None parts two pieces."""
+    angles = np.linspace(0, 2 * math.pi, _AROUND, endpoint=False)
+    circle = np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    vertices: list[NDArray[np.float64]] = []
+    faces: list[tuple[int, int, int]] = []
+    count, previous = 0, False
+    for point in profile:
+        if point is None:
+            previous = False
+            continue
+        radius, z = point
+        vertices.append(np.column_stack([circle * radius, np.full(_AROUND, z)]))
+        if previous:
+            for i in range(_AROUND):
+                j = (i + 1) % _AROUND
+                below, above = count - _AROUND, count
+                faces.append((below + i, below + j, above + j))
+                faces.append((below + i, above + j, above + i))
+        previous = True
+        count += _AROUND
+    points = np.concatenate(vertices)
+    triangles = np.array(faces, dtype=np.int32)
+    a, b, c = (points[triangles[:, k]] for k in range(3))
+    area = np.linalg.norm(np.cross(b - a, c - a), axis=1)
+    return points.astype(np.float32), triangles[area > 1e-15]
+
+
+def _round(radius: float, length: float) -> tuple[Floats, Ints]:
+    steps = [math.pi * i / 16 - math.pi / 2 for i in range(17)]
+    profile: list[tuple[float, float] | None] = []
+    for angle in steps:
+        shift = length / 2 if angle > 0 else -length / 2
+        if angle == 0 and length:
+            profile.append((radius, -length / 2))
+            shift = length / 2
+        profile.append((radius * math.cos(angle), radius * math.sin(angle) + shift))
+    return _lathe(profile)
+
+
+def _heightmap(shape: Heightmap) -> tuple[Floats, Ints]:
+    from PIL import Image  # noqa: PLC0415 - 20 ms that few descriptions need
+
+    with Image.open(shape.path) as image:
+        side = min(129, *image.size)
+        heights = np.asarray(image.convert("F").resize((side, side)), dtype=np.float64)
+    top = max(255.0, float(heights.max()))
+    x, y = np.meshgrid(np.linspace(-0.5, 0.5, side), np.linspace(0.5, -0.5, side))
+    points = np.stack([x, y, heights / top], axis=-1).reshape(-1, 3) * np.asarray(shape.size)
+    points += np.asarray(shape.position)
+    corner = (np.arange(side - 1)[:, None] * side + np.arange(side - 1)[None, :]).reshape(-1)
+    right, below = corner + 1, corner + side
+    faces = np.concatenate(
+        [np.stack([corner, below, right], axis=1), np.stack([right, below, below + 1], axis=1)]
+    )
+    return points.astype(np.float32), faces.astype(np.int32)
+
+
+def _prism(points: tuple[tuple[float, float], ...], height: float) -> tuple[Floats, Ints]:
+    outline = list(points[:-1] if points[0] == points[-1] else points)
+    area = sum(
+        a[0] * b[1] - b[0] * a[1] for a, b in zip(outline, outline[1:] + outline[:1], strict=True)
+    )
+    if area < 0:
+        outline.reverse()
+    flat = _ears(outline)
+    n = len(outline)
+    vertices = [(x, y, z) for z in (0.0, height) for x, y in outline]
+    faces = [(c, b, a) for a, b, c in flat] + [(a + n, b + n, c + n) for a, b, c in flat]
+    for i in range(n):
+        (x0, y0), (x1, y1) = outline[i], outline[(i + 1) % n]
+        start = len(vertices)
+        vertices += [(x0, y0, 0.0), (x1, y1, 0.0), (x1, y1, height), (x0, y0, height)]
+        faces += [(start, start + 1, start + 2), (start, start + 2, start + 3)]
+    return np.array(vertices, dtype=np.float32), np.array(faces, dtype=np.int32)
+
+
+def _ears(outline: list[tuple[float, float]]) -> list[tuple[int, int, int]]:
+    """Triangles of a simple counter-clockwise polygon, by cutting its ears."""
+
+    def side(a: int, b: int, c: int) -> float:
+        (ax, ay), (bx, by), (cx, cy) = outline[a], outline[b], outline[c]
+        return (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
+
+    left = list(range(len(outline)))
+    triangles = []
+    while len(left) > 3:
+        for i in range(len(left)):
+            a, b, c = left[i - 1], left[i], left[(i + 1) % len(left)]
+            inside = (
+                p not in (a, b, c) and min(side(a, b, p), side(b, c, p), side(c, a, p)) > 0
+                for p in left
+            )
+            if side(a, b, c) > 0 and not any(inside):
+                triangles.append((a, b, c))
+                left.pop(i)
+                break
+        else:
+            break  # crosses itself: what is left is drawn as a fan
+    triangles += [(left[0], left[i], left[i + 1]) for i in range(1, len(left) - 1)]
+    return triangles

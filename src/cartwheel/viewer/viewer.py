@@ -1,0 +1,105 @@
+"""The viewer of a running session, in the browser."""
+
+from __future__ import annotations
+
+import threading
+from typing import Any
+
+from cartwheel.errors import ControlError
+from cartwheel.session import Session
+from cartwheel.simulation.pacing import Pacer
+from cartwheel.simulation.snapshot import Snapshot
+from cartwheel.viewer.page import Page, check_port
+from cartwheel.viewer.teleop import KEYS
+
+RATE = 30.0
+"""Hz of wall time at which the scene follows the simulation."""
+
+
+class Viewer:
+    """Shows a session and takes requests, at `url`; one more client of its graph.
+
+    The simulation's thread only leaves its newest snapshot here, and nothing at all while no
+    browser is connected. Everything else happens on a thread of the viewer's own.
+
+    Args:
+        session: To show.
+        host: Address to listen on; only this computer by default.
+        port: 0 takes any that is free.
+
+    Raises:
+        ControlError: The port cannot be had.
+    """
+
+    def __init__(self, session: Session, *, host: str = "127.0.0.1", port: int = 8080) -> None:
+        check_port(host, port)
+        self._session = session
+        self._host, self._port = host, port
+        self._slot: Snapshot | None = None
+        self._page: Page | None = None
+        self._ready = threading.Event()
+        self._stopped = threading.Event()
+        self._failure: BaseException | None = None
+        self._thread = threading.Thread(target=self._run, name="viewer", daemon=True)
+
+    @property
+    def url(self) -> str:
+        """Where the page is. Waits for the server, which knows its port only then.
+
+        Raises:
+            ControlError: It did not come up.
+        """
+        if not self._thread.is_alive() and not self._ready.is_set():
+            raise ControlError("the viewer has not been started")
+        self._ready.wait()
+        if self._failure is not None:
+            raise ControlError(f"the viewer did not start: {self._failure}") from self._failure
+        assert self._page is not None
+        host = "127.0.0.1" if self._host in ("0.0.0.0", "") else self._host  # noqa: S104
+        return f"http://{host}:{self._page.port}"
+
+    def start(self, pacer: Pacer) -> None:
+        """Serves the page and shows what `pacer` runs."""
+        pacer.add_listener(self._listen, rate=RATE)
+        self._thread.start()
+
+    def close(self) -> None:
+        """Takes the page off the air and all subscriptions off the graph."""
+        self._stopped.set()
+        if self._page is not None:
+            self._page.wake()
+        if self._thread.is_alive():
+            self._thread.join(timeout=10.0)
+
+    def _listen(self, snapshot: Snapshot) -> None:
+        """On the simulation's thread: leaves the newest snapshot, and a note if none is left yet."""
+        page = self._page
+        if page is None or not page.clients or self._stopped.is_set():
+            return
+        first = self._slot is None
+        self._slot = snapshot
+        if first:
+            page.post(self._show)
+
+    def _run(self) -> None:
+        try:
+            from cartwheel.viewer.desk import Desk  # noqa: PLC0415 - viser must not delay the clock
+
+            page = Page(self._host, self._port, title="Cartwheel", keys=KEYS)
+            self._desk: Any = Desk(page, self._session)
+            self._page = page
+        except BaseException as error:  # noqa: BLE001 - `url` raises it
+            self._failure = error
+            return
+        finally:
+            self._ready.set()
+        try:
+            page.run(self._stopped)
+        finally:
+            self._desk.close()
+            page.close()
+
+    def _show(self) -> None:
+        snapshot, self._slot = self._slot, None
+        if snapshot is not None:
+            self._desk.update(snapshot)
