@@ -1,6 +1,23 @@
-"""ROS messages in process: classes, names, parts."""
+"""ROS messages in process: classes, names, parts, and their forms outside."""
 
 from cartwheel.messages.common import header, stamp
+from cartwheel.messages.convert import from_dict, to_dict, zero
+from cartwheel.messages.echo import to_yaml
+from cartwheel.messages.encoding import CdrCache, decode_cdr, encode_cdr
 from cartwheel.messages.store import message_class, service_classes, store, type_name
 
-__all__ = ["header", "message_class", "service_classes", "stamp", "store", "type_name"]
+__all__ = [
+    "CdrCache",
+    "decode_cdr",
+    "encode_cdr",
+    "from_dict",
+    "header",
+    "message_class",
+    "service_classes",
+    "stamp",
+    "store",
+    "to_dict",
+    "to_yaml",
+    "type_name",
+    "zero",
+]

@@ -1,0 +1,231 @@
+"""Messages from and to plain mappings, as YAML and JSON hold them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from cartwheel.errors import GraphError, suggestion
+from cartwheel.messages.fields import FILLER, Field, fields
+from cartwheel.messages.store import message_class
+
+_ROS1_NAMES: dict[str, dict[str, str | None]] = {
+    "builtin_interfaces/msg/Time": {"secs": "sec", "nsecs": "nanosec"},
+    "builtin_interfaces/msg/Duration": {"secs": "sec", "nsecs": "nanosec"},
+    "std_msgs/msg/Header": {"seq": None},
+    "sensor_msgs/msg/CameraInfo": {"D": "d", "K": "k", "R": "r", "P": "p"},
+}
+"""ROS 1's spelling of fields, for what people paste from there; None is left out."""
+
+
+def to_dict(message: Any) -> dict[str, Any]:
+    """A message as mappings, lists, numbers and texts.
+
+    Args:
+        message: Of a message class of `message_class`.
+    """
+    return {field.name: _plain(field, getattr(message, field.name)) for field in _of(message)}
+
+
+def from_dict(type_name: str, mapping: Mapping[str, Any] | Sequence[Any]) -> Any:
+    """A message from what YAML or JSON gives; fields that are not given are zero or empty.
+
+    ROS 1's names (``secs``, ``seq``, ``K``) are understood, and a list stands for the
+    fields of a message in their order, as in ``rostopic pub``.
+
+    Args:
+        type_name: ``geometry_msgs/msg/Twist`` or ``geometry_msgs/Twist``.
+        mapping: Values by field; numpy arrays and messages may be among them.
+
+    Raises:
+        UnknownNameError: There is no such type.
+        GraphError: A field does not exist, or a value does not fit; names the field.
+    """
+    return _message(message_class(type_name), mapping, "")
+
+
+def zero(type_name: str) -> Any:
+    """A message of zeros and empty texts and arrays.
+
+    Raises:
+        UnknownNameError: There is no such type.
+    """
+    return _message(message_class(type_name), {}, "")
+
+
+def _of(message: Any) -> tuple[Field, ...]:
+    name = getattr(message, "__msgtype__", None)
+    if name is None:
+        raise GraphError(f"{type(message).__name__} is no message")
+    return fields(name)
+
+
+def _plain(field: Field, value: Any) -> Any:
+    if not field.array:
+        return _plain_one(field, value)
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    return [_plain_one(field, item) for item in value]
+
+
+def _plain_one(field: Field, value: Any) -> Any:
+    if field.kind == "message":
+        return to_dict(value)
+    return value.item() if isinstance(value, np.generic) else value
+
+
+def _message(cls: Any, given: Any, path: str) -> Any:
+    if isinstance(given, cls):
+        return given
+    wanted = fields(cls.__msgtype__)
+    values = dict.fromkeys(field.name for field in wanted)
+    for name, value in _by_name(cls.__msgtype__, given, path).items():
+        field = next(field for field in wanted if field.name == name)
+        values[name] = _value(field, value, f"{path}{name}")
+    for field in wanted:
+        if values[field.name] is None:
+            values[field.name] = _empty(field)
+    if FILLER in cls.__dataclass_fields__:
+        return cls(**{FILLER: 0})
+    return cls(**values)
+
+
+def _by_name(type_name: str, given: Any, path: str) -> dict[str, Any]:
+    """The given values by the names that our classes have."""
+    names = [field.name for field in fields(type_name)]
+    if isinstance(given, Mapping):
+        aliases = _ROS1_NAMES.get(type_name, {})
+        result = {}
+        for key, value in given.items():
+            name = aliases.get(key, key) if key not in names else key
+            if name is None:
+                continue
+            if name not in names:
+                raise GraphError(
+                    f'{type_name} has no field "{path}{key}"', hint=suggestion(str(key), names)
+                )
+            result[name] = value
+        return result
+    if isinstance(given, Sequence) and not isinstance(given, str | bytes):
+        if len(given) != len(names):
+            raise GraphError(
+                f"{_where(path)} {len(given)} values do not fill the {len(names)} fields "
+                f"of {type_name}",
+                hint=f"They are: {', '.join(names) or 'none'}.",
+            )
+        return dict(zip(names, given, strict=True))
+    if given is None:
+        return {}
+    raise GraphError(
+        f"{_where(path)} {_shown(given)} is no {type_name}",
+        hint=f"Write it as {{{', '.join(f'{name}: …' for name in names)}}}.",
+    )
+
+
+def _value(field: Field, value: Any, path: str) -> Any:
+    if value is None:
+        return None
+    if not field.array:
+        return _one(field, value, path)
+    if isinstance(value, bytes | bytearray | memoryview) and field.type == "uint8":
+        value = np.frombuffer(value, dtype=np.uint8)
+    if isinstance(value, str | Mapping) or not isinstance(value, Sequence | np.ndarray):
+        raise GraphError(
+            f"{path}: {_shown(value)} is no list, which {field.described} needs",
+            hint="Write it as [a, b, …].",
+        )
+    if field.length is not None and len(value) != field.length:
+        raise GraphError(
+            f"{path}: {len(value)} values do not fill {field.described}: it needs {field.length}"
+        )
+    if field.kind in ("message", "string"):
+        return [_one(field, item, f"{path}[{index}]") for index, item in enumerate(value)]
+    return _numbers(field, value, path)
+
+
+def _numbers(field: Field, value: Any, path: str) -> Any:
+    dtype = np.dtype(field.type)
+    try:
+        array = np.asarray(value)
+    except ValueError:
+        # Lists of different lengths in one another.
+        array = np.array([], dtype=object)
+    alike = array.dtype == dtype or (field.kind == "float" and array.dtype.kind in "iuf")
+    if array.ndim == 1 and alike:
+        return array.astype(dtype, copy=False)
+    # Whatever needs a look at each value has its index in the error.
+    items = [_one(field, item, f"{path}[{index}]") for index, item in enumerate(value)]
+    return np.array(items, dtype=dtype)
+
+
+def _one(field: Field, value: Any, path: str) -> Any:
+    if field.kind == "message":
+        return _message(message_class(field.type), value, f"{path}.")
+    if isinstance(value, np.generic):
+        value = value.item()
+    if field.kind == "string":
+        if isinstance(value, str):
+            return value
+        raise GraphError(
+            f"{path}: {_shown(value)} is no text",
+            hint=f'Put it into quotes: "{value}".' if isinstance(value, int | float) else None,
+        )
+    if field.kind == "bool":
+        if isinstance(value, bool) or (isinstance(value, int) and value in (0, 1)):
+            return bool(value)
+        raise GraphError(f"{path}: {_shown(value)} is neither true nor false")
+    if field.kind == "float":
+        return _float(value, path)
+    return _int(field, value, path)
+
+
+def _float(value: Any, path: str) -> float:
+    if isinstance(value, int | float) and not isinstance(value, bool):
+        try:
+            return float(value)
+        except OverflowError:
+            raise GraphError(f"{path}: {_shown(value)} is too large") from None
+    if isinstance(value, str):
+        # YAML 1.1 takes 1e-3 and nan for texts.
+        try:
+            return float(value.strip().replace(".inf", "inf").replace(".nan", "nan"))
+        except ValueError:
+            pass
+    raise GraphError(f"{path}: {_shown(value)} is no number")
+
+
+def _int(field: Field, value: Any, path: str) -> int:
+    if isinstance(value, float) and math.isfinite(value) and value == int(value):
+        value = int(value)
+    if not isinstance(value, int):
+        raise GraphError(f"{path}: {_shown(value)} is no whole number, which {field.type} needs")
+    limits = np.iinfo(field.type)
+    if not limits.min <= int(value) <= limits.max:
+        raise GraphError(
+            f"{path}: {value} does not fit {field.type}, which holds {limits.min} to {limits.max}"
+        )
+    return int(value)
+
+
+def _empty(field: Field) -> Any:
+    if field.array:
+        if field.kind == "message":
+            return [zero(field.type) for _ in range(field.length or 0)]
+        if field.kind == "string":
+            return [""] * (field.length or 0)
+        return np.zeros(field.length or 0, dtype=field.type)
+    if field.kind == "message":
+        return zero(field.type)
+    return {"string": "", "bool": False, "int": 0, "float": 0.0}[field.kind]
+
+
+def _where(path: str) -> str:
+    return f"{path.rstrip('.')}:" if path else "the message:"
+
+
+def _shown(value: Any) -> str:
+    text = f'"{value}"' if isinstance(value, str) else str(value)
+    return text if len(text) <= 60 else text[:57] + "…"

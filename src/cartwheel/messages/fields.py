@@ -1,0 +1,70 @@
+"""What a message type consists of, read once for each type."""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from cartwheel.messages.store import message_class, store
+
+FILLER = "structure_needs_at_least_one_member"
+"""The byte that ROS 2 puts into a message without fields; nobody writes or reads it."""
+
+_DTYPES = {"octet": "uint8", "byte": "uint8", "char": "uint8", "float128": "longdouble"}
+
+Kind = Literal["bool", "int", "float", "string", "message"]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Field:
+    """One field of a message."""
+
+    name: str
+    kind: Kind
+    type: str
+    """numpy's name of a number's type, ``string``, or the message's type."""
+    array: bool = False
+    length: int | None = None
+    """Of an array of fixed length."""
+
+    @property
+    def described(self) -> str:
+        """The type as a definition writes it."""
+        if not self.array:
+            return self.type
+        return f"{self.type}[{'' if self.length is None else self.length}]"
+
+
+@functools.cache
+def fields(name: str) -> tuple[Field, ...]:
+    """The fields of a message type, in order, the filler of an empty one left out.
+
+    Raises:
+        UnknownNameError: There is no such type.
+    """
+    full = message_class(name).__msgtype__
+    return tuple(
+        _field(field, description)
+        for field, description in store().fielddefs[full][1]
+        if field != FILLER
+    )
+
+
+def _field(name: str, description: Any) -> Field:
+    from rosbags.interfaces import Nodetype  # noqa: PLC0415 - see store
+
+    node, value = description
+    if node in (Nodetype.ARRAY, Nodetype.SEQUENCE):
+        inner = _field(name, value[0])
+        length = value[1] if node == Nodetype.ARRAY else None
+        return Field(name=name, kind=inner.kind, type=inner.type, array=True, length=length)
+    if node == Nodetype.NAME:
+        return Field(name=name, kind="message", type=value)
+    base = value[0]
+    if base in ("string", "wstring"):
+        return Field(name=name, kind="string", type="string")
+    if base == "bool":
+        return Field(name=name, kind="bool", type="bool")
+    kind: Kind = "float" if base.startswith("float") else "int"
+    return Field(name=name, kind=kind, type=_DTYPES.get(base, base))

@@ -1,0 +1,255 @@
+"""Messages from and to mappings, CDR and text."""
+
+import contextlib
+from typing import Any
+
+import numpy as np
+import pytest
+import yaml
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as npst
+
+from cartwheel.errors import GraphError, UnknownNameError
+from cartwheel.messages import (
+    CdrCache,
+    decode_cdr,
+    encode_cdr,
+    from_dict,
+    message_class,
+    store,
+    to_dict,
+    to_yaml,
+    zero,
+)
+from cartwheel.messages.fields import Field, fields
+
+TYPES = [
+    "builtin_interfaces/msg/Duration",
+    "gazebo_msgs/msg/ContactsState",
+    "gazebo_msgs/msg/ODEJointProperties",
+    "gazebo_msgs/srv/GetJointProperties_Response",
+    "geometry_msgs/msg/Twist",
+    "nav_msgs/msg/Odometry",
+    "sensor_msgs/msg/CameraInfo",
+    "sensor_msgs/msg/Image",
+    "sensor_msgs/msg/Imu",
+    "sensor_msgs/msg/JointState",
+    "sensor_msgs/msg/PointCloud2",
+    "shape_msgs/msg/SolidPrimitive",
+    "std_srvs/srv/Empty_Request",
+    "tf2_msgs/msg/TFMessage",
+    "trajectory_msgs/msg/JointTrajectory",
+]
+SETTINGS = settings(
+    derandomize=True,
+    deadline=None,
+    max_examples=60,
+    suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
+)
+
+
+# Texts that CDR can carry: it ends them with a zero and encodes them as UTF-8.
+TEXTS = st.text(st.characters(exclude_categories=("Cs",), exclude_characters="\0"), max_size=12)
+
+
+def scalars(field: Field) -> st.SearchStrategy[Any]:
+    if field.kind == "message":
+        return mappings(field.type)
+    if field.kind == "string":
+        return TEXTS
+    if field.kind == "bool":
+        return st.booleans()
+    if field.kind == "float":
+        return st.floats(width=32 if field.type == "float32" else 64, allow_nan=False)
+    limits = np.iinfo(field.type)
+    return st.integers(int(limits.min), int(limits.max))
+
+
+def values(field: Field) -> st.SearchStrategy[Any]:
+    if not field.array:
+        return scalars(field)
+    if field.kind in ("message", "string"):
+        length = field.length
+        return st.lists(scalars(field), min_size=length or 0, max_size=length or 2)
+    shape = st.just(field.length) if field.length else st.integers(0, 5)
+    elements = {"allow_nan": False} if field.kind == "float" else None
+    return npst.arrays(np.dtype(field.type), shape, elements=elements).map(lambda a: a.tolist())
+
+
+def mappings(name: str) -> st.SearchStrategy[dict[str, Any]]:
+    return st.fixed_dictionaries({field.name: values(field) for field in fields(name)})
+
+
+@SETTINGS
+@given(data=st.data(), name=st.sampled_from(TYPES))
+def test_every_way_out_leads_back(data: Any, name: str) -> None:
+    mapping = data.draw(mappings(name))
+    message = from_dict(name, mapping)
+    assert to_dict(message) == mapping
+    assert to_dict(decode_cdr(encode_cdr(message), name)) == mapping
+    parsed = yaml.safe_load(to_yaml(message, full=True)) or {}
+    assert to_dict(from_dict(name, parsed)) == mapping
+
+
+@pytest.mark.parametrize("name", sorted(store().types))
+def test_every_type_has_a_zero_that_can_be_sent(name: str) -> None:
+    message = zero(name)
+    assert to_dict(decode_cdr(encode_cdr(message), name)) == to_dict(message)
+    yaml.safe_load(to_yaml(message))
+
+
+def test_missing_fields_are_zero() -> None:
+    twist = from_dict("geometry_msgs/Twist", {"linear": {"x": 0.5}})
+    assert to_dict(twist) == {
+        "linear": {"x": 0.5, "y": 0.0, "z": 0.0},
+        "angular": {"x": 0.0, "y": 0.0, "z": 0.0},
+    }
+    odometry = from_dict("nav_msgs/Odometry", {})
+    assert odometry.pose.covariance.shape == (36,)
+
+
+def test_lists_stand_for_fields_in_order() -> None:
+    twist = from_dict("geometry_msgs/Twist", [[1, 0, 0], [0, 0, 0.5]])
+    assert (twist.linear.x, twist.angular.z) == (1.0, 0.5)
+
+
+def test_spelling_of_ros1_is_understood() -> None:
+    mapping = {"header": {"seq": 3, "stamp": {"secs": 1, "nsecs": 2}}, "K": list(range(9))}
+    info = from_dict("sensor_msgs/CameraInfo", mapping)
+    assert (info.header.stamp.sec, info.header.stamp.nanosec) == (1, 2)
+    assert info.k.tolist() == list(range(9))
+
+
+def test_numpy_goes_in_as_it_is() -> None:
+    pixels = np.arange(6, dtype=np.uint8)
+    image = from_dict("sensor_msgs/Image", {"data": pixels, "height": np.uint32(1)})
+    assert image.data is pixels
+    assert type(image.height) is int
+    assert from_dict("sensor_msgs/Image", {"data": b"ab"}).data.tolist() == [97, 98]
+
+
+def test_numbers_that_yaml_takes_for_texts_are_numbers() -> None:
+    twist = from_dict("geometry_msgs/Twist", yaml.safe_load("{linear: {x: 1e-3, y: nan, z: .inf}}"))
+    assert twist.linear.x == 0.001
+    assert np.isnan(twist.linear.y)
+    assert twist.linear.z == float("inf")
+
+
+@pytest.mark.parametrize(
+    ("name", "mapping", "text"),
+    [
+        ("Twist", {"linar": {}}, 'has no field "linar"\n  Did you mean "linear"?'),
+        ("Twist", {"linear": {"X": 1}}, 'geometry_msgs/msg/Vector3 has no field "linear.X"'),
+        ("Twist", {"linear": {"x": "fast"}}, 'linear.x: "fast" is no number'),
+        ("Twist", {"linear": {"x": True}}, "linear.x: True is no number"),
+        ("Twist", {"linear": {"x": [1]}}, "linear.x: [1] is no number"),
+        ("Twist", {"linear": {"x": 10**400}}, "is too large"),
+        ("Twist", {"linear": 3}, "linear: 3 is no geometry_msgs/msg/Vector3"),
+        ("Twist", [1, 2, 3], "3 values do not fill the 2 fields"),
+        ("Twist", "go", 'the message: "go" is no geometry_msgs/msg/Twist'),
+        ("PoseWithCovariance", {"covariance": [1.0] * 35}, "35 values do not fill float64[36]"),
+        ("PoseWithCovariance", {"covariance": 1.0}, "covariance: 1.0 is no list"),
+        ("PoseWithCovariance", {"covariance": [0.0] * 35 + ["a"]}, 'covariance[35]: "a" is no'),
+        ("PoseWithCovariance", {"covariance": [[1.0]] * 36}, "covariance[0]: [1.0] is no number"),
+    ],
+)
+def test_what_does_not_fit_is_named(name: str, mapping: Any, text: str) -> None:
+    with pytest.raises(GraphError) as caught:
+        from_dict(f"geometry_msgs/{name}", mapping)
+    assert text in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("name", "mapping", "text"),
+    [
+        ("sensor_msgs/Image", {"height": -1}, "height: -1 does not fit uint32"),
+        ("sensor_msgs/Image", {"height": 1.5}, "height: 1.5 is no whole number"),
+        ("sensor_msgs/Image", {"data": [1, 256]}, "data[1]: 256 does not fit uint8"),
+        ("sensor_msgs/Image", {"data": "ab"}, 'data: "ab" is no list'),
+        (
+            "sensor_msgs/Image",
+            {"encoding": 8},
+            'encoding: 8 is no text\n  Put it into quotes: "8".',
+        ),
+        ("sensor_msgs/JointState", {"name": ["a", 1]}, "name[1]: 1 is no text"),
+        ("tf2_msgs/TFMessage", {"transforms": [{"child": ""}]}, '"transforms[0].child"'),
+        ("std_msgs/Bool", {"data": "yes"}, 'data: "yes" is neither true nor false'),
+    ],
+)
+def test_what_does_not_fit_is_named_in_other_types(name: str, mapping: Any, text: str) -> None:
+    with pytest.raises(GraphError) as caught:
+        from_dict(name, mapping)
+    assert text in str(caught.value)
+
+
+def test_unknown_types_and_bytes_are_refused() -> None:
+    with pytest.raises(UnknownNameError):
+        from_dict("geometry_msgs/Twits", {})
+    with pytest.raises(GraphError, match="5 bytes are no geometry_msgs/msg/Twist"):
+        decode_cdr(b"\0\1\0\0\0", "geometry_msgs/Twist")
+    with pytest.raises(GraphError, match="int is no message"):
+        to_dict(3)
+
+
+@SETTINGS
+@given(data=st.binary(max_size=200), name=st.sampled_from(TYPES))
+def test_no_bytes_do_worse_than_a_refusal(data: bytes, name: str) -> None:
+    with contextlib.suppress(GraphError):
+        decode_cdr(data, name)
+
+
+def test_text_is_that_of_rostopic() -> None:
+    mapping = {
+        "header": {"stamp": {"sec": 79, "nanosec": 123000000}},
+        "name": ["wheel_right_joint", "left wheel"],
+        "position": [10.150595427401989, 0.5],
+    }
+    assert to_yaml(from_dict("sensor_msgs/JointState", mapping)) == (
+        "header: \n"
+        "  stamp: \n"
+        "    sec: 79\n"
+        "    nanosec: 123000000\n"
+        "  frame_id: ''\n"
+        "name: \n"
+        "  - wheel_right_joint\n"
+        '  - "left wheel"\n'
+        "position: [10.150595427401989, 0.5]\n"
+        "velocity: []\n"
+        "effort: []\n"
+    )
+    contacts = {"header": {"frame_id": "base"}, "states": [{"info": "a", "depths": [1e-10]}]}
+    text = to_yaml(from_dict("gazebo_msgs/ContactsState", contacts))
+    assert '  frame_id: "base"\nstates: \n  - \n    info: "a"\n' in text
+    assert "    depths: [1e-10]\n" in text
+    assert to_yaml(zero("sensor_msgs/RegionOfInterest")).endswith("do_rectify: False\n")
+
+
+def test_long_arrays_are_cut_unless_asked_for() -> None:
+    image = from_dict("sensor_msgs/Image", {"data": [178] * 230400})
+    shown = to_yaml(image).splitlines()[-1]
+    assert shown == "data: [" + "178, " * 64 + "...]"
+    assert len(to_yaml(image, full=True)) > 5 * 230400
+    assert to_yaml(image, arrays=False).endswith('data: "<array of uint8, 230400 long>"\n')
+
+
+def test_a_field_alone_is_printed_alone() -> None:
+    odometry = from_dict("nav_msgs/Odometry", {"child_frame_id": "base_link"})
+    assert to_yaml(odometry.child_frame_id) == '"base_link"\n'
+    assert to_yaml(odometry.pose.pose.position.x) == "0.0\n"
+    assert to_yaml(odometry.pose.covariance) == f"[{', '.join(['0.0'] * 36)}]\n"
+    transforms = from_dict("tf2_msgs/TFMessage", {"transforms": [{}, {}]}).transforms
+    assert len(yaml.safe_load(to_yaml(transforms))) == 2
+
+
+def test_one_message_is_serialised_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    cache = CdrCache()
+    clock = message_class("rosgraph_msgs/Clock")
+    first = zero("rosgraph_msgs/Clock")
+    data = cache.encode("/clock", first)
+    assert cache.encode("/clock", first) is data
+    second = clock(clock=from_dict("builtin_interfaces/Time", [1, 2]))
+    assert decode_cdr(cache.encode("/clock", second), "rosgraph_msgs/Clock") == second
+    assert cache.encode("/clock", first) == data
+    cache.forget("/clock")
+    assert cache.encode("/clock", first) is not data
