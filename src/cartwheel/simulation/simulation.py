@@ -131,7 +131,7 @@ class Simulation:
                 count = min(count, self.steps_allowed)
                 self.steps_allowed -= count
             # The forward pass of this state is done: only its integration is missing.
-            mujoco.mj_implicit(self.model, self.data)
+            mujoco.mj_Euler(self.model, self.data)
             if count > 1:
                 mujoco.mj_step(self.model, self.data, count - 1)
             self._step += count

@@ -19,7 +19,16 @@ from cartwheel.description.model import (
     Visual,
 )
 from cartwheel.errors import WorldError
-from cartwheel.geometry import IDENTITY, Pose, matrix_from_quat, quat_from_matrix, rotate, to_wxyz
+from cartwheel.geometry import (
+    IDENTITY,
+    Array,
+    Pose,
+    matrix_from_quat,
+    quat_between,
+    quat_from_matrix,
+    rotate,
+    to_wxyz,
+)
 from cartwheel.world import contact
 from cartwheel.world.entry import CameraMount, ModelEntry, Motor, scoped
 from cartwheel.world.shapes import Assets, cone, hull, place, pose_arguments
@@ -29,7 +38,7 @@ COLLISION_GROUP = 4
 _GREY = (0.7, 0.7, 0.7, 1.0)
 _CAMERA_AXES = np.array([[0.0, 0, -1], [-1, 0, 0], [0, 1, 0]])
 """Columns: MuJoCo's camera axes (right, up, back) in a sensor frame that looks along x."""
-_VELOCITY_ERROR = 0.01
+_VELOCITY_ERROR = 0.05
 """rad/s or m/s at which a velocity servo gives all of its effort."""
 
 
@@ -72,7 +81,7 @@ class BodyBuilder:
             bodies[link.name] = body
             if joint is not None:
                 self._add_joint(entry, body, joint)
-            self._fill(entry, body, link)
+            self._fill(entry, body, link, joint)
             for next_joint in children.get(link.name, ()):
                 child = links[next_joint.child]
                 grow(child, body, link.pose.inverse() @ child.pose, next_joint)
@@ -101,7 +110,7 @@ class BodyBuilder:
         for camera in entry.cameras:
             self._add_camera(entry, bodies[camera.link], camera)
 
-    def _fill(self, entry: ModelEntry, body: Any, link: Link) -> None:
+    def _fill(self, entry: ModelEntry, body: Any, link: Link, joint: Joint | None) -> None:
         if link.inertial is not None:
             _set_inertial(body, link.inertial)
         if not link.gravity:
@@ -110,7 +119,7 @@ class BodyBuilder:
             self._add_visual(body, visual)
         for collision in link.collisions:
             name = scoped(entry.name, link.name, collision.name)
-            shape = collision.shape
+            shape = contact.tyre(collision, joint)
             if isinstance(shape, Plane) and not entry.description.static:
                 raise WorldError(
                     f'collision "{collision.name}": a plane is endless and must stand in a static model',
@@ -230,16 +239,17 @@ class BodyBuilder:
                 body.add_joint(name=name, type=kind.mjJNT_HINGE, axis=axis, pos=pos)
             case "floating":
                 for index in range(3):
-                    column = np.eye(3)[index]
-                    body.add_joint(
-                        name=f"{name}::{'xyz'[index]}", type=kind.mjJNT_SLIDE, axis=column.tolist()
-                    )
+                    self._slide(body, f"{name}::{'xyz'[index]}", np.eye(3)[index])
                 body.add_joint(name=name, type=kind.mjJNT_BALL)
             case _:
                 raise WorldError(
                     f'joint "{joint.name}": a {joint.type} joint is not supported yet',
                     origin=joint.origin,
                 )
+
+    @staticmethod
+    def _slide(body: Any, name: str, axis: Array) -> None:
+        body.add_joint(name=name, type=mujoco.mjtJoint.mjJNT_SLIDE, axis=axis.tolist())
 
     def _close_loop(self, entry: ModelEntry, joint: Joint) -> None:
         equality = mujoco.mjtEq
