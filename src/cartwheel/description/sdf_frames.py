@@ -120,6 +120,11 @@ class Frames:
                 return name
             name = frame.attached_to
 
+    def kind_of(self, name: str) -> str | None:
+        """What a name of this scope stands for: link, joint, frame or model."""
+        frame = self._frames.get(name)
+        return frame.kind if frame is not None else None
+
     def names(self) -> list[str]:
         """All names that may be asked for."""
         nested = [f"{k}::{n}" for k, scope in self._scopes.items() for n in scope.names()]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 from cartwheel.description.model import (
     Collision,
@@ -21,6 +22,7 @@ from cartwheel.description.sdf_context import (
     require_name,
 )
 from cartwheel.description.sdf_frames import Frames
+from cartwheel.description.sdf_inertia import WATER, inertial_of
 from cartwheel.description.sdf_light import read_light
 from cartwheel.description.sdf_material import read_material
 from cartwheel.description.sdf_sensors import read_sensor
@@ -69,7 +71,7 @@ def read_link(node: Node, ctx: Context, frames: Frames) -> Link:
     return Link(
         name=name,
         pose=pose,
-        inertial=_inertial(node, ctx, place),
+        inertial=_inertial(node, ctx, place, [c for c in collisions if c is not None]),
         visuals=tuple(v for v in visuals if v is not None),
         collisions=tuple(c for c in collisions if c is not None),
         sensors=tuple(sensors),
@@ -86,19 +88,13 @@ def read_link(node: Node, ctx: Context, frames: Frames) -> Link:
 Place = Callable[[Node], Pose]
 
 
-def _inertial(link: Node, ctx: Context, place: Place) -> Inertial:
+def _inertial(link: Node, ctx: Context, place: Place, collisions: list[Collision]) -> Inertial:
     """The link's mass; SDF's default of 1 kg and 1 kg m² where it states none."""
     node = link.child("inertial")
     if node is None:
         return Inertial(mass=1.0, ixx=1.0, iyy=1.0, izz=1.0, origin=link.origin)
     if node.boolean_of("auto", False):
-        ctx.tell(
-            "warning",
-            "<inertial auto> is not computed from the collisions: mass and inertia are as stated, "
-            "1 where they are not",
-            node.origin,
-        )
-        node.child("density")
+        return _auto_inertial(link, node, ctx, collisions)
     for ignored in ("fluid_added_mass", "auto_inertia_params"):
         part = node.child(ignored)
         if part is not None:
@@ -126,6 +122,40 @@ def _inertial(link: Node, ctx: Context, place: Place) -> Inertial:
             f"but is {inertial.mass:g}"
         )
     return inertial
+
+
+def _auto_inertial(link: Node, node: Node, ctx: Context, collisions: list[Collision]) -> Inertial:
+    """SDF 1.11: the mass follows from the density, unless it is stated too."""
+    default = node.number_at("density", WATER)
+    stated = {
+        each.attributes.get("name"): each.number_at("density", default)
+        for each in link.all("collision")
+    }
+    node.mark()
+    densities = [stated.get(each.name, default) for each in collisions]
+    found = inertial_of(collisions, densities, node.origin)
+    if found is None:
+        ctx.tell(
+            "warning",
+            f'link "{link.attributes.get("name")}" has no solid collision to take its inertia '
+            "from: 1 kg and 1 kg m² are used",
+            node.origin,
+        )
+        return Inertial(mass=1.0, ixx=1.0, iyy=1.0, izz=1.0, origin=node.origin)
+    mass = node.number_at("mass", found.mass)
+    if mass <= 0:
+        raise node.fail(f"the mass must be above 0, but is {mass:g}")
+    factor = mass / found.mass
+    return replace(
+        found,
+        mass=mass,
+        ixx=found.ixx * factor,
+        iyy=found.iyy * factor,
+        izz=found.izz * factor,
+        ixy=found.ixy * factor,
+        ixz=found.ixz * factor,
+        iyz=found.iyz * factor,
+    )
 
 
 def _visual(node: Node, ctx: Context, place: Place) -> Visual | None:

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from cartwheel.description.model import Material, Rgba
 from cartwheel.description.sdf_context import Context, read_rgba
+from cartwheel.description.sdf_script import find_script
 from cartwheel.description.xml import Node
 from cartwheel.errors import DescriptionError
 
@@ -19,7 +20,7 @@ def read_material(node: Node | None, ctx: Context) -> Material:
     scripted = Material()
     if script is not None:
         name = script.text_at("name").strip()
-        uris = [uri.text for uri in script.all("uri")]
+        uris = script.all("uri")
         if name:
             scripted = _scripted(name, uris, script, ctx)
     diffuse = _colour(node, "diffuse") or scripted.diffuse or _colour(node, "ambient")
@@ -62,6 +63,31 @@ def _albedo(node: Node, ctx: Context) -> Path | None:
         return None
 
 
-def _scripted(name: str, uris: list[str], script: Node, ctx: Context) -> Material:
-    del uris, script, ctx
-    return Material(name=name)
+def _scripted(name: str, uris: list[Node], script: Node, ctx: Context) -> Material:
+    """What a named material looks like: Gazebo's own by heart, others by their script."""
+    if name.startswith("Gazebo/"):
+        return Material(name=name)
+    places: list[Path] = []
+    lost: list[str] = []
+    for uri in uris:
+        try:
+            places.append(ctx.packages.resolve(uri.text, uri.origin, what="script", folder=True))
+        except DescriptionError as error:
+            lost.append(error.message)
+    found = find_script(name, places)
+    if found is None:
+        reason = f": {lost[0]}" if lost else " in its script"
+        ctx.tell("warning", f'the material "{name}" was not found{reason}', script.origin)
+        return Material(name=name)
+    if found.missing is not None:
+        ctx.tell(
+            "warning",
+            f'the texture "{found.missing}" of material "{name}" was not found',
+            script.origin,
+        )
+    return Material(
+        name=name,
+        diffuse=found.diffuse,
+        emissive=found.emissive or Material().emissive,
+        texture=found.texture,
+    )

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 
 from cartwheel.description.model import Joint, Link, PluginTag, RobotDescription
 from cartwheel.description.sdf_context import Context, read_pose, reference_of, require_name
-from cartwheel.description.sdf_frames import WORLD, Frames
+from cartwheel.description.sdf_frames import MODEL, WORLD, Frames
 from cartwheel.description.sdf_include import Included, open_include
 from cartwheel.description.sdf_joint import child_frame_of, read_joint
 from cartwheel.description.sdf_link import read_link
@@ -144,7 +144,7 @@ def _add_joint(frames: Frames, node: Node, ctx: Context) -> str:
     name = require_name(node)
     pose = node.child("pose")
     frame = name
-    if name in frames.names():
+    if frames.kind_of(name) not in (None, "joint"):
         # Until 1.6 a joint could be called as its link, which many a file still does.
         frame = f"__joint__{name}"
         if ctx.version >= (1, 7):
@@ -179,7 +179,7 @@ def _add_nested(frames: Frames, inner: Model) -> None:
         "frame",
         proxy,
         inner.pose,
-        relative_to=inner.relative_to,
+        relative_to=inner.relative_to or MODEL,
         attached_to=inner_link,
         origin=inner.origin,
     )

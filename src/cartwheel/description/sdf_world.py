@@ -116,10 +116,11 @@ def _light(node: Node, included: Included | None, frames: Frames) -> Light:
 
 def _default_physics(node: Node) -> Node | None:
     profiles = node.all("physics")
-    for profile in profiles:
-        if profile.boolean_of("default", False):
-            return profile
-    return profiles[0] if profiles else None
+    chosen = next((each for each in profiles if each.boolean_of("default", False)), None)
+    for each in profiles:
+        if each is not (chosen or profiles[0]):
+            each.mark()
+    return chosen or (profiles[0] if profiles else None)
 
 
 def _gravity(node: Node, physics: Node | None, default: Vec3) -> Vec3:

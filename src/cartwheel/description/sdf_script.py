@@ -1,0 +1,95 @@
+"""OGRE material scripts, in which Gazebo models keep their own colours and textures."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from cartwheel.description.model import Rgba
+
+MAX_BYTES = 4 * 1024 * 1024
+
+
+@dataclass(frozen=True, slots=True)
+class Script:
+    """What of a script's material is rendered."""
+
+    diffuse: Rgba | None = None
+    emissive: Rgba | None = None
+    texture: Path | None = None
+    missing: str | None = None
+    """The texture that is named but not there."""
+
+
+def find_script(name: str, places: list[Path]) -> Script | None:
+    """The material of that name in any script of the folders and files; None where none has it."""
+    folders = [place for place in places if place.is_dir()]
+    files = [place for place in places if place.is_file()]
+    for folder in folders:
+        files += sorted(folder.glob("*.material"))
+    for file in files:
+        if file.stat().st_size > MAX_BYTES:
+            continue
+        body = _body(file.read_text(errors="replace"), name)
+        if body is not None:
+            nearby = [file.parent, file.parent.parent / "textures", *folders]
+            return _read(list(body), nearby)
+    return None
+
+
+def _body(text: str, name: str) -> list[list[str]] | None:
+    """The statements of ``material <name> { … }``."""
+    lines = iter(text.replace("{", "\n{\n").replace("}", "\n}\n").splitlines())
+    for line in lines:
+        words = _words(line)
+        if len(words) >= 2 and words[0] == "material" and words[1].rstrip(":") == name:
+            return list(_block(lines))
+    return None
+
+
+def _block(lines: Iterator[str]) -> Iterator[list[str]]:
+    depth = 0
+    for line in lines:
+        words = _words(line)
+        if words == ["{"]:
+            depth += 1
+        elif words == ["}"]:
+            depth -= 1
+            if depth <= 0:
+                return
+        elif words:
+            yield words
+
+
+def _words(line: str) -> list[str]:
+    return line.partition("//")[0].replace('"', " ").split()
+
+
+def _read(statements: list[list[str]], nearby: list[Path]) -> Script:
+    """The first pass counts: further ones add effects that are not rendered."""
+    diffuse = emissive = ambient = None
+    texture: Path | None = None
+    missing: str | None = None
+    for key, *values in statements:
+        if key == "diffuse" and diffuse is None:
+            diffuse = _colour(values)
+        elif key == "ambient" and ambient is None:
+            ambient = _colour(values)
+        elif key == "emissive" and emissive is None:
+            emissive = _colour(values)
+        elif key == "texture" and values and texture is None and missing is None:
+            found = [folder / values[0] for folder in nearby if (folder / values[0]).is_file()]
+            texture = found[0] if found else None
+            missing = None if found else values[0]
+    return Script(diffuse or ambient, emissive, texture, missing)
+
+
+def _colour(values: list[str]) -> Rgba | None:
+    try:
+        numbers = [max(0.0, min(1.0, float(value))) for value in values[:4]]
+    except ValueError:
+        return None  # "vertexcolour", which follows the mesh
+    if len(numbers) < 3:
+        return None
+    return (numbers[0], numbers[1], numbers[2], numbers[3] if len(numbers) > 3 else 1.0)

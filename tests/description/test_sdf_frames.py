@@ -1,0 +1,214 @@
+"""Poses, frames and axes of SDF, against numbers worked out by hand."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from cartwheel.description.packages import Packages
+from cartwheel.description.sdf import read_sdf
+from cartwheel.description.xml import parse
+from cartwheel.errors import DescriptionError
+
+QUARTER = math.pi / 2
+
+
+def robot(inside: str, version: str = "1.7", attributes: str = ""):
+    text = f'<sdf version="{version}">\n<model name="m" {attributes}>\n{inside}\n</model></sdf>'
+    return read_sdf(parse(text, "m.sdf"), Packages(environment={}))
+
+
+def close(pose, xyz, rpy=(0, 0, 0)):
+    assert pose.position == pytest.approx(xyz, abs=1e-9)
+    assert pose.rpy == pytest.approx(rpy, abs=1e-9)
+
+
+def test_link_relative_to_link():
+    found = robot(
+        f"""<link name="a"><pose>1 2 0 0 0 {QUARTER}</pose></link>
+        <link name="b"><pose relative_to="a">1 0 0.5 0 0 0</pose></link>"""
+    )
+    close(found.link("a").pose, (1, 2, 0), (0, 0, QUARTER))
+    close(found.link("b").pose, (1, 3, 0.5), (0, 0, QUARTER))
+
+
+def test_the_older_frame_attribute_means_the_same_and_may_be_empty():
+    found = robot(
+        """<link name="a"><pose frame="">1 0 0 0 0 0</pose></link>
+        <link name="b"><pose frame="a">1 0 0 0 0 0</pose></link>""",
+        version="1.6",
+    )
+    close(found.link("b").pose, (2, 0, 0))
+
+
+def test_frames_joints_and_model_as_references():
+    found = robot(
+        f"""<link name="base"><pose>0 0 1 0 0 0</pose></link>
+        <frame name="mount" attached_to="base"><pose>0.5 0 0 0 0 {QUARTER}</pose></frame>
+        <frame name="tip" attached_to="mount"><pose>1 0 0 0 0 0</pose></frame>
+        <link name="arm"><pose relative_to="hinge"/></link>
+        <joint name="hinge" type="revolute">
+          <pose relative_to="tip">0 0 2 0 0 0</pose><parent>base</parent><child>arm</child>
+          <axis><xyz>0 0 1</xyz></axis></joint>
+        <link name="far"><pose relative_to="__model__">9 0 0 0 0 0</pose></link>"""
+    )
+    # mount at (0.5, 0, 1) looking along y; tip one further: (0.5, 1, 1); hinge two above.
+    close(found.link("arm").pose, (0.5, 1, 3), (0, 0, QUARTER))
+    close(found.joint("hinge").pose, (0, 0, 0))
+    close(found.link("far").pose, (9, 0, 0))
+
+
+def test_a_joint_s_pose_is_in_its_child_and_its_parent_may_be_a_frame():
+    found = robot(
+        f"""<link name="base"/><frame name="mount" attached_to="base"/>
+        <link name="arm"><pose>1 0 0 0 0 {QUARTER}</pose></link>
+        <joint name="hinge" type="revolute"><pose>0 0.25 0 0 0 0</pose>
+          <parent>mount</parent><child>arm</child><axis><xyz>1 0 0</xyz></axis></joint>"""
+    )
+    joint = found.joint("hinge")
+    close(joint.pose, (0, 0.25, 0))
+    assert (joint.parent, joint.child) == ("base", "arm")
+    assert joint.axis.xyz == (1, 0, 0)
+
+
+def test_a_joint_whose_child_is_a_frame():
+    found = robot(
+        """<link name="base"/><link name="arm"><pose>5 0 0 0 0 0</pose></link>
+        <frame name="grip" attached_to="arm"><pose>0 0 0.5 0 0 0</pose></frame>
+        <joint name="hinge" type="fixed"><pose>0 1 0 0 0 0</pose>
+          <parent>base</parent><child>grip</child></joint>"""
+    )
+    assert found.joint("hinge").child == "arm"
+    # A frame's own pose counts from what it is attached to: (5, 0, 0.5) in the model.
+    close(found.joint("hinge").pose, (0, 1, 0.5))
+
+
+@pytest.mark.parametrize(
+    ("version", "axis", "xyz"),
+    [
+        # The child looks along y: the model's x is its -y.
+        ("1.4", "<xyz>1 0 0</xyz>", (0, -1, 0)),
+        ("1.5", "<xyz>1 0 0</xyz>", (1, 0, 0)),
+        ("1.6", "<xyz>1 0 0</xyz>", (1, 0, 0)),
+        ("1.6", "<xyz>1 0 0</xyz><use_parent_model_frame>1</use_parent_model_frame>", (0, -1, 0)),
+        ("1.7", '<xyz expressed_in="__model__">1 0 0</xyz>', (0, -1, 0)),
+        ("1.7", '<xyz expressed_in="arm">1 0 0</xyz>', (1, 0, 0)),
+        ("1.7", '<xyz expressed_in="base">0 0 3</xyz>', (0, 0, 1)),
+    ],
+)
+def test_the_frame_of_an_axis(version, axis, xyz):
+    found = robot(
+        f"""<link name="base"/><link name="arm"><pose>0 0 0 0 0 {QUARTER}</pose></link>
+        <joint name="hinge" type="revolute"><parent>base</parent><child>arm</child>
+        <axis>{axis}</axis></joint>""",
+        version=version,
+    )
+    assert found.joint("hinge").axis.xyz == pytest.approx(xyz, abs=1e-12)
+    assert not [d for d in found.diagnostics if d.severity == "warning"]
+
+
+def test_parts_relative_to_other_frames():
+    found = robot(
+        f"""<link name="base"><pose>1 0 0 0 0 {QUARTER}</pose>
+          <visual name="v"><pose relative_to="__model__">1 1 0 0 0 0</pose>
+            <geometry><sphere><radius>1</radius></sphere></geometry></visual>
+          <sensor name="s" type="imu"><pose relative_to="mount">0 0 1 0 0 0</pose></sensor>
+          <inertial><pose>0 0 -0.1 0 0 0</pose></inertial></link>
+        <frame name="mount"><pose>4 0 0 0 0 0</pose></frame>"""
+    )
+    link = found.link("base")
+    # One metre along the model's y, seen from a link that looks along y, is one ahead.
+    close(link.visuals[0].pose, (1, 0, 0), (0, 0, -QUARTER))
+    close(link.sensors[0].pose, (0, -3, 1), (0, 0, -QUARTER))
+    close(link.inertial.pose, (0, 0, -0.1))
+
+
+def test_degrees_and_quaternions():
+    found = robot(
+        """<link name="a"><pose degrees="true">1 0 0 0 0 90</pose></link>
+        <link name="b"><pose rotation_format="quat_xyzw">0 0 2 0 0 2 2</pose></link>""",
+        version="1.9",
+    )
+    close(found.link("a").pose, (1, 0, 0), (0, 0, QUARTER))
+    close(found.link("b").pose, (0, 0, 2), (0, 0, QUARTER))
+
+
+NESTED = f"""<link name="base"/>
+<model name="arm" {{extra}}><pose>0 0 1 0 0 {QUARTER}</pose>
+  <link name="upper"><pose>1 0 0 0 0 0</pose><sensor name="s" type="imu"/></link>
+  <link name="lower"><pose relative_to="upper">1 0 0 0 0 0</pose></link>
+  <joint name="elbow" type="revolute"><parent>upper</parent><child>lower</child>
+    <axis><xyz>0 0 1</xyz></axis></joint></model>
+<link name="tool"><pose relative_to="arm::lower">0 0 0.5 0 0 0</pose></link>
+<joint name="shoulder" type="fixed"><parent>base</parent><child>arm::upper</child></joint>
+<joint name="wrist" type="fixed"><parent>arm::lower</parent><child>tool</child></joint>"""
+
+
+def test_nested_models_keep_their_names_under_theirs():
+    found = robot(NESTED.format(extra=""))
+    assert [link.name for link in found.links] == ["base", "tool", "arm::upper", "arm::lower"]
+    close(found.link("arm::upper").pose, (0, 1, 1), (0, 0, QUARTER))
+    close(found.link("arm::lower").pose, (0, 2, 1), (0, 0, QUARTER))
+    close(found.link("tool").pose, (0, 2, 1.5), (0, 0, QUARTER))
+    elbow = found.joint("arm::elbow")
+    assert (elbow.parent, elbow.child) == ("arm::upper", "arm::lower")
+    assert found.joint("shoulder").child == "arm::upper"
+    assert found.link("arm::upper").sensors[0].link == "arm::upper"
+
+
+def test_placement_frame_puts_that_frame_where_the_pose_says():
+    found = robot(NESTED.format(extra='placement_frame="lower"'))
+    close(found.link("arm::lower").pose, (0, 0, 1), (0, 0, QUARTER))
+    close(found.link("arm::upper").pose, (0, -1, 1), (0, 0, QUARTER))
+
+
+def test_canonical_link():
+    links = '<link name="a"/><link name="b"/>'
+    assert robot(links).canonical_link == "a"
+    assert robot(links, attributes='canonical_link="b"').canonical_link == "b"
+    only = '<model name="inner"><link name="x"/></model>'
+    assert robot(only).canonical_link == "inner::x"
+
+
+@pytest.mark.parametrize(
+    ("inside", "reason"),
+    [
+        (
+            """<link name="a"><pose relative_to="b"/></link>
+            <link name="b"><pose relative_to="c"/></link>
+            <link name="c"><pose relative_to="a"/></link>""",
+            "a -> b -> c -> a",
+        ),
+        (
+            """<link name="a"/><frame name="f" attached_to="g"/>
+            <frame name="g" attached_to="f"/>""",
+            "f -> g -> f",
+        ),
+        (
+            """<link name="chassis"/><link name="b">
+            <pose relative_to="chasis"/></link>""",
+            'm.sdf:3: frame "chasis" does not exist.*\n.*Did you mean "chassis"',
+        ),
+        ('<link name="a"/><link name="a"/>', 'link "a" has the name of another link'),
+        ('<link name="__model__"/>', "reserved"),
+        ("", "has no links"),
+    ],
+)
+def test_wrong_frames(inside, reason):
+    with pytest.raises(DescriptionError, match=reason):
+        robot(inside)
+
+
+def test_canonical_link_that_is_missing():
+    with pytest.raises(DescriptionError, match='canonical link "b" does not exist'):
+        robot('<link name="a"/>', attributes='canonical_link="b"')
+
+
+def test_a_joint_may_be_called_as_a_link_in_older_files():
+    inside = """<link name="a"/><link name="b"/><joint name="b" type="fixed">
+      <pose>0 0 1 0 0 0</pose><parent>a</parent><child>b</child></joint>"""
+    found = robot(inside, version="1.6")
+    close(found.joint("b").pose, (0, 0, 1))
+    assert found.diagnostics == ()
+    assert "name of a link" in robot(inside, version="1.7").diagnostics[0].message

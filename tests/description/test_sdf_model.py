@@ -1,0 +1,469 @@
+"""What SDF says of links, shapes, surfaces, joints and sensors, and what is wrong with them."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from cartwheel.description import model as m
+from cartwheel.description.packages import Packages
+from cartwheel.description.sdf import read_sdf
+from cartwheel.description.xml import parse
+from cartwheel.errors import DescriptionError
+
+
+def robot(inside: str, version: str = "1.7", folder=None):
+    text = f'<sdf version="{version}">\n<model name="m">\n{inside}\n</model></sdf>'
+    file = folder / "m.sdf" if folder else None
+    return read_sdf(parse(text, str(file or "m.sdf")), Packages(file, environment={}))
+
+
+def link(inside: str, **more):
+    return robot(f'<link name="base">\n{inside}</link>', **more)
+
+
+def shape(geometry: str, folder=None):
+    text = f'<visual name="v"><geometry>{geometry}</geometry></visual>'
+    found = link(text, folder=folder)
+    visuals = found.links[0].visuals
+    return visuals[0].shape if visuals else None
+
+
+@pytest.mark.parametrize(
+    ("geometry", "expected"),
+    [
+        ("<box><size>1 2 3</size></box>", m.Box(size=(1, 2, 3))),
+        ("<sphere><radius>.5</radius></sphere>", m.Sphere(radius=0.5)),
+        (
+            "<cylinder><radius>1</radius><length>2</length></cylinder>",
+            m.Cylinder(radius=1, length=2),
+        ),
+        ("<capsule><radius>1</radius><length>2</length></capsule>", m.Capsule(radius=1, length=2)),
+        ("<cone><radius>1</radius><length>2</length></cone>", m.Cone(radius=1, length=2)),
+        ("<ellipsoid><radii>1 2 3</radii></ellipsoid>", m.Ellipsoid(radii=(1, 2, 3))),
+        ("<plane/>", m.Plane()),
+        (
+            "<plane><normal>1 0 0</normal><size>4 5</size></plane>",
+            m.Plane(normal=(1, 0, 0), size=(4, 5)),
+        ),
+        (
+            "<polyline><point>0 0</point><point>1 0</point><point>0 1</point>"
+            "<height>2</height></polyline>",
+            m.Polyline(points=((0, 0), (1, 0), (0, 1)), height=2),
+        ),
+        ("<empty/>", None),
+    ],
+)
+def test_shapes(geometry, expected):
+    assert shape(geometry) == expected
+
+
+def test_mesh_and_heightmap(tmp_path):
+    (tmp_path / "part.dae").write_text("x")
+    (tmp_path / "hills.png").write_text("x")
+    found = shape(
+        "<mesh><uri>part.dae</uri><scale>1 1 -2</scale>"
+        "<submesh><name>lid</name><center>true</center></submesh></mesh>",
+        tmp_path,
+    )
+    assert found == m.Mesh(
+        uri="part.dae",
+        path=tmp_path / "part.dae",
+        scale=(1, 1, -2),
+        submesh="lid",
+        center_submesh=True,
+    )
+    hills = "<heightmap><uri>hills.png</uri><size>10 10 3</size><pos>0 0 1</pos></heightmap>"
+    assert shape(hills, tmp_path) == m.Heightmap(
+        path=tmp_path / "hills.png", size=(10, 10, 3), position=(0, 0, 1)
+    )
+
+
+def test_a_missing_mesh_costs_the_one_shape(tmp_path):
+    found = link(
+        """<visual name="v"><geometry><mesh><uri>model://nowhere/a.dae</uri></mesh></geometry>
+        </visual><visual name="w"><geometry><empty/></geometry></visual>
+        <collision name="c"><geometry><box><size>1 1 1</size></box></geometry></collision>""",
+        folder=tmp_path,
+    )
+    assert found.links[0].visuals == ()
+    assert len(found.links[0].collisions) == 1
+    (told,) = found.diagnostics
+    assert told.severity == "error"
+    assert 'visual "v" is left out' in told.message
+    assert told.origin.line == 4
+
+
+def test_default_and_stated_inertia():
+    plain = link("").links[0].inertial
+    assert (plain.mass, plain.ixx, plain.iyy, plain.izz, plain.ixy) == (1, 1, 1, 1, 0)
+    stated = (
+        link(
+            """<inertial><mass>2</mass><inertia><ixx>0.1</ixx><iyy>0.2</iyy><izz>0.25</izz>
+        <ixy>0.01</ixy></inertia></inertial>"""
+        )
+        .links[0]
+        .inertial
+    )
+    assert (stated.mass, stated.ixx, stated.iyy, stated.izz) == (2, 0.1, 0.2, 0.25)
+    assert (stated.ixy, stated.ixz, stated.iyz) == (0.01, 0, 0)
+
+
+def solid(geometry: str, folder=None):
+    return (
+        link(
+            f"""<inertial auto="true"/><collision name="c"><pose>1 0 0 0 0 0</pose>
+        <density>2</density><geometry>{geometry}</geometry></collision>""",
+            folder=folder,
+        )
+        .links[0]
+        .inertial
+    )
+
+
+def test_inertia_from_collisions():
+    # Volume 1*2*3 = 6, mass 12; ixx = 12/12 (4 + 9), iyy = 1 + 9, izz = 1 + 4.
+    box = solid("<box><size>1 2 3</size></box>")
+    assert (box.mass, box.ixx, box.iyy, box.izz) == pytest.approx((12, 13, 10, 5))
+    assert box.pose.position == (1, 0, 0)
+    cone = solid("<cone><radius>1</radius><length>4</length></cone>")
+    assert cone.pose.position == pytest.approx((1, 0, -1))
+    assert cone.mass == pytest.approx(2 * math.pi * 4 / 3)
+    # A capsule without length is a ball, one without ends' radius a cylinder.
+    ball = solid("<sphere><radius>1</radius></sphere>")
+    capsule = solid("<capsule><radius>1</radius><length>1e-9</length></capsule>")
+    assert (capsule.mass, capsule.ixx, capsule.izz) == pytest.approx(
+        (ball.mass, ball.ixx, ball.izz)
+    )
+
+
+def test_a_capsule_s_inertia_by_integration():
+    """Discs along the axis: dm r²/4 + dm z², summed."""
+    capsule = solid("<capsule><radius>0.5</radius><length>2</length></capsule>")
+    steps = 200_000
+    z = [(-1.5 + 3 * (i + 0.5) / steps) for i in range(steps)]
+    square = [0.25 if abs(h) < 1 else 0.25 - (abs(h) - 1) ** 2 for h in z]
+    masses = [2 * math.pi * s * 3 / steps for s in square]
+    assert capsule.mass == pytest.approx(sum(masses), rel=1e-6)
+    side = sum(w * (s / 4 + h * h) for w, s, h in zip(masses, square, z, strict=True))
+    assert capsule.ixx == pytest.approx(side, rel=1e-6)
+    axial = sum(w * s / 2 for w, s in zip(masses, square, strict=True))
+    assert capsule.izz == pytest.approx(axial, rel=1e-6)
+
+
+def test_inertia_of_a_mesh_is_that_of_its_solid(tmp_path):
+    corners = [(x, y, z) for x in (0, 1) for y in (0, 2) for z in (0, 3)]
+    sides = ["1 2 4 3", "5 7 8 6", "1 5 6 2", "3 4 8 7", "1 3 7 5", "2 6 8 4"]
+    text = "".join(f"v {x} {y} {z}\n" for x, y, z in corners)
+    (tmp_path / "box.obj").write_text(text + "".join(f"f {side}\n" for side in sides))
+    found = solid("<mesh><uri>box.obj</uri></mesh>", tmp_path)
+    assert found.pose.position == pytest.approx((1.5, 1, 1.5))
+    assert (found.mass, found.ixx, found.iyy, found.izz) == pytest.approx((12, 13, 10, 5))
+    assert (found.ixy, found.ixz, found.iyz) == pytest.approx((0, 0, 0), abs=1e-9)
+
+
+def test_inertia_of_two_collisions_and_a_stated_mass():
+    found = (
+        link(
+            """<inertial auto="true"><mass>4</mass></inertial>
+        <collision name="a"><pose>-1 0 0 0 0 0</pose><geometry><sphere><radius>0.1</radius>
+          </sphere></geometry></collision>
+        <collision name="b"><pose>1 0 0 0 0 0</pose><geometry><sphere><radius>0.1</radius>
+          </sphere></geometry></collision>"""
+        )
+        .links[0]
+        .inertial
+    )
+    # Two balls of 2 kg: 0.4 m r² each, and m 1² about the middle for the cross axes.
+    assert found.mass == 4
+    assert found.ixx == pytest.approx(2 * 0.4 * 2 * 0.01)
+    assert found.izz == pytest.approx(2 * 0.4 * 2 * 0.01 + 4)
+
+
+def test_surface():
+    found = link(
+        """<collision name="c"><max_contacts>4</max_contacts><laser_retro>7</laser_retro>
+        <geometry><plane/></geometry><surface>
+        <friction><ode><mu>0.5</mu><mu2>0.25</mu2><fdir1>0 1 0</fdir1><slip1>0.1</slip1>
+          <slip2>0.2</slip2></ode><torsional><coefficient>0.75</coefficient></torsional></friction>
+        <contact><collide_bitmask>0x0f</collide_bitmask><ode><kp>1e6</kp><kd>100</kd>
+          <max_vel>0.1</max_vel><min_depth>0.001</min_depth><soft_cfm>0</soft_cfm></ode></contact>
+        <bounce><restitution_coefficient>0.5</restitution_coefficient><threshold>1</threshold>
+        </bounce></surface></collision>"""
+    )
+    collision = found.links[0].collisions[0]
+    assert collision.laser_retro == 7
+    assert collision.surface == m.Surface(
+        mu1=0.5, mu2=0.25, fdir1=(0, 1, 0), slip1=0.1, slip2=0.2, torsional=0.75, kp=1e6, kd=100,
+        min_depth=0.001, max_vel=0.1, max_contacts=4, restitution=0.5, collide_bitmask=15,
+    )  # fmt: skip
+    assert found.diagnostics == ()
+
+
+def test_friction_below_zero_is_as_if_not_stated():
+    found = link(
+        """<collision name="c"><geometry><plane/></geometry><surface><friction><ode><mu>-1</mu>
+        <fdir1>0 0 0</fdir1></ode></friction></surface></collision>"""
+    )
+    assert found.links[0].collisions[0].surface == m.Surface()
+    assert "mu -1" in found.diagnostics[0].message
+
+
+def test_material_and_visual():
+    found = link(
+        """<visual name="v"><transparency>0.5</transparency><cast_shadows>0</cast_shadows>
+        <geometry><plane/></geometry><material><ambient>1 0 0 1</ambient>
+        <diffuse>0 1 0 0.5</diffuse><specular>0.3 0.3 0.3 1</specular>
+        <emissive>0 0 1</emissive></material></visual>
+        <visual name="w"><geometry><plane/></geometry><material><ambient>1 0 0</ambient></material>
+        </visual><visual name="x"><geometry><plane/></geometry></visual>"""
+    )
+    first, second, third = found.links[0].visuals
+    assert first.transparency == 0.5
+    assert not first.cast_shadows
+    assert first.material.diffuse == (0, 1, 0, 0.5)
+    assert first.material.specular == pytest.approx(0.3)
+    assert first.material.emissive == (0, 0, 1, 1)
+    assert second.material.diffuse == (1, 0, 0, 1)
+    assert third.material.diffuse is None
+
+
+def test_material_script_of_a_model(tmp_path):
+    scripts, textures = tmp_path / "materials" / "scripts", tmp_path / "materials" / "textures"
+    scripts.mkdir(parents=True)
+    textures.mkdir()
+    (textures / "brick.png").write_bytes(b"")
+    (scripts / "my.material").write_text(
+        """material Other { technique { pass { diffuse 0 0 0 } } }
+        material My/Brick // a comment
+        {
+          technique { pass {
+            ambient 0.1 0.1 0.1 1
+            diffuse 0.5 0.25 0 1
+            texture_unit { texture brick.png } } }
+        }"""
+    )
+    text = """<visual name="v"><geometry><plane/></geometry><material><script>
+      <uri>materials/scripts</uri><uri>materials/textures</uri><name>{}</name>
+      </script></material></visual>"""
+    found = link(text.format("My/Brick"), folder=tmp_path)
+    material = found.links[0].visuals[0].material
+    assert material.name == "My/Brick"
+    assert material.diffuse == (0.5, 0.25, 0, 1)
+    assert material.texture == textures / "brick.png"
+    assert found.diagnostics == ()
+    unknown = link(text.format("My/Brck"), folder=tmp_path)
+    assert unknown.links[0].visuals[0].material.name == "My/Brck"
+    assert "My/Brck" in unknown.diagnostics[0].message
+
+
+def test_gazebo_material_by_name():
+    found = link(
+        """<visual name="v"><geometry><plane/></geometry><material><script>
+        <uri>file://media/materials/scripts/gazebo.material</uri><name>Gazebo/Red</name></script>
+        </material></visual>"""
+    )
+    red, green, blue, _ = found.links[0].visuals[0].material.diffuse
+    assert red > 0.5 > green == blue
+    assert found.diagnostics == ()
+
+
+def test_link_flags():
+    found = link(
+        """<gravity>0</gravity><self_collide>true</self_collide><kinematic>1</kinematic>
+        <velocity_decay><linear>0.1</linear><angular>0.2</angular></velocity_decay>
+        <enable_wind>false</enable_wind>"""
+    )
+    part = found.links[0]
+    assert (part.gravity, part.self_collide, part.kinematic) == (False, True, True)
+    assert (part.linear_damping, part.angular_damping) == (0.1, 0.2)
+    assert link("").links[0].self_collide is None
+    assert robot("<static>1</static><self_collide>1</self_collide><link name='a'/>").static
+
+
+def joint(kind: str, inside: str, version: str = "1.7"):
+    found = robot(
+        f"""<link name="a"/><link name="b"/><joint name="j" type="{kind}">
+        <parent>a</parent><child>b</child>{inside}</joint>""",
+        version,
+    )
+    return found.joint("j")
+
+
+def test_joint_axis_limits_and_dynamics():
+    found = joint(
+        "revolute",
+        """<axis><xyz>0 2 0</xyz><limit><lower>-1</lower><upper>2</upper><effort>10</effort>
+        <velocity>3</velocity></limit><dynamics><damping>0.1</damping><friction>0.2</friction>
+        <spring_reference>0.3</spring_reference><spring_stiffness>4</spring_stiffness></dynamics>
+        </axis><physics><ode><limit><cfm>0.5</cfm><erp>0.6</erp></limit>
+        <implicit_spring_damper>1</implicit_spring_damper>
+        <provide_feedback>true</provide_feedback></ode></physics>""",
+    )
+    assert found.axis == m.Axis(
+        xyz=(0, 1, 0), lower=-1, upper=2, effort=10, velocity=3, damping=0.1, friction=0.2,
+        spring_reference=0.3, spring_stiffness=4,
+    )  # fmt: skip
+    assert (found.stop_cfm, found.stop_erp) == (0.5, 0.6)
+    assert found.provide_feedback
+    assert found.implicit_spring_damper
+
+
+def test_unlimited_is_none():
+    found = joint(
+        "prismatic",
+        """<axis><xyz>1 0 0</xyz><limit><lower>-1e16</lower><upper>inf</upper><effort>-1</effort>
+        <velocity>-1</velocity></limit></axis>""",
+    )
+    assert (found.axis.lower, found.axis.upper) == (None, None)
+    assert (found.axis.effort, found.axis.velocity) == (None, None)
+
+
+@pytest.mark.parametrize(
+    ("written", "kind"),
+    [("fixed", "fixed"), ("ball", "ball"), ("continuous", "continuous"), ("screw", "screw"),
+     ("universal", "universal"), ("revolute2", "universal")],
+)  # fmt: skip
+def test_joint_types(written, kind):
+    axes = "" if kind in ("fixed", "ball") else "<axis><xyz>1 0 0</xyz></axis>"
+    axes += "<axis2><xyz>0 1 0</xyz></axis2>" if kind == "universal" else ""
+    found = joint(written, axes)
+    assert found.type == kind
+    if kind == "universal":
+        assert found.axis2.xyz == (0, 1, 0)
+
+
+def test_screw_pitch_is_metres_per_turn():
+    axis = "<axis><xyz>1 0 0</xyz></axis>"
+    assert (
+        joint("screw", f"{axis}<screw_thread_pitch>0.01</screw_thread_pitch>").thread_pitch == 0.01
+    )
+    older = joint("screw", f"{axis}<thread_pitch>-100</thread_pitch>").thread_pitch
+    assert older == pytest.approx(2 * math.pi / 100)
+
+
+def test_mimic_with_a_reference():
+    found = robot(
+        """<link name="a"/><link name="b"/><link name="c"/>
+        <joint name="lead" type="revolute"><parent>a</parent><child>b</child><axis/></joint>
+        <joint name="j" type="revolute"><parent>a</parent><child>c</child><axis>
+          <mimic joint="lead"><multiplier>2</multiplier><offset>1</offset>
+          <reference>0.25</reference></mimic></axis></joint>""",
+        "1.11",
+    )
+    # q = 2 (lead - 0.25) + 1
+    assert found.joint("j").mimic == m.Mimic(joint="lead", multiplier=2, offset=0.5)
+
+
+def test_sensors_and_plugins():
+    found = link(
+        """<sensor name="eye" type="camera"><pose>0 0 1 0 0 0</pose><update_rate>30</update_rate>
+          <always_on>1</always_on><visualize>true</visualize><topic>front</topic>
+          <camera name="left"><horizontal_fov>1.2</horizontal_fov>
+            <image><width>640</width><height>480</height><format>L8</format></image>
+            <clip><near>0.02</near><far>50</far></clip>
+            <noise><type>gaussian</type><mean>0.1</mean><stddev>0.007</stddev></noise>
+            <distortion><k1>-0.25</k1><k2>0.12</k2><k3>0.01</k3><p1>-0.0003</p1><p2>-0.00005</p2>
+              <center>0.4 0.6</center></distortion></camera>
+          <plugin name="p" filename="libgazebo_ros_camera.so"><frameName>eye</frameName></plugin>
+        </sensor>
+        <sensor name="bump" type="contact"><contact><collision>c1</collision>
+          <collision>c2</collision></contact></sensor>"""
+    )
+    eye, bump = found.links[0].sensors
+    assert (eye.link, eye.type, eye.update_rate, eye.topic) == ("base", "camera", 30, "front")
+    assert eye.always_on
+    assert eye.visualize
+    assert eye.pose.position == (0, 0, 1)
+    assert eye.cameras == (
+        m.CameraIntrinsics(
+            name="left", horizontal_fov=1.2, width=640, height=480, format="L8", near=0.02, far=50,
+            k1=-0.25, k2=0.12, k3=0.01, p1=-0.0003, p2=-0.00005, distortion_center=(0.4, 0.6),
+            noise_mean=0.1, noise_stddev=0.007,
+        ),
+    )  # fmt: skip
+    (plugin,) = eye.plugins
+    assert (plugin.name, plugin.filename) == ("p", "libgazebo_ros_camera.so")
+    assert plugin.element.find("frameName").text == "eye"
+    assert bump.collisions == ("c1", "c2")
+    assert found.diagnostics == ()
+
+
+def test_what_is_not_understood_is_told_with_its_place():
+    found = link(
+        """<gravty>0</gravty>
+        <visual name="v" colour="red"><geometry><plane/></geometry></visual>"""
+    )
+    told = sorted((d.origin.line, d.message) for d in found.diagnostics)
+    assert told[0][0] == 4
+    assert "<gravty>" in told[0][1]
+    assert "<gravity>" in told[0][1]
+    assert told[1][0] == 5
+    assert '"colour"' in told[1][1]
+
+
+BAD_JOINT = '<link name="a"/><link name="b"/><joint name="j" type="{}">{}</joint>'
+ENDS = "<parent>a</parent><child>b</child>"
+
+
+@pytest.mark.parametrize(
+    ("inside", "reason"),
+    [
+        (BAD_JOINT.format("fixed", "<parent>aa</parent><child>b</child>"),
+         'm.sdf:3: joint "j": parent link "aa" does not exist'),
+        (BAD_JOINT.format("fixed", "<parent>a</parent><child>bb</child>"),
+         'child link "bb" does not exist'),
+        (BAD_JOINT.format("fixed", "<parent>a</parent><child>world</child>"), "Swap"),
+        (BAD_JOINT.format("fixed", "<parent>a</parent><child>a</child>"), "to itself"),
+        (BAD_JOINT.format("fixed", "<parent>a</parent>"), "has no <child>"),
+        (BAD_JOINT.format("revolut", ENDS), 'Did you mean "revolute"'),
+        (BAD_JOINT.format("revolute", ENDS), "has no <axis>"),
+        (BAD_JOINT.format("universal", ENDS + "<axis/>"), "has no <axis2>"),
+        (BAD_JOINT.format("revolute", ENDS + "<axis><xyz>0 0 0</xyz></axis>"), "no direction"),
+        (BAD_JOINT.format("revolute", ENDS + "<axis><limit><lower>1</lower><upper>0</upper>"
+         "</limit></axis>"), "lower limit 1 is above"),
+        (BAD_JOINT.format("revolute", ENDS + '<axis><mimic joint="k"/></axis>'), 'mimics "k"'),
+        (BAD_JOINT.format("fixed", ENDS) + f'<joint name="j" type="fixed">{ENDS}</joint>', '"j"'),
+        ('<link name="a"><inertial><mass>0</mass></inertial></link>', "must be above 0"),
+        ('<link name="a"><inertial><mass>x</mass></inertial></link>', 'mass "x" is not a number'),
+        ('<link name="a"><pose>0 0 0</pose></link>', "6 are needed"),
+        ('<link name="a"><visual name="v"/></link>', "has no <geometry>"),
+        ('<link name="a"><visual name="v"><geometry/></visual></link>', "<geometry> is empty"),
+        ('<link name="a"><visual name="v"><geometry><bx/></geometry></visual></link>',
+         'Did you mean "box"'),
+        ('<link name="a"><visual name="v"><geometry><box><size>1 -1 1</size></box></geometry>'
+         "</visual></link>", "above 0"),
+        ('<link name="a"><visual name="v"><geometry><mesh/></geometry></visual></link>',
+         "a mesh has no <uri>"),
+        ('<link name="a"><sensor name="s"/></link>', 'has no attribute "type"'),
+        ('<link name="a"><sensor name="s" type="camera"><camera><horizontal_fov>60'
+         "</horizontal_fov></camera></sensor></link>", "In degrees it would be 1.047"),
+        ('<link name="a"><sensor name="s" type="camera"><camera><clip><near>2</near><far>1</far>'
+         "</clip></camera></sensor></link>", "clip near 2"),
+        ('<link name="a"><sensor name="s" type="imu"/><sensor name="s" type="imu"/></link>',
+         'sensor "s" exists twice'),
+        ('<link name="a"/><plugin name="p"/>', 'has no attribute "filename"'),
+    ],
+)  # fmt: skip
+def test_errors(inside, reason):
+    with pytest.raises(DescriptionError, match=reason) as caught:
+        robot(inside)
+    assert caught.value.origin is not None
+    assert caught.value.origin.line >= 2
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        ('<sdf version="1.7"/>', "neither a <model> nor a <world>"),
+        ("<sdf/>", "no usable version"),
+        ('<sdf version="new"/>', "no usable version"),
+        ('<gazebo version="1.0"/>', "too old"),
+        ('<sdf version="1.7"><model name="a"/><model name="b"/></sdf>', "2 models"),
+        ('<robot name="a"/>', "begins with <robot>"),
+    ],
+)
+def test_wrong_documents(text, reason):
+    with pytest.raises(DescriptionError, match=reason):
+        read_sdf(parse(text, "a.sdf"), Packages(environment={}))

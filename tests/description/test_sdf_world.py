@@ -1,0 +1,297 @@
+"""Worlds: physics, scene, lights, includes, saved states; damage and files that others wrote."""
+
+from __future__ import annotations
+
+import math
+import os
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from cartwheel.description import model as m
+from cartwheel.description.packages import Packages
+from cartwheel.description.sdf import read_sdf
+from cartwheel.description.xml import parse, read_file
+from cartwheel.errors import CartwheelError, DescriptionError
+
+QUARTER = math.pi / 2
+ROOT = Path(__file__).parents[2]
+CORPUS = Path(os.environ.get("CARTWHEEL_CORPUS", ROOT.parent / "shared" / "corpus"))
+
+
+def world(inside: str, version: str = "1.6", folder: Path | None = None):
+    text = f'<sdf version="{version}">\n<world name="w">\n{inside}\n</world></sdf>'
+    file = folder / "w.world" if folder else None
+    return read_sdf(parse(text, str(file or "w.world")), Packages(file, environment={}))
+
+
+def box(name: str, inside: str = "") -> str:
+    return f'<model name="{name}">{inside}<link name="link"/></model>'
+
+
+def save_model(folder: Path, name: str, inside: str, version: str = "1.5", file: str = "model.sdf"):
+    place = folder / "models" / name
+    place.mkdir(parents=True, exist_ok=True)
+    (place / "model.config").write_text(
+        f'<model><name>{name}</name><sdf version="{version}">{file}</sdf></model>'
+    )
+    (place / file).write_text(f'<sdf version="{version}">{inside}</sdf>')
+
+
+def test_defaults_are_gazebo_s():
+    empty = world("")
+    assert empty.name == "w"
+    assert empty.gravity == (0, 0, -9.8)
+    assert empty.physics == m.Physics()
+    assert empty.shadows
+    assert empty.models == ()
+
+
+def test_physics_scene_and_the_rest():
+    found = world(
+        """<gravity>0 0 -1.62</gravity><magnetic_field>1e-5 2e-5 3e-5</magnetic_field>
+        <physics type="ode" name="slow"><max_step_size>0.01</max_step_size></physics>
+        <physics type="ode" name="fast" default="true"><max_step_size>0.002</max_step_size>
+          <real_time_factor>1.5</real_time_factor>
+          <real_time_update_rate>500</real_time_update_rate>
+          <ode><solver><iters>50</iters></solver></ode></physics>
+        <scene><ambient>0.1 0.2 0.3 1</ambient><background>0 0 1</background>
+          <shadows>false</shadows><sky><clouds/></sky></scene>
+        <wind/><atmosphere type="adiabatic"/><gui><camera/></gui>
+        <spherical_coordinates><latitude_deg>48</latitude_deg></spherical_coordinates>
+        <plugin name="p" filename="libgazebo_ros_state.so"><rate>1</rate></plugin>"""
+    )
+    assert found.gravity == (0, 0, -1.62)
+    assert found.magnetic_field == (1e-5, 2e-5, 3e-5)
+    assert found.physics == m.Physics(
+        max_step_size=0.002, real_time_factor=1.5, real_time_update_rate=500
+    )
+    assert found.ambient == (0.1, 0.2, 0.3, 1)
+    assert found.background == (0, 0, 1, 1)
+    assert not found.shadows
+    assert found.spherical_coordinates.find("latitude_deg").text == "48"
+    assert found.plugins[0].filename == "libgazebo_ros_state.so"
+    assert found.diagnostics == ()
+
+
+def test_gravity_stood_in_the_physics_before():
+    found = world("<physics type='ode'><gravity>0 0 -3</gravity></physics>", "1.4")
+    assert found.gravity == (0, 0, -3)
+    oldest = "<physics type='ode'><ode><solver><dt>0.005</dt></solver></ode></physics>"
+    assert world(oldest, "1.3").physics.max_step_size == 0.005
+
+
+def test_lights():
+    found = world(
+        """<light name="lamp" type="spot"><pose>0 0 3 0 0 0</pose><diffuse>1 1 0.5</diffuse>
+        <specular>0.1 0.1 0.1 1</specular><direction>0 0 -1</direction>
+        <attenuation><range>20</range><constant>0.5</constant><linear>0.01</linear>
+          <quadratic>0.001</quadratic></attenuation>
+        <spot><inner_angle>0.1</inner_angle><outer_angle>0.5</outer_angle></spot>
+        <cast_shadows>1</cast_shadows></light>"""
+    )
+    (lamp,) = found.lights
+    assert lamp == m.Light(
+        name="lamp", type="spot", pose=lamp.pose, diffuse=(1, 1, 0.5, 1),
+        specular=(0.1, 0.1, 0.1, 1), direction=(0, 0, -1), range=20,
+        attenuation=(0.5, 0.01, 0.001), spot_angle=0.5, cast_shadows=True, origin=lamp.origin,
+    )  # fmt: skip
+    assert lamp.pose.position == (0, 0, 3)
+    with pytest.raises(DescriptionError, match='light type "sun"'):
+        world('<light name="a" type="sun"/>')
+
+
+def test_the_shipped_sun_and_ground_plane_are_found():
+    found = world(
+        "<include><uri>model://sun</uri></include>"
+        "<include><uri>model://ground_plane</uri></include>"
+    )
+    assert found.lights[0].type == "directional"
+    assert found.models[0].static
+    assert isinstance(found.models[0].links[0].collisions[0].shape, m.Plane)
+    assert found.diagnostics == ()
+    fuel = "https://fuel.gazebosim.org/1.0/OpenRobotics/models/Ground Plane"
+    assert world(f"<include><uri>{fuel}</uri></include>").models[0].name == "ground_plane"
+
+
+def test_include_changes_name_pose_and_static(tmp_path):
+    save_model(tmp_path, "post", box("post", "<pose>9 9 9 0 0 0</pose>"))
+    plain, changed = world(
+        """<include><uri>model://post</uri></include>
+        <include><uri>model://post</uri><name>second</name><static>true</static>
+          <pose>1 2 3 0 0 0</pose><plugin name="p" filename="lib.so"/></include>""",
+        folder=tmp_path,
+    ).models
+    assert (plain.name, plain.static, plain.pose.position) == ("post", False, (9, 9, 9))
+    assert (changed.name, changed.static, changed.pose.position) == ("second", True, (1, 2, 3))
+    assert changed.plugins[0].filename == "lib.so"
+
+
+def test_an_included_file_has_its_own_version_and_relative_files(tmp_path):
+    inside = f"""<model name="arm"><link name="a"/>
+      <link name="b"><pose>0 0 0 0 0 {QUARTER}</pose>
+      <visual name="v"><geometry><mesh><uri>meshes/b.dae</uri></mesh></geometry></visual></link>
+      <joint name="j" type="revolute"><parent>a</parent><child>b</child>
+      <axis><xyz>1 0 0</xyz></axis></joint></model>"""
+    save_model(tmp_path, "arm", inside, version="1.4", file="old.sdf")
+    mesh = tmp_path / "models" / "arm" / "meshes" / "b.dae"
+    mesh.parent.mkdir()
+    mesh.write_text("x")
+    (found,) = world("<include><uri>model://arm</uri></include>", "1.9", tmp_path).models
+    assert found.joint("j").axis.xyz == pytest.approx((0, -1, 0))
+    assert found.link("b").visuals[0].shape.path == mesh
+    assert found.origin.file.endswith("w.world")
+
+
+def test_a_model_includes_and_merges_others(tmp_path):
+    save_model(
+        tmp_path,
+        "wheel",
+        """<model name="wheel"><link name="rim"><pose>0 0 1 0 0 0</pose></link>
+        <link name="tyre"/><joint name="j" type="fixed"><parent>rim</parent><child>tyre</child>
+        </joint></model>""",
+    )
+    inside = """<model name="cart"><link name="base"/>
+      <include {}><uri>model://wheel</uri><name>left</name><pose>0 1 0 0 0 0</pose></include>
+      <joint name="axle" type="fixed"><parent>base</parent><child>{}rim</child></joint></model>"""
+    (nested,) = world(inside.format("", "left::"), "1.9", tmp_path).models
+    assert [each.name for each in nested.links] == ["base", "left::rim", "left::tyre"]
+    assert nested.link("left::rim").pose.position == (0, 1, 1)
+    (merged,) = world(inside.format('merge="true"', ""), "1.9", tmp_path).models
+    assert [each.name for each in merged.links] == ["base", "rim", "tyre"]
+    assert merged.link("rim").pose.position == (0, 1, 1)
+    assert merged.joint("j").child == "tyre"
+
+
+def test_models_relative_to_models_and_frames():
+    found = world(
+        f"""{box("table", f"<pose>1 0 0 0 0 {QUARTER}</pose>")}
+        <frame name="corner" attached_to="table::link"><pose>0.5 0 0 0 0 0</pose></frame>
+        {box("cup", '<pose relative_to="corner">0 0 1 0 0 0</pose>')}""",
+        "1.8",
+    )
+    assert found.models[1].pose.position == pytest.approx((1, 0.5, 1))
+
+
+def test_saved_state_moves_models_lights_and_lone_links():
+    found = world(
+        f"""{box("a", "<pose>1 1 1 0 0 0</pose>")}{box("b")}{box("gone")}
+        <light name="sun" type="directional"/>
+        <state world_name="w"><sim_time>1 0</sim_time>
+          <model name="a"><pose>2 0 0 0 0 {QUARTER}</pose><scale>1 1 1</scale>
+            <link name="link"><pose>2 0 0.5 0 0 {QUARTER}</pose><velocity>0 0 0 0 0 0</velocity>
+            </link></model>
+          <model name="stranger"><pose>0 0 0 0 0 0</pose></model>
+          <light name="sun"><pose>0 0 20 0 0 0</pose></light>
+          <deletions><name>gone</name></deletions></state>"""
+    )
+    assert [each.name for each in found.models] == ["a", "b"]
+    assert found.models[0].pose.position == (2, 0, 0)
+    assert found.models[0].links[0].pose.position == pytest.approx((0, 0, 0.5))
+    assert found.lights[0].pose.position == (0, 0, 20)
+    assert [d.severity for d in found.diagnostics] == ["info"]
+    assert "stranger" in found.diagnostics[0].message
+
+
+def test_saved_joint_positions_are_told():
+    found = world(
+        """<model name="a"><link name="base"/><link name="arm"/><joint name="j" type="revolute">
+        <parent>base</parent><child>arm</child><axis/></joint></model>
+        <state><model name="a"><pose>0 0 0 0 0 0</pose><link name="arm"><pose>0 0 0 0 0 1</pose>
+        </link></model></state>"""
+    )
+    assert found.models[0].link("arm").pose == m.Link(name="", origin=found.origin).pose
+    assert "joint positions" in found.diagnostics[0].message
+
+
+@pytest.mark.parametrize(
+    ("inside", "reason"),
+    [
+        (box("a") + box("a"), 'model "a" has the name of another model'),
+        ("<include/>", "has no <uri>"),
+        ("<include><uri/></include>", "<uri> is empty"),
+        ("<include><uri>model://nothing_there</uri></include>", '"nothing_there" was not found'),
+        ("<include><uri>https://a.b/1.0/c/models/Dragon</uri></include>", "nothing is downloaded"),
+        (box("a", '<pose relative_to="b"/>') + box("b", '<pose relative_to="a"/>'), "in a circle"),
+        ("<physics><max_step_size>0</max_step_size></physics>", "step must be above 0"),
+        ("<gravity>0 -9.8</gravity>", "3 are needed"),
+        ("</world><world name='b'>", "one file describes one world"),
+    ],
+)
+def test_errors(inside, reason):
+    with pytest.raises(DescriptionError, match=reason) as caught:
+        world(inside)
+    assert caught.value.origin.line >= 2
+
+
+def test_a_model_that_includes_itself(tmp_path):
+    include = "<include><uri>model://{}</uri></include>"
+    save_model(tmp_path, "a", f'<model name="a">{include.format("b")}</model>')
+    save_model(tmp_path, "b", f'<model name="b">{include.format("a")}</model>')
+    with pytest.raises(DescriptionError, match="includes itself"):
+        world(include.format("a"), folder=tmp_path)
+
+
+SAMPLE = (
+    '<sdf version="1.6"><world name="w"><gravity>0 0 -9.8</gravity>'
+    '<light name="l" type="point"><pose>0 0 1 0 0 0</pose></light><model name="m">'
+    '<pose>1 2 3 0 0 0</pose><link name="a"><inertial><mass>1</mass></inertial>'
+    '<visual name="v"><geometry><box><size>1 1 1</size></box></geometry></visual>'
+    '<sensor name="s" type="camera"><camera><image><width>9</width></image></camera></sensor>'
+    '</link><link name="b"><pose frame="a">0 0 1 0 0 0</pose></link><joint name="j" '
+    'type="revolute"><parent>a</parent><child>b</child><axis><xyz>0 0 1</xyz></axis></joint>'
+    '<plugin name="p" filename="f.so"><x>1</x></plugin></model></world></sdf>'
+)
+WORDS = ["", "nan", "1e999", "-1", "a", "b", "world", "<pose/>", "</link>", "__model__", "::", "0"]
+
+
+def test_the_sample_is_whole():
+    assert read_sdf(parse(SAMPLE, "s.sdf"), Packages(environment={})).diagnostics == ()
+
+
+@settings(max_examples=300, derandomize=True, deadline=None)
+@given(
+    st.lists(
+        st.tuples(
+            st.integers(0, len(SAMPLE)), st.integers(0, 30), st.sampled_from(WORDS) | st.text()
+        ),
+        max_size=3,
+    )
+)
+def test_damage_ends_in_a_description_or_its_error(cuts):
+    text = SAMPLE
+    for start, length, put in cuts:
+        text = text[:start] + put + text[start + length :]
+    try:
+        found = read_sdf(parse(text, "s.sdf"), Packages(environment={}))
+    except DescriptionError as error:
+        assert error.origin is not None
+        return
+    assert isinstance(found, m.WorldDescription | m.RobotDescription)
+
+
+def corpus_files() -> list[Path]:
+    return sorted([*CORPUS.rglob("*.world"), *CORPUS.rglob("*.sdf")]) if CORPUS.is_dir() else []
+
+
+MISSING = ("was not found", "is too old", "begins with <gazebo:world>")
+
+
+@pytest.mark.skipif(not corpus_files(), reason=f"no corpus of others' robots in {CORPUS}")
+def test_worlds_of_others_load_or_lack_something():
+    loaded = 0
+    for file in corpus_files():
+        try:
+            found = read_sdf(read_file(file), Packages(file))
+        except CartwheelError as error:
+            assert any(part in str(error) for part in MISSING), f"{file}: {error}"
+            assert error.origin is not None
+            continue
+        loaded += 1
+        for told in found.diagnostics:
+            assert told.origin is not None
+            if told.severity == "error":
+                assert "was not found" in told.message or "does not exist" in told.message
+    assert loaded >= 20
