@@ -2,18 +2,119 @@
 
 from __future__ import annotations
 
+import time
+from typing import Any
+
+from cartwheel.description.model import RobotDescription
 from cartwheel.session import Session
-from cartwheel.simulation.snapshot import Snapshot
+from cartwheel.simulation.snapshot import Scene, Snapshot
+from cartwheel.viewer.overlays import Overlays
 from cartwheel.viewer.page import Page
+from cartwheel.viewer.panels.base import Panel
+from cartwheel.viewer.panels.bumper import BumperPanel
+from cartwheel.viewer.panels.camera import CameraPanel
+from cartwheel.viewer.panels.clock import ClockPanel
+from cartwheel.viewer.panels.drive import DrivePanel
+from cartwheel.viewer.panels.imu import ImuPanel
+from cartwheel.viewer.panels.insert import InsertPanel
+from cartwheel.viewer.panels.notes import NotesPanel
+from cartwheel.viewer.panels.topics import TopicsPanel
+from cartwheel.viewer.panels.view import ViewPanel
+from cartwheel.viewer.panels.world import WorldPanel
 from cartwheel.viewer.scene_view import SceneView
 
 
 class Desk:
+    """The page of a session: scene in the middle, control to the right, world to the left.
+
+    Args:
+        page: To build it on.
+        session: To show.
+    """
+
     def __init__(self, page: Page, session: Session) -> None:
-        self.scene = SceneView(page)
+        self.page = page
+        self.session = session
+        self.now = time.monotonic()
+        """s of wall time of the state that is being shown."""
+        self.robot: str | None = None
+        """The model that the camera follows and that things are inserted in front of."""
+        self.scene = SceneView(page, selected=lambda name: self._world.select(name))
+        self.overlays = Overlays(self)
+        self._panels = self._build()
+        self._graph_changed = -1
+        self._watched = False
+        page.on_clients = self._clients_changed
 
     def update(self, snapshot: Snapshot) -> None:
-        self.scene.update(snapshot)
+        """Shows a state."""
+        self.now = time.monotonic()
+        if self.session.graph.changed != self._graph_changed:
+            self._graph_changed = self.session.graph.changed
+            topics = self.session.graph.topics()
+            for panel in self._panels:
+                panel.show_topics(topics)
+        if self.scene.update(snapshot):
+            self.robot = robot_of(snapshot.scene)
+            for panel in self._panels:
+                panel.show_models(snapshot)
+        for panel in self._panels:
+            panel.update(snapshot, self.now)
+        self.overlays.update(snapshot, self.now)
 
     def close(self) -> None:
-        pass
+        """Lets go of all subscriptions."""
+        for panel in self._panels:
+            panel.leave()
+
+    def _clients_changed(self) -> None:
+        watched = bool(self.page.clients)
+        if watched == self._watched:
+            return
+        self._watched = watched
+        for panel in self._panels:
+            (panel.watch if watched else panel.leave)()
+
+    def _build(self) -> list[Panel]:
+        gui, icons = self.page.gui, self.page.viser.Icon
+        gui.main_panel.dock_right()
+        gui.main_panel.set_width(330)
+        panels: list[Panel] = [ClockPanel(self), DrivePanel(self), BumperPanel(self)]
+
+        camera = gui.add_panel()
+        with camera.add_tab("Camera", icons.CAMERA):
+            panels.append(CameraPanel(self))
+        camera.dock_below(gui.main_panel)
+
+        left = gui.add_panel()
+        tab: Any = left.add_tab("World", icons.WORLD)
+        with tab:
+            self._world = WorldPanel(self, tab)
+            panels.append(self._world)
+        with left.add_tab("Insert", icons.PLUS):
+            panels.append(InsertPanel(self))
+        with left.add_tab("View", icons.EYE):
+            panels.append(ViewPanel(self))
+        left.dock_left()
+        left.set_width(300)
+
+        lower = gui.add_panel()
+        with lower.add_tab("IMU", icons.CHART_LINE):
+            panels.append(ImuPanel(self))
+        with lower.add_tab("Topics", icons.LIST):
+            panels.append(TopicsPanel(self))
+        with lower.add_tab("Warnings", icons.ALERT_TRIANGLE):
+            panels.append(NotesPanel(self))
+        lower.dock_below(left)
+        return panels
+
+
+def robot_of(scene: Scene) -> str | None:
+    """The first model that does something by itself, else the first that can move."""
+    movable = [model for model in scene.models if not model.description.static]
+    active = [model for model in movable if _is_active(model.description)]
+    return next((model.name for model in (*active, *movable)), None)
+
+
+def _is_active(description: RobotDescription) -> bool:
+    return bool(description.plugins) or any(link.sensors for link in description.links)

@@ -1,0 +1,145 @@
+"""What is drawn besides the models: camera pyramids, the trail, the camera that follows."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from cartwheel.description.model import CameraIntrinsics, RobotDescription
+from cartwheel.geometry import Array, Pose, to_wxyz
+from cartwheel.simulation.snapshot import Snapshot
+from cartwheel.viewer.panels.base import Every
+
+if TYPE_CHECKING:
+    from cartwheel.viewer.desk import Desk
+
+_TRAIL_STEP = 0.03
+"""m between two points of the trail."""
+_TRAIL_POINTS = 1500
+_OPTICAL = Pose.from_xyz_rpy((0, 0, 0), (-math.pi / 2, 0, -math.pi / 2))
+"""REP 103's optical axes, z ahead and y down, within the camera's x-ahead ones."""
+
+
+class Overlays:
+    """Follows the robot, the first model that has plugins or sensors.
+
+    Args:
+        desk: For the scene and its toggles.
+    """
+
+    def __init__(self, desk: Desk) -> None:
+        self._desk = desk
+        self._page = desk.page
+        self._pyramids: dict[tuple[str, str, str], Any] = {}
+        self._trail: deque[Array] = deque(maxlen=_TRAIL_POINTS)
+        self._line: Any = None
+        self._line_due = Every(4)
+        self._image_due = Every(4)
+        self._followed: Array | None = None
+        self._time_ns = 0
+
+    def update(self, snapshot: Snapshot, now: float) -> None:
+        """Moves the trail and the following camera on."""
+        robot = self._desk.robot
+        if snapshot.time_ns < self._time_ns:
+            self._trail.clear()
+        self._time_ns = snapshot.time_ns
+        pose = self._desk.scene.pose(robot) if robot else None
+        if pose is None:
+            self._followed = None
+            return
+        place = np.array(pose.position)
+        if not self._trail or float(np.linalg.norm(place - self._trail[-1])) > _TRAIL_STEP:
+            self._trail.append(place)
+            self._draw_trail(now)
+        elif self._desk.scene.display.trail != (self._line is not None):
+            self._draw_trail(now)
+        self._follow(place)
+
+    def show(self) -> None:
+        """Makes the camera pyramids those of the models that stand there."""
+        wanted: dict[tuple[str, str, str], tuple[RobotDescription, Pose, CameraIntrinsics]] = {}
+        if self._desk.scene.display.camera:
+            for name, view in self._desk.scene.models.items():
+                for link in view.description.links:
+                    for sensor in link.sensors:
+                        for lens in sensor.cameras[:1]:
+                            wanted[name, link.name, sensor.name] = (
+                                view.description,
+                                sensor.pose @ lens.pose @ _OPTICAL,
+                                lens,
+                            )
+        for key in set(self._pyramids) - set(wanted):
+            self._pyramids.pop(key).remove()
+        for key, (_, pose, lens) in wanted.items():
+            if key not in self._pyramids:
+                self._pyramids[key] = self._pyramid(key, pose, lens)
+
+    def forget(self, models: set[str]) -> None:
+        """Models that have left took their pyramids with them."""
+        self._pyramids = {k: v for k, v in self._pyramids.items() if k[0] in models}
+
+    def show_image(self, topic: str, picture: Any) -> None:
+        """Hangs a camera's image into its pyramid, a few times a second."""
+        now = self._desk.now
+        if not self._pyramids or not self._image_due(now):
+            return
+        parts = topic.split("/")
+        named = [pyramid for key, pyramid in self._pyramids.items() if key[2] in parts]
+        for pyramid in (named or list(self._pyramids.values()))[:1]:
+            pyramid.image = picture[::2, ::2]
+
+    def _pyramid(self, key: tuple[str, str, str], pose: Pose, lens: CameraIntrinsics) -> Any:
+        aspect = lens.width / max(1, lens.height)
+        vertical = 2 * math.atan(math.tan(min(lens.horizontal_fov, 2.8) / 2) / aspect)
+        name, link, sensor = key
+        view = self._desk.scene.models[name]
+        return self._page.scene.add_camera_frustum(
+            f"{view.path(link)}/camera_{sensor.replace('/', '|')}",
+            fov=vertical,
+            aspect=aspect,
+            scale=min(0.3, 0.25 * view.size),
+            color=(37, 99, 176),
+            cast_shadow=False,
+            receive_shadow=False,
+            format="jpeg",
+            jpeg_quality=60,
+            position=pose.position,
+            wxyz=to_wxyz(pose.orientation),
+        )
+
+    def _draw_trail(self, now: float) -> None:
+        if not self._desk.scene.display.trail:
+            if self._line is not None:
+                self._line.remove()
+                self._line = None
+            return
+        if len(self._trail) < 2 or not self._line_due(now):
+            return
+        points = np.array(self._trail, dtype=np.float32)
+        points[:, 2] = 0.012  # on the ground, where the robot has been and not what it hides
+        segments = np.stack([points[:-1], points[1:]], axis=1)
+        self._line = self._page.scene.add_line_segments(
+            "/trail", segments, (240, 140, 0), thickness=3.0
+        )
+
+    def _follow(self, place: Array) -> None:
+        if not self._desk.scene.display.follow:
+            self._followed = None
+            return
+        if self._followed is None:
+            self._followed = place
+            return
+        step = place - self._followed
+        if float(np.linalg.norm(step)) < 1e-3:
+            return
+        self._followed = place
+        for client in self._page.server.get_clients().values():
+            with client.atomic():
+                # Position first: setting it would turn the view, and the target turns it back.
+                position, target = client.camera.position + step, client.camera.look_at + step
+                client.camera.position = position
+                client.camera.look_at = target

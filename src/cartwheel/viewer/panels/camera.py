@@ -1,0 +1,155 @@
+"""What a camera of the robot sees."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cartwheel.graph import Graph, TopicInfo
+from cartwheel.simulation.snapshot import Snapshot
+from cartwheel.viewer.panels.base import Every, Panel, escape, of_type
+
+if TYPE_CHECKING:
+    from cartwheel.viewer.desk import Desk
+
+IMAGE = "sensor_msgs/msg/Image"
+_NONE = "no camera"
+_RATE = 15.0
+"""Hz of wall time: more is not seen, and each image is compressed for the way."""
+_CHANNELS = {"rgb8": 3, "bgr8": 3, "mono8": 1, "rgba8": 4, "bgra8": 4}
+
+
+class Tap:
+    """Keeps the newest message of a topic and counts them all.
+
+    Args:
+        graph: To subscribe to.
+        topic: Its name.
+    """
+
+    def __init__(self, graph: Graph, topic: str) -> None:
+        self.topic = topic
+        self.newest: Any = None
+        self.count = 0
+        self._subscription = graph.subscribe(topic, self._take, node="viewer")
+
+    def _take(self, message: Any) -> None:
+        self.newest = message
+        self.count += 1
+
+    def close(self) -> None:
+        """Ends the subscription."""
+        self._subscription.close()
+
+
+class CameraPanel(Panel):
+    """Shows one image topic; nothing is rendered for it while nobody looks."""
+
+    def __init__(self, desk: Desk) -> None:
+        super().__init__(desk)
+        self._topics: tuple[str, ...] = ()
+        self._tap: Tap | None = None
+        self._due = Every(_RATE)
+        self._shown = 0
+        self._mark: tuple[int, int] = (0, 0)
+        self._rate = 0.0
+        self._text = ""
+        self._on = self.gui.add_checkbox("Show the image", initial_value=True)
+        self._on.on_update(self.page.on(lambda _: self._choose()))
+        self._topic = self.gui.add_dropdown("Topic", (_NONE,))
+        self._topic.on_update(self.page.on(lambda _: self._choose()))
+        self._image = self.gui.add_image(_blank(), format="jpeg", jpeg_quality=85, visible=False)
+        self._caption = self.gui.add_html(_caption("No camera publishes an image."))
+
+    def watch(self) -> None:
+        self._choose()
+
+    def leave(self) -> None:
+        if self._tap is not None:
+            self._tap.close()
+            self._tap = None
+
+    def show_topics(self, topics: Sequence[TopicInfo]) -> None:
+        found = tuple(of_type(topics, IMAGE))
+        if found == self._topics:
+            return
+        self._topics = found
+        chosen = self._topic.value
+        self._topic.options = found or (_NONE,)
+        self._topic.value = chosen if chosen in found else (found or (_NONE,))[0]
+        self._choose()
+
+    def update(self, snapshot: Snapshot, now: float) -> None:
+        tap = self._tap
+        if tap is None or tap.count == self._shown or not self._due(now):
+            return
+        self._shown = tap.count
+        message = tap.newest
+        self._measure(tap.count, snapshot.time_ns)
+        picture = pixels_of(message)
+        size = f"{message.width} × {message.height} {escape(message.encoding)}"
+        if picture is None:
+            self._say(f"{size}: this encoding cannot be shown.")
+            return
+        self._image.image = picture
+        if not self._image.visible:
+            self._image.visible = True
+        self._say(f"{size} · {self._rate:.1f} Hz" if self._rate else size)
+        self.desk.overlays.show_image(self._topic.value, picture)
+
+    def _choose(self) -> None:
+        wanted = self._topic.value
+        if self._tap is not None and self._tap.topic == wanted and self._on.value:
+            return
+        self.leave()
+        self._shown, self._rate, self._mark = 0, 0.0, (0, 0)
+        if wanted not in self._topics:
+            self._image.visible = False
+            self._say("No camera publishes an image.")
+        elif not self._on.value:
+            self._image.visible = False
+            self._say("Switched off: nothing is rendered.")
+        elif self.page.clients:
+            self._tap = Tap(self.graph, wanted)
+
+    def _measure(self, count: int, time_ns: int) -> None:
+        """Messages in a second of simulated time, which is what a camera's rate means."""
+        count_before, time_before = self._mark
+        passed = (time_ns - time_before) / 1e9
+        if not count_before or passed < 0:
+            self._mark = (count, time_ns)
+        elif passed >= 1.0:
+            self._rate = (count - count_before) / passed
+            self._mark = (count, time_ns)
+
+    def _say(self, text: str) -> None:
+        if text != self._text:
+            self._text = text
+            self._caption.content = _caption(text)
+
+
+def pixels_of(message: Any) -> NDArray[np.uint8] | None:
+    """An image message as RGB, shape (height, width, 3); None for an encoding that is not colour."""
+    channels = _CHANNELS.get(message.encoding)
+    if channels is None or not message.height or not message.width:
+        return None
+    rows = np.frombuffer(bytes(message.data), dtype=np.uint8)
+    # Rows may be padded: `step` is their length in bytes.
+    rows = rows.reshape(message.height, message.step)[:, : message.width * channels]
+    picture = rows.reshape(message.height, message.width, channels)
+    if channels == 1:
+        return np.repeat(picture, 3, axis=2)
+    if message.encoding.startswith("bgr"):
+        return np.ascontiguousarray(picture[:, :, 2::-1])
+    return np.ascontiguousarray(picture[:, :, :3])
+
+
+def _blank() -> NDArray[np.uint8]:
+    return np.zeros((3, 4, 3), dtype=np.uint8)
+
+
+def _caption(text: str) -> str:
+    return f'<div class="cw cw-dim cw-caption">{text}</div>'

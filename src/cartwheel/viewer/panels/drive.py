@@ -1,0 +1,129 @@
+"""Driving from the keyboard and by buttons.
+
+The keys are commands of the page, so that a browser finds them with Ctrl+K as well. viser's
+types name only letters and digits as hotkeys, but the name is handed as it is to the browser,
+where it is compared with the key of the event; "," and "." therefore work (and
+`test_driving.py` presses them). ``page.js`` adds what commands cannot do: it keeps the
+camera from taking w, q and e, lets every other key stop, and makes the buttons press keys, so
+that a button and its key cannot differ.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from cartwheel.graph import TopicInfo
+from cartwheel.messages import message_class
+from cartwheel.viewer.panels.base import Panel
+from cartwheel.viewer.teleop import MOVES, Teleop
+
+if TYPE_CHECKING:
+    from cartwheel.viewer.desk import Desk
+
+TWIST = "geometry_msgs/msg/Twist"
+_ALL = "all that listen"
+_NONE = "nothing listens"
+_LABELS = {
+    "u": "forward left",
+    "i": "forward",
+    "o": "forward right",
+    "j": "turn left",
+    "k": "stop",
+    "l": "turn right",
+    "m": "backward right",
+    ",": "backward",
+    ".": "backward left",
+    "q": "faster",
+    "z": "slower",
+    "w": "faster straight",
+    "x": "slower straight",
+    "e": "faster turns",
+    "c": "slower turns",
+}
+_ANGLES = {"u": -45, "i": 0, "o": 45, "j": -90, "l": 90, "m": -135, ",": 180, ".": 135}
+
+
+class DrivePanel(Panel):
+    """Publishes Twists on the topics that drive."""
+
+    def __init__(self, desk: Desk) -> None:
+        super().__init__(desk)
+        self._teleop = Teleop()
+        self._drivable: tuple[str, ...] = ()
+        self._topic = self.gui.add_dropdown("Drive", (_NONE,))
+        self._pad = self.gui.add_html(self._html())
+        for key, label in _LABELS.items():
+            command = self.gui.add_command(f"Drive: {label}", hotkey=key)
+            command.on_trigger(self.page.on(lambda _, key=key: self.press(key)))
+
+    def press(self, key: str) -> None:
+        """What a key does."""
+        publish = self._teleop.press(key)
+        if publish:
+            self._publish()
+        self._pad.content = self._html()
+
+    def show_topics(self, topics: Sequence[TopicInfo]) -> None:
+        drivable = tuple(t.name for t in topics if t.type == TWIST and t.subscribers)
+        if drivable == self._drivable:
+            return
+        self._drivable = drivable
+        chosen = self._topic.value
+        options = (_ALL, *drivable) if len(drivable) > 1 else (drivable or (_NONE,))
+        self._topic.options = options
+        self._topic.value = chosen if chosen in options else options[0]
+
+    def leave(self) -> None:
+        # Nobody can see it any more, nor stop it.
+        if self._teleop.key != "k":
+            self.press("k")
+
+    def _publish(self) -> None:
+        vector = message_class("geometry_msgs/msg/Vector3")
+        message: Any = message_class(TWIST)(
+            linear=vector(x=float(self._teleop.linear), y=0.0, z=0.0),
+            angular=vector(x=0.0, y=0.0, z=float(self._teleop.angular)),
+        )
+        chosen = self._topic.value
+        for topic in self._drivable if chosen == _ALL else (chosen,):
+            if topic in self._drivable:
+                self.graph.publish(topic, TWIST, message)
+
+    def _html(self) -> str:
+        teleop = self._teleop
+        caps = "".join(self._cap(key) for key in MOVES)
+        return (
+            f'<div class="cw"><div class="cw-pad">{caps}</div>'
+            '<div class="cw-speeds">'
+            f"<span>straight <b>{teleop.linear_speed:.2f} m/s</b></span>{_speed('x', 'w')}"
+            f"<span>turning <b>{teleop.angular_speed:.2f} rad/s</b></span>{_speed('c', 'e')}"
+            f'<span class="cw-dim">both</span>{_speed("z", "q")}</div></div>'
+        )
+
+    def _cap(self, key: str) -> str:
+        classes = "cw-stop" if key == "k" else "cw-active" if key == self._teleop.key else ""
+        picture = _STOP if key == "k" else _ARROW.format(angle=_ANGLES[key])
+        return (
+            f'<button class="{classes}" data-key="{key}" title="{_LABELS[key]}" '
+            f'aria-label="{_LABELS[key]}">{picture}<kbd>{key}</kbd></button>'
+        )
+
+
+def _speed(slower: str, faster: str) -> str:
+    return "".join(
+        f'<button data-key="{key}" title="{_LABELS[key]} by 10 %" '
+        f'aria-label="{_LABELS[key]}">{sign} <kbd>{key}</kbd></button>'
+        for key, sign in ((slower, "−"), (faster, "+"))
+    )
+
+
+_ARROW = (
+    '<svg viewBox="0 0 24 24" fill="none" stroke="currentColor" stroke-width="2.4" '
+    'stroke-linecap="round" stroke-linejoin="round" style="transform: rotate({angle}deg)">'
+    '<path d="M12 20V4M5 11l7-7 7 7"/></svg>'
+)
+_STOP = (
+    '<svg viewBox="0 0 24 24" fill="currentColor"><rect x="5" y="5" width="14" height="14" '
+    'rx="2"/></svg>'
+)

@@ -1,0 +1,42 @@
+"""What was reported about the files: unknown tags, losses, likely mistakes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from cartwheel.errors import Diagnostic
+from cartwheel.simulation.snapshot import Snapshot
+from cartwheel.viewer.panels.base import Every, Panel, escape
+
+if TYPE_CHECKING:
+    from cartwheel.viewer.desk import Desk
+
+
+class NotesPanel(Panel):
+    """The list of diagnostics."""
+
+    def __init__(self, desk: Desk) -> None:
+        super().__init__(desk)
+        self._due = Every(1)
+        self._shown = -1
+        self._list = self.gui.add_html("")
+
+    def update(self, snapshot: Snapshot, now: float) -> None:
+        if not self._due(now):
+            return
+        diagnostics = self.session.diagnostics
+        if len(diagnostics) != self._shown:
+            self._shown = len(diagnostics)
+            self._list.content = notes_html(diagnostics)
+
+
+def notes_html(diagnostics: Sequence[Diagnostic]) -> str:
+    """All of them, the gravest first."""
+    order = {"error": 0, "warning": 1, "info": 2}
+    notes = "".join(
+        f'<div class="cw-note cw-{note.severity}">{escape(note.message)}'
+        f'<div class="cw-dim">{escape(note.origin) if note.origin else ""}</div></div>'
+        for note in sorted(diagnostics, key=lambda note: order[note.severity])
+    )
+    return f'<div class="cw cw-list">{notes or "Nothing to warn of."}</div>'

@@ -1,0 +1,90 @@
+"""What the graph carries: topics, types, rates, and one of them live as text."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from cartwheel.graph import TopicInfo
+from cartwheel.messages import to_yaml
+from cartwheel.simulation.snapshot import Snapshot
+from cartwheel.viewer.panels.base import Every, Panel, escape
+from cartwheel.viewer.panels.camera import Tap
+
+if TYPE_CHECKING:
+    from cartwheel.viewer.desk import Desk
+
+_NONE = "nothing"
+_LONGEST = 6000
+"""Characters of a message: more than a screen full is not read."""
+
+
+class TopicsPanel(Panel):
+    """The list of topics and an echo."""
+
+    def __init__(self, desk: Desk) -> None:
+        super().__init__(desk)
+        self._tap: Tap | None = None
+        self._due = Every(5)
+        self._shown = 0
+        self._list = self.gui.add_html(list_html(()))
+        self._topic = self.gui.add_dropdown("Echo", (_NONE,))
+        self._topic.on_update(self.page.on(lambda _: self._choose()))
+        self._text = self.gui.add_html("")
+
+    def watch(self) -> None:
+        self._choose()
+
+    def leave(self) -> None:
+        if self._tap is not None:
+            self._tap.close()
+            self._tap = None
+
+    def show_topics(self, topics: Sequence[TopicInfo]) -> None:
+        content = list_html(topics)
+        if content != self._list.content:
+            self._list.content = content
+        names = (_NONE, *(topic.name for topic in topics if topic.publishers))
+        if names != tuple(self._topic.options):
+            chosen = self._topic.value
+            self._topic.options = names
+            self._topic.value = chosen if chosen in names else _NONE
+
+    def update(self, snapshot: Snapshot, now: float) -> None:
+        tap = self._tap
+        if tap is None or tap.count == self._shown or not self._due(now):
+            return
+        self._shown = tap.count
+        text = to_yaml(tap.newest)
+        if len(text) > _LONGEST:
+            text = text[:_LONGEST] + "\n…"
+        self._text.content = (
+            f'<div class="cw"><div class="cw-echo cw-mono">{escape(text)}</div></div>'
+        )
+
+    def _choose(self) -> None:
+        wanted = self._topic.value
+        if self._tap is not None and self._tap.topic == wanted:
+            return
+        self.leave()
+        self._shown = 0
+        if wanted == _NONE:
+            self._text.content = ""
+        elif self.page.clients:
+            self._text.content = '<div class="cw cw-dim">Waiting for a message.</div>'
+            self._tap = Tap(self.graph, wanted)
+
+
+def list_html(topics: Sequence[TopicInfo]) -> str:
+    """A table of topics."""
+    rows = "".join(
+        f'<tr><td title="{escape(", ".join(topic.publishers) or "nobody")} → '
+        f'{escape(", ".join(topic.subscribers) or "nobody")}">{escape(topic.name)}</td>'
+        f'<td class="cw-dim">{escape(topic.type.replace("/msg/", "/"))}</td>'
+        f'<td class="cw-right">{f"{topic.rate:g} Hz" if topic.rate else ""}</td></tr>'
+        for topic in topics
+    )
+    return (
+        '<div class="cw cw-list"><table><tr><th>topic</th><th>type</th>'
+        f'<th class="cw-right">rate</th></tr>{rows}</table></div>'
+    )

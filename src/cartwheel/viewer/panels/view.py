@@ -1,0 +1,61 @@
+"""Toggles of the scene."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import TYPE_CHECKING, Any
+
+from cartwheel.simulation.snapshot import Snapshot
+from cartwheel.viewer.panels.base import Panel
+
+if TYPE_CHECKING:
+    from cartwheel.viewer.desk import Desk
+
+_LABELS = {
+    "visual": "Visual shapes",
+    "collision": "Collision shapes",
+    "transparent": "Transparent",
+    "wireframe": "Wireframe",
+    "axes": "Link frames",
+    "names": "Link names",
+    "inertia": "Centre of mass, inertia",
+    "contacts": "Contacts and forces",
+    "camera": "Camera frustum",
+    "trail": "Trail",
+    "grid": "Grid",
+    "follow": "Follow the robot",
+}
+
+
+class ViewPanel(Panel):
+    """A checkbox for each field of `Display`."""
+
+    def __init__(self, desk: Desk) -> None:
+        super().__init__(desk)
+        display = desk.scene.display
+        assert set(_LABELS) == {field.name for field in dataclasses.fields(display)}
+        self._boxes = {}
+        for name, label in _LABELS.items():
+            box = self.gui.add_checkbox(label, initial_value=getattr(display, name))
+            box.on_update(self.page.on(lambda event, name=name: self._set(name, event)))
+            self._boxes[name] = box
+        self.gui.add_command("Follow the robot").on_trigger(
+            self.page.on(lambda _: self._toggle("follow"))
+        )
+
+    def show_models(self, snapshot: Snapshot) -> None:
+        self.desk.overlays.forget({model.name for model in snapshot.scene.models})
+        self.desk.overlays.show()
+
+    def _toggle(self, name: str) -> None:
+        self._boxes[name].value = not self._boxes[name].value
+        self._apply(name)
+
+    def _set(self, name: str, event: Any) -> None:
+        if event.client is not None:
+            self._apply(name)
+
+    def _apply(self, name: str) -> None:
+        setattr(self.desk.scene.display, name, bool(self._boxes[name].value))
+        self.desk.scene.show()
+        self.desk.overlays.show()

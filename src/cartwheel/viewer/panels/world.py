@@ -1,0 +1,166 @@
+"""The models of the world: select one, see what it is, move it, delete it."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+from cartwheel.geometry import Pose, from_wxyz, to_wxyz
+from cartwheel.simulation.snapshot import PlacedModel, Snapshot
+from cartwheel.viewer.panels.base import Every, Panel, escape
+
+if TYPE_CHECKING:
+    from cartwheel.viewer.desk import Desk
+
+
+class WorldPanel(Panel):
+    """The list of models and the gizmo of the selected one."""
+
+    def __init__(self, desk: Desk, tab: Any) -> None:
+        super().__init__(desk)
+        self._tab = tab
+        self.selected: str | None = None
+        self._rows: dict[str, Any] = {}
+        self._gizmo: Any = None
+        self._shown: Pose | None = None
+        self._held: Pose | None = None
+        """Where a drag holds the model; None while nobody drags."""
+        self._due = Every(5)
+        self._static_due = Every(4)
+        self.gui.add_html('<div class="cw cw-dim cw-rows">Models</div>', order=0)
+        self._text = self.gui.add_html("", order=900)
+        self._content = ""
+        self._delete = self.gui.add_button(
+            "Delete",
+            color="red",
+            icon=self.page.viser.Icon.TRASH,
+            visible=False,
+            order=910,
+        )
+        self._delete.on_click(self.page.on(lambda _: self.delete()))
+
+    def select(self, name: str | None) -> None:
+        """Selects a model, or none; selecting the selected one lets go of it."""
+        if name == self.selected:
+            name = None
+        self.selected = name
+        if self._gizmo is not None:
+            self._gizmo.remove()
+            self._gizmo = None
+        self._held = self._shown = None
+        for row, button in self._rows.items():
+            button.color = None if row == name else "gray"
+        self._delete.visible = name is not None
+        snapshot = self.desk.scene.snapshot
+        pose = self.desk.scene.pose(name) if name is not None else None
+        if name is None or pose is None or snapshot is None:
+            self._say("")
+            return
+        self._delete.label = f"Delete {name}"
+        size = self.desk.scene.models[name].size
+        self._gizmo = self.page.scene.add_transform_controls(
+            "/gizmo",
+            scale=min(1.2, max(0.25, 0.8 * size)),
+            line_width=3.0,
+            depth_test=False,
+            position=pose.position,
+            wxyz=to_wxyz(pose.orientation),
+        )
+        self._gizmo.on_update(self.page.on(self._drag))
+        self._shown = pose
+        self._describe(snapshot)
+
+    def delete(self) -> None:
+        """Takes the selected model out of the world."""
+        name, simulation = self.selected, self.simulation
+        if name is None:
+            return
+        self.select(None)
+        self.page.then(simulation.call(lambda: simulation.delete(name)))
+
+    def show_models(self, snapshot: Snapshot) -> None:
+        names = [model.name for model in snapshot.scene.models]
+        for name in set(self._rows) - set(names):
+            self._rows.pop(name).remove()
+        with self._tab:
+            for i, name in enumerate(names):
+                if name in self._rows:
+                    continue
+                row = self.gui.add_button(
+                    name, color="gray", icon=self.page.viser.Icon.CUBE, order=100 + i
+                )
+                row.on_click(self.page.on(lambda _, name=name: self.select(name)))
+                self._rows[name] = row
+        if self.selected is not None and self.selected not in names:
+            self.select(None)
+
+    def update(self, snapshot: Snapshot, now: float) -> None:
+        if self.selected is None or self._gizmo is None:
+            return
+        if self._held is not None:
+            if not self._is_static(snapshot) or self._static_due(now):
+                self._hold(self._held)
+        else:
+            pose = self.desk.scene.pose(self.selected)
+            if pose is not None and pose != self._shown:
+                self._shown = pose
+                with self.page.server.atomic():
+                    self._gizmo.position = pose.position
+                    self._gizmo.wxyz = to_wxyz(pose.orientation)
+        if self._due(now):
+            self._describe(snapshot)
+
+    def move(self, name: str, pose: Pose) -> None:
+        """Puts a model, at rest, where it is wanted."""
+        simulation = self.simulation
+        self.page.then(simulation.call(lambda: simulation.set_pose(name, pose)))
+
+    def _drag(self, event: Any) -> None:
+        """A drag holds the model where the gizmo is, against gravity too, until it is let go."""
+        if event.target is not self._gizmo or self.selected is None:
+            return
+        x, y, z = (float(v) for v in event.target.position)
+        pose = Pose((x, y, z), from_wxyz([float(v) for v in event.target.wxyz]))
+        self._held = self._shown = pose
+        if event.phase == "end":
+            self._held = None
+            self._hold(pose)
+
+    def _hold(self, pose: Pose) -> None:
+        if self.selected is not None:
+            self.move(self.selected, pose)
+
+    def _is_static(self, snapshot: Snapshot) -> bool:
+        # Moving what is fixed builds the world anew each time: a few times a second suffice.
+        return any(m.description.static for m in snapshot.scene.models if m.name == self.selected)
+
+    def _describe(self, snapshot: Snapshot) -> None:
+        placed = next((m for m in snapshot.scene.models if m.name == self.selected), None)
+        pose = self.desk.scene.pose(self.selected) if self.selected is not None else None
+        if placed is None or pose is None:
+            return
+        self._say(properties_html(placed, pose))
+
+    def _say(self, content: str) -> None:
+        if content != self._content:
+            self._text.content = self._content = content
+
+
+def properties_html(placed: PlacedModel, pose: Pose) -> str:
+    """A model's pose, mass and parts."""
+    description = placed.description
+    roll, pitch, yaw = (math.degrees(angle) for angle in pose.rpy)
+    rows = {
+        "position": f"{pose.x:.3f}, {pose.y:.3f}, {pose.z:.3f} m",
+        "roll, pitch, yaw": f"{roll:.1f}, {pitch:.1f}, {yaw:.1f}°",
+        "mass": "fixed" if description.static else f"{description.mass:.3g} kg",
+        "parts": f"{len(description.links)} links, {len(description.joints)} joints",
+        "file": escape(description.origin.file.rsplit("/", 1)[-1]),
+    }
+    cells = "".join(
+        f'<span class="cw-dim">{name}</span><span>{value}</span>' for name, value in rows.items()
+    )
+    return (
+        f'<div class="cw" data-model="{escape(placed.name)}">'
+        f'<div class="cw-properties">{cells}</div></div>'
+    )
