@@ -9,7 +9,7 @@ from typing import Any
 
 from cartwheel import description as descriptions
 from cartwheel.description.model import RobotDescription, WorldDescription
-from cartwheel.errors import DescriptionError, Diagnostic
+from cartwheel.errors import Diagnostic
 from cartwheel.geometry import Pose
 from cartwheel.graph import Graph, Mailbox
 from cartwheel.messages import convert, type_name
@@ -120,7 +120,7 @@ class World:
         Args:
             robot: A xacro, URDF or SDF file, or a description.
             name: In this world; the description's own when None.
-            x: m, with y and z the place of its root link.
+            x: m, with y and z the place of its root link; its file's where all are zero.
             y: m.
             z: m.
             roll: rad, with pitch and yaw about the world's axes.
@@ -135,7 +135,8 @@ class World:
         """
         if not isinstance(robot, RobotDescription):
             robot = descriptions.load_robot(robot, arguments=arguments, package_path=package_path)
-        pose = Pose.from_xyz_rpy((x, y, z), (roll, pitch, yaw))
+        given = any((x, y, z, roll, pitch, yaw))
+        pose = Pose.from_xyz_rpy((x, y, z), (roll, pitch, yaw)) if given else None
         return Model(self, self.session.spawn(robot, name=name, pose=pose))
 
     def model(self, name: str) -> Model:
@@ -194,4 +195,4 @@ class World:
         self.session.close()
 
 
-__all__ = ["DescriptionError", "Model", "World"]
+__all__ = ["Model", "World"]

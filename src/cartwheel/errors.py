@@ -18,7 +18,7 @@ class Origin:
     line: int = 0
     """One-based; 0 where only the file is known."""
     stack: tuple[str, ...] = ()
-    """Where the enclosing xacro macros were called, innermost first, each as ``file:line macro``."""
+    """Calls of the enclosing xacro macros, innermost first, each as ``file:line macro``."""
 
     def __str__(self) -> str:
         return f"{self.file}:{self.line}" if self.line else self.file

@@ -1,0 +1,6 @@
+"""How another process reaches a running simulation."""
+
+from cartwheel.control.client import ControlClient, Sample
+from cartwheel.control.registry import Running, find, running
+
+__all__ = ["ControlClient", "Running", "Sample", "find", "running"]

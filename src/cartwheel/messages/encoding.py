@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+from collections import deque
 from typing import Any
 
 from cartwheel.errors import GraphError
@@ -29,28 +30,34 @@ def decode_cdr(data: bytes | memoryview, type_name: str) -> Any:
 
 
 class CdrCache:
-    """The bytes of the last message of each topic; for any thread.
+    """The bytes of the last messages of each topic; for any thread.
 
     A message goes to all readers of its wire as the same object: its identity tells that
     it is the one whose bytes are there already.
+
+    Args:
+        depth: How many messages of a topic to keep; more than 1 where readers may lag
+            behind each other.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, *, depth: int = 1) -> None:
+        self._depth = depth
         self._lock = threading.Lock()
-        self._last: dict[str, tuple[Any, bytes]] = {}
+        self._kept: dict[str, deque[tuple[Any, bytes]]] = {}
 
     def encode(self, topic: str, message: Any) -> bytes:
         """The message's CDR bytes."""
         with self._lock:
-            last = self._last.get(topic)
-            if last is not None and last[0] is message:
-                return last[1]
+            kept = self._kept.setdefault(topic, deque(maxlen=self._depth))
+            for known, data in kept:
+                if known is message:
+                    return data
             data = encode_cdr(message)
             # Holding the message keeps its identity from being given to another.
-            self._last[topic] = (message, data)
+            kept.append((message, data))
             return data
 
     def forget(self, topic: str) -> None:
         """Drops what is kept of a topic that nobody reads any more."""
         with self._lock:
-            self._last.pop(topic, None)
+            self._kept.pop(topic, None)

@@ -27,10 +27,10 @@ def short_name(filename: str) -> str:
 @functools.cache
 def plugins() -> dict[str, type[Plugin[object]]]:
     """All plugins by short name: ours, and those of installed packages."""
+    from cartwheel.plugins.camera import Camera
     from cartwheel.plugins.contact import Bumper
     from cartwheel.plugins.diff_drive import DiffDrive
     from cartwheel.plugins.imu import Imu, ImuSensor
-    from cartwheel.plugins.camera import Camera
 
     known: dict[str, type[Plugin[object]]] = {}
     third = (entry.load() for entry in importlib.metadata.entry_points(group="cartwheel.plugins"))

@@ -51,9 +51,9 @@ class Guard:
             return []
         messages = [message.strip() for message in _pending]
         _pending.clear()
-        if np.isfinite(data.qpos).all() and np.isfinite(data.qvel).all():
-            if not any("unstable" in message for message in messages):
-                return messages
+        finite = np.isfinite(data.qpos).all() and np.isfinite(data.qvel).all()
+        if finite and not any("unstable" in message for message in messages):
+            return messages
         raise self._diverged(model, data)
 
     def _diverged(self, model: Any, data: Any) -> SimulationError:

@@ -151,7 +151,7 @@ class Part:
         return np.random.default_rng(words)
 
     def contacts(self, collisions: Collection[str]) -> list[Contact]:
-        """Contacts of these collisions (``link::collision``), each as the `first` of its contact."""
+        """Contacts of these collisions (``link::collision``), each the `first` of its contact."""
         names = {scoped(self.name, collision) for collision in collisions}
         return read_contacts(self._simulation.model, self._simulation.data, names)
 

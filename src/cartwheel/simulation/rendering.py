@@ -121,5 +121,5 @@ def _open_gl(width: int, height: int) -> Any:
             return context
     raise SimulationError(
         f"cameras need OpenGL, which this machine lacks ({'; '.join(reasons)})",
-        hint=f"On Debian or Ubuntu: sudo apt-get install {_PACKAGES}. All but cameras works without.",
+        hint=f"On Debian or Ubuntu: sudo apt-get install {_PACKAGES}. All else works without.",
     )

@@ -36,7 +36,7 @@ class Scene:
     links: tuple[tuple[str, str], ...]
     """Model and link of each row of a snapshot's poses."""
     joints: tuple[tuple[str, str], ...]
-    """Model and joint of each entry of a snapshot's joint positions; those of one degree of freedom."""
+    """Model and joint of each of a snapshot's joint positions; those of one degree of freedom."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -78,13 +78,14 @@ class Desk:
     def _build(self) -> list[Panel]:
         gui, icons = self.page.gui, self.page.viser.Icon
         gui.main_panel.dock_right()
-        gui.main_panel.set_width(330)
-        panels: list[Panel] = [ClockPanel(self), DrivePanel(self), BumperPanel(self)]
+        gui.main_panel.set_width(320)
+        panels: list[Panel] = [ClockPanel(self), BumperPanel(self), DrivePanel(self)]
 
         camera = gui.add_panel()
         with camera.add_tab("Camera", icons.CAMERA):
             panels.append(CameraPanel(self))
         camera.dock_below(gui.main_panel)
+        gui.main_panel.set_height(500)
 
         left = gui.add_panel()
         tab: Any = left.add_tab("World", icons.WORLD)
@@ -106,6 +107,7 @@ class Desk:
         with lower.add_tab("Warnings", icons.ALERT_TRIANGLE):
             panels.append(NotesPanel(self))
         lower.dock_below(left)
+        left.set_height(360)
         return panels
 
 

@@ -31,7 +31,7 @@ def check_port(host: str, port: int) -> None:
             pass
     except (OSError, OverflowError) as error:
         raise ControlError(
-            f"the viewer cannot listen on {host}:{port}: {getattr(error, 'strerror', None) or error}",
+            f"the viewer cannot listen on {host}:{port}: {error}",
             hint="Another viewer may be running; choose another port with --port.",
         ) from error
 
@@ -64,7 +64,7 @@ class Page:
         """Browsers that are connected now."""
         self.on_clients: Callable[[], None] = lambda: None
         """Called when `clients` has changed."""
-        self._jobs: queue.SimpleQueue[tuple[Callable[[], None], int | None] | None]
+        self._jobs: queue.SimpleQueue[tuple[Callable[[], object], int | None] | None]
         self._jobs = queue.SimpleQueue()
         self._client: int | None = None
         self.gui.configure_theme(
@@ -92,8 +92,7 @@ class Page:
                 function()
             except CartwheelError as error:
                 self.show_error(error)
-            except Exception as error:
-                # A fault of the viewer's own must not take the page away from its user.
+            except Exception as error:  # noqa: BLE001 - a fault here must not take the page away
                 _log.exception("the viewer failed")
                 self.notify("The viewer failed", f"{type(error).__name__}: {error}", color="red")
 
@@ -101,7 +100,7 @@ class Page:
         """Lets `run` look whether it is to stop."""
         self._jobs.put(None)
 
-    def post(self, function: Callable[[], None], *, client: int | None = None) -> None:
+    def post(self, function: Callable[[], object], *, client: int | None = None) -> None:
         """Runs a function on the page's thread, soon; from any thread.
 
         Args:
@@ -110,7 +109,7 @@ class Page:
         """
         self._jobs.put((function, client))
 
-    def on(self, function: Callable[[Any], None]) -> Callable[[Any], Coroutine[Any, Any, None]]:
+    def on(self, function: Callable[[Any], object]) -> Callable[[Any], Coroutine[Any, Any, None]]:
         """A callback for viser that runs `function(event)` on the page's thread."""
 
         # A coroutine, as viser runs those in the order of their messages; plain functions go
@@ -119,6 +118,12 @@ class Page:
             self.post(lambda: function(event), client=getattr(event, "client_id", None))
 
         return callback
+
+    def do(
+        self, function: Callable[..., object], *arguments: object
+    ) -> Callable[[Any], Coroutine[Any, Any, None]]:
+        """A callback for viser that runs `function(*arguments)` on the page's thread."""
+        return self.on(lambda _: function(*arguments))
 
     def then(self, future: Any, function: Callable[[Any], None] = lambda _: None) -> None:
         """Runs `function(result)` on the page's thread when a simulation's answer is there."""

@@ -69,9 +69,9 @@ class SceneView:
                 self.models[name] = self._add(name, description)
         self._rows = {}
         names = [model for model, _ in scene.links]
-        for name in wanted:
+        for name, description in wanted.items():
             first = names.index(name)
-            self._rows[name] = slice(first, first + len(wanted[name].links))
+            self._rows[name] = slice(first, first + len(description.links))
         self._version = scene.version
 
     def _add(self, name: str, description: RobotDescription) -> ModelView:
@@ -83,7 +83,7 @@ class SceneView:
             name,
             description,
             problem=problem,
-            clicked=self._page.on(lambda _: self._selected(name)),
+            clicked=self._page.do(self._selected, name),
         )
         view.show(self.display)
         return view

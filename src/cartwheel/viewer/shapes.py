@@ -181,7 +181,8 @@ def triangles_of(shape: Shape) -> tuple[Floats, Ints]:
 
 
 def _box(size: tuple[float, float, float]) -> tuple[Floats, Ints]:
-    vertices, faces = [], []
+    vertices: list[NDArray[np.float64]] = []
+    faces: list[tuple[int, int, int]] = []
     for axis in range(3):
         for side in (-1.0, 1.0):
             u, v = np.eye(3)[(axis + 1) % 3], np.eye(3)[(axis + 2) % 3]

@@ -72,7 +72,7 @@ class Viewer:
             self._thread.join(timeout=10.0)
 
     def _listen(self, snapshot: Snapshot) -> None:
-        """On the simulation's thread: leaves the newest snapshot, and a note if none is left yet."""
+        """On the simulation's thread: leaves the newest snapshot, and a note if none lies there."""
         page = self._page
         if page is None or not page.clients or self._stopped.is_set():
             return

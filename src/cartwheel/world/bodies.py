@@ -24,7 +24,6 @@ from cartwheel.geometry import (
     Array,
     Pose,
     matrix_from_quat,
-    quat_between,
     quat_from_matrix,
     rotate,
     to_wxyz,
@@ -122,7 +121,7 @@ class BodyBuilder:
             shape = contact.tyre(collision, joint)
             if isinstance(shape, Plane) and not entry.description.static:
                 raise WorldError(
-                    f'collision "{collision.name}": a plane is endless and must stand in a static model',
+                    f'collision "{collision.name}": a plane is endless, so its model must be static',
                     origin=collision.origin,
                     hint="Use a flat box instead, or <static>true</static>.",
                 )

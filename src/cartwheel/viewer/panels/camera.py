@@ -58,9 +58,9 @@ class CameraPanel(Panel):
         self._rate = 0.0
         self._text = ""
         self._on = self.gui.add_checkbox("Show the image", initial_value=True)
-        self._on.on_update(self.page.on(lambda _: self._choose()))
+        self._on.on_update(self.page.do(self._choose))
         self._topic = self.gui.add_dropdown("Topic", (_NONE,))
-        self._topic.on_update(self.page.on(lambda _: self._choose()))
+        self._topic.on_update(self.page.do(self._choose))
         self._image = self.gui.add_image(_blank(), format="jpeg", jpeg_quality=85, visible=False)
         self._caption = self.gui.add_html(_caption("No camera publishes an image."))
 

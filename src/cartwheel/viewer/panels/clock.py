@@ -31,15 +31,15 @@ class ClockPanel(Panel):
         self._due = Every(8)
         self._text = gui.add_html(clock_html(None))
         self._pause = gui.add_button("Pause", icon=page.viser.Icon.PLAYER_PAUSE, hint="space")
-        self._pause.on_click(page.on(lambda _: self.toggle()))
+        self._pause.on_click(page.do(self.toggle))
         self._buttons = gui.add_button_group("Time", ("Step", "Reset"))
         self._buttons.on_click(page.on(self._press))
         self._speed = gui.add_dropdown("Speed", tuple(SPEEDS), initial_value="1 (real time)")
         self._speed.on_update(page.on(self._set_speed))
         space = gui.add_command("Pause or resume", hotkey=" ", icon=page.viser.Icon.PLAYER_PAUSE)
-        space.on_trigger(page.on(lambda _: self.toggle()))
-        gui.add_command("Step").on_trigger(page.on(lambda _: self.step()))
-        gui.add_command("Reset the simulation").on_trigger(page.on(lambda _: self.reset()))
+        space.on_trigger(page.do(self.toggle))
+        gui.add_command("Step").on_trigger(page.do(self.step))
+        gui.add_command("Reset the simulation").on_trigger(page.do(self.reset))
         self._paused: bool | None = None
         self._shown_speed: float | None = 1.0
 

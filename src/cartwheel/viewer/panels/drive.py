@@ -31,9 +31,9 @@ _LABELS = {
     "j": "turn left",
     "k": "stop",
     "l": "turn right",
-    "m": "backward right",
+    "m": "backward left",
     ",": "backward",
-    ".": "backward left",
+    ".": "backward right",
     "q": "faster",
     "z": "slower",
     "w": "faster straight",
@@ -55,7 +55,7 @@ class DrivePanel(Panel):
         self._pad = self.gui.add_html(self._html())
         for key, label in _LABELS.items():
             command = self.gui.add_command(f"Drive: {label}", hotkey=key)
-            command.on_trigger(self.page.on(lambda _, key=key: self.press(key)))
+            command.on_trigger(self.page.do(self.press, key))
 
     def press(self, key: str) -> None:
         """What a key does."""

@@ -33,9 +33,9 @@ class InsertPanel(Panel):
         for name, path in palette(share() / "models").items():
             label = name.replace("_", " ")
             button = gui.add_button(label, color="gray", icon=page.viser.Icon.PLUS)
-            button.on_click(page.on(lambda _, path=path: self.insert(path)))
+            button.on_click(page.do(self.insert, path))
             command = gui.add_command(f"Insert: {label}")
-            command.on_trigger(page.on(lambda _, path=path: self.insert(path)))
+            command.on_trigger(page.do(self.insert, path))
         gui.add_html('<div class="cw cw-dim">URDF, xacro or SDF of your own</div>')
         upload = gui.add_upload_button("Open a file", icon=page.viser.Icon.UPLOAD)
         upload.on_upload(page.on(lambda event: self._upload(event.target.value)))

@@ -29,7 +29,7 @@ class TopicsPanel(Panel):
         self._shown = 0
         self._list = self.gui.add_html(list_html(()))
         self._topic = self.gui.add_dropdown("Echo", (_NONE,))
-        self._topic.on_update(self.page.on(lambda _: self._choose()))
+        self._topic.on_update(self.page.do(self._choose))
         self._text = self.gui.add_html("")
 
     def watch(self) -> None:

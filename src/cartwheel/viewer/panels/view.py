@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from cartwheel.simulation.snapshot import Snapshot
@@ -37,11 +38,9 @@ class ViewPanel(Panel):
         self._boxes = {}
         for name, label in _LABELS.items():
             box = self.gui.add_checkbox(label, initial_value=getattr(display, name))
-            box.on_update(self.page.on(lambda event, name=name: self._set(name, event)))
+            box.on_update(self.page.on(self._setter(name)))
             self._boxes[name] = box
-        self.gui.add_command("Follow the robot").on_trigger(
-            self.page.on(lambda _: self._toggle("follow"))
-        )
+        self.gui.add_command("Follow the robot").on_trigger(self.page.do(self._toggle, "follow"))
 
     def show_models(self, snapshot: Snapshot) -> None:
         self.desk.overlays.forget({model.name for model in snapshot.scene.models})
@@ -51,9 +50,12 @@ class ViewPanel(Panel):
         self._boxes[name].value = not self._boxes[name].value
         self._apply(name)
 
-    def _set(self, name: str, event: Any) -> None:
-        if event.client is not None:
-            self._apply(name)
+    def _setter(self, name: str) -> Callable[[Any], None]:
+        def set_from(event: Any) -> None:
+            if event.client is not None:
+                self._apply(name)
+
+        return set_from
 
     def _apply(self, name: str) -> None:
         setattr(self.desk.scene.display, name, bool(self._boxes[name].value))

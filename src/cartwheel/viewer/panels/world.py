@@ -37,7 +37,7 @@ class WorldPanel(Panel):
             visible=False,
             order=910,
         )
-        self._delete.on_click(self.page.on(lambda _: self.delete()))
+        self._delete.on_click(self.page.do(self.delete))
 
     def select(self, name: str | None) -> None:
         """Selects a model, or none; selecting the selected one lets go of it."""
@@ -89,7 +89,7 @@ class WorldPanel(Panel):
                 row = self.gui.add_button(
                     name, color="gray", icon=self.page.viser.Icon.CUBE, order=100 + i
                 )
-                row.on_click(self.page.on(lambda _, name=name: self.select(name)))
+                row.on_click(self.page.do(self.select, name))
                 self._rows[name] = row
         if self.selected is not None and self.selected not in names:
             self.select(None)
