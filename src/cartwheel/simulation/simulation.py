@@ -265,7 +265,7 @@ class Simulation:
             raise WorldError(
                 f'a model named "{name}" stands in the world already',
                 origin=description.origin,
-                hint=f'Choose another with --model, such as "{self._free_name(name)}", or delete it.',
+                hint=f'Give it another with --model, such as "{self._free_name(name)}".',
             )
         entry = ModelEntry(name=name, description=description, pose=pose or description.pose)
         resident = _Resident(entry, Part(self, entry))

@@ -121,7 +121,7 @@ class BodyBuilder:
             shape = contact.tyre(collision, joint)
             if isinstance(shape, Plane) and not entry.description.static:
                 raise WorldError(
-                    f'collision "{collision.name}": a plane is endless, so its model must be static',
+                    f'collision "{collision.name}": an endless plane must be static',
                     origin=collision.origin,
                     hint="Use a flat box instead, or <static>true</static>.",
                 )
