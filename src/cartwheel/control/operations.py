@@ -1,0 +1,258 @@
+"""What another process may ask of a running simulation.
+
+Everything here runs on the thread of the connection that asked. Files are read and
+messages are checked there; only what touches the physics goes to the simulation's thread.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any, TypeVar
+
+from cartwheel.control.parameters import Parameters
+from cartwheel.control.protocol import PATIENCE
+from cartwheel.description.model import RobotDescription
+from cartwheel.errors import ControlError, GraphError, UnknownNameError
+from cartwheel.geometry import Pose
+from cartwheel.graph import TopicInfo, resolve_name
+from cartwheel.messages import decode_cdr, from_dict, service_classes, to_dict, type_name
+from cartwheel.session import Session
+from cartwheel.simulation import RunState
+
+T = TypeVar("T")
+Answer = dict[str, Any]
+Load = Callable[[Path, Mapping[str, str]], RobotDescription]
+"""Reads the description in a file, given the values of ``name:=value``."""
+
+
+class Operations:
+    """The requests by name; each takes parameters and a payload and gives an answer.
+
+    Args:
+        session: What they act on.
+        load: Reads the file of a ``spawn``.
+    """
+
+    def __init__(self, session: Session, load: Load) -> None:
+        self._session = session
+        self._simulation = session.simulation
+        self._graph = session.graph
+        self._load = load
+        self._by_name: dict[str, Callable[[Parameters, bytes], Answer]] = {
+            "status": self.status,
+            "pause": self.pause,
+            "resume": self.resume,
+            "step": self.step,
+            "reset": self.reset,
+            "speed": self.speed,
+            "models": self.models,
+            "spawn": self.spawn,
+            "delete": self.delete,
+            "topics": self.topics,
+            "topic": self.topic,
+            "publish": self.publish,
+            "services": self.services,
+            "call": self.call,
+        }
+
+    def run(self, name: str, parameters: Parameters, payload: bytes) -> Answer:
+        """Does what a request asks.
+
+        Raises:
+            CartwheelError: It cannot be done.
+        """
+        if name not in self._by_name:
+            raise UnknownNameError("request", name, self._by_name)
+        return self._by_name[name](parameters, payload)
+
+    # -- time
+
+    def status(self, _: Parameters, __: bytes) -> Answer:
+        simulation = self._simulation
+
+        def read() -> Answer:
+            return {
+                "time": simulation.time_ns / 1e9,
+                "time_ns": simulation.time_ns,
+                "step": simulation.step_ns / 1e9,
+                "state": simulation.run_state.value,
+                "speed": simulation.speed,
+                "real_time_factor": simulation.real_time_factor,
+                "world": simulation.world.name,
+                "models": list(simulation.models),
+                "warnings": sum(d.severity != "info" for d in simulation.diagnostics),
+            }
+
+        return self._on_simulation(read)
+
+    def pause(self, _: Parameters, __: bytes) -> Answer:
+        return self._then_time(self._simulation.pause)
+
+    def resume(self, _: Parameters, __: bytes) -> Answer:
+        return self._then_time(self._simulation.resume)
+
+    def reset(self, _: Parameters, __: bytes) -> Answer:
+        return self._then_time(self._simulation.reset)
+
+    def step(self, parameters: Parameters, _: bytes) -> Answer:
+        """Answers when the steps are done."""
+        simulation = self._simulation
+        count = parameters.whole("count", 1, 1, 1_000_000_000)
+        self._on_simulation(lambda: simulation.step(count))
+
+        def left() -> bool:
+            return bool(simulation.steps_allowed) and simulation.run_state is RunState.PAUSED
+
+        while self._on_simulation(left):
+            time.sleep(0.002)
+        return self._then_time(lambda: None)
+
+    def speed(self, parameters: Parameters, _: bytes) -> Answer:
+        """A positive number, or null for as fast as it can."""
+        speed = None
+        if parameters.value("speed") is not None:
+            speed = parameters.number("speed")
+            if speed <= 0:
+                raise ControlError(
+                    f"a speed of {speed:g} is not above 0", hint="To hold time, pause."
+                )
+        return self._then_time(lambda: self._simulation.set_speed(speed))
+
+    # -- models
+
+    def models(self, _: Parameters, __: bytes) -> Answer:
+        simulation = self._simulation
+
+        def read() -> Answer:
+            placed = []
+            for model in simulation.scene.models:
+                pose = simulation.pose(model.name)
+                description = model.description
+                placed.append(
+                    {
+                        "name": model.name,
+                        "static": description.static,
+                        "mass": description.mass,
+                        "links": len(description.links),
+                        "joints": len(description.joints),
+                        "file": str(description.origin),
+                        "position": list(pose.position),
+                        "rpy": list(pose.rpy),
+                    }
+                )
+            return {"models": placed}
+
+        return self._on_simulation(read)
+
+    def spawn(self, parameters: Parameters, _: bytes) -> Answer:
+        """Reads the file here, so that the simulation goes on meanwhile."""
+        path = Path(parameters.text("file"))
+        if not path.is_absolute():
+            raise ControlError(f'"{path}" is no absolute path')
+        pose = None
+        axes = ("x", "y", "z", "roll", "pitch", "yaw")
+        if any(parameters.value(axis) is not None for axis in axes):
+            given = {axis: parameters.number(axis, 0.0) for axis in axes}
+            pose = Pose.from_xyz_rpy(
+                (given["x"], given["y"], given["z"]),
+                (given["roll"], given["pitch"], given["yaw"]),
+            )
+        description = self._load(path, parameters.texts("arguments"))
+        wanted = parameters.text("model", "") or None
+
+        def spawn() -> Answer:
+            before = len(self._session.diagnostics)
+            name = self._session.spawn(description, name=wanted, pose=pose)
+            warnings = [str(d) for d in self._session.diagnostics[before:] if d.severity != "info"]
+            return {"name": name, "mass": description.mass, "warnings": warnings}
+
+        return self._on_simulation(spawn)
+
+    def delete(self, parameters: Parameters, _: bytes) -> Answer:
+        name = parameters.text("model")
+        self._on_simulation(lambda: self._simulation.delete(name))
+        return {}
+
+    # -- graph
+
+    def topics(self, _: Parameters, __: bytes) -> Answer:
+        return {"topics": [_described(topic) for topic in self._graph.topics()]}
+
+    def topic(self, parameters: Parameters, _: bytes) -> Answer:
+        return _described(self.existing_topic(parameters.text("topic")))
+
+    def existing_topic(self, name: str) -> TopicInfo:
+        """A topic that somebody publishes or reads.
+
+        Raises:
+            UnknownNameError: There is none of that name.
+        """
+        name = resolve_name(name)
+        topics = {topic.name: topic for topic in self._graph.topics()}
+        if name not in topics:
+            raise UnknownNameError("topic", name, topics)
+        return topics[name]
+
+    def publish(self, parameters: Parameters, payload: bytes) -> Answer:
+        """A message as a mapping, or as CDR in the payload."""
+        name = resolve_name(parameters.text("topic"))
+        wanted = type_name(parameters.text("type"))
+        known = {topic.name: topic for topic in self._graph.topics()}
+        if payload:
+            message = decode_cdr(payload, wanted)
+        else:
+            message = from_dict(wanted, parameters.value("message") or {})
+        topic = known.get(name)
+        if topic is None:
+            # Nobody would ever read it, and names must not pile up in the graph.
+            return {"subscribers": 0, "topics": list(known)}
+        self._graph.publish(name, wanted, message)
+        return {"subscribers": len(topic.subscribers), "topics": []}
+
+    def services(self, _: Parameters, __: bytes) -> Answer:
+        return {
+            "services": [
+                {"name": service.name, "type": service.type, "node": service.node}
+                for service in self._graph.services()
+            ]
+        }
+
+    def call(self, parameters: Parameters, _: bytes) -> Answer:
+        service = self._graph.service(resolve_name(parameters.text("service")))
+        request_class, _response_class = service_classes(service.type)
+        request = from_dict(request_class.__msgtype__, parameters.value("request") or {})
+        response = self._on_simulation(lambda: service.handler(request))
+        if response is None:
+            raise GraphError(f'service "{service.name}" gave no answer')
+        return {"response": to_dict(response), "type": response.__msgtype__}
+
+    # -- the simulation's thread
+
+    def _on_simulation(self, function: Callable[[], T]) -> T:
+        future = self._simulation.call(function)
+        try:
+            return future.result(PATIENCE)
+        except TimeoutError as error:
+            future.cancel()
+            raise ControlError(f"the simulation did not answer in {PATIENCE:.0f} s") from error
+
+    def _then_time(self, function: Callable[[], None]) -> Answer:
+        def run() -> Answer:
+            function()
+            simulation = self._simulation
+            return {"time": simulation.time_ns / 1e9, "state": simulation.run_state.value}
+
+        return self._on_simulation(run)
+
+
+def _described(topic: TopicInfo) -> Answer:
+    return {
+        "name": topic.name,
+        "type": topic.type,
+        "publishers": list(topic.publishers),
+        "subscribers": list(topic.subscribers),
+        "rate": topic.rate,
+        "qos": topic.qos,
+    }

@@ -1,0 +1,69 @@
+"""What a request says, read with errors that name the wrong parameter."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from cartwheel.errors import ControlError
+
+
+class Parameters:
+    """The parameters of one request.
+
+    Args:
+        values: As the client sent them.
+
+    Raises:
+        ControlError: They are no mapping.
+    """
+
+    def __init__(self, values: Any) -> None:
+        if not isinstance(values, dict):
+            raise ControlError("the request's parameters are no mapping")
+        self._values: dict[str, Any] = values
+
+    def text(self, name: str, default: str | None = None) -> str:
+        """A text; needed where there is no default."""
+        value = self._values.get(name)
+        if value is None and default is not None:
+            return default
+        if not isinstance(value, str):
+            raise ControlError(f'the request\'s "{name}" is no text')
+        return value
+
+    def texts(self, name: str) -> dict[str, str]:
+        """Texts by text."""
+        value = self._values.get(name) or {}
+        if not isinstance(value, dict) or not all(isinstance(v, str) for v in value.values()):
+            raise ControlError(f'the request\'s "{name}" is no mapping of texts')
+        return value
+
+    def number(self, name: str, default: float | None = None) -> float:
+        """A finite number; needed where there is no default."""
+        value = self._values.get(name, default)
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            raise ControlError(f'the request\'s "{name}" is no number')
+        if not math.isfinite(value):
+            raise ControlError(f'the request\'s "{name}" is {value}, which is no finite number')
+        return float(value)
+
+    def whole(self, name: str, default: int, low: int, high: int) -> int:
+        """A whole number within limits."""
+        value = self.number(name, default)
+        if value != int(value) or not low <= value <= high:
+            raise ControlError(
+                f'the request\'s "{name}" is {value:g}, not a whole number of {low} to {high}'
+            )
+        return int(value)
+
+    def flag(self, name: str, *, default: bool) -> bool:
+        """True or false."""
+        value = self._values.get(name, default)
+        if not isinstance(value, bool):
+            raise ControlError(f'the request\'s "{name}" is neither true nor false')
+        return value
+
+    def value(self, name: str) -> Any:
+        """Whatever was given."""
+        return self._values.get(name)

@@ -1,0 +1,140 @@
+"""Frames on a stream: a header in JSON and bytes beside it.
+
+A frame is ``CW``, the version, a zero, the two lengths as big-endian 32-bit numbers, the
+header and the payload. Whatever does not begin so is not read any further, nothing is read
+before there is room for it, and a frame that was begun must end in time.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import socket
+import struct
+import time
+from dataclasses import dataclass
+from typing import Any
+
+from cartwheel.errors import ControlError
+
+VERSION = 1
+MAX_HEADER = 4 << 20
+MAX_PAYLOAD = 64 << 20
+"""Bytes; an image of 4000 by 4000 fits."""
+FRAME_SECONDS = 10.0
+"""In which a frame that was begun must arrive."""
+
+PATIENCE = 30.0
+"""s that a simulation may take for one request."""
+
+_MAGIC = b"CW"
+_START = struct.Struct(">2sBxII")
+_CHUNK = 1 << 18
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Frame:
+    header: dict[str, Any]
+    payload: bytes = b""
+
+
+def pack(header: dict[str, Any], payload: bytes = b"") -> bytes:
+    """The bytes of a frame.
+
+    Raises:
+        ControlError: It is larger than a frame may be.
+    """
+    text = json.dumps(header, separators=(",", ":")).encode()
+    if len(text) > MAX_HEADER or len(payload) > MAX_PAYLOAD:
+        raise ControlError(
+            f"{max(len(text), len(payload)) / 1e6:.0f} MB are too much for one message"
+        )
+    return _START.pack(_MAGIC, VERSION, len(text), len(payload)) + text + payload
+
+
+class Connection:
+    """Frames over a connected socket, which it owns; for one thread at a time."""
+
+    def __init__(self, sock: socket.socket) -> None:
+        self.sock = sock
+
+    def send(self, header: dict[str, Any], payload: bytes = b"") -> None:
+        """Sends a frame; waits while the other side does not read.
+
+        Raises:
+            OSError: The other side is gone.
+        """
+        self.send_packed(pack(header, payload))
+
+    def send_packed(self, data: bytes) -> None:
+        """Sends what `pack` made."""
+        self.sock.settimeout(None)
+        self.sock.sendall(data)
+
+    def receive(self, timeout: float | None = None) -> Frame | None:
+        """The next frame; None where the other side has closed.
+
+        Args:
+            timeout: Seconds to wait for its beginning; None waits as long as it takes.
+
+        Raises:
+            ControlError: These are no frames of this version.
+            TimeoutError: None began in `timeout`, or one was not finished in time.
+            OSError: The connection broke.
+        """
+        self.sock.settimeout(timeout)
+        start = bytearray(self.sock.recv(1))
+        if not start:
+            return None
+        deadline = time.monotonic() + FRAME_SECONDS
+        start += self._read(_START.size - 1, deadline)
+        magic, version, header_size, payload_size = _START.unpack(start)
+        if magic != _MAGIC:
+            raise ControlError("these bytes are not of Cartwheel")
+        if version != VERSION:
+            raise ControlError(
+                f"version {version} of the protocol is spoken there, {VERSION} here",
+                hint="The simulation and the command come from different releases of Cartwheel.",
+            )
+        if header_size > MAX_HEADER or payload_size > MAX_PAYLOAD:
+            raise ControlError("a frame is larger than a frame may be")
+        text = self._read(header_size, deadline)
+        payload = self._read(payload_size, deadline)
+        try:
+            header = json.loads(text)
+        except (ValueError, RecursionError) as error:
+            raise ControlError("a frame's header is no JSON") from error
+        if not isinstance(header, dict):
+            raise ControlError("a frame's header is no mapping")
+        return Frame(header=header, payload=bytes(payload))
+
+    def has_ended(self) -> bool:
+        """Whether the other side has closed, or says something that nobody asked for."""
+        self.sock.settimeout(0.0)
+        try:
+            self.sock.recv(1, socket.MSG_PEEK)
+        except BlockingIOError:
+            return False
+        except OSError:
+            pass
+        return True
+
+    def close(self) -> None:
+        """Ends the connection, and wakes whoever waits on it."""
+        with contextlib.suppress(OSError):  # The other side may have been first.
+            self.sock.shutdown(socket.SHUT_RDWR)
+        self.sock.close()
+
+    def _read(self, size: int, deadline: float) -> bytearray:
+        """Exactly that many bytes; room is made as they come, not as they are promised."""
+        data = bytearray()
+        while len(data) < size:
+            left = deadline - time.monotonic()
+            if left <= 0:
+                raise TimeoutError("a frame was not finished in time")
+            self.sock.settimeout(left)
+            chunk = self.sock.recv(min(size - len(data), _CHUNK))
+            if not chunk:
+                raise ConnectionResetError("the other side closed in the middle of a frame")
+            data += chunk
+        return data

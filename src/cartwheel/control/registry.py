@@ -1,0 +1,178 @@
+"""Which simulations run on this computer: one socket and one small file for each.
+
+They lie in a folder that belongs to the user alone, so that nobody else can steer or
+impersonate a simulation.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import socket
+import stat
+import time
+from collections.abc import Iterable
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+
+from cartwheel.errors import ControlError
+
+VARIABLE = "CARTWHEEL_SIM"
+"""Names the simulation that commands mean where several run."""
+
+_LONGEST_SOCKET = 100
+"""Bytes of a socket's path; the system's own limit is 104 or 108."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Running:
+    """A simulation that runs."""
+
+    pid: int
+    title: str
+    """What it simulates, in a few words."""
+    world: str
+    url: str | None = None
+    """Of the viewer; None without one."""
+    port: int | None = None
+    started: float = field(default_factory=time.time)
+    """Seconds since 1970."""
+    path: Path
+    """Of its socket."""
+
+    def __str__(self) -> str:
+        since = time.strftime("%H:%M:%S", time.localtime(self.started))
+        page = f", {self.url}" if self.url else ""
+        return f"{self.pid}: {self.title}{page}, since {since}"
+
+
+def folder() -> Path:
+    """The user's folder of sockets; made where it is missing.
+
+    Raises:
+        ControlError: Somebody else could write there.
+    """
+    base = os.environ.get("XDG_RUNTIME_DIR", "")
+    chosen = Path(base, "cartwheel") if base.startswith("/") and Path(base).is_dir() else None
+    if chosen is None or len(os.fsencode(chosen)) > _LONGEST_SOCKET - len("/4194304-99.sock"):
+        # Every process of the user must come to the same folder, so TMPDIR has no say.
+        chosen = Path(f"/tmp/cartwheel-{os.getuid()}")  # noqa: S108 - owner and mode are checked
+    try:
+        chosen.mkdir(mode=0o700, exist_ok=True)
+        found = chosen.lstat()
+    except OSError as error:
+        raise ControlError(f"{chosen} cannot be used: {error.strerror}") from error
+    if not stat.S_ISDIR(found.st_mode) or found.st_uid != os.getuid():
+        raise ControlError(f"{chosen} belongs to somebody else", hint="Set XDG_RUNTIME_DIR.")
+    if found.st_mode & 0o077:
+        chosen.chmod(0o700)
+    return chosen
+
+
+def running() -> list[Running]:
+    """All simulations of this user, oldest first; what dead ones left behind is removed."""
+    found = []
+    for file in sorted(folder().glob("*.json")):
+        entry = _read(file)
+        if entry is not None and answers(entry.path):
+            found.append(entry)
+        else:
+            file.unlink(missing_ok=True)
+            file.with_suffix(".sock").unlink(missing_ok=True)
+    return sorted(found, key=lambda entry: entry.started)
+
+
+def find(pid: int | None = None) -> Running:
+    """The simulation that a command means: the only one, or the one named.
+
+    Args:
+        pid: Of its process; the variable `VARIABLE` stands in for it.
+
+    Raises:
+        ControlError: There is none, or several and none is named.
+    """
+    known = running()
+    if pid is None:
+        pid = _pid_of_environment()
+    if pid is not None:
+        for entry in known:
+            if entry.pid == pid:
+                return entry
+        raise ControlError(f"no simulation runs as process {pid}", hint=_listing(known))
+    if not known:
+        raise ControlError("no simulation is running; start one with: cartwheel run")
+    if len(known) > 1:
+        raise ControlError(
+            f"{len(known)} simulations are running; name one with --sim PID", hint=_listing(known)
+        )
+    return known[0]
+
+
+def listen() -> tuple[socket.socket, Path]:
+    """A listening socket of this process in the folder."""
+    base = folder()
+    for count in range(1, 100):
+        name = str(os.getpid()) if count == 1 else f"{os.getpid()}-{count}"
+        path = base / f"{name}.sock"
+        server = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+        if path.exists() and not answers(path):
+            # Left by a dead process whose number this one has now.
+            path.unlink(missing_ok=True)
+        try:
+            server.bind(str(path))
+        except OSError:
+            server.close()
+            continue
+        server.listen(128)
+        return server, path
+    raise ControlError(f"no socket can be made in {base}")
+
+
+def announce(entry: Running) -> None:
+    """Writes or replaces the file of a simulation; readers see the old or the new, never half."""
+    values = {name: value for name, value in asdict(entry).items() if name != "path"}
+    file = entry.path.with_suffix(".json")
+    draft = entry.path.with_suffix(".draft")
+    draft.write_text(json.dumps(values))
+    draft.replace(file)
+
+
+def withdraw(path: Path) -> None:
+    """Removes a simulation's files."""
+    path.with_suffix(".json").unlink(missing_ok=True)
+    path.unlink(missing_ok=True)
+
+
+def answers(path: Path) -> bool:
+    """Whether somebody listens at a socket."""
+    with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as probe:
+        probe.settimeout(1.0)
+        try:
+            probe.connect(str(path))
+        except (BlockingIOError, TimeoutError):
+            # Its queue is full: busy, but alive.
+            return True
+        except OSError:
+            return False
+    return True
+
+
+def _read(file: Path) -> Running | None:
+    try:
+        values = json.loads(file.read_text())
+        return Running(**values, path=file.with_suffix(".sock"))
+    except (OSError, ValueError, TypeError):
+        return None
+
+
+def _pid_of_environment() -> int | None:
+    text = os.environ.get(VARIABLE, "").strip()
+    if not text:
+        return None
+    if not text.isdecimal():
+        raise ControlError(f'{VARIABLE} is "{text}", which is no process number')
+    return int(text)
+
+
+def _listing(known: Iterable[Running]) -> str:
+    return "Running are:\n" + "\n".join(f"    {entry}" for entry in known) if known else "None is."

@@ -1,0 +1,138 @@
+"""The end of the control socket that a simulation holds."""
+
+from __future__ import annotations
+
+import contextlib
+import logging
+import os
+import threading
+from dataclasses import replace
+from typing import Any
+
+from cartwheel.control import registry
+from cartwheel.control.operations import Load, Operations
+from cartwheel.control.parameters import Parameters
+from cartwheel.control.protocol import Connection, Frame
+from cartwheel.control.registry import Running
+from cartwheel.control.stream import Streams
+from cartwheel.errors import CartwheelError, ControlError
+from cartwheel.session import Session
+
+MAX_CLIENTS = 64
+
+_log = logging.getLogger(__name__)
+
+
+class ControlServer:
+    """Lets other processes of the same user reach a session; starts at once.
+
+    Each client has a thread, which does one request after the other. A client that is slow,
+    silent or sends garbage costs that thread and a bounded queue, and nothing else.
+
+    Args:
+        session: To be reached.
+        title: What it simulates, in a few words.
+        load: Reads the file of a ``spawn``.
+
+    Raises:
+        ControlError: No socket can be made.
+    """
+
+    def __init__(self, session: Session, *, title: str, load: Load) -> None:
+        self._session = session
+        self._operations = Operations(session, load)
+        self._closed = threading.Event()
+        self._streams = Streams(session, self._closed)
+        self._lock = threading.Lock()
+        self._clients: set[Connection] = set()
+        self._socket, path = registry.listen()
+        self.entry = Running(
+            pid=os.getpid(), title=title, world=session.simulation.world.name, path=path
+        )
+        registry.announce(self.entry)
+        self._thread = threading.Thread(target=self._accept, name="control", daemon=True)
+        self._thread.start()
+
+    def announce(self, *, url: str | None, port: int | None) -> None:
+        """Tells where the viewer is."""
+        self.entry = replace(self.entry, url=url, port=port)
+        if not self._closed.is_set():
+            registry.announce(self.entry)
+
+    def close(self) -> None:
+        """Sends all clients away and removes the socket."""
+        if self._closed.is_set():
+            return
+        self._closed.set()
+        registry.withdraw(self.entry.path)
+        Connection(self._socket).close()
+        with self._lock:
+            clients = list(self._clients)
+        for client in clients:
+            client.close()
+
+    def _accept(self) -> None:
+        while not self._closed.is_set():
+            try:
+                sock, _ = self._socket.accept()
+            except OSError:
+                if self._closed.wait(0.05):
+                    return
+                continue  # Out of file descriptors, perhaps: others may free some.
+            client = Connection(sock)
+            with self._lock:
+                full = len(self._clients) >= MAX_CLIENTS
+                if not full:
+                    self._clients.add(client)
+            if full or self._closed.is_set():
+                # It reads the end of the stream; an answer could keep this thread waiting.
+                client.close()
+                continue
+            threading.Thread(
+                target=self._serve, args=(client,), name="control-client", daemon=True
+            ).start()
+
+    def _serve(self, client: Connection) -> None:
+        try:
+            while (frame := client.receive()) is not None and not self._closed.is_set():
+                if frame.header.get("request") == "subscribe":
+                    if self._stream(client, frame):
+                        return
+                else:
+                    client.send(self._answer(frame))
+        except ControlError as error:
+            # No frame: what follows cannot be understood either.
+            with contextlib.suppress(OSError):
+                client.send({"error": str(error)})
+        except OSError:
+            pass  # It is gone, or took too long; nobody is left to be told.
+        finally:
+            client.close()
+            with self._lock:
+                self._clients.discard(client)
+
+    def _stream(self, client: Connection, frame: Frame) -> bool:
+        """Serves a subscription to its end; returns whether there was one."""
+        try:
+            parameters = _parameters(frame)
+            topic = self._operations.existing_topic(parameters.text("topic"))
+            self._streams.serve(client, topic, parameters)
+        except CartwheelError as error:
+            client.send({"error": str(error)})
+            return False
+        return True
+
+    def _answer(self, frame: Frame) -> dict[str, Any]:
+        try:
+            name = Parameters(frame.header).text("request")
+            answer = self._operations.run(name, _parameters(frame), frame.payload)
+        except CartwheelError as error:
+            return {"error": str(error)}
+        except Exception as error:  # noqa: BLE001 - a fault of ours must not end the simulation
+            _log.debug("a request failed", exc_info=True)
+            return {"error": f"the simulation could not do this: {error!r}"}
+        return {"ok": answer}
+
+
+def _parameters(frame: Frame) -> Parameters:
+    return Parameters(frame.header.get("parameters", {}))

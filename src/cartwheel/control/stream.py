@@ -1,0 +1,81 @@
+"""A topic's messages to clients, for as long as they read."""
+
+from __future__ import annotations
+
+import threading
+from typing import Any
+
+from cartwheel.control.parameters import Parameters
+from cartwheel.control.protocol import Connection, pack
+from cartwheel.graph import Mailbox, TopicInfo
+from cartwheel.messages import CdrCache
+from cartwheel.session import Session
+
+_LOOK = 0.2
+"""s between two looks whether the client is still there."""
+_QUEUE = 200
+_LARGE = {"sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage", "sensor_msgs/msg/PointCloud2"}
+_LARGE_QUEUE = 5
+"""Unread messages held for a client; the oldest are dropped and counted."""
+_BATCH = 1 << 18
+"""Bytes sent at once."""
+
+
+class Streams:
+    """Serves the subscriptions of all clients, each on the thread of its connection.
+
+    Args:
+        session: Whose topics.
+        closed: Ends all streams when set.
+    """
+
+    def __init__(self, session: Session, closed: threading.Event) -> None:
+        self._session = session
+        self._closed = closed
+        self._cache = CdrCache(depth=8)
+
+    def serve(self, client: Connection, topic: TopicInfo, parameters: Parameters) -> None:
+        """Sends a topic's messages until the client or the simulation ends.
+
+        A frame's header has the message's simulation time and how many were dropped so far.
+
+        Raises:
+            CartwheelError: The parameters make no sense; nothing was sent.
+            OSError: The client is gone.
+        """
+        with_data = parameters.flag("data", default=True)
+        usual = _LARGE_QUEUE if with_data and topic.type in _LARGE else _QUEUE
+        box = Mailbox(parameters.whole("queue", usual, 1, 10_000))
+        simulation = self._session.simulation
+
+        def put(message: Any) -> None:
+            # On the simulation's thread: the time of the message is known only now.
+            box.put((simulation.time_ns, message if with_data else None))
+
+        subscription = self._session.graph.subscribe(
+            topic.name, put, type_name=topic.type, node="cartwheel topic"
+        )
+        try:
+            client.send({"ok": {"topic": topic.name, "type": topic.type}})
+            while not self._closed.is_set():
+                first = box.get(_LOOK)
+                if first is not None:
+                    self._send(client, topic.name, [first, *box.drain()], box.dropped)
+                elif client.has_ended():
+                    return
+        finally:
+            subscription.close()
+            self._cache.forget(topic.name)
+
+    def _send(self, client: Connection, topic: str, items: list[Any], dropped: int) -> None:
+        batch: list[bytes] = []
+        size = 0
+        for time_ns, message in items:
+            data = b"" if message is None else self._cache.encode(topic, message)
+            batch.append(pack({"time_ns": time_ns, "dropped": dropped}, data))
+            size += len(batch[-1])
+            if size > _BATCH:
+                client.send_packed(b"".join(batch))
+                batch, size = [], 0
+        if batch:
+            client.send_packed(b"".join(batch))

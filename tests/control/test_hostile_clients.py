@@ -1,0 +1,151 @@
+"""Garbage, half-open and greedy clients do not disturb a simulation."""
+
+import contextlib
+import random
+import socket
+import struct
+import tracemalloc
+
+import pytest
+
+from cartwheel.control import ControlClient, protocol
+from cartwheel.control.protocol import pack
+from cartwheel.control.server import MAX_CLIENTS
+from cartwheel.errors import ControlError
+
+
+def connect(server):
+    sock = socket.socket(socket.AF_UNIX)
+    sock.connect(str(server.entry.path))
+    sock.settimeout(5)
+    return sock
+
+
+def alive(session):
+    """The simulation answers, and its time goes on."""
+    with ControlClient() as client:
+        client.request("resume")
+        before = client.request("status")["time_ns"]
+        client.request("step", count=3)
+        assert client.request("status")["time_ns"] > before
+        client.request("resume")
+
+
+def test_random_bytes(server, session):
+    random.seed(1)
+    for _ in range(200):
+        with connect(server) as sock, contextlib.suppress(OSError):
+            sock.sendall(random.randbytes(random.randrange(1, 300)))
+    alive(session)
+
+
+def test_frames_with_damage(server, session):
+    good = pack({"request": "status"}, b"payload")
+    random.seed(2)
+    for _ in range(300):
+        damaged = bytearray(good)
+        for _ in range(random.randrange(1, 4)):
+            damaged[random.randrange(len(damaged))] = random.randrange(256)
+        with connect(server) as sock, contextlib.suppress(OSError):
+            sock.sendall(bytes(damaged[: random.randrange(1, len(damaged) + 1)]))
+    alive(session)
+
+
+def test_random_requests(server, session):
+    """Well-formed frames with parameters of every wrong kind are refused, one by one."""
+    random.seed(3)
+    names = ["status", "spawn", "delete", "topic", "publish", "call", "speed", "step", "subscribe"]
+    values = [None, True, -1, 1.5, 1e308, "", "x", "/a b", [], {}, [[]], {"a": 1}, "\0", "é" * 50]
+    keys = ["topic", "type", "message", "service", "request_", "file", "model", "x", "count"]
+    keys += ["arguments", "queue", "data"]
+    with connect(server) as sock:
+        connection = protocol.Connection(sock)
+        for _ in range(400):
+            parameters = {key: random.choice(values) for key in random.sample(keys, 4)}
+            connection.send({"parameters": parameters, "request": random.choice([*names, *values])})
+            answer = connection.receive(5)
+            assert set(answer.header) <= {"ok", "error"}
+            assert "Traceback" not in str(answer.header)
+    alive(session)
+
+
+def test_half_frames_and_silence_hold_up_nobody(server, session, monkeypatch):
+    monkeypatch.setattr(protocol, "FRAME_SECONDS", 0.3)
+    good = pack({"request": "status"})
+    silent = [connect(server) for _ in range(10)]
+    halves = [connect(server) for _ in range(10)]
+    for index, sock in enumerate(halves):
+        sock.sendall(good[: index + 1])
+    alive(session)
+    for sock in halves:
+        # The frame was not finished in time: the simulation hangs up.
+        assert sock.recv(1) == b""
+    for sock in (*silent, *halves):
+        sock.close()
+    alive(session)
+
+
+@pytest.mark.parametrize("sizes", [(0xFFFFFFFF, 0), (2, 0xFFFFFFFF), (5 << 20, 5), (2, 65 << 20)])
+def test_sizes_beyond_the_limits_are_refused_unread(server, session, sizes):
+    with connect(server) as sock:
+        sock.sendall(struct.pack(">2sBxII", b"CW", 1, *sizes))
+        assert b"larger than a frame may be" in sock.recv(1000)
+        assert sock.recv(1) == b""
+    alive(session)
+
+
+def test_another_version_is_said(server):
+    with connect(server) as sock:
+        sock.sendall(struct.pack(">2sBxII", b"CW", 2, 2, 0) + b"{}")
+        assert b"version 2 of the protocol is spoken there, 1 here" in sock.recv(1000)
+
+
+def test_a_promise_of_bytes_takes_no_memory(server, session):
+    tracemalloc.start()
+    clients = []
+    for _ in range(20):
+        sock = connect(server)
+        sock.sendall(struct.pack(">2sBxII", b"CW", 1, 2, 60 << 20) + b"{}" + b"x" * 1000)
+        clients.append(sock)
+    alive(session)
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert peak < 20 << 20
+    for sock in clients:
+        sock.close()
+
+
+def test_a_reader_that_stops_reading_takes_no_memory(server, session, eventually):
+    """At full speed, with a queue of two hundred messages, for thousands of messages."""
+    sock = connect(server)
+    sock.sendall(pack({"request": "subscribe", "parameters": {"topic": "/twist"}}))
+    with ControlClient() as client:
+        client.request("speed", speed=None)
+        tracemalloc.start()
+        start = client.request("status")["time"]
+        eventually(lambda: client.request("status")["time"] > start + 1000)
+        current, _ = tracemalloc.get_traced_memory()
+        tracemalloc.stop()
+        client.request("speed", speed=1.0)
+    assert current < 4 << 20
+    sock.close()
+
+
+def test_too_many_clients_are_sent_away_and_room_comes_back(server, session, eventually):
+    crowd = [connect(server) for _ in range(MAX_CLIENTS)]
+    with pytest.raises(ControlError, match="too many clients"), ControlClient() as client:
+        client.request("status")
+    for sock in crowd:
+        sock.close()
+    eventually(lambda: not server._clients)
+    alive(session)
+
+
+def test_disconnects_in_the_middle_of_answers(server, session, eventually):
+    for _ in range(100):
+        sock = connect(server)
+        sock.sendall(pack({"request": "subscribe", "parameters": {"topic": "/clock"}}) * 3)
+        sock.close()
+    eventually(lambda: not server._clients)
+    assert session.graph.topic("/clock").subscribers == ()
+    alive(session)
