@@ -39,9 +39,10 @@ class Desk:
         """s of wall time of the state that is being shown."""
         self.robot: str | None = None
         """The model that the camera follows and that things are inserted in front of."""
-        self.scene = SceneView(page, selected=lambda name: self._world.select(name))
+        self.scene = SceneView(page)
         self.overlays = Overlays(self)
         self._panels = self._build()
+        self.scene.selected = self._world.select
         self._graph_changed = -1
         self._watched = False
         page.on_clients = self._clients_changed
@@ -85,7 +86,6 @@ class Desk:
         with camera.add_tab("Camera", icons.CAMERA):
             panels.append(CameraPanel(self))
         camera.dock_below(gui.main_panel)
-        gui.main_panel.set_height(500)
 
         left = gui.add_panel()
         tab: Any = left.add_tab("World", icons.WORLD)
@@ -107,7 +107,6 @@ class Desk:
         with lower.add_tab("Warnings", icons.ALERT_TRIANGLE):
             panels.append(NotesPanel(self))
         lower.dock_below(left)
-        left.set_height(360)
         return panels
 
 

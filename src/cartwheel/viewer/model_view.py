@@ -32,7 +32,7 @@ COLLISION: Rgba = (0.96, 0.55, 0.15, 0.45)
 INERTIA: Rgba = (0.55, 0.30, 0.75, 0.45)
 _SEE_THROUGH = 0.35
 _STILL = 1e-5
-"""m, and parts of a unit quaternion: below what a screen shows, above what resting bodies shiver."""
+"""m, and parts of a unit quaternion: no screen shows less, and resting bodies shiver less."""
 
 
 class ModelView:
@@ -70,6 +70,7 @@ class ModelView:
         self._frames = [self._frame(link) for link in description.links]
         self._shown = np.full((len(self._frames), 7), np.nan)
         self._layers: dict[str, list[tuple[Any, float]]] = {}
+        self._grounds: list[Any] = []
         self._size = _size_of(description)
 
     @property
@@ -136,7 +137,7 @@ class ModelView:
                 handle.visible = wanted
             if name in ("names", "inertia"):
                 continue
-            value = own * opacity
+            value = own if handle in self._grounds else own * opacity
             shown = None if value >= 1.0 else value
             if handle.opacity != shown:
                 handle.opacity = shown
@@ -211,14 +212,16 @@ class ModelView:
             f"{self.path(link.name)}/{name}",
             surface.vertices,
             surface.faces,
-            color=_rgb(surface.rgba),
+            color=_rgb(_lighten(surface.rgba) if ground else surface.rgba),
             opacity=None if alpha >= 1.0 else alpha,
             side="double" if alpha < 1.0 else "front",
             cast_shadow=not ground and alpha >= 1.0,
             # Just below the height that it collides at, and below the grid that lies there.
             position=(0.0, 0.0, -0.004 if ground else 0.0),
         )
-        if self._clicked is not None and not ground:
+        if ground:
+            self._grounds.append(handle)
+        elif self._clicked is not None:
             handle.on_click(self._clicked)
         return handle, alpha
 
@@ -234,7 +237,7 @@ class ModelView:
 
 
 def inertia_box(inertial: Inertial) -> tuple[Pose, tuple[float, float, float]]:
-    """The box of uniform density with the same mass and inertia: its pose in the link, its edges in m."""
+    """The uniform box of the same mass and inertia: its pose in the link, its edges in m."""
     tensor = np.array(
         [
             [inertial.ixx, inertial.ixy, inertial.ixz],
@@ -314,6 +317,12 @@ def _within(positions: Array, quaternions: Array, root: int) -> tuple[Array, Arr
     turned[turned[:, 0] < 0] *= -1
     inside[root], turned[root] = positions[root], quaternions[root]
     return inside, turned
+
+
+def _lighten(rgba: Rgba) -> Rgba:
+    """Half way to white: the ground is the stage, and shadows and dark robots show on it."""
+    red, green, blue, alpha = rgba
+    return ((red + 1) / 2, (green + 1) / 2, (blue + 1) / 2, alpha)
 
 
 def _rgb(rgba: Sequence[float]) -> tuple[int, int, int]:

@@ -51,8 +51,8 @@ class Page:
 
     def __init__(self, host: str, port: int, *, title: str, keys: tuple[str, ...] = ()) -> None:
         # 0.2 s that must not come before the simulation's first clock.
-        import viser  # noqa: PLC0415
-        from viser import _messages  # noqa: PLC0415
+        import viser
+        from viser import _messages
 
         check_port(host, port)
         self.viser = viser
@@ -177,7 +177,7 @@ def _script(title: str, keys: tuple[str, ...]) -> str:
 
 def _quietly(function: Callable[[], T]) -> T:
     """Without viser's own banner: the command line says where the page is."""
-    import rich  # noqa: PLC0415 - viser has imported it already
+    import rich
 
     console = rich.get_console()
     before, console.quiet = console.quiet, True

@@ -21,12 +21,12 @@ class SceneView:
 
     Args:
         page: To draw on.
-        selected: Called with a model's name when it is clicked.
     """
 
-    def __init__(self, page: Page, *, selected: Callable[[str], None] = lambda _: None) -> None:
+    def __init__(self, page: Page) -> None:
         self._page = page
-        self._selected = selected
+        self.selected: Callable[[str], None] = lambda _: None
+        """Called with a model's name when it is clicked."""
         self.display = Display()
         self.models: dict[str, ModelView] = {}
         self.snapshot: Snapshot | None = None
@@ -83,7 +83,7 @@ class SceneView:
             name,
             description,
             problem=problem,
-            clicked=self._page.do(self._selected, name),
+            clicked=self._page.on(lambda _: self.selected(name)),
         )
         view.show(self.display)
         return view

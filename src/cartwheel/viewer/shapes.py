@@ -136,7 +136,7 @@ def _coloured(shape: Shape, rgba: Rgba | None) -> list[Surface]:
 
 @lru_cache(maxsize=128)
 def _mean_colour(texture: object) -> Rgba | None:
-    from PIL import Image  # noqa: PLC0415 - 20 ms that few descriptions need
+    from PIL import Image
 
     source = io.BytesIO(texture) if isinstance(texture, bytes) else texture
     try:
@@ -237,7 +237,7 @@ def _round(radius: float, length: float) -> tuple[Floats, Ints]:
 
 
 def _heightmap(shape: Heightmap) -> tuple[Floats, Ints]:
-    from PIL import Image  # noqa: PLC0415 - 20 ms that few descriptions need
+    from PIL import Image
 
     with Image.open(shape.path) as image:
         side = min(129, *image.size)

@@ -83,7 +83,7 @@ class Viewer:
 
     def _run(self) -> None:
         try:
-            from cartwheel.viewer.desk import Desk  # noqa: PLC0415 - viser must not delay the clock
+            from cartwheel.viewer.desk import Desk
 
             page = Page(self._host, self._port, title="Cartwheel", keys=KEYS)
             self._desk: Any = Desk(page, self._session)

@@ -53,7 +53,7 @@ class BumperPanel(Panel):
         if self.page.clients:
             self.watch()
 
-    def update(self, snapshot: Snapshot, now: float) -> None:
+    def update(self, snapshot: Snapshot, now: float) -> None:  # noqa: ARG002
         states: list[Any] = []
         for box in self._boxes.values():
             messages = box.drain()

@@ -132,7 +132,7 @@ class CameraPanel(Panel):
 
 
 def pixels_of(message: Any) -> NDArray[np.uint8] | None:
-    """An image message as RGB, shape (height, width, 3); None for an encoding that is not colour."""
+    """An image message as RGB, shape (height, width, 3); None for an encoding without colours."""
     channels = _CHANNELS.get(message.encoding)
     if channels is None or not message.height or not message.width:
         return None

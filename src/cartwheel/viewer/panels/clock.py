@@ -30,13 +30,11 @@ class ClockPanel(Panel):
         page, gui = self.page, self.gui
         self._due = Every(8)
         self._text = gui.add_html(clock_html(None))
-        self._pause = gui.add_button("Pause", icon=page.viser.Icon.PLAYER_PAUSE, hint="space")
-        self._pause.on_click(page.do(self.toggle))
-        self._buttons = gui.add_button_group("Time", ("Step", "Reset"))
+        self._buttons = gui.add_button_group("Time", ("Pause", "Step", "Reset"))
         self._buttons.on_click(page.on(self._press))
         self._speed = gui.add_dropdown("Speed", tuple(SPEEDS), initial_value="1 (real time)")
         self._speed.on_update(page.on(self._set_speed))
-        space = gui.add_command("Pause or resume", hotkey=" ", icon=page.viser.Icon.PLAYER_PAUSE)
+        space = gui.add_command("Pause or resume", hotkey="space")
         space.on_trigger(page.do(self.toggle))
         gui.add_command("Step").on_trigger(page.do(self.step))
         gui.add_command("Reset the simulation").on_trigger(page.do(self.reset))
@@ -65,9 +63,7 @@ class ClockPanel(Panel):
         paused = snapshot.run_state is RunState.PAUSED
         if paused != self._paused:
             self._paused = paused
-            icons = self.page.viser.Icon
-            self._pause.label = "Resume" if paused else "Pause"
-            self._pause.icon = icons.PLAYER_PLAY if paused else icons.PLAYER_PAUSE
+            self._buttons.options = ("Resume" if paused else "Pause", "Step", "Reset")
         if snapshot.speed != self._shown_speed:
             # Somebody else, a command line or another browser, has set it.
             self._shown_speed = snapshot.speed
@@ -80,7 +76,7 @@ class ClockPanel(Panel):
                 self._text.content = content
 
     def _press(self, event: Any) -> None:
-        {"Step": self.step, "Reset": self.reset}[event.target.value]()
+        {"Step": self.step, "Reset": self.reset}.get(event.target.value, self.toggle)()
 
     def _set_speed(self, event: Any) -> None:
         if event.client is None:

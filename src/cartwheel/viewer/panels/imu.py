@@ -63,7 +63,7 @@ class ImuPanel(Panel):
         if self.page.clients:
             self.watch()
 
-    def update(self, snapshot: Snapshot, now: float) -> None:
+    def update(self, snapshot: Snapshot, now: float) -> None:  # noqa: ARG002
         if self._box is None or not self._due(now):
             return
         messages = self._box.drain()

@@ -47,7 +47,7 @@ class InsertPanel(Panel):
             CartwheelError: It cannot be loaded; the simulation goes on undisturbed.
         """
         # Here, as reading a xacro takes a while that the simulation has not.
-        from cartwheel.description import load_robot  # noqa: PLC0415 - not needed before
+        from cartwheel.description import load_robot
 
         description: RobotDescription = load_robot(path)
         simulation, session = self.simulation, self.session

@@ -22,7 +22,7 @@ class NotesPanel(Panel):
         self._shown = -1
         self._list = self.gui.add_html("")
 
-    def update(self, snapshot: Snapshot, now: float) -> None:
+    def update(self, snapshot: Snapshot, now: float) -> None:  # noqa: ARG002
         if not self._due(now):
             return
         diagnostics = self.session.diagnostics

@@ -50,7 +50,7 @@ class TopicsPanel(Panel):
             self._topic.options = names
             self._topic.value = chosen if chosen in names else _NONE
 
-    def update(self, snapshot: Snapshot, now: float) -> None:
+    def update(self, snapshot: Snapshot, now: float) -> None:  # noqa: ARG002
         tap = self._tap
         if tap is None or tap.count == self._shown or not self._due(now):
             return
