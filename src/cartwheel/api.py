@@ -9,10 +9,11 @@ from typing import Any
 
 from cartwheel import description as descriptions
 from cartwheel.description.model import RobotDescription, WorldDescription
-from cartwheel.errors import Diagnostic
+from cartwheel.errors import Diagnostic, GraphError, suggestion
 from cartwheel.geometry import Pose
 from cartwheel.graph import Graph, Mailbox
-from cartwheel.messages import convert, type_name
+from cartwheel.messages import from_dict, type_name
+from cartwheel.messages.fields import fields as fields_of
 from cartwheel.session import Session
 from cartwheel.simulation.clock import NANOSECONDS, to_ns
 
@@ -162,8 +163,8 @@ class World:
 
         Args:
             topic: Its name.
-            message: A message, a mapping of its fields, or nothing:
-            fields: Then its fields, nested ones joined by ``_``: ``linear_x=0.5``.
+            message: A message or a mapping of its fields; zeros without either.
+            fields: Instead of it, its fields, nested ones joined by ``_``: ``linear_x=0.5``.
 
         Raises:
             UnknownNameError: There is no such topic.
@@ -171,9 +172,9 @@ class World:
         """
         kind = self.graph.topic(topic).type
         if fields:
-            message = convert.from_flat(kind, fields)
-        elif isinstance(message, Mapping):
-            message = convert.from_dict(kind, message)
+            message = _nested(kind, fields)
+        if message is None or isinstance(message, Mapping):
+            message = from_dict(kind, message or {})
         self.graph.publish(topic, kind, message)
 
     def subscribe(
@@ -193,6 +194,34 @@ class World:
     def close(self) -> None:
         """Frees what the world holds."""
         self.session.close()
+
+
+def _nested(kind: str, flat: Mapping[str, Any]) -> dict[str, Any]:
+    """``{"linear_x": 0.5}`` as ``{"linear": {"x": 0.5}}``, by the fields that the type has."""
+    nested: dict[str, Any] = {}
+    for name, value in flat.items():
+        path = _path(kind, name)
+        if path is None:
+            known = [field.name for field in fields_of(kind)]
+            raise GraphError(f'{kind} has no field "{name}"', hint=suggestion(name, known))
+        inner = nested
+        for part in path[:-1]:
+            inner = inner.setdefault(part, {})
+        inner[path[-1]] = value
+    return nested
+
+
+def _path(kind: str, name: str) -> tuple[str, ...] | None:
+    """The fields that lead to a flat name; a field's own name may hold ``_`` as well."""
+    fields = fields_of(kind)
+    if any(field.name == name for field in fields):
+        return (name,)
+    for field in fields:
+        if field.kind == "message" and not field.array and name.startswith(f"{field.name}_"):
+            rest = _path(field.type, name.removeprefix(f"{field.name}_"))
+            if rest is not None:
+                return (field.name, *rest)
+    return None
 
 
 __all__ = ["Model", "World"]
