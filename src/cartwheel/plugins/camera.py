@@ -97,14 +97,7 @@ class Camera(Plugin[CameraParameters]):
             f"{base}/{config.info_topic}", "sensor_msgs/msg/CameraInfo", rate=told, qos="sensor"
         )
         self._blind = False
-        self._start_noise()
         self.part.schedule(rate, after=self._publish, active=self._wanted)
-
-    def reset(self) -> None:
-        self._start_noise()
-
-    def _start_noise(self) -> None:
-        self._random = self.part.random(f"camera {self._camera.name}")
 
     def _wanted(self) -> bool:
         return self._image.wanted or self._compressed.wanted or self._info.wanted
@@ -134,7 +127,8 @@ class Camera(Plugin[CameraParameters]):
         lens = self._lens
         if lens.noise_stddev <= 0 and lens.noise_mean == 0:
             return pixels
-        noise = self._random.normal(lens.noise_mean, lens.noise_stddev, pixels.shape) * 255
+        random = self.part.random(f"camera {self._camera.name}")
+        noise = random.normal(lens.noise_mean, lens.noise_stddev, pixels.shape) * 255
         return np.clip(pixels + noise, 0, 255).astype(np.uint8)
 
     def _raw(self, now: int, pixels: Any) -> Any:

@@ -63,13 +63,6 @@ class _ImuBase(Plugin[Any]):
             topic, "sensor_msgs/msg/Imu", rate=rate or None, qos="sensor"
         )
         self.part.schedule(rate, after=self._measure, active=lambda: self._publisher.wanted)
-        self._start_noise()
-
-    def reset(self) -> None:
-        self._start_noise()
-
-    def _start_noise(self) -> None:
-        self._random = self.part.random(f"imu {self.tag.name}")
 
     def _measure(self) -> None:
         orientation = quat_multiply(self._link.pose.orientation, self._mount.orientation)
@@ -78,8 +71,9 @@ class _ImuBase(Plugin[Any]):
         acceleration = self._link.proper_acceleration(self._mount.position)
         rate, acceleration = self._turn @ rate, self._turn @ acceleration
         if self._noise > 0:
-            rate = rate + self._random.normal(0.0, self._noise, 3)
-            acceleration = acceleration + self._random.normal(0.0, self._noise, 3)
+            random = self.part.random(f"imu {self._publisher.topic}")
+            rate = rate + random.normal(0.0, self._noise, 3)
+            acceleration = acceleration + random.normal(0.0, self._noise, 3)
         x, y, z, w = orientation
         self._publisher.publish(
             self._Imu(

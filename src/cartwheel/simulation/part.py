@@ -146,8 +146,17 @@ class Part:
         )
 
     def random(self, name: str) -> np.random.Generator:
-        """Noise of its own for each named user: the same for the same seed, whoever else draws."""
-        words = [self._simulation.seed, zlib.crc32(self.name.encode()), zlib.crc32(name.encode())]
+        """The noise of this moment, a sequence of its own for each named user.
+
+        It depends on the seed, the time and the two names alone: who else draws, who listens
+        and since when change nothing. Take a new one for each measurement.
+        """
+        words = [
+            self._simulation.seed,
+            zlib.crc32(self.name.encode()),
+            zlib.crc32(name.encode()),
+            self._simulation.time_ns,
+        ]
         return np.random.default_rng(words)
 
     def contacts(self, collisions: Collection[str]) -> list[Contact]:
