@@ -1,0 +1,228 @@
+#!/usr/bin/env python3
+"""Write docs/plugins.md from the plugins themselves: names, tags, units, defaults, topics.
+
+    python tools/make_plugin_reference.py            # writes the file
+    python tools/make_plugin_reference.py --check    # exits with 1 where the file is out of date
+
+The tags come from the parameter dataclasses. The topics come from a plugin that is really made,
+on a robot of three links, with every switch on; nothing here knows a plugin by name.
+"""
+
+from __future__ import annotations
+
+import argparse
+import dataclasses
+import inspect
+import sys
+import typing
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from cartwheel.description.model import (
+    CameraIntrinsics,
+    Collision,
+    Element,
+    Joint,
+    Link,
+    PluginTag,
+    RobotDescription,
+    Sensor,
+    Sphere,
+    WorldDescription,
+)
+from cartwheel.errors import Origin
+from cartwheel.geometry import Pose
+from cartwheel.graph import Graph
+from cartwheel.plugins.base import Plugin
+from cartwheel.plugins.registry import plugins
+from cartwheel.session import Session
+from cartwheel.simulation import Part
+from cartwheel.world.entry import ModelEntry
+
+TARGET = Path(__file__).resolve().parent.parent / "docs" / "plugins.md"
+HERE = Origin(file="<reference>")
+MODEL, SENSOR = "my_robot", "my_sensor"
+
+INTRODUCTION = """\
+# Plugins and sensors
+
+<!-- Made by tools/make_plugin_reference.py from the code: `make docs` writes it anew. -->
+
+What Cartwheel reads inside `<plugin filename="…">`, plugin by plugin. A tag may be written in any
+of its spellings; the first that is present counts. A tag that a plugin does not know is reported
+with its file and line. `<robotNamespace>` (or `<ros><namespace>`) goes before every topic and
+service that does not begin with `/`, and `<ros><remapping>` renames them. `<alwaysOn>` is accepted
+everywhere and changes nothing: a plugin works whenever somebody reads what it publishes.
+
+A file name counts without its path, with or without `lib` and `.so`; `ignition-gazebo-` is read as
+`gz-sim-`. A plugin that is not in this list is reported when the robot is loaded, with what it
+would have done left out.
+
+A package of your own adds plugins through the entry point group `cartwheel.plugins`; each entry
+names a subclass of `cartwheel.plugins.base.Plugin`.
+"""
+
+
+def main() -> int:
+    """Writes or checks the file; returns the exit status."""
+    parser = argparse.ArgumentParser(description="Write docs/plugins.md from the plugins.")
+    parser.add_argument("--check", action="store_true", help="only say whether it is up to date")
+    arguments = parser.parse_args()
+    text = reference()
+    if arguments.check:
+        if TARGET.is_file() and TARGET.read_text() == text:
+            return 0
+        print(f"{TARGET.name} is out of date: run `make docs`", file=sys.stderr)
+        return 1
+    TARGET.write_text(text)
+    return 0
+
+
+def reference() -> str:
+    """The whole page."""
+    # Not those of packages that happen to be installed here.
+    ours = [
+        plugin
+        for plugin in dict.fromkeys(plugins().values())
+        if plugin.__module__.startswith("cartwheel.")
+    ]
+    contents = "\n".join(f"- [`{p.filenames[0]}`](#{_anchor(p.filenames[0])})" for p in ours)
+    return "\n".join([INTRODUCTION, contents, "", *(_section(plugin) for plugin in ours)])
+
+
+def _section(plugin: type[Plugin[Any]]) -> str:
+    lines = [f"## {plugin.filenames[0]}", "", *_prose(plugin), ""]
+    if len(plugin.filenames) > 1:
+        others = ", ".join(f"`{name}`" for name in plugin.filenames[1:])
+        lines += [f"Also answers to {others}.", ""]
+    inside = "inside a `<sensor>`"
+    if not plugin.for_sensor:
+        inside = "directly inside a `<gazebo>` of a URDF or a `<model>` of an SDF"
+    lines += [f"Written {inside}.", ""]
+    lines += ["| tag | other spellings | value | default | what it is |", "|---|---|---|---|---|"]
+    lines += [_row(item, kind) for item, kind in _fields(plugin)]
+    lines += ["", "| topic or service | type | with these defaults |", "|---|---|---|"]
+    lines += _interface(plugin)
+    return "\n".join([*lines, ""])
+
+
+def _prose(plugin: type[Plugin[Any]]) -> list[str]:
+    paragraphs = inspect.cleandoc(plugin.__doc__ or "").replace("``", "`").split("\n\n")
+    return "\n\n".join(" ".join(part.split()) for part in paragraphs).splitlines()
+
+
+def _fields(plugin: type[Plugin[Any]]) -> Iterator[tuple[dataclasses.Field[Any], Any]]:
+    hints = typing.get_type_hints(plugin.parameters)
+    for item in dataclasses.fields(plugin.parameters):
+        yield item, hints[item.name]
+
+
+def _row(item: dataclasses.Field[Any], kind: Any) -> str:
+    first, *others = item.metadata["tags"]
+    spellings = ", ".join(f"`{name}`" for name in others)
+    value = _kind(kind)
+    if item.metadata["unit"]:
+        value = f"{value}, {item.metadata['unit']}"
+    cells = [f"`{first}`", spellings, value, _default(item), item.metadata["doc"]]
+    return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"
+
+
+def _kind(kind: Any) -> str:
+    options = typing.get_args(kind)
+    if typing.get_origin(kind) is typing.Literal:
+        return " or ".join(f"`{option}`" for option in options)
+    if type(None) in options:
+        return _kind(next(option for option in options if option is not type(None)))
+    if typing.get_origin(kind) is tuple:
+        return "texts" if options == (str, Ellipsis) else f"{len(options)} numbers"
+    names = {bool: "true or false", float: "number", int: "whole number", str: "text"}
+    return names.get(kind, getattr(kind, "__name__", str(kind)))
+
+
+def _default(item: dataclasses.Field[Any]) -> str:
+    value = item.default
+    if value is dataclasses.MISSING:
+        return "must be given"
+    if value is None or value == "":
+        return ""
+    if isinstance(value, bool):
+        return "`true`" if value else "`false`"
+    if isinstance(value, tuple):
+        return f"`{' '.join(f'{part:g}' for part in value)}`"
+    return f"`{value:g}`" if isinstance(value, float) else f"`{value}`"
+
+
+def _interface(plugin: type[Plugin[Any]]) -> list[str]:
+    """What a plugin puts on the graph, as rows; made from one that is there."""
+    graph = Graph()
+    session = Session(WorldDescription(name="reference"))
+    description = _robot(plugin)
+    entry = ModelEntry(name=MODEL, description=description, pose=Pose())
+    sensor = description.links[0].sensors[0] if plugin.for_sensor else None
+    tag = sensor.plugins[0] if sensor else description.plugins[0]
+    made = plugin(Part(session.simulation, entry), graph, tag, sensor)
+    rows = []
+    for topic in graph.topics():
+        for role, nodes in (("publishes", topic.publishers), ("reads", topic.subscribers)):
+            if nodes:
+                rows.append((role, topic.name, topic.type))
+    rows += [("offers", service.name, service.type) for service in graph.services()]
+    made.close()
+    session.close()
+    return [f"| `{name}` | `{kind}` | {role} |" for role, name, kind in rows]
+
+
+def _robot(plugin: type[Plugin[Any]]) -> RobotDescription:
+    """A robot on which any plugin finds what it needs under its default names."""
+    switches = [_element(item.metadata["tags"][0], text="true")
+                for item, kind in _fields(plugin) if kind is bool]  # fmt: skip
+    needed = [_element(item.metadata["tags"][0], text="base_footprint")
+              for item, _ in _fields(plugin) if item.default is dataclasses.MISSING]  # fmt: skip
+    element = _element("plugin", children=(*switches, *needed))
+    tag = PluginTag(name="plugin", filename=plugin.filenames[0], element=element, origin=HERE)
+    sensor = Sensor(
+        name=SENSOR,
+        type="any",
+        link="base_footprint",
+        update_rate=10.0,
+        cameras=(CameraIntrinsics(),),
+        collisions=("base_footprint_collision",),
+        plugins=(tag,) if plugin.for_sensor else (),
+        element=_element("sensor"),
+        origin=HERE,
+    )
+    body = Collision(name="base_footprint_collision", shape=Sphere(radius=0.1), origin=HERE)
+    links = [Link(name="base_footprint", collisions=(body,), sensors=(sensor,), origin=HERE)]
+    joints = []
+    for side in ("left", "right"):
+        links.append(Link(name=f"{side}_wheel", origin=HERE))
+        joints.append(
+            Joint(
+                name=f"{side}_joint",
+                type="continuous",
+                parent="base_footprint",
+                child=f"{side}_wheel",
+                origin=HERE,
+            )
+        )
+    return RobotDescription(
+        name=MODEL,
+        links=tuple(links),
+        joints=tuple(joints),
+        plugins=() if plugin.for_sensor else (tag,),
+        canonical_link="base_footprint",
+        origin=HERE,
+    )
+
+
+def _element(tag: str, *, text: str = "", children: tuple[Element, ...] = ()) -> Element:
+    return Element(tag=tag, text=text, children=children, origin=HERE)
+
+
+def _anchor(heading: str) -> str:
+    return "".join(c for c in heading.lower() if c.isalnum() or c in "-_ ").replace(" ", "-")
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
