@@ -16,6 +16,7 @@ from cartwheel.messages import (
     decode_cdr,
     encode_cdr,
     from_dict,
+    from_flat,
     message_class,
     store,
     to_dict,
@@ -107,6 +108,18 @@ def test_missing_fields_are_zero() -> None:
     }
     odometry = from_dict("nav_msgs/Odometry", {})
     assert odometry.pose.covariance.shape == (36,)
+
+
+def test_joined_names_reach_inner_fields() -> None:
+    twist = from_flat("geometry_msgs/Twist", {"linear_x": 0.5, "angular_z": 1, "linear_y": 2})
+    assert (twist.linear.x, twist.linear.y, twist.angular.z) == (0.5, 2.0, 1.0)
+    odometry = from_flat("nav_msgs/Odometry", {"header_frame_id": "a", "pose_pose_position_x": 3})
+    assert (odometry.header.frame_id, odometry.pose.pose.position.x) == ("a", 3.0)
+    assert from_flat("nav_msgs/Odometry", {"child_frame_id": "b"}).child_frame_id == "b"
+    with pytest.raises(GraphError, match='no field "linear.w"'):
+        from_flat("geometry_msgs/Twist", {"linear_w": 0.5})
+    with pytest.raises(GraphError, match='no field "speed"'):
+        from_flat("geometry_msgs/Twist", {"speed": 0.5})
 
 
 def test_lists_stand_for_fields_in_order() -> None:

@@ -7,7 +7,7 @@ messages are checked there; only what touches the physics goes to the simulation
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -23,8 +23,8 @@ from cartwheel.simulation import RunState
 
 T = TypeVar("T")
 Answer = dict[str, Any]
-Load = Callable[[Path, Mapping[str, str]], RobotDescription]
-"""Reads the description in a file, given the values of ``name:=value``."""
+Load = Callable[[Path, Mapping[str, str], Sequence[Path]], RobotDescription]
+"""Reads the description in a file, given ``name:=value`` and folders to look for packages in."""
 
 
 class Operations:
@@ -159,7 +159,11 @@ class Operations:
                 (given["x"], given["y"], given["z"]),
                 (given["roll"], given["pitch"], given["yaw"]),
             )
-        description = self._load(path, parameters.texts("arguments"))
+        description = self._load(
+            path,
+            parameters.texts("arguments"),
+            [Path(folder) for folder in parameters.list_of_texts("package_path")],
+        )
         wanted = parameters.text("model", "") or None
 
         def spawn() -> Answer:

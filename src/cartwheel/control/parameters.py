@@ -39,6 +39,13 @@ class Parameters:
             raise ControlError(f'the request\'s "{name}" is no mapping of texts')
         return value
 
+    def list_of_texts(self, name: str) -> list[str]:
+        """Texts in order."""
+        value = self._values.get(name) or []
+        if not isinstance(value, list) or not all(isinstance(v, str) for v in value):
+            raise ControlError(f'the request\'s "{name}" is no list of texts')
+        return value
+
     def number(self, name: str, default: float | None = None) -> float:
         """A finite number; needed where there is no default."""
         value = self._values.get(name, default)

@@ -47,6 +47,38 @@ def from_dict(type_name: str, mapping: Mapping[str, Any] | Sequence[Any]) -> Any
     return _message(message_class(type_name), mapping, "")
 
 
+def from_flat(type_name: str, values: Mapping[str, Any]) -> Any:
+    """A message from the values of fields at any depth, their names joined by ``_``.
+
+    Args:
+        type_name: ``geometry_msgs/msg/Twist`` or ``geometry_msgs/Twist``.
+        values: As keyword arguments give them: ``{"linear_x": 0.5}``.
+
+    Raises:
+        UnknownNameError: There is no such type.
+        GraphError: A field does not exist, or a value does not fit; names the field.
+    """
+    mapping: dict[str, Any] = {}
+    full = message_class(type_name).__msgtype__
+    for name, value in values.items():
+        inner = mapping
+        *outer, last = _split(full, name)
+        for part in outer:
+            inner = inner.setdefault(part, {})
+        inner[last] = value
+    return from_dict(full, mapping)
+
+
+def _split(type_name: str, name: str) -> list[str]:
+    """The fields that a joined name leads through; a name that leads nowhere stays whole."""
+    for field in fields(type_name):
+        if name == field.name:
+            return [name]
+        if name.startswith(f"{field.name}_") and field.kind == "message" and not field.array:
+            return [field.name, *_split(field.type, name.removeprefix(f"{field.name}_"))]
+    return [name]
+
+
 def zero(type_name: str) -> Any:
     """A message of zeros and empty texts and arrays.
 
