@@ -1,6 +1,6 @@
 // Runs once in every browser that opens the page. The keys themselves are commands of the page
-// (see panels/drive.py); this makes the keyboard theirs, where the browser or the camera
-// would take it first.
+// (see panels/drive.py); this makes the keyboard theirs, where the browser, a focused button or
+// the camera would take it first.
 (() => {
   if (window.cartwheelPage) return;
   window.cartwheelPage = true;
@@ -12,58 +12,50 @@
 
   const root = document.documentElement;
   const known = new Set(__KEYS__);
+  const clicked = ["checkbox", "radio", "button", "submit", "range", "file"];
   const typing = (target) =>
-    target.isContentEditable || ["INPUT", "TEXTAREA", "SELECT"].includes(target.tagName);
+    target.isContentEditable ||
+    ["TEXTAREA", "SELECT"].includes(target.tagName) ||
+    (target.tagName === "INPUT" && !clicked.includes(target.type));
+
+  // Not bubbling: only the commands listen at the root itself; the camera, which would fly along
+  // with w, q and e, listens further out.
   const press = (key) => {
-    const code = /^[a-z]$/.test(key) ? "Key" + key.toUpperCase() : "";
-    root.dispatchEvent(new KeyboardEvent("keydown", { key, code, bubbles: false }));
-  };
-  const light = (key) => {
     const cap = document.querySelector(`[data-key="${CSS.escape(key)}"]`);
-    if (!cap) return;
-    cap.classList.add("cw-pressed");
-    setTimeout(() => cap.classList.remove("cw-pressed"), 160);
+    if (cap) {
+      cap.classList.add("cw-pressed");
+      setTimeout(() => cap.classList.remove("cw-pressed"), 160);
+    }
+    root.dispatchEvent(new KeyboardEvent("keydown", { key, bubbles: false }));
   };
 
-  // At the root element: after the page's commands, which listen at the same place, and before
-  // the camera, which listens at the document and would fly along with w, q and e.
-  root.addEventListener("keydown", (event) => {
-    if (event.ctrlKey || event.metaKey || event.altKey || typing(event.target)) return;
-    if (event.key.length !== 1) return;
-    event.stopPropagation();
-    const key = event.key.toLowerCase();
-    if (known.has(key)) {
-      light(key);
-    } else if (known.has("k") && event.isTrusted) {
-      light("k");
-      press("k");
-    }
-  });
+  const ours = (event) =>
+    event.isTrusted &&
+    event.key.length === 1 &&
+    !(event.ctrlKey || event.metaKey || event.altKey) &&
+    !typing(event.target);
 
-  // A button that was clicked keeps the focus, and space would click it again.
+  // While it is on its way down, so that no focused button or tab takes space for a click.
   root.addEventListener(
     "keydown",
     (event) => {
-      if (event.key !== " " || typing(event.target)) return;
+      if (!ours(event)) return;
+      event.stopPropagation();
       event.preventDefault();
-      if (document.activeElement && document.activeElement !== document.body) {
-        document.activeElement.blur();
-      }
+      const key = event.key.toLowerCase();
+      if (known.has(key)) press(key);
+      else if (known.has("k")) press("k");
     },
     true,
   );
-  root.addEventListener(
-    "keyup",
-    (event) => {
-      if (event.key === " " && !typing(event.target)) event.preventDefault();
-    },
-    true,
-  );
+  root.addEventListener("keyup", (event) => ours(event) && event.preventDefault(), true);
 
   document.addEventListener("click", (event) => {
     const cap = event.target.closest("[data-key]");
-    if (!cap) return;
-    light(cap.dataset.key);
-    press(cap.dataset.key);
+    if (cap) press(cap.dataset.key);
+    // A list keeps the focus after the choice, and the next key would search in it.
+    if (event.target.closest("[role=option]")) {
+      setTimeout(() => document.activeElement && document.activeElement.blur(), 0);
+    }
   });
 })();

@@ -102,7 +102,6 @@ def set_stage(page: Page) -> None:
     page.scene.world_axes.visible = False
     page.scene.configure_default_lights(enabled=True, cast_shadow=True)
     page.scene.configure_environment_map("park", environment_intensity=0.35)
-    page.scene.configure_fog(18.0, 60.0, color=(236, 240, 244))
     camera = page.server.initial_camera
     camera.position = (-1.9, -2.3, 1.5)
     camera.look_at = (0.7, 0.1, 0.1)
