@@ -1,0 +1,113 @@
+"""What panels make of messages, without a browser."""
+
+import math
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from cartwheel.errors import Diagnostic, Origin
+from cartwheel.graph import TopicInfo
+from cartwheel.messages import header, message_class
+from cartwheel.viewer.panels.base import Every
+from cartwheel.viewer.panels.bumper import light_html, other_side
+from cartwheel.viewer.panels.camera import pixels_of
+from cartwheel.viewer.panels.imu import row_of, thin
+from cartwheel.viewer.panels.notes import notes_html
+from cartwheel.viewer.panels.topics import list_html
+
+
+def image(encoding, data, *, width, height, step):
+    return SimpleNamespace(
+        encoding=encoding,
+        width=width,
+        height=height,
+        step=step,
+        data=np.array(data, dtype=np.uint8),
+    )
+
+
+def test_bgr_becomes_rgb():
+    picture = pixels_of(image("bgr8", [1, 2, 3, 4, 5, 6], width=2, height=1, step=6))
+    assert picture.tolist() == [[[3, 2, 1], [6, 5, 4]]]
+
+
+def test_padding_at_the_end_of_a_row_is_no_pixel():
+    data = [10, 20, 99, 99, 30, 40, 99, 99]
+    picture = pixels_of(image("mono8", data, width=2, height=2, step=4))
+    assert picture[:, :, 0].tolist() == [[10, 20], [30, 40]]
+    assert picture.shape == (2, 2, 3)
+
+
+def test_an_encoding_without_colours_is_refused():
+    assert pixels_of(image("32FC1", [0] * 8, width=2, height=1, step=8)) is None
+
+
+def test_an_imu_message_becomes_a_row():
+    vector = message_class("geometry_msgs/msg/Vector3")
+    zeros = np.zeros(9)
+    message = message_class("sensor_msgs/msg/Imu")(
+        header=header(2_500_000_000, "imu"),
+        orientation=message_class("geometry_msgs/msg/Quaternion")(
+            x=0.0, y=0.0, z=math.sin(math.radians(15)), w=math.cos(math.radians(15))
+        ),
+        orientation_covariance=zeros,
+        angular_velocity=vector(x=1.0, y=2.0, z=3.0),
+        angular_velocity_covariance=zeros,
+        linear_acceleration=vector(x=4.0, y=5.0, z=9.8),
+        linear_acceleration_covariance=zeros,
+    )
+    assert row_of(message) == pytest.approx((2.5, 1, 2, 3, 4, 5, 9.8, 0, 0, 30))
+
+
+def test_thinning_keeps_the_newest_row():
+    table = np.arange(1000.0)[:, None]
+    thinned = thin(table, 160)
+    assert thinned[-1, 0] == 999
+    assert 100 <= len(thinned) <= 160
+    assert (np.diff(thinned[:, 0]) > 0).all()
+
+
+def test_the_light_names_the_models_hit_and_escapes_them():
+    lit = light_html(("wall::link::c", "a<b::l::c", "wall::link::d"), known=True)
+    assert "cw-hit" in lit
+    assert "wall, a&lt;b" in lit
+    assert "<b::" not in lit
+    assert "cw-hit" not in light_html((), known=True)
+
+
+def test_what_is_hit_is_not_the_sensors_own_collision():
+    state = SimpleNamespace(collision1_name="cart::base::c", collision2_name="post::link::c")
+    assert other_side(state) == "post::link::c"
+
+
+def test_topics_show_type_and_stated_rate():
+    info = TopicInfo(
+        name="/imu/data",
+        type="sensor_msgs/msg/Imu",
+        publishers=("imu",),
+        subscribers=(),
+        rate=100.0,
+        qos="default",
+    )
+    shown = list_html([info])
+    assert "/imu/data" in shown
+    assert "sensor_msgs/Imu" in shown
+    assert "100 Hz" in shown
+
+
+def test_warnings_stand_before_remarks_with_their_place():
+    notes = notes_html(
+        [
+            Diagnostic(severity="info", message="first"),
+            Diagnostic(severity="warning", message="second", origin=Origin(file="a.urdf", line=7)),
+        ]
+    )
+    assert notes.index("second") < notes.index("first")
+    assert "a.urdf:7" in notes
+
+
+def test_a_limit_of_rate_holds():
+    due = Every(10.0)
+    done = sum(due(i / 1000) for i in range(1000, 2000))
+    assert done == 10
