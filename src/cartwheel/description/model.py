@@ -5,6 +5,8 @@ inertial's and sensor's in its link, a joint's in its child link (`Joint.pose`).
 Every element carries the place in the user's file that made it.
 """
 
+# ruff: noqa: RUF009  (the defaults that are called for, such as Pose(), are frozen themselves)
+
 from __future__ import annotations
 
 from collections.abc import Iterator
@@ -137,6 +139,8 @@ class Material:
     """URDF material or Gazebo script name, as written."""
     diffuse: Rgba | None = None
     """None where the mesh's own colours are to be kept."""
+    yields_to_mesh: bool = False
+    """`diffuse` counts only where a mesh brings no colours: rviz's rule for a URDF's colours."""
     specular: float = 0.1
     emissive: Rgba = (0.0, 0.0, 0.0, 1.0)
     texture: Path | None = None
@@ -183,7 +187,7 @@ class Collision:
     name: str
     """Unique in its link; Gazebo's spelling for a URDF: ``<link>_collision``, then ``_1``, …"""
     aliases: tuple[str, ...] = ()
-    """Other spellings by which a sensor may name it, the lumped and the pre-lumping ones among them."""
+    """Other spellings by which a sensor may name it, those of lumped links among them."""
     pose: Pose = Pose()
     shape: Shape
     surface: Surface = Surface()
@@ -248,6 +252,8 @@ class Sensor:
     """SDF's word: camera, depth, imu, contact, ray, gpu_lidar, …"""
     link: str
     """The URDF's own link name, also where Gazebo would have lumped it away."""
+    joint: str | None = None
+    """The joint that it measures; `link` is that joint's child then."""
     pose: Pose = Pose()
     update_rate: float = 0.0
     """Hz; 0 is every step."""

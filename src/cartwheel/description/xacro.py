@@ -43,20 +43,6 @@ class Expansion:
     """The arguments that it, or a file it includes, declares or uses."""
 
 
-def is_xacro(root: Node) -> bool:
-    """Whether a tree needs expanding: xacro elements, or expressions under xacro's namespace."""
-    declared = "xmlns:xacro" in root.attributes
-    stack = [root]
-    while stack:
-        node = stack.pop()
-        if node.tag.startswith(PREFIX):
-            return True
-        if declared and any("${" in v or "$(" in v for v in (*node.attributes.values(), node.text)):
-            return True
-        stack.extend(node.children)
-    return False
-
-
 def expand(
     content: bytes | str, file: str, packages: Packages, arguments: Mapping[str, str]
 ) -> Expansion:

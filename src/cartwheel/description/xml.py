@@ -19,7 +19,7 @@ from cartwheel.geometry import Pose, Vec3
 
 MAX_BYTES = 64 * 1024 * 1024
 """Larger than any description; a mesh or a bag given by mistake stops here."""
-MAX_DEPTH = 150
+MAX_DEPTH = 100
 """Deeper nesting is damage, and would end in Python's own recursion limit."""
 
 
@@ -352,6 +352,20 @@ def parse(text: str | bytes, file: str = "<string>") -> Node:
     run_expat(text, file, builder)
     assert builder.root is not None
     return builder.root
+
+
+def needs_xacro(root: Node) -> bool:
+    """Whether a tree has xacro's elements, or expressions where it declares xacro's namespace."""
+    declared = "xmlns:xacro" in root.attributes
+    stack = [root]
+    while stack:
+        node = stack.pop()
+        if node.tag.startswith("xacro:"):
+            return True
+        if declared and any("${" in v or "$(" in v for v in (*node.attributes.values(), node.text)):
+            return True
+        stack.extend(node.children)
+    return False
 
 
 class _Builder:

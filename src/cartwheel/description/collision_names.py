@@ -1,0 +1,99 @@
+"""The names by which Gazebo's users know a URDF's collisions.
+
+Gazebo merges links over fixed joints and renames the collisions of those it merges, in ways
+that changed with its versions. A contact sensor may use any of the spellings.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+
+from cartwheel.description.model import Collision, Link, Sensor
+from cartwheel.description.urdf_tree import Tree
+from cartwheel.errors import Diagnostic, suggestion
+
+_LUMP = "_fixed_joint_lump__"
+
+
+def name_collisions(links: Sequence[Link], tree: Tree, preserved: Iterable[str]) -> list[Link]:
+    """The links with all the spellings of their collisions among the aliases.
+
+    Args:
+        links: Of the whole robot.
+        tree: Theirs.
+        preserved: The fixed joints over which Gazebo is told not to merge.
+    """
+    kept = frozenset(preserved)
+    by_name = {link.name: link for link in links}
+    # Gazebo numbers the collisions of all that it merges into one link in one sequence.
+    counts: dict[str, int] = {}
+    named: dict[str, Link] = {}
+    taken = {each.name for link in links for each in link.collisions}
+    taken.update(alias for link in links for each in link.collisions for alias in each.aliases)
+    for name in tree.order:
+        link = by_name.get(name)
+        if link is None:
+            continue
+        root = tree.lump_root(name, kept)
+        parent = tree.inbound[name].parent if name in tree.inbound else None
+        collisions = []
+        for index, collision in enumerate(link.collisions):
+            count = counts.get(root, 0)
+            counts[root] = count + 1
+            spellings = []
+            if root != name:
+                spellings = _lumped(root, parent, name, collision, index=index, count=count)
+            new = [each for each in dict.fromkeys(spellings) if each not in taken]
+            taken.update(new)
+            collisions.append(replace(collision, aliases=(*collision.aliases, *new)))
+        named[name] = replace(link, collisions=tuple(collisions))
+    return [named.get(link.name, link) for link in links]
+
+
+def _lumped(
+    root: str, parent: str | None, child: str, collision: Collision, *, index: int, count: int
+) -> list[str]:
+    own = f"_{index}" if index else ""
+    of_lump = f"_{count}" if count else ""
+    spellings = [
+        f"{root}{_LUMP}{child}_collision{own}",
+        f"{root}{_LUMP}{child}_collision_collision{own}",
+        f"{root}{_LUMP}{collision.name}",
+        f"{root}{_LUMP}{child}_collision{of_lump}",
+        f"{root}{_LUMP}{child}_collision_collision{of_lump}",
+        f"{root}_collision_{child}{own}",
+    ]
+    if parent is not None and parent != root:
+        spellings.append(f"{parent}_collision_{child}{own}")
+    return spellings
+
+
+def check_contact_sensors(links: Sequence[Link]) -> Iterable[Diagnostic]:
+    """A warning for each contact sensor that asks for a collision that does not exist."""
+    known = {
+        name
+        for link in links
+        for collision in link.collisions
+        for name in (collision.name, *collision.aliases)
+    }
+    for link in links:
+        for sensor in link.sensors:
+            yield from _unknown_collisions(sensor, link, known)
+
+
+def _unknown_collisions(sensor: Sensor, link: Link, known: set[str]) -> Iterable[Diagnostic]:
+    for asked in sensor.collisions:
+        name = asked.rpartition("::")[2]
+        if name in known:
+            continue
+        own = [collision.name for collision in link.collisions]
+        hint = suggestion(name, sorted(known))
+        if "Did you mean" not in hint:
+            hint = suggestion(name, own)
+        yield Diagnostic(
+            severity="warning",
+            message=f'sensor "{sensor.name}" watches the collision "{asked}", which does not '
+            f"exist: it will never report anything. {hint}",
+            origin=sensor.origin,
+        )

@@ -1,0 +1,244 @@
+"""What ``<gazebo reference="link">`` says: surface, colour, sensors, gravity, damping."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from cartwheel.description.materials import gazebo_material, unknown_material
+from cartwheel.description.model import Light, Link, Material, Sensor, Visual
+from cartwheel.description.sdf_context import Context, read_pose
+from cartwheel.description.sdf_light import read_light
+from cartwheel.description.sdf_material import read_material
+from cartwheel.description.sdf_sensors import read_sensor
+from cartwheel.description.urdf_link import UrdfContext
+from cartwheel.description.xml import Node
+
+LINK_TAGS = (
+    "material", "mu", "mu1", "mu2", "fdir1", "kp", "kd", "maxVel", "minDepth", "maxContacts",
+    "laserRetro", "selfCollide", "self_collide", "turnGravityOff", "gravity", "dampingFactor",
+    "velocity_decay", "kinematic", "canonicalBody", "visual", "collision", "sensor", "plugin",
+    "light", "projector",
+)  # fmt: skip
+
+_IDLE = {
+    "canonicalBody": "the root link is the robot's own frame",
+    "projector": "no pattern is projected",
+    "audio_source": "nothing is heard",
+    "audio_sink": "nothing is heard",
+    "battery": "a link carries no battery",
+    "particle_emitter": "there is no smoke",
+    "enable_wind": "there is no wind",
+    "must_be_base_link": "the root link always is the base",
+}
+_SURFACE = {
+    "mu": "mu1",
+    "mu1": "mu1",
+    "mu2": "mu2",
+    "kp": "kp",
+    "kd": "kd",
+    "maxVel": "max_vel",
+    "minDepth": "min_depth",
+}
+_SDF_SURFACE = {
+    "friction/ode/mu": "mu1",
+    "friction/ode/mu2": "mu2",
+    "friction/ode/slip1": "slip1",
+    "friction/ode/slip2": "slip2",
+    "friction/torsional/coefficient": "torsional",
+    "contact/ode/kp": "kp",
+    "contact/ode/kd": "kd",
+    "contact/ode/max_vel": "max_vel",
+    "contact/ode/min_depth": "min_depth",
+    "bounce/restitution_coefficient": "restitution",
+}
+
+
+@dataclass(slots=True)
+class LinkTags:
+    """What all tags of one link say together; a later tag overrides an earlier one."""
+
+    surface: dict[str, Any] = field(default_factory=dict)
+    """The fields of `Surface` that are stated."""
+    link: dict[str, Any] = field(default_factory=dict)
+    """The fields of `Link` that are stated."""
+    visual: dict[str, Any] = field(default_factory=dict)
+    """The fields of `Visual` that are stated."""
+    material: Material | None = None
+    laser_retro: float | None = None
+    sensors: list[Sensor] = field(default_factory=list)
+    lights: list[Light] = field(default_factory=list)
+
+    def apply(self, link: Link) -> Link:
+        """The link with all of it."""
+        collisions = link.collisions
+        if self.surface or self.laser_retro is not None:
+            collisions = tuple(
+                replace(
+                    each,
+                    surface=replace(each.surface, **self.surface),
+                    laser_retro=self.laser_retro,
+                )
+                for each in collisions
+            )
+        return replace(
+            link,
+            collisions=collisions,
+            visuals=tuple(self._seen(each) for each in link.visuals),
+            sensors=(*link.sensors, *self.sensors),
+            lights=(*link.lights, *self.lights),
+            **self.link,
+        )
+
+    def _seen(self, visual: Visual) -> Visual:
+        fields = dict(self.visual)
+        if self.laser_retro is not None:
+            fields.setdefault("laser_retro", self.laser_retro)
+        if self.material is not None:
+            known = self.material.diffuse is not None or self.material.texture is not None
+            fields["material"] = (
+                self.material if known else replace(visual.material, name=self.material.name)
+            )
+        return replace(visual, **fields) if fields else visual
+
+
+def read_link_tags(node: Node, link: str, tags: LinkTags, ctx: UrdfContext) -> None:
+    """Adds what one ``<gazebo>`` says of a link.
+
+    Args:
+        node: The element.
+        link: The link it refers to.
+        tags: What the tags before it said.
+        ctx: Finds textures, and takes the diagnostics.
+    """
+    _read_surface(node, _SURFACE, tags, ctx)
+    contacts = node.child("maxContacts")
+    if contacts is not None:
+        tags.surface["max_contacts"] = contacts.integer()
+    direction = node.child("fdir1")
+    if direction is not None:
+        values = direction.vec3()
+        tags.surface["fdir1"] = values if any(values) else None
+    retro = node.optional_number_at("laserRetro")
+    if retro is not None:
+        tags.laser_retro = retro
+    _read_motion(node, tags)
+    sdf = Context(ctx.packages, (1, 9), ctx.diagnostics)
+    material = node.child("material")
+    if material is not None:
+        tags.material = _material(material, sdf, ctx)
+    for visual in node.all("visual"):
+        _read_visual(visual, tags, sdf)
+    for collision in node.all("collision"):
+        _read_collision(collision, tags, ctx)
+    seen = {sensor.name for sensor in tags.sensors}
+    for sensor in node.all("sensor"):
+        read = read_sensor(sensor, link)
+        if read.name in seen:
+            ctx.tell(
+                "warning",
+                f'link "{link}" has two sensors of the name "{read.name}": '
+                "they may publish on one topic",
+                sensor.origin,
+            )
+        seen.add(read.name)
+        tags.sensors.append(read)
+    for light in node.all("light"):
+        tags.lights.append(read_light(light, read_pose(light.child("pose"))))
+    for tag, reason in _IDLE.items():
+        for child in node.all(tag):
+            child.mark()
+            ctx.tell("warning", f"<{tag}> has no effect here: {reason}", child.origin)
+
+
+def _read_surface(node: Node, paths: dict[str, str], tags: LinkTags, ctx: UrdfContext) -> None:
+    for path, name in paths.items():
+        found = node.find(path)
+        if found is None:
+            continue
+        value = found.number()
+        if value < 0:
+            ctx.tell(
+                "warning", f"{found.tag} {found.text} is below 0: the default counts", found.origin
+            )
+            continue
+        tags.surface[name] = value
+
+
+def _read_motion(node: Node, tags: LinkTags) -> None:
+    for tag in ("selfCollide", "self_collide"):
+        found = node.child(tag)
+        if found is not None:
+            tags.link["self_collide"] = found.boolean()
+    off = node.child("turnGravityOff")
+    if off is not None:
+        tags.link["gravity"] = not off.boolean()
+    gravity = node.child("gravity")
+    if gravity is not None:
+        tags.link["gravity"] = gravity.boolean()
+    kinematic = node.child("kinematic")
+    if kinematic is not None:
+        tags.link["kinematic"] = kinematic.boolean()
+    damping = node.optional_number_at("dampingFactor")
+    if damping is not None:
+        tags.link["linear_damping"] = tags.link["angular_damping"] = max(0.0, damping)
+    for which in ("linear", "angular"):
+        decay = node.optional_number_at(f"velocity_decay/{which}")
+        if decay is not None:
+            tags.link[f"{which}_damping"] = max(0.0, decay)
+
+
+def _material(node: Node, sdf: Context, ctx: UrdfContext) -> Material | None:
+    if node.children:
+        return _known(read_material(node, sdf), node, ctx)
+    return _known(Material(name=node.text), node, ctx)
+
+
+def _known(material: Material, node: Node, ctx: UrdfContext) -> Material | None:
+    """The material with the colour that its name stands for, where it states none itself."""
+    if material.diffuse is not None or material.texture is not None or not material.name:
+        return material if material.diffuse or material.texture else None
+    found = gazebo_material(material.name)
+    if found is None:
+        ctx.tell("warning", unknown_material(material.name), node.origin)
+        return material
+    return found
+
+
+def _read_visual(node: Node, tags: LinkTags, sdf: Context) -> None:
+    material = node.child("material")
+    if material is not None:
+        read = read_material(material, sdf)
+        found = gazebo_material(read.name) if read.diffuse is None else None
+        tags.material = found or read
+    transparency = node.optional_number_at("transparency")
+    if transparency is not None:
+        tags.visual["transparency"] = min(1.0, max(0.0, transparency))
+    shadows = node.child("cast_shadows")
+    if shadows is not None:
+        tags.visual["cast_shadows"] = shadows.boolean()
+    retro = node.optional_number_at("laser_retro")
+    if retro is not None:
+        tags.visual["laser_retro"] = retro
+
+
+def _read_collision(node: Node, tags: LinkTags, ctx: UrdfContext) -> None:
+    contacts = node.child("max_contacts")
+    if contacts is not None:
+        tags.surface["max_contacts"] = contacts.integer()
+    retro = node.optional_number_at("laser_retro")
+    if retro is not None:
+        tags.laser_retro = retro
+    surface = node.child("surface")
+    if surface is None:
+        return
+    _read_surface(surface, _SDF_SURFACE, tags, ctx)
+    bitmask = surface.find("contact/collide_bitmask")
+    if bitmask is not None:
+        try:
+            tags.surface["collide_bitmask"] = int(bitmask.text, 0)
+        except ValueError:
+            raise bitmask.fail(f'collide_bitmask "{bitmask.text}" is no whole number') from None
+    tags.surface["collide_without_contact"] = surface.boolean_at(
+        "contact/collide_without_contact", False
+    )

@@ -1,0 +1,195 @@
+"""The ``<gazebo>`` tags of a URDF: what they say of links, joints and the robot as a whole.
+
+Every element acts, or a diagnostic says that it does not, and why.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from cartwheel.description.gazebo_link_tags import LINK_TAGS, LinkTags, read_link_tags
+from cartwheel.description.model import Joint, Link, PluginTag
+from cartwheel.description.sdf_sensors import read_plugin, read_sensor
+from cartwheel.description.urdf_link import UrdfContext
+from cartwheel.description.xml import Node
+from cartwheel.errors import suggestion
+
+JOINT_TAGS = (
+    "stopCfm", "stopErp", "springReference", "springStiffness", "fudgeFactor", "provideFeedback",
+    "implicitSpringDamper", "cfmDamping", "disableFixedJointLumping", "preserveFixedJoint",
+    "sensor", "physics",
+)  # fmt: skip
+ROBOT_TAGS = ("plugin", "static", "self_collide", "selfCollide")
+
+_ROBOT_IDLE = {
+    "gripper": "nothing is attached by touching it",
+    "allow_auto_disable": "bodies that rest always cost next to nothing",
+    "enable_wind": "there is no wind",
+    "pose": "where a robot stands is said when it is spawned",
+    "link": "a link of SDF inside a URDF is not built",
+    "joint": "a joint of SDF inside a URDF is not built",
+    "model": "a model inside a URDF is not built",
+    "frame": "frames of SDF are not kept",
+    "verbose": "it never had one",
+}
+
+
+@dataclass(slots=True)
+class GazeboTags:
+    """All ``<gazebo>`` tags of a robot, by what they refer to."""
+
+    links: dict[str, LinkTags] = field(default_factory=dict)
+    joints: dict[str, dict[str, Any]] = field(default_factory=dict)
+    """The fields of `Joint` and, under ``axis``, of `Axis` that they state."""
+    robot_plugins: list[PluginTag] = field(default_factory=list)
+    static: bool = False
+    self_collide: bool = False
+
+    @property
+    def plugins(self) -> tuple[PluginTag, ...]:
+        """Those of the robot, in the file's order."""
+        return tuple(self.robot_plugins)
+
+    def apply_to_link(self, link: Link) -> Link:
+        """The link with what the tags say of it."""
+        tags = self.links.get(link.name)
+        return tags.apply(link) if tags is not None else link
+
+    def apply_to_joint(self, joint: Joint) -> Joint:
+        """The joint with what the tags say of it."""
+        fields = dict(self.joints.get(joint.name, {}))
+        axis = fields.pop("axis", None)
+        if axis:
+            fields["axis"] = replace(joint.axis, **axis)
+        return replace(joint, **fields) if fields else joint
+
+
+def read_gazebo_tags(
+    robot: Node, links: Collection[str], joints: Mapping[str, Joint], ctx: UrdfContext
+) -> GazeboTags:
+    """Reads all ``<gazebo>`` tags of a robot.
+
+    Args:
+        robot: The root.
+        links: The names of its links.
+        joints: Its joints by name.
+        ctx: Takes the diagnostics.
+
+    Raises:
+        DescriptionError: a reference to what does not exist, or a value that makes no sense.
+    """
+    tags = GazeboTags()
+    for node in robot.all("gazebo"):
+        reference = (node.get("reference") or "").strip()
+        if not reference:
+            _read_robot_tags(node, tags, ctx)
+            continue
+        if reference not in links and reference not in joints:
+            raise node.fail(
+                f'<gazebo> refers to "{reference}", which is neither a link nor a joint',
+                suggestion(reference, sorted({*links, *joints})),
+            )
+        if reference in links:
+            of_link = tags.links.setdefault(reference, LinkTags())
+            read_link_tags(node, reference, of_link, ctx)
+            tags.robot_plugins.extend(_plugins_of_link(node, reference, ctx))
+        if reference in joints:
+            _read_joint_tags(node, joints[reference], tags, ctx)
+        if (reference in links) != (reference in joints):
+            _tell_misplaced(node, reference, reference in links, ctx)
+    return tags
+
+
+def _read_robot_tags(node: Node, tags: GazeboTags, ctx: UrdfContext) -> None:
+    tags.robot_plugins.extend(read_plugin(plugin) for plugin in node.all("plugin"))
+    tags.static = node.boolean_at("static", tags.static)
+    tags.self_collide = node.boolean_at("self_collide", tags.self_collide)
+    tags.self_collide = node.boolean_at("selfCollide", tags.self_collide)
+    _tell_idle(node, _ROBOT_IDLE, ctx)
+    for child in node.children:
+        if child.tag in ROBOT_TAGS or child.tag in _ROBOT_IDLE:
+            continue
+        if child.tag in LINK_TAGS or child.tag in JOINT_TAGS:
+            kind = "link" if child.tag in LINK_TAGS else "joint"
+            node.all(child.tag)
+            child.mark()
+            ctx.tell(
+                "warning",
+                f"<{child.tag}> has no effect in a <gazebo> without a reference: it needs "
+                f'reference="…" with the name of a {kind}',
+                child.origin,
+            )
+
+
+def _plugins_of_link(node: Node, link: str, ctx: UrdfContext) -> list[PluginTag]:
+    plugins = [read_plugin(plugin) for plugin in node.all("plugin")]
+    for plugin in plugins:
+        ctx.tell(
+            "warning",
+            f'plugin "{plugin.name}" stands in the <gazebo> of link "{link}", where Gazebo '
+            "Classic does not load it; here it is loaded as a plugin of the robot",
+            plugin.origin,
+        )
+    return plugins
+
+
+def _read_joint_tags(node: Node, joint: Joint, tags: GazeboTags, ctx: UrdfContext) -> None:
+    fields = tags.joints.setdefault(joint.name, {})
+    axis = fields.setdefault("axis", {})
+    for tag, name in (("stopCfm", "stop_cfm"), ("stopErp", "stop_erp")):
+        value = node.optional_number_at(tag)
+        if value is not None:
+            fields[name] = value
+    for tag, name in (
+        ("springStiffness", "spring_stiffness"),
+        ("springReference", "spring_reference"),
+    ):
+        value = node.optional_number_at(tag)
+        if value is not None:
+            axis[name] = value
+    for tag, name in (
+        ("provideFeedback", "provide_feedback"),
+        ("implicitSpringDamper", "implicit_spring_damper"),
+        ("cfmDamping", "implicit_spring_damper"),
+        ("preserveFixedJoint", "preserve_fixed"),
+        ("disableFixedJointLumping", "preserve_fixed"),
+        ("physics/provide_feedback", "provide_feedback"),
+        ("physics/ode/provide_feedback", "provide_feedback"),
+        ("physics/ode/implicit_spring_damper", "implicit_spring_damper"),
+    ):
+        found = node.find(tag)
+        if found is not None:
+            # Two tags keep a fixed joint; one that says no takes nothing from the other.
+            fields[name] = found.boolean() or fields.get(name, False)
+    _tell_idle(node, {"fudgeFactor": "limits here do not overshoot"}, ctx)
+    child_tags = tags.links.setdefault(joint.child, LinkTags())
+    for sensor in node.all("sensor"):
+        child_tags.sensors.append(replace(read_sensor(sensor, joint.child), joint=joint.name))
+    if joint.type != "fixed" and fields.get("preserve_fixed"):
+        ctx.tell(
+            "info", f'joint "{joint.name}" is not fixed: there is nothing to preserve', node.origin
+        )
+
+
+def _tell_misplaced(node: Node, reference: str, is_link: bool, ctx: UrdfContext) -> None:
+    here, there = (LINK_TAGS, JOINT_TAGS) if is_link else (JOINT_TAGS, LINK_TAGS)
+    kinds = ("joint", "link") if is_link else ("link", "joint")
+    for child in node.children:
+        if child.tag in there and child.tag not in here:
+            node.all(child.tag)
+            child.mark()
+            ctx.tell(
+                "warning",
+                f'<{child.tag}> acts on a {kinds[0]}, but "{reference}" is a {kinds[1]}: '
+                "it has no effect",
+                child.origin,
+            )
+
+
+def _tell_idle(node: Node, reasons: Mapping[str, str], ctx: UrdfContext) -> None:
+    for tag, reason in reasons.items():
+        for child in node.all(tag):
+            child.mark()
+            ctx.tell("warning", f"<{tag}> has no effect here: {reason}", child.origin)

@@ -1,0 +1,58 @@
+"""Whether a body can have the inertia that a description states."""
+
+from __future__ import annotations
+
+import math
+
+from cartwheel.geometry import Vec3
+
+TOLERANCE = 1e-3
+"""Relative: files state three or four digits, and thin plates lie on the edge exactly."""
+
+
+def principal_moments(diagonal: Vec3, products: Vec3) -> Vec3:
+    """The eigenvalues of an inertia matrix in kg m², the smallest first.
+
+    Args:
+        diagonal: ixx, iyy, izz.
+        products: ixy, ixz, iyz.
+    """
+    ixx, iyy, izz = diagonal
+    ixy, ixz, iyz = products
+    # The closed form for a symmetric 3x3 matrix: numpy's solver costs more than all the rest
+    # of a link's reading.
+    off = ixy * ixy + ixz * ixz + iyz * iyz
+    if off == 0.0:
+        a, b, c = sorted((ixx, iyy, izz))
+        return (a, b, c)
+    mean = (ixx + iyy + izz) / 3
+    spread = (ixx - mean) ** 2 + (iyy - mean) ** 2 + (izz - mean) ** 2 + 2 * off
+    p = math.sqrt(spread / 6)
+    if p == 0.0 or not math.isfinite(p):
+        a, b, c = sorted((ixx, iyy, izz))
+        return (a, b, c)
+    xx, yy, zz = (ixx - mean) / p, (iyy - mean) / p, (izz - mean) / p
+    xy, xz, yz = ixy / p, ixz / p, iyz / p
+    half = (xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz)) / 2
+    angle = math.acos(max(-1.0, min(1.0, half))) / 3
+    largest = mean + 2 * p * math.cos(angle)
+    smallest = mean + 2 * p * math.cos(angle + 2 * math.pi / 3)
+    return (smallest, 3 * mean - largest - smallest, largest)
+
+
+def impossibility(moments: Vec3) -> tuple[str, str] | None:
+    """Why no body has these principal moments, and a hint; None where one can."""
+    a, b, c = moments
+    shown = f"{a:.4g}, {b:.4g} and {c:.4g} kg m²"
+    if a <= 0 or a < 1e-12 * c:
+        return (
+            f"the inertia is not positive definite: its principal moments are {shown}",
+            "All of ixx, iyy and izz are above 0, and the products of inertia are smaller.",
+        )
+    if a + b < c * (1 - TOLERANCE):
+        return (
+            f"no body has this inertia: of its principal moments {shown}, "
+            f"the two smaller add up to {a + b:.4g}, less than the largest",
+            "A solid box has ixx = mass / 12 (y² + z²), and so on round the axes.",
+        )
+    return None

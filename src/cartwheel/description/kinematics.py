@@ -1,0 +1,99 @@
+"""Where the links are for given joint positions, without physics: what a viewer needs."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+from cartwheel.description.model import Joint, RobotDescription
+from cartwheel.geometry import Pose, quat_from_axis_angle
+
+
+def joint_positions(
+    description: RobotDescription, positions: Mapping[str, float]
+) -> dict[str, float]:
+    """The position of every joint: those given, those that mimic them, and 0 for the rest.
+
+    Args:
+        description: The robot.
+        positions: In rad or m, by joint name; those of joints that mimic others are overruled.
+    """
+    joints = {joint.name: joint for joint in description.joints}
+    return {name: _position(joint, joints, positions) for name, joint in joints.items()}
+
+
+def link_poses(description: RobotDescription, positions: Mapping[str, float]) -> dict[str, Pose]:
+    """The pose of every link in the model's frame.
+
+    Floating, planar and ball joints stay at zero: one number does not say where they are.
+
+    Args:
+        description: The robot.
+        positions: In rad or m, by joint name; 0 for those missing.
+    """
+    angles = joint_positions(description, positions)
+    rest = {link.name: link.pose for link in description.links}
+    # A loop has two joints to one link; the first makes the tree, as everywhere else.
+    inbound: dict[str, Joint] = {}
+    for joint in description.joints:
+        inbound.setdefault(joint.child, joint)
+    poses: dict[str, Pose] = {}
+    for name in rest:
+        _place(name, rest, inbound, angles, poses)
+    return poses
+
+
+def _place(
+    name: str,
+    rest: Mapping[str, Pose],
+    inbound: Mapping[str, Joint],
+    angles: Mapping[str, float],
+    poses: dict[str, Pose],
+) -> None:
+    # A chain is walked by hand, since long ones would go deeper than Python recurses.
+    chain = [name]
+    while chain[-1] not in poses and chain[-1] in inbound:
+        parent = inbound[chain[-1]].parent
+        if parent not in rest or parent in chain:
+            break
+        chain.append(parent)
+    for link in reversed(chain):
+        if link in poses:
+            continue
+        joint = inbound.get(link)
+        if joint is None:
+            poses[link] = rest[link]
+            continue
+        parent_rest = rest.get(joint.parent, Pose())
+        frame = poses.get(joint.parent, parent_rest) @ parent_rest.inverse() @ rest[link]
+        poses[link] = frame @ joint.pose @ _motion(joint, angles[joint.name]) @ joint.pose.inverse()
+
+
+def _motion(joint: Joint, position: float) -> Pose:
+    axis = joint.axis.xyz
+    if position == 0.0:
+        return Pose()
+    if joint.type in ("revolute", "continuous", "universal"):
+        return Pose(orientation=quat_from_axis_angle(axis, position))
+    if joint.type == "prismatic":
+        return Pose((axis[0] * position, axis[1] * position, axis[2] * position))
+    if joint.type == "screw":
+        # SDF's pitch is radians per metre; a joint without one only turns.
+        travel = position / joint.thread_pitch if joint.thread_pitch else 0.0
+        return Pose(
+            (axis[0] * travel, axis[1] * travel, axis[2] * travel),
+            quat_from_axis_angle(axis, position),
+        )
+    return Pose()
+
+
+def _position(joint: Joint, joints: Mapping[str, Joint], positions: Mapping[str, float]) -> float:
+    scale, offset = 1.0, 0.0
+    seen: set[str] = set()
+    while joint.mimic is not None and joint.mimic.joint in joints and joint.name not in seen:
+        seen.add(joint.name)
+        offset += scale * joint.mimic.offset
+        scale *= joint.mimic.multiplier
+        joint = joints[joint.mimic.joint]
+    value = scale * positions.get(joint.name, 0.0) + offset
+    return value if math.isfinite(value) else 0.0

@@ -1,0 +1,175 @@
+"""Loads a description, whatever it is written in."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from cartwheel.description import xml
+from cartwheel.description.model import RobotDescription, WorldDescription
+from cartwheel.description.packages import Packages
+from cartwheel.description.shipped import find_description
+from cartwheel.description.urdf_link import Meshes
+from cartwheel.description.xml import Node
+from cartwheel.description.xml_text import write_xml
+from cartwheel.errors import DescriptionError, Diagnostic, Origin
+
+_OTHER_KINDS = {
+    "launch": "a launch file: name the description that it loads",
+    "package": "a package manifest: name a description of the package",
+    "COLLADA": "a mesh: name the description that uses it",
+    "model": "a model.config, or a <model> without the <sdf> around it",
+    "world": "a <world> without the <sdf> around it",
+    "mujoco": "a MuJoCo model, not a ROS or Gazebo description",
+}
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Opened:
+    """A description with its xacro expanded, not yet understood."""
+
+    root: Node
+    packages: Packages
+    text: str
+    diagnostics: tuple[Diagnostic, ...]
+
+
+def load(
+    path: Path | str,
+    *,
+    arguments: Mapping[str, str] | None = None,
+    package_path: Sequence[Path] = (),
+    meshes: Meshes = "error",
+) -> RobotDescription | WorldDescription:
+    """Reads a xacro, URDF, SDF or world file; its content, not its name, says which it is.
+
+    Args:
+        path: The file, a folder with a model in it, or the name of something shipped.
+        arguments: The values of ``name:=value`` for a xacro.
+        package_path: Further folders in which packages and models are looked for.
+        meshes: Whether a URDF's missing mesh is an error, or a warning that costs the shape.
+
+    Raises:
+        DescriptionError: it cannot be used; says what is wrong, where, and the likely fix.
+    """
+    return _understand(open_description(path, arguments or {}, package_path), meshes)
+
+
+def load_robot(
+    path: Path | str,
+    *,
+    arguments: Mapping[str, str] | None = None,
+    package_path: Sequence[Path] = (),
+    meshes: Meshes = "error",
+) -> RobotDescription:
+    """Reads a file as `load` does, one that must describe a robot or model."""
+    found = load(path, arguments=arguments, package_path=package_path, meshes=meshes)
+    if isinstance(found, WorldDescription):
+        raise DescriptionError(
+            f'describes the world "{found.name}", not a robot',
+            origin=found.origin,
+            hint="Load it as the world, and spawn robots into it.",
+        )
+    return found
+
+
+def load_world(
+    path: Path | str,
+    *,
+    arguments: Mapping[str, str] | None = None,
+    package_path: Sequence[Path] = (),
+) -> WorldDescription:
+    """Reads a file as `load` does, one that must describe a world."""
+    found = load(path, arguments=arguments, package_path=package_path)
+    if isinstance(found, RobotDescription):
+        raise DescriptionError(
+            f'describes the model "{found.name}", not a world',
+            origin=found.origin,
+            hint="Spawn it into a world, such as the shipped one, empty.",
+        )
+    return found
+
+
+def load_text(
+    text: str | bytes,
+    *,
+    file: str = "<string>",
+    arguments: Mapping[str, str] | None = None,
+    package_path: Sequence[Path] = (),
+    meshes: Meshes = "error",
+) -> RobotDescription | WorldDescription:
+    """Reads a description that is at hand as text, such as a ``robot_description`` parameter.
+
+    Args:
+        text: The XML.
+        file: What errors call it; where such a file exists, packages are looked for around it.
+        arguments: As for `load`.
+        package_path: As for `load`.
+        meshes: As for `load`.
+    """
+    if not text.strip():
+        raise DescriptionError("the description is empty", origin=Origin(file=file))
+    near = None if file.startswith("<") else Path(file)
+    opened = _expand(text, file, Packages(near, package_path), arguments or {})
+    return _understand(opened, meshes)
+
+
+def open_description(
+    path: Path | str, arguments: Mapping[str, str], package_path: Sequence[Path] = ()
+) -> Opened:
+    """Finds and reads a file, and expands its xacro."""
+    found = find_description(path, package_path)
+    content = xml.read_bytes(found)
+    return _expand(content, xml.shown_path(found), Packages(found, package_path), arguments)
+
+
+def _expand(
+    content: str | bytes, file: str, packages: Packages, arguments: Mapping[str, str]
+) -> Opened:
+    root = xml.parse(content, file)
+    if xml.needs_xacro(root):
+        # Imported here: xacro costs a start that does not need it as much as all the rest.
+        from cartwheel.description.xacro import expand
+
+        expansion = expand(content, file, packages, arguments)
+        return Opened(
+            root=expansion.root,
+            packages=packages,
+            text=write_xml(expansion.root),
+            diagnostics=expansion.diagnostics,
+        )
+    text = content if isinstance(content, str) else content.decode("utf-8", "replace")
+    told = tuple(
+        Diagnostic(
+            severity="warning",
+            message=f'the argument "{name}" has no effect: the file is no xacro',
+            origin=Origin(file=file),
+        )
+        for name in arguments
+    )
+    return Opened(root=root, packages=packages, text=text, diagnostics=told)
+
+
+def _understand(opened: Opened, meshes: Meshes) -> RobotDescription | WorldDescription:
+    root = opened.root
+    if root.tag == "robot":
+        from cartwheel.description.urdf import read_urdf
+
+        return read_urdf(
+            root,
+            opened.packages,
+            meshes=meshes,
+            text=opened.text,
+            diagnostics=opened.diagnostics,
+        )
+    if root.tag in ("sdf", "gazebo"):
+        from cartwheel.description.sdf import read_sdf
+
+        found = read_sdf(root, opened.packages, text=opened.text)
+        return replace(found, diagnostics=(*opened.diagnostics, *found.diagnostics))
+    kind = _OTHER_KINDS.get(root.tag)
+    raise root.fail(
+        f"is {kind}" if kind else f"begins with <{root.tag}>, which is no description",
+        "A description begins with <robot> (xacro, URDF) or <sdf> (SDF, world).",
+    )

@@ -1,0 +1,120 @@
+"""From what a user types to the file that is meant: paths, folders, and names of shipped things."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from cartwheel.description import numbers, xml
+from cartwheel.description.packages import Packages, share
+from cartwheel.errors import DescriptionError, Origin
+
+SUFFIXES = (".urdf.xacro", ".xacro", ".urdf", ".sdf", ".world")
+
+
+def find_description(path: Path | str, package_path: Sequence[Path] = ()) -> Path:
+    """The description file that a path, a URI or the name of a shipped thing means.
+
+    Args:
+        path: A file; a folder with a model in it; ``package://`` or ``model://``; or, where no
+            such file is there, a name such as ``empty``, ``rosbots.xacro`` or ``traffic_cone``.
+        package_path: Further folders in which packages and models are looked for.
+
+    Raises:
+        DescriptionError: there is none; names those that may be meant.
+    """
+    text = str(path)
+    # A Path turns the two slashes of a URI into one.
+    for scheme in ("package", "model", "file"):
+        if text.startswith(f"{scheme}:/"):
+            uri = f"{scheme}://{text.partition(':')[2].lstrip('/')}"
+            if scheme == "file":
+                uri = f"file:///{text.partition(':')[2].lstrip('/')}"
+            found = Packages(None, package_path).resolve(uri, what="description", folder=True)
+            return _in_folder(found) if found.is_dir() else found
+    given = Path(path)
+    try:
+        exists, folder = given.exists(), given.is_dir()
+    except (OSError, ValueError):  # a name too long, or with a zero byte in it
+        exists = folder = False
+    if folder:
+        return _in_folder(given)
+    if exists:
+        return given
+    if len(given.parts) == 1:
+        found_shipped = _shipped(given.name)
+        if found_shipped is not None:
+            return found_shipped
+    raise DescriptionError("no such file", origin=Origin(file=text), hint=_meant(given))
+
+
+def shipped_descriptions() -> Iterator[Path]:
+    """The robots, worlds and models that come with Cartwheel."""
+    root = share()
+    for pattern in ("robots/*/urdf/*", "robots/*/*", "worlds/*", "models/*", "models/*/*"):
+        for path in sorted(root.glob(pattern)):
+            if path.is_file() and path.name.endswith(SUFFIXES):
+                yield path
+
+
+def _shipped(name: str) -> Path | None:
+    """A file of that name, with or without its ending; or the model in a folder of that name."""
+    all_shipped = list(shipped_descriptions())
+    for path in all_shipped:
+        if path.name == name:
+            return path
+    for path in all_shipped:
+        if any(path.name == name + suffix for suffix in SUFFIXES):
+            return path
+    for kind in ("models", "robots"):
+        folder = share() / kind / name
+        if name not in ("", ".", "..") and folder.is_dir():
+            return _in_folder(folder)
+    return None
+
+
+def _in_folder(folder: Path) -> Path:
+    """The model in a folder: what its model.config names, model.sdf, or its only description."""
+    origin = Origin(file=xml.shown_path(folder))
+    config = folder / "model.config"
+    if config.is_file():
+        sdfs = [node.text for node in xml.read_file(config).all("sdf") if node.text]
+        for name in reversed(sdfs):  # the newest version is the last
+            if (folder / name).is_file():
+                return folder / name
+        if sdfs:
+            raise DescriptionError(
+                f'model.config names "{sdfs[-1]}", which does not exist', origin=origin
+            )
+    if (folder / "model.sdf").is_file():
+        return folder / "model.sdf"
+    found = [
+        path
+        for inner in (folder, folder / "urdf")
+        if inner.is_dir()
+        for path in sorted(inner.iterdir())
+        if path.name.endswith(SUFFIXES) and path.is_file()
+    ]
+    same = [path for path in found if path.name.partition(".")[0] == folder.name]
+    if len(found) == 1 or len(same) == 1:
+        return (same or found)[0]
+    names = ", ".join(str(path.relative_to(folder)) for path in found[:8])
+    raise DescriptionError(
+        "is a folder with several descriptions" if found else "is a folder without a description",
+        origin=origin,
+        hint=f"Name one of: {names}." if found else "Expected is model.sdf or a .urdf in it.",
+    )
+
+
+def _meant(given: Path) -> str | None:
+    if len(given.parts) != 1:
+        return xml.near_files(given)
+    shipped = {path.name for path in shipped_descriptions()}
+    try:
+        here = {entry.name for _, entry in zip(range(2000), Path.cwd().iterdir(), strict=False)}
+    except OSError:
+        here = set()
+    near = numbers.likely(given.name, here | shipped)
+    if near:
+        return f'Did you mean "{near}"?'
+    return f"Shipped with Cartwheel are: {', '.join(sorted(shipped))}." if shipped else None

@@ -1,0 +1,184 @@
+"""Expanded URDF into a `RobotDescription`.
+
+A URDF says it in three places: links and joints, the ``<gazebo>`` tags that refer to them, and
+the tree that the joints make. This file puts them together; each has a file of its own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+
+from cartwheel.description.collision_names import check_contact_sensors, name_collisions
+from cartwheel.description.gazebo_tags import GazeboTags, read_gazebo_tags
+from cartwheel.description.model import Inertial, Link, RobotDescription
+from cartwheel.description.packages import Packages
+from cartwheel.description.urdf_joint import check_mimics, read_joint
+from cartwheel.description.urdf_link import (
+    Meshes,
+    ReadLink,
+    UrdfContext,
+    check_inertia,
+    read_link,
+    read_materials,
+)
+from cartwheel.description.urdf_tree import WORLD, Tree, build_tree
+from cartwheel.description.xml import Node, to_element, unread
+from cartwheel.errors import DescriptionError, Diagnostic, Origin
+from cartwheel.geometry import Pose
+
+
+def read_urdf(
+    root: Node,
+    packages: Packages,
+    *,
+    meshes: Meshes = "error",
+    text: str = "",
+    diagnostics: Iterable[Diagnostic] = (),
+) -> RobotDescription:
+    """What a ``<robot>`` describes.
+
+    Args:
+        root: Its root, with all xacro expanded.
+        packages: Finds the meshes and textures that it names.
+        meshes: Whether a missing mesh ends the reading or only costs the shape.
+        text: The expanded XML, kept with the robot.
+        diagnostics: Those told before, of the expansion.
+
+    Raises:
+        DescriptionError: it is no robot; names the place and the likely fix.
+    """
+    if root.tag != "robot":
+        raise root.fail(f"expected <robot>, but the file begins with <{root.tag}>")
+    name = root.require("name").strip()
+    root.get("version")
+    ctx = UrdfContext(packages=packages, meshes=meshes, diagnostics=list(diagnostics))
+    read_materials(root, ctx)
+    link_nodes = root.all("link")
+    if not link_nodes:
+        raise root.fail(
+            f'the robot "{name}" has no links',
+            "Is the robot a xacro macro that is defined, but never called?",
+        )
+    _check_unique("link", link_nodes)
+    joint_nodes = root.all("joint")
+    _check_unique("joint", joint_nodes)
+
+    parts = [read_link(node, ctx) for node in link_nodes]
+    names = [part.link.name for part in parts]
+    known = frozenset(names)
+    read = [read_joint(node, known, ctx) for node in joint_nodes]
+    joints = [joint for joint, _ in read]
+    check_mimics(joints)
+    tree = build_tree([(part.link.name, part.link.origin) for part in parts], joints)
+    poses = tree.poses({joint.name: frame for joint, frame in read})
+
+    tags = read_gazebo_tags(root, known, {joint.name: joint for joint in joints}, ctx)
+    links = [_complete(part, tree, poses[part.link.name], tags, ctx) for part in parts]
+    joints = [tags.apply_to_joint(joint) for joint in joints]
+    links = name_collisions(links, tree, [joint.name for joint in joints if joint.preserve_fixed])
+    ctx.diagnostics.extend(check_contact_sensors(links))
+    links = _without_world(links, tree, ctx)
+    _tell_massless(links, tree, ctx)
+
+    transmissions = tuple(to_element(node) for node in root.all("transmission"))
+    ros2_control = tuple(to_element(node) for node in root.all("ros2_control"))
+    ctx.diagnostics.extend(unread(root))
+    return RobotDescription(
+        name=name,
+        links=tuple(links),
+        joints=tuple(joints),
+        plugins=tags.plugins,
+        static=tags.static,
+        self_collide=tags.self_collide,
+        canonical_link=links[0].name if tree.root == WORLD else tree.root,
+        transmissions=transmissions,
+        ros2_control=ros2_control,
+        diagnostics=tuple(dict.fromkeys(ctx.diagnostics)),
+        text=text,
+        origin=root.origin,
+    )
+
+
+def _check_unique(kind: str, nodes: Sequence[Node]) -> None:
+    seen: dict[str, Origin] = {}
+    for node in nodes:
+        name = node.require("name").strip()
+        if name in seen:
+            raise node.fail(f'the {kind} "{name}" exists twice', f"The first is at {seen[name]}.")
+        seen[name] = node.origin
+
+
+def _complete(part: ReadLink, tree: Tree, pose: Pose, tags: GazeboTags, ctx: UrdfContext) -> Link:
+    link = replace(part.link, pose=pose, inertial=_judged(part, tree, ctx))
+    return tags.apply_to_link(link)
+
+
+def _judged(part: ReadLink, tree: Tree, ctx: UrdfContext) -> Inertial | None:
+    """The link's mass, None where it has none or, at a place where that does no harm, no more."""
+    inertial, name = part.inertial, part.link.name
+    if inertial is None:
+        return None
+    holder = tree.inbound.get(name)
+    fixed = holder is not None and holder.type == "fixed"
+    carries = [joint for joint in tree.children[name] if joint.type != "fixed"]
+    if inertial.mass <= 0:
+        if not fixed and holder is not None and carries:
+            raise DescriptionError(
+                f'link "{name}" has the mass {inertial.mass:g}, but it moves on the joint '
+                f'"{holder.name}" and carries the joint "{carries[0].name}"',
+                origin=inertial.origin,
+                hint="Between two joints that move, a body needs mass: a force on none would "
+                "accelerate it without bound. Gazebo drops the link and all that it carries.",
+            )
+        ctx.tell(
+            "warning",
+            f'link "{name}" has the mass {inertial.mass:g}: it counts as a frame without mass',
+            inertial.origin,
+        )
+        return None
+    rigid = fixed or any(joint.type == "fixed" for joint in tree.children[name])
+    check_inertia(inertial, name, rigid=rigid, ctx=ctx)
+    return inertial
+
+
+def _without_world(links: list[Link], tree: Tree, ctx: UrdfContext) -> list[Link]:
+    """The links but for the one that stands for the world."""
+    if tree.root != WORLD:
+        return links
+    kept = [link for link in links if link.name != WORLD]
+    world = next(link for link in links if link.name == WORLD)
+    if not kept:
+        raise DescriptionError(
+            'the only link is "world", which stands for the world itself', origin=world.origin
+        )
+    if world.visuals or world.collisions or world.inertial or world.sensors:
+        ctx.tell(
+            "warning",
+            'the link "world" stands for the world itself: what it consists of is left out',
+            world.origin,
+        )
+    return [link for name in tree.order for link in kept if link.name == name]
+
+
+def _tell_massless(links: Sequence[Link], tree: Tree, ctx: UrdfContext) -> None:
+    """Warns of what moves without any mass: Gazebo drops such links together with their joints."""
+    heavy = {tree.rigid_root(link.name) for link in links if link.inertial is not None}
+    for link in links:
+        holder = tree.inbound.get(link.name)
+        moves = holder is not None and holder.type != "fixed"
+        if moves and link.name not in heavy:
+            assert holder is not None
+            ctx.tell(
+                "warning",
+                f'link "{link.name}" moves on the joint "{holder.name}" but has no <inertial>: '
+                "it is kept as a frame, while Gazebo drops it with its joint",
+                link.origin,
+            )
+        elif holder is None and link.name not in heavy and not moves:
+            ctx.tell(
+                "warning",
+                f'the root link "{link.name}", with all that is fixed to it, has no <inertial>: '
+                "Gazebo does not load such a robot",
+                link.origin,
+            )

@@ -1,0 +1,177 @@
+"""URDF's ``<joint>``."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Iterable
+
+from cartwheel.description.model import Axis, Joint, JointType, Mimic
+from cartwheel.description.urdf_link import UrdfContext, read_origin
+from cartwheel.description.xml import Node
+from cartwheel.errors import DescriptionError, suggestion
+from cartwheel.geometry import Pose, Vec3
+
+TYPES: dict[str, JointType] = {
+    "revolute": "revolute",
+    "continuous": "continuous",
+    "prismatic": "prismatic",
+    "fixed": "fixed",
+    "floating": "floating",
+    "planar": "planar",
+}
+_WITHOUT_AXIS = ("fixed", "floating")
+
+
+def read_joint(node: Node, links: Collection[str], ctx: UrdfContext) -> tuple[Joint, Pose]:
+    """A joint, and its frame in its parent link, which is the child's at zero.
+
+    Raises:
+        DescriptionError: a link that does not exist, an axis of length zero, limits the wrong
+            way round, an unknown type.
+    """
+    name = node.require("name").strip()
+    written = node.require("type").strip()
+    kind = TYPES.get(written)
+    if kind is None:
+        raise node.fail(
+            f'joint "{name}": the type "{written}" is not known', suggestion(written, TYPES)
+        )
+    parent, child = _end(node, name, "parent", links), _end(node, name, "child", links)
+    if parent == child:
+        raise node.fail(f'joint "{name}" joins the link "{child}" to itself')
+    if child == "world":
+        raise node.fail(
+            f'joint "{name}": the link "world" stands still and cannot be a child',
+            "Swap parent and child.",
+        )
+    for accepted in ("safety_controller", "calibration"):
+        part = node.child(accepted)
+        if part is not None:
+            part.mark()  # for a controller's and an encoder's own use
+    mimic = node.child("mimic")
+    limits = node.child("limit")
+    axis = Axis() if kind in _WITHOUT_AXIS else _axis(node, limits, name, kind, ctx)
+    for unused in ("axis", "limit", "dynamics"):
+        part = node.child(unused)
+        if part is not None and kind in _WITHOUT_AXIS:
+            part.mark()
+    joint = Joint(
+        name=name,
+        type=kind,
+        parent=parent,
+        child=child,
+        axis=axis,
+        mimic=_mimic(mimic) if mimic is not None else None,
+        origin=node.origin,
+    )
+    return joint, read_origin(node)
+
+
+def _end(node: Node, joint: str, which: str, links: Collection[str]) -> str:
+    end = node.child(which)
+    if end is None:
+        raise node.fail(f'joint "{joint}" has no <{which}>', f'Write <{which} link="…"/>.')
+    link = end.require("link").strip()
+    if link not in links:
+        hint = suggestion(link, sorted(links))
+        if link == "world":
+            hint = 'Add <link name="world"/> to fix the robot to the world.'
+        raise end.fail(f'joint "{joint}": {which} link "{link}" does not exist', hint)
+    return link
+
+
+def _axis(node: Node, limits: Node | None, name: str, kind: JointType, ctx: UrdfContext) -> Axis:
+    stated = node.child("axis")
+    xyz = stated.vec3_of("xyz", (1.0, 0.0, 0.0)) if stated is not None else (1.0, 0.0, 0.0)
+    length = math.sqrt(sum(value * value for value in xyz))
+    if length < 1e-6:
+        assert stated is not None
+        raise stated.fail(f'joint "{name}": the axis {stated.attributes.get("xyz")} has length 0')
+    unit: Vec3 = (xyz[0] / length, xyz[1] / length, xyz[2] / length)
+    lower = upper = effort = velocity = None
+    if limits is not None:
+        lower = limits.optional_number_of("lower", infinite=True)
+        upper = limits.optional_number_of("upper", infinite=True)
+        effort = limits.optional_number_of("effort", infinite=True)
+        velocity = limits.optional_number_of("velocity", infinite=True)
+        for what, value in (("effort", effort), ("velocity", velocity)):
+            if value is not None and value < 0:
+                raise limits.fail(
+                    f'joint "{name}": the {what} limit {value:g} is below 0',
+                    "Leave it out where there is no limit.",
+                )
+        if kind in ("revolute", "prismatic"):
+            lower, upper = lower or 0.0, upper or 0.0
+            if lower > upper:
+                raise limits.fail(
+                    f'joint "{name}": the lower limit {lower:g} is above the upper limit {upper:g}'
+                )
+    elif kind in ("revolute", "prismatic"):
+        ctx.tell(
+            "warning",
+            f'joint "{name}" of type {kind} has no <limit>: ROS refuses it, here it is unlimited',
+            node.origin,
+        )
+    if kind not in ("revolute", "prismatic"):
+        lower = upper = None
+    dynamics = node.child("dynamics")
+    damping = _not_negative(dynamics, "damping", name)
+    friction = _not_negative(dynamics, "friction", name)
+    return Axis(
+        xyz=unit,
+        lower=_finite(lower),
+        upper=_finite(upper),
+        effort=_finite(effort),
+        velocity=_finite(velocity),
+        damping=damping,
+        friction=friction,
+    )
+
+
+def _finite(value: float | None) -> float | None:
+    """A limit, None where it is so large that it is none."""
+    return value if value is not None and abs(value) < 1e15 else None
+
+
+def _not_negative(dynamics: Node | None, attribute: str, joint: str) -> float:
+    if dynamics is None:
+        return 0.0
+    value = dynamics.number_of(attribute, 0.0)
+    if value < 0:
+        raise dynamics.fail(
+            f'joint "{joint}": the {attribute} {value:g} is below 0, which would drive the joint'
+        )
+    return value
+
+
+def _mimic(node: Node) -> Mimic:
+    return Mimic(
+        joint=node.require("joint").strip(),
+        multiplier=node.number_of("multiplier", 1.0),
+        offset=node.number_of("offset", 0.0),
+    )
+
+
+def check_mimics(joints: Iterable[Joint]) -> None:
+    """Refuses mimics of joints that do not exist, and those that mimic each other in a ring."""
+    by_name = {joint.name: joint for joint in joints}
+    for joint in by_name.values():
+        if joint.mimic is None:
+            continue
+        if joint.mimic.joint not in by_name:
+            raise DescriptionError(
+                f'joint "{joint.name}" mimics the joint "{joint.mimic.joint}", '
+                "which does not exist",
+                origin=joint.origin,
+                hint=suggestion(joint.mimic.joint, sorted(set(by_name) - {joint.name})),
+            )
+        seen = {joint.name}
+        leader = joint
+        while leader.mimic is not None and leader.mimic.joint in by_name:
+            leader = by_name[leader.mimic.joint]
+            if leader.name in seen:
+                raise DescriptionError(
+                    f'joint "{joint.name}" mimics itself, by way of "{joint.mimic.joint}"',
+                    origin=joint.origin,
+                )
+            seen.add(leader.name)

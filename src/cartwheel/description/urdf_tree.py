@@ -1,0 +1,116 @@
+"""The tree that a URDF's joints make of its links: its checks, its poses, its rigid parts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from cartwheel.description.model import Joint
+from cartwheel.errors import DescriptionError, Origin
+from cartwheel.geometry import Pose
+
+WORLD = "world"
+"""The link of that name stands for the world where it is the root, as in Gazebo."""
+
+
+@dataclass(frozen=True, slots=True)
+class Tree:
+    """Which joint holds each link."""
+
+    root: str
+    inbound: dict[str, Joint]
+    """By the child link."""
+    children: dict[str, tuple[Joint, ...]]
+    """By the parent link, in the file's order."""
+    order: tuple[str, ...]
+    """All links, parents before children."""
+
+    def poses(self, frames: dict[str, Pose]) -> dict[str, Pose]:
+        """Each link in the root's frame at zero positions.
+
+        Args:
+            frames: The joints' frames in their parent links, by name.
+        """
+        poses = {self.root: Pose()}
+        for link in self.order[1:]:
+            joint = self.inbound[link]
+            poses[link] = poses[joint.parent] @ frames[joint.name]
+        return poses
+
+    def rigid_root(self, link: str) -> str:
+        """The link that this one is fixed to, by fixed joints only; itself where it moves."""
+        while link in self.inbound and self.inbound[link].type == "fixed":
+            link = self.inbound[link].parent
+        return link
+
+    def lump_root(self, link: str, preserved: Iterable[str]) -> str:
+        """The link into which Gazebo merges this one, itself where it keeps it.
+
+        Args:
+            link: A link.
+            preserved: The fixed joints over which Gazebo is told not to merge.
+        """
+        kept = set(preserved)
+        while link in self.inbound:
+            joint = self.inbound[link]
+            if joint.type != "fixed" or joint.name in kept or joint.parent == WORLD:
+                break
+            link = joint.parent
+        return link
+
+
+def build_tree(links: Sequence[tuple[str, Origin]], joints: Sequence[Joint]) -> Tree:
+    """Checks that the joints make one tree of the links.
+
+    Raises:
+        DescriptionError: a link with two parents, a cycle, or more than one root.
+    """
+    inbound: dict[str, Joint] = {}
+    children: dict[str, list[Joint]] = {name: [] for name, _ in links}
+    for joint in joints:
+        other = inbound.get(joint.child)
+        if other is not None:
+            raise DescriptionError(
+                f'link "{joint.child}" has two parents: joint "{other.name}" joins it to '
+                f'"{other.parent}", joint "{joint.name}" to "{joint.parent}"',
+                origin=joint.origin,
+                hint=f'The joint "{other.name}" is at {other.origin}. A URDF is a tree.',
+            )
+        inbound[joint.child] = joint
+        children[joint.parent].append(joint)
+    roots = [(name, origin) for name, origin in links if name not in inbound]
+    if not roots:
+        raise _cycle(links[0][0], inbound)
+    if len(roots) > 1:
+        names = ", ".join(f'"{name}"' for name, _ in roots)
+        raise DescriptionError(
+            f"the links are not one tree: {names} have no joint to a parent",
+            origin=roots[1][1],
+            hint=f'Is a joint missing that has "{roots[1][0]}" for its child?',
+        )
+    order = [roots[0][0]]
+    for name in order:
+        order.extend(joint.child for joint in children[name])
+    if len(order) < len(links):
+        reached = set(order)
+        raise _cycle(next(name for name, _ in links if name not in reached), inbound)
+    return Tree(
+        root=roots[0][0],
+        inbound=inbound,
+        children={name: tuple(each) for name, each in children.items()},
+        order=tuple(order),
+    )
+
+
+def _cycle(start: str, inbound: dict[str, Joint]) -> DescriptionError:
+    path = [start]
+    while inbound[path[-1]].parent not in path:
+        path.append(inbound[path[-1]].parent)
+    ring = path[path.index(inbound[path[-1]].parent) :]
+    ring.append(ring[0])
+    joint = inbound[ring[0]]
+    return DescriptionError(
+        f"the joints make a ring of links: {' -> '.join(reversed(ring))}",
+        origin=joint.origin,
+        hint="Turn round or remove one of its joints: a URDF is a tree with one root.",
+    )

@@ -1,0 +1,45 @@
+"""A tree as XML text: what ROS calls robot_description, clean of xacro and of our own marks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from xml.sax.saxutils import escape, quoteattr
+
+from cartwheel.description.packages import Packages
+from cartwheel.description.xml import Node
+
+_WITH_FILES = ("mesh", "texture")
+
+
+def write_xml(root: Node, packages: Packages | None = None) -> str:
+    """XML text, two spaces to a level, attributes in the file's order.
+
+    Args:
+        root: The tree.
+        packages: Where given, the files of meshes and textures are named by ``file://`` and
+            where it finds them.
+
+    Raises:
+        DescriptionError: such a file does not exist.
+    """
+    return '<?xml version="1.0"?>\n' + "".join(_lines(root, 0, packages))
+
+
+def _lines(node: Node, level: int, packages: Packages | None) -> Iterator[str]:
+    indent = "  " * level
+    opening = f"{indent}<{node.tag}"
+    for name, value in node.attributes.items():
+        if name == "xmlns:xacro":
+            continue
+        if packages is not None and name == "filename" and node.tag in _WITH_FILES and value:
+            value = packages.resolve(value, node.origin, what=node.tag).as_uri()  # noqa: PLW2901
+        opening += f" {name}={quoteattr(value)}"
+    if not node.children:
+        yield f"{opening}>{escape(node.text)}</{node.tag}>\n" if node.text else f"{opening}/>\n"
+        return
+    yield f"{opening}>\n"
+    if node.text:
+        yield f"{indent}  {escape(node.text)}\n"
+    for child in node.children:
+        yield from _lines(child, level + 1, packages)
+    yield f"{indent}</{node.tag}>\n"
