@@ -99,6 +99,12 @@ class UnknownNameError(CartwheelError):
         )
 
 
+def likely(name: str, existing: Iterable[str], *, cutoff: float = 0.75) -> str:
+    """A sentence that names the likely meant one of `existing`, or nothing."""
+    close = difflib.get_close_matches(name, list(existing), n=1, cutoff=cutoff)
+    return f'Did you mean "{close[0]}"?' if close else ""
+
+
 def suggestion(name: str, existing: Iterable[str]) -> str:
     """A sentence that names the likely meant one of `existing`, or lists them."""
     known = list(existing)

@@ -9,7 +9,7 @@ from collections.abc import Iterable
 from typing import Any, TypeVar, get_args, get_origin
 
 from cartwheel.description.model import Element
-from cartwheel.errors import Diagnostic, PluginError, suggestion
+from cartwheel.errors import Diagnostic, PluginError, likely
 
 C = TypeVar("C")
 
@@ -65,7 +65,7 @@ def read(
         Diagnostic(
             severity="warning",
             message=f"<{child.tag}> has no effect: this plugin does not know it. "
-            + suggestion(child.tag, sorted(known - _COMMON)),
+            f"{likely(child.tag, sorted(known))}".rstrip(),
             origin=child.origin,
         )
         for child in element.children

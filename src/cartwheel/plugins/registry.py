@@ -7,7 +7,7 @@ import importlib.metadata
 import re
 
 from cartwheel.description.model import PluginTag, Sensor
-from cartwheel.errors import CartwheelError, Diagnostic, suggestion
+from cartwheel.errors import CartwheelError, Diagnostic, likely
 from cartwheel.graph import Graph
 from cartwheel.plugins.base import Plugin
 from cartwheel.simulation import Part
@@ -83,11 +83,13 @@ def attach(part: Part, graph: Graph) -> list[Behaviour]:
 
 
 def _report_unknown(part: Part, tag: PluginTag) -> None:
+    # Only a spelling error has a likely meant name: other plugins share most of theirs.
+    meant = likely(tag.filename, [f"lib{name}.so" for name in plugins()], cutoff=0.92)
     part.report(
         Diagnostic(
             severity="warning",
             message=f'plugin "{tag.filename}" is not supported: what it does is missing here. '
-            + suggestion(tag.filename, [f"lib{name}.so" for name in plugins()]),
+            f"{meant}".rstrip(),
             origin=tag.origin,
         )
     )

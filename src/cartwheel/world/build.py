@@ -83,7 +83,8 @@ def _empty(world: WorldDescription) -> mujoco.MjSpec:
     spec.visual.quality.shadowsize = 0
     ambient = list(world.ambient[:3])
     spec.visual.headlight.ambient = ambient
-    spec.visual.headlight.diffuse = [0, 0, 0]
+    # A little light from the camera itself: a face turned away from the sun keeps its shape.
+    spec.visual.headlight.diffuse = [0.25, 0.25, 0.25]
     spec.visual.headlight.specular = [0, 0, 0]
     sky = list(world.background[:3])
     spec.add_texture(
