@@ -390,6 +390,33 @@ def test_sensors_and_plugins():
     assert found.diagnostics == ()
 
 
+def test_a_joint_s_sensor_is_carried_by_its_child():
+    found = robot(
+        """<link name="a"/><link name="b"/><joint name="j" type="fixed"><pose>0 0 1 0 0 0</pose>
+        <parent>a</parent><child>b</child><sensor name="ft" type="force_torque">
+        <pose>1 0 0 0 0 0</pose></sensor></joint>"""
+    )
+    (sensor,) = found.link("b").sensors
+    assert (sensor.name, sensor.link, sensor.joint) == ("ft", "b", "j")
+    assert sensor.pose.position == (1, 0, 1)
+
+
+FLAT = "<inertial><inertia><ixx>1</ixx><iyy>1</iyy><izz>3</izz></inertia></inertial>"
+POINT = "<inertial><inertia><ixx>0</ixx><iyy>0</iyy><izz>0</izz></inertia></inertial>"
+
+
+def test_impossible_inertia_matters_where_it_moves():
+    with pytest.raises(DescriptionError, match=r'm\.sdf:4: link "base": no body has this'):
+        link(FLAT)
+    robot(f'<static>true</static><link name="a">{FLAT}</link>')
+    with pytest.raises(DescriptionError, match="not positive definite"):
+        link(POINT)
+    robot(
+        f"""<link name="a"/><link name="b">{POINT}</link>
+        <joint name="j" type="fixed"><parent>a</parent><child>b</child></joint>"""
+    )
+
+
 def test_what_is_not_understood_is_told_with_its_place():
     found = link(
         """<gravty>0</gravty>

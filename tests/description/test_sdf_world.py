@@ -276,7 +276,8 @@ def corpus_files() -> list[Path]:
     return sorted([*CORPUS.rglob("*.world"), *CORPUS.rglob("*.sdf")]) if CORPUS.is_dir() else []
 
 
-MISSING = ("was not found", "is too old", "begins with <gazebo:world>")
+# One of them has a link whose ixx is 0 and which no joint holds.
+MISSING = ("was not found", "is too old", "begins with <gazebo:world>", "not positive definite")
 
 
 @pytest.mark.skipif(not corpus_files(), reason=f"no corpus of others' robots in {CORPUS}")

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
-from cartwheel.description.model import Axis, Joint, JointType, Mimic
-from cartwheel.description.sdf_context import Context, require_name
+from cartwheel.description.model import Axis, Joint, JointType, Mimic, Sensor
+from cartwheel.description.sdf_context import Context, read_pose, reference_of, require_name
 from cartwheel.description.sdf_frames import WORLD, Frames
+from cartwheel.description.sdf_sensors import read_sensor
 from cartwheel.description.xml import Node
 from cartwheel.errors import DescriptionError, suggestion
 from cartwheel.geometry import Pose, Vec3, quat_conjugate, rotate
@@ -71,9 +73,6 @@ def read_joint(node: Node, ctx: Context, frames: Frames, frame: str) -> Joint | 
             raise node.fail(f'joint "{name}" of type {written} has no <axis2>')
         second = _axis(axis2, name, ctx, frames, in_model)
     mimic = _mimic(axis) if axis is not None else None
-    for sensor in node.all("sensor"):
-        sensor.mark()
-        ctx.tell("warning", f'joint "{name}": sensors of joints are not simulated', sensor.origin)
     ode = node.find("physics/ode")
     cfm, erp, feedback, damper = None, None, False, False
     if ode is not None:
@@ -110,6 +109,22 @@ def read_joint(node: Node, ctx: Context, frames: Frames, frame: str) -> Joint | 
         implicit_spring_damper=damper,
         origin=node.origin,
     )
+
+
+def read_joint_sensors(node: Node, joint: Joint, frames: Frames) -> list[Sensor]:
+    """The sensors of a joint: placed in its frame, carried by its child."""
+    found: list[Sensor] = []
+    for each in node.all("sensor"):
+        stated = each.child("pose")
+        relative_to = reference_of(stated)
+        own = read_pose(stated)
+        if relative_to:
+            in_model = frames.placed(own, relative_to, each.origin)
+            pose = frames.pose(joint.child, each.origin).inverse() @ in_model
+        else:
+            pose = joint.pose @ own
+        found.append(replace(read_sensor(each, joint.child, pose), joint=joint.name))
+    return found
 
 
 def child_frame_of(node: Node) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from cartwheel.description.materials import gazebo_material, unknown_material
 from cartwheel.description.model import Material, Rgba
 from cartwheel.description.sdf_context import Context, read_rgba
 from cartwheel.description.sdf_script import find_script
@@ -65,8 +66,9 @@ def _albedo(node: Node, ctx: Context) -> Path | None:
 
 def _scripted(name: str, uris: list[Node], script: Node, ctx: Context) -> Material:
     """What a named material looks like: Gazebo's own by heart, others by their script."""
-    if name.startswith("Gazebo/"):
-        return Material(name=name)
+    known = gazebo_material(name)
+    if known is not None:
+        return known
     places: list[Path] = []
     lost: list[str] = []
     for uri in uris:
@@ -76,8 +78,12 @@ def _scripted(name: str, uris: list[Node], script: Node, ctx: Context) -> Materi
             lost.append(error.message)
     found = find_script(name, places)
     if found is None:
-        reason = f": {lost[0]}" if lost else " in its script"
-        ctx.tell("warning", f'the material "{name}" was not found{reason}', script.origin)
+        message = unknown_material(name)
+        if places and not name.startswith("Gazebo/"):
+            message = f'the material "{name}" is not in its scripts: the colour stays as it is.'
+        elif lost and not name.startswith("Gazebo/"):
+            message = f'the material "{name}" was not found, as {lost[0]}'
+        ctx.tell("warning", message, script.origin)
         return Material(name=name)
     if found.missing is not None:
         ctx.tell(

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 
-from cartwheel.description.model import Joint, Link, PluginTag, RobotDescription
+from cartwheel.description.inertia import impossibility, principal_moments
+from cartwheel.description.model import Joint, Link, PluginTag, RobotDescription, Sensor
 from cartwheel.description.sdf_context import Context, read_pose, reference_of, require_name
 from cartwheel.description.sdf_frames import MODEL, WORLD, Frames
 from cartwheel.description.sdf_include import Included, open_include
-from cartwheel.description.sdf_joint import child_frame_of, read_joint
+from cartwheel.description.sdf_joint import child_frame_of, read_joint, read_joint_sensors
 from cartwheel.description.sdf_link import read_link
 from cartwheel.description.sdf_sensors import read_plugin
 from cartwheel.description.xml import Node, unread
@@ -37,7 +38,13 @@ class Model:
     nested: list[Model] = field(default_factory=list)
 
     def describe(self, pose: Pose, text: str = "") -> RobotDescription:
-        """The model as one robot, placed in the world."""
+        """The model as one robot, placed in the world.
+
+        Raises:
+            DescriptionError: a link that moves has an inertia that no body has.
+        """
+        if not self.static:
+            self._judge_inertia()
         return RobotDescription(
             name=self.name,
             links=tuple(self.links),
@@ -50,6 +57,26 @@ class Model:
             text=text,
             origin=self.origin,
         )
+
+    def _judge_inertia(self) -> None:
+        fixed = {
+            end
+            for joint in self.joints
+            if joint.type == "fixed"
+            for end in (joint.parent, joint.child)
+        }
+        for link in self.links:
+            i = link.inertial
+            if i is None:
+                continue
+            diagonal, products = (i.ixx, i.iyy, i.izz), (i.ixy, i.ixz, i.iyz)
+            if link.name in fixed and not any((*diagonal, *products)):
+                continue  # a point mass: what it is fixed to has the inertia
+            wrong = impossibility(principal_moments(diagonal, products))
+            if wrong is not None:
+                raise DescriptionError(
+                    f'link "{link.name}": {wrong[0]}', origin=i.origin, hint=wrong[1]
+                )
 
 
 def read_included(included: Included) -> Model:
@@ -95,7 +122,13 @@ def read_model(node: Node, ctx: Context, included: Included | None = None, depth
     for known in frames.names():
         frames.pose(known, node.origin)  # a circle is told even where nobody needs the pose
     links = [read_link(each, ctx, frames) for each in link_nodes]
-    joints = [read_joint(each, ctx, frames, frame) for each, frame in joint_nodes]
+    joints: list[Joint] = []
+    sensors: list[Sensor] = []
+    for each, frame in joint_nodes:
+        joint = read_joint(each, ctx, frames, frame)
+        if joint is not None:
+            joints.append(joint)
+            sensors += read_joint_sensors(each, joint, frames)
     stated = included.pose if included is not None and included.pose else node.child("pose")
     placement = (node.get("placement_frame") or "").strip()
     if included is not None and included.pose:
@@ -108,7 +141,7 @@ def read_model(node: Node, ctx: Context, included: Included | None = None, depth
         name=name,
         frames=frames,
         links=links,
-        joints=[joint for joint in joints if joint is not None],
+        joints=joints,
         plugins=[read_plugin(each) for each in node.all("plugin")],
         static=included.static if included is not None and included.static is not None else static,
         self_collide=node.boolean_at("self_collide", False),
@@ -121,6 +154,7 @@ def read_model(node: Node, ctx: Context, included: Included | None = None, depth
         model.plugins.extend(included.plugins)
     for inner in nested:
         _flatten(model, inner)
+    _attach(model, sensors)
     if not model.links:
         raise node.fail(f'model "{name}" has no links')
     _check_mimics(model)
@@ -226,7 +260,12 @@ def _flatten(model: Model, inner: Model) -> None:
             link,
             name=scoped(link.name),
             pose=base @ link.pose,
-            sensors=tuple(replace(each, link=scoped(each.link)) for each in link.sensors),
+            sensors=tuple(
+                replace(
+                    each, link=scoped(each.link), joint=scoped(each.joint) if each.joint else None
+                )
+                for each in link.sensors
+            ),
         )
         for link in inner.links
     ]
@@ -241,6 +280,14 @@ def _flatten(model: Model, inner: Model) -> None:
         for joint in inner.joints
     ]
     model.plugins += inner.plugins
+
+
+def _attach(model: Model, sensors: list[Sensor]) -> None:
+    """Gives the sensors of joints to the links that carry them, nested ones included."""
+    for sensor in sensors:
+        index = next(i for i, link in enumerate(model.links) if link.name == sensor.link)
+        link = model.links[index]
+        model.links[index] = replace(link, sensors=(*link.sensors, sensor))
 
 
 def _check_mimics(model: Model) -> None:
