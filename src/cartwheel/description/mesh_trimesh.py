@@ -20,7 +20,8 @@ def read_with_trimesh(path: Path, data: bytes, _notes: list[str]) -> list[Submes
     Raises:
         Exception: whatever trimesh makes of a damaged file.
     """
-    import trimesh  # noqa: PLC0415 - a tenth of a second that most robots need not pay
+    # Imported here: it costs a tenth of a second that most robots need not pay.
+    import trimesh
 
     kind = path.suffix.lower().lstrip(".")
     resolver = trimesh.resolvers.FilePathResolver(str(path))

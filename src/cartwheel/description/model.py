@@ -344,6 +344,7 @@ class Joint:
     axis2: Axis | None = None
     mimic: Mimic | None = None
     thread_pitch: float | None = None
+    """Of a screw: metres along the axis for each turn, positive for a right-handed one."""
     stop_cfm: float | None = None
     stop_erp: float | None = None
     provide_feedback: bool = False
