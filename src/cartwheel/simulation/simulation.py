@@ -291,14 +291,15 @@ class Simulation:
         resident.close()
 
     def pose(self, name: str) -> Pose:
-        """Where a model's canonical link is."""
-        entry = self._resident(name).entry
-        body = self._body_id(name, entry.description.canonical_link)
+        """Where a model's frame is, which goes with its canonical link: a URDF's root."""
+        description = self._resident(name).entry.description
+        body = self._body_id(name, description.canonical_link)
         x, y, z = self.data.xpos[body].tolist()
-        return Pose((x, y, z), from_wxyz(self.data.xquat[body].tolist()))
+        link = Pose((x, y, z), from_wxyz(self.data.xquat[body].tolist()))
+        return link @ _canonical_pose(description).inverse()
 
     def set_pose(self, name: str, pose: Pose) -> None:
-        """Moves a model, at rest, to a pose of its canonical link.
+        """Moves a model's frame, and with it the model, at rest.
 
         Raises:
             UnknownNameError: There is no such model.
@@ -312,6 +313,7 @@ class Simulation:
             self._compile(self._residents)
             return
         position, velocity = self.model.jnt_qposadr[joint], self.model.jnt_dofadr[joint]
+        pose = pose @ _canonical_pose(entry.description)
         self.data.qpos[position : position + 3] = pose.position
         self.data.qpos[position + 3 : position + 7] = to_wxyz(pose.orientation)
         self.data.qvel[velocity : velocity + 6] = 0
@@ -452,6 +454,11 @@ class Simulation:
         for resident in self._residents.values():
             resident.close()
         self.renderer.close()
+
+
+def _canonical_pose(description: RobotDescription) -> Pose:
+    link = description.link(description.canonical_link)
+    return link.pose if link is not None else Pose()
 
 
 def _carry_over(old_model: Any, old: Any, model: Any, data: Any) -> None:

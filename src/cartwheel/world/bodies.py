@@ -68,10 +68,6 @@ class BodyBuilder:
         children: dict[str, list[Joint]] = {}
         for joint in inbound.values():
             children.setdefault(joint.parent, []).append(joint)
-        canonical = description.link(description.canonical_link)
-        assert canonical is not None
-        # The entry's pose is the canonical link's, as Gazebo spawns and reports a URDF's root.
-        frame = entry.pose @ canonical.pose.inverse() if canonical.pose != Pose() else entry.pose
         bodies: dict[str, Any] = {}
         links = {link.name: link for link in description.links}
 
@@ -90,7 +86,7 @@ class BodyBuilder:
                 continue
             joint = inbound.get(link.name)
             grow(
-                link, self._spec.worldbody, frame @ link.pose, None if description.static else joint
+                link, self._spec.worldbody, entry.pose @ link.pose, None if description.static else joint
             )
             if joint is None and not description.static and not link.kinematic:
                 bodies[link.name].add_freejoint(name=scoped(entry.name, link.name))

@@ -37,12 +37,12 @@ class CameraMount:
 
 @dataclass(kw_only=True, slots=True)
 class ModelEntry:
-    """A model in the world. `pose` puts its frame, and with it its canonical link's."""
+    """A model in the world."""
 
     name: str
     description: RobotDescription
     pose: Pose
-    """Where it was spawned and where a reset returns it."""
+    """Of the model's frame: where it was spawned and where a reset returns it."""
     motors: dict[str, Motor] = field(default_factory=dict)
     """By joint."""
     cameras: list[CameraMount] = field(default_factory=list)
