@@ -21,6 +21,7 @@ JOINT_TAGS = (
     "implicitSpringDamper", "cfmDamping", "disableFixedJointLumping", "preserveFixedJoint",
     "sensor", "physics",
 )  # fmt: skip
+_WITH_PARTS = ("sensor", "plugin", "light", "visual", "collision")
 ROBOT_TAGS = ("plugin", "static", "self_collide", "selfCollide")
 
 _ROBOT_IDLE = {
@@ -82,6 +83,7 @@ def read_gazebo_tags(
     """
     tags = GazeboTags()
     for node in robot.all("gazebo"):
+        _settle(node, ctx)
         reference = (node.get("reference") or "").strip()
         if not reference:
             _read_robot_tags(node, tags, ctx)
@@ -94,12 +96,27 @@ def read_gazebo_tags(
         if reference in links:
             of_link = tags.links.setdefault(reference, LinkTags())
             read_link_tags(node, reference, of_link, ctx)
-            tags.robot_plugins.extend(_plugins_of_link(node, reference, ctx))
         if reference in joints:
             _read_joint_tags(node, joints[reference], tags, ctx)
+        tags.robot_plugins.extend(_misplaced_plugins(node, reference, ctx))
         if (reference in links) != (reference in joints):
             _tell_misplaced(node, reference, reference in links, ctx)
     return tags
+
+
+def _settle(node: Node, ctx: UrdfContext) -> None:
+    """Brings the two spellings ``<mu1 value="1"/>`` and ``<mu1>1</mu1>`` to the second.
+
+    Tags such as ``<mu1></mu1>``, which a macro's empty parameter leaves, are taken out.
+    """
+    for child in list(node.children):
+        if child.text or child.children:
+            continue
+        if child.attributes.get("value", "").strip() and child.tag not in _WITH_PARTS:
+            child.text = (child.get("value") or "").strip()
+        elif not child.attributes or list(child.attributes) == ["value"]:
+            ctx.tell("warning", f"<{child.tag}> is empty: the default counts", child.origin)
+            node.drop(child)
 
 
 def _read_robot_tags(node: Node, tags: GazeboTags, ctx: UrdfContext) -> None:
@@ -123,12 +140,12 @@ def _read_robot_tags(node: Node, tags: GazeboTags, ctx: UrdfContext) -> None:
             )
 
 
-def _plugins_of_link(node: Node, link: str, ctx: UrdfContext) -> list[PluginTag]:
+def _misplaced_plugins(node: Node, reference: str, ctx: UrdfContext) -> list[PluginTag]:
     plugins = [read_plugin(plugin) for plugin in node.all("plugin")]
     for plugin in plugins:
         ctx.tell(
             "warning",
-            f'plugin "{plugin.name}" stands in the <gazebo> of link "{link}", where Gazebo '
+            f'plugin "{plugin.name}" stands in the <gazebo> of "{reference}", where Gazebo '
             "Classic does not load it; here it is loaded as a plugin of the robot",
             plugin.origin,
         )

@@ -121,8 +121,8 @@ def material_names() -> tuple[str, ...]:
 
 def unknown_material(name: str) -> str:
     """What to tell of a name that `gazebo_material` does not know."""
-    near = numbers.likely(name, material_names())
-    if near is None and not name.startswith(_PREFIX):
-        near = numbers.likely(_PREFIX + name, material_names())
-    meant = f' Did you mean "{near}"?' if near else ""
+    # The prefix that all share would make any two of them look alike.
+    short = [each.removeprefix(_PREFIX) for each in material_names()]
+    near = numbers.likely(name.rpartition("/")[2], short)
+    meant = f' Did you mean "{_PREFIX}{near}"?' if near else ""
     return f'the material "{name}" is none of Gazebo\'s: the colour stays as it is.{meant}'

@@ -85,10 +85,10 @@ def boolean(text: str, label: str, origin: Origin) -> bool:
     )
 
 
-def likely(name: str, known: Iterable[str]) -> str | None:
+def likely(name: str, known: Iterable[str], cutoff: float = 0.7) -> str | None:
     """The one of `known` that a mistyped name likely means; letter case counts for nothing."""
     by_lower = {candidate.lower(): candidate for candidate in sorted(known, reverse=True)}
-    close = difflib.get_close_matches(name.lower(), by_lower, n=1, cutoff=0.7)
+    close = difflib.get_close_matches(name.lower(), by_lower, n=1, cutoff=cutoff)
     return by_lower[close[0]] if close else None
 
 

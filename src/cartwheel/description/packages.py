@@ -237,7 +237,7 @@ class Packages:
     def _missing(self, name: str) -> str:
         roots = [*self.package_path, *self._ancestors(), *self._environment_roots()]
         known = {found for root in (*roots, share() / "robots") for found in _names_in(root)}
-        near = numbers.likely(name, known)
+        near = numbers.likely(name, known, 0.85)
         hint = f'Did you mean "{near}"? ' if near else ""
         return (
             f"{hint}Searched: {_listed([*roots, share() / 'robots'])}. "
@@ -365,5 +365,5 @@ def _absent(candidates: Sequence[Path]) -> str:
 
 def _listed(paths: Iterable[Path]) -> str:
     shown = list(dict.fromkeys(str(path) for path in paths))
-    more = f", and {len(shown) - 8} more" if len(shown) > 8 else ""
-    return (", ".join(shown[:8]) or "nowhere") + more
+    more = f", and {len(shown) - 6} more" if len(shown) > 6 else ""
+    return (", ".join(shown[:6]) or "nowhere") + more

@@ -50,7 +50,7 @@ def read_urdf(
     """
     if root.tag != "robot":
         raise root.fail(f"expected <robot>, but the file begins with <{root.tag}>")
-    name = root.require("name").strip()
+    name = _name(root)
     root.get("version")
     ctx = UrdfContext(packages=packages, meshes=meshes, diagnostics=list(diagnostics))
     read_materials(root, ctx)
@@ -83,6 +83,7 @@ def read_urdf(
 
     transmissions = tuple(to_element(node) for node in root.all("transmission"))
     ros2_control = tuple(to_element(node) for node in root.all("ros2_control"))
+    _tell_unprefixed(root, ctx)
     ctx.diagnostics.extend(unread(root))
     return RobotDescription(
         name=name,
@@ -94,10 +95,19 @@ def read_urdf(
         canonical_link=links[0].name if tree.root == WORLD else tree.root,
         transmissions=transmissions,
         ros2_control=ros2_control,
-        diagnostics=tuple(dict.fromkeys(ctx.diagnostics)),
+        diagnostics=distinct(ctx.diagnostics),
         text=text,
         origin=root.origin,
     )
+
+
+def _name(root: Node) -> str:
+    if "name" not in root.attributes and not root.all("link"):
+        raise root.fail(
+            "<robot> has neither a name nor links",
+            "A file that only defines macros is included by another: load that one.",
+        )
+    return root.require("name").strip()
 
 
 def _check_unique(kind: str, nodes: Sequence[Node]) -> None:
@@ -107,6 +117,22 @@ def _check_unique(kind: str, nodes: Sequence[Node]) -> None:
         if name in seen:
             raise node.fail(f'the {kind} "{name}" exists twice', f"The first is at {seen[name]}.")
         seen[name] = node.origin
+
+
+def _tell_unprefixed(root: Node, ctx: UrdfContext) -> None:
+    """Warns of xacro's elements in the spelling without a prefix, which ROS gave up long ago."""
+    for tag in ("include", "property", "macro", "arg", "if", "unless"):
+        for node in root.all(tag):
+            node.mark()
+            ctx.tell("warning", f"<{tag}> has no effect: write <xacro:{tag}>", node.origin)
+
+
+def distinct(diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
+    """Each once, by its text and line: a macro called ten times has the same to say ten times."""
+    found: dict[tuple[str, str], Diagnostic] = {}
+    for each in diagnostics:
+        found.setdefault((each.message, str(each.origin)), each)
+    return tuple(found.values())
 
 
 def _complete(part: ReadLink, tree: Tree, pose: Pose, tags: GazeboTags, ctx: UrdfContext) -> Link:

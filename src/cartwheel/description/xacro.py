@@ -208,6 +208,18 @@ def _parse(content: bytes | str, file: str, run: _Run) -> _Document:
     """The tree that xacro works on; comments are left out."""
     builder = _DomBuilder(file, run)
     xml.run_expat(content, file, builder)
+    root: Any = builder.document.documentElement
+    if not root.hasAttribute("xmlns:xacro") and any(
+        element.tagName.startswith(PREFIX) for element in root.getElementsByTagName("*")
+    ):
+        message = 'xmlns:xacro="http://www.ros.org/wiki/xacro" is missing in the root element'
+        run.diagnostics.append(
+            Diagnostic(
+                severity="warning",
+                message=f"{message}: ROS's own xacro refuses the file",
+                origin=root.origin,
+            )
+        )
     return builder.document
 
 

@@ -97,6 +97,10 @@ class Node:
             node = node.child(tag) if node is not None else None
         return node
 
+    def drop(self, child: Node) -> None:
+        """Takes a child out, so that no reader of this element meets it."""
+        self.children.remove(child)
+
     def mark(self) -> Node:
         """Counts this element, its attributes and all below as read: it is passed on whole."""
         self._read = True
