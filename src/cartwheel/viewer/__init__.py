@@ -1,5 +1,6 @@
 """The viewer in the browser: one more client of a session."""
 
+from cartwheel.viewer.description_viewer import DescriptionViewer
 from cartwheel.viewer.viewer import Viewer
 
-__all__ = ["Viewer"]
+__all__ = ["DescriptionViewer", "Viewer"]

@@ -82,13 +82,14 @@ class CameraPanel(Panel):
         self._topic.value = chosen if chosen in found else (found or (_NONE,))[0]
         self._choose()
 
-    def update(self, snapshot: Snapshot, now: float) -> None:
+    def update(self, snapshot: Snapshot, now: float) -> None:  # noqa: ARG002
         tap = self._tap
         if tap is None or tap.count == self._shown or not self._due(now):
             return
         self._shown = tap.count
         message = tap.newest
-        self._measure(tap.count, snapshot.time_ns)
+        stamp = message.header.stamp
+        self._measure(tap.count, stamp.sec * 1_000_000_000 + stamp.nanosec)
         picture = pixels_of(message)
         size = f"{message.width} × {message.height} {escape(message.encoding)}"
         if picture is None:
@@ -116,7 +117,12 @@ class CameraPanel(Panel):
             self._tap = Tap(self.graph, wanted)
 
     def _measure(self, count: int, time_ns: int) -> None:
-        """Messages in a second of simulated time, which is what a camera's rate means."""
+        """Messages in a second of simulated time, which is what a camera's rate means.
+
+        Args:
+            count: Of messages so far.
+            time_ns: Stamp of the last one.
+        """
         count_before, time_before = self._mark
         passed = (time_ns - time_before) / 1e9
         if not count_before or passed < 0:

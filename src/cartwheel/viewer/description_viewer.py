@@ -1,0 +1,167 @@
+"""A description alone in the browser: joints by sliders, frames, shapes, masses; no physics."""
+
+from __future__ import annotations
+
+import math
+import threading
+from typing import Any
+
+import numpy as np
+
+from cartwheel.description.kinematics import link_poses
+from cartwheel.description.model import Joint, RobotDescription
+from cartwheel.geometry import Pose, to_wxyz
+from cartwheel.viewer.display import Display
+from cartwheel.viewer.model_view import ModelView, footprint
+from cartwheel.viewer.page import Page, check_port
+from cartwheel.viewer.panels.base import escape
+from cartwheel.viewer.panels.notes import notes_html
+from cartwheel.viewer.scene_view import add_grid, set_stage
+
+_LABELS = {
+    "visual": "Visual shapes",
+    "collision": "Collision shapes",
+    "transparent": "Transparent",
+    "wireframe": "Wireframe",
+    "axes": "Link frames",
+    "names": "Link names",
+    "inertia": "Centre of mass, inertia",
+    "grid": "Grid",
+}
+_MOVING = ("revolute", "continuous", "prismatic")
+
+
+class DescriptionViewer:
+    """Shows what a description says, at `url`.
+
+    Args:
+        description: Of a robot or a model.
+        host: Address to listen on; only this computer by default.
+        port: 0 takes any that is free.
+
+    Raises:
+        ControlError: The port cannot be had.
+    """
+
+    def __init__(
+        self, description: RobotDescription, *, host: str = "127.0.0.1", port: int = 8080
+    ) -> None:
+        check_port(host, port)
+        self._description = description
+        self._stopped = threading.Event()
+        self._page = Page(host, port, title=f"Cartwheel: {description.name}")
+        host = "127.0.0.1" if host in ("0.0.0.0", "") else host  # noqa: S104
+        self.url = f"http://{host}:{self._page.port}"
+        """Where the page is."""
+        self._display = Display()
+        self._sliders: dict[str, Any] = {}
+        set_stage(self._page)
+        self._grid = add_grid(self._page)
+        self._model = ModelView(
+            self._page.scene, description.name, description, problem=self._page.show_error
+        )
+        _, below = footprint(description)
+        self._lift = Pose((0.0, 0.0, below))
+        self._set_camera()
+        self._build()
+        self._model.show(self._display)
+        self._move()
+
+    def run(self) -> None:
+        """Answers the sliders until `close`."""
+        try:
+            self._page.run(self._stopped)
+        finally:
+            self._page.close()
+
+    def start(self) -> None:
+        """`run` on a thread of its own."""
+        self._thread = threading.Thread(target=self.run, name="viewer", daemon=True)
+        self._thread.start()
+
+    def close(self) -> None:
+        """Takes the page off the air."""
+        self._stopped.set()
+        self._page.wake()
+
+    def _set_camera(self) -> None:
+        size = max(0.15, self._model.size)
+        camera = self._page.server.initial_camera
+        camera.position = (1.5 * size, -1.7 * size, 1.1 * size)
+        camera.look_at = (0.0, 0.0, 0.3 * size)
+
+    def _build(self) -> None:
+        gui, page, icons = self._page.gui, self._page, self._page.viser.Icon
+        gui.main_panel.dock_right()
+        gui.main_panel.set_width(330)
+        gui.add_html(_summary(self._description))
+        tabs = gui.add_tab_group()
+        with tabs.add_tab("Joints", icons.ADJUSTMENTS):
+            self._build_joints()
+        with tabs.add_tab("View", icons.EYE):
+            for name, label in _LABELS.items():
+                box = gui.add_checkbox(label, initial_value=getattr(self._display, name))
+                box.on_update(page.do(self._toggle, name, box))
+        with tabs.add_tab("Warnings", icons.ALERT_TRIANGLE):
+            gui.add_html(notes_html(self._description.diagnostics))
+
+    def _build_joints(self) -> None:
+        gui, page = self._page.gui, self._page
+        moving = [j for j in self._description.joints if j.type in _MOVING and j.mimic is None]
+        if not moving:
+            gui.add_html('<div class="cw cw-dim">No joint moves.</div>')
+            return
+        for joint in moving:
+            low, high = limits_of(joint)
+            slider = gui.add_slider(
+                joint.name,
+                min=low,
+                max=high,
+                step=(high - low) / 400,
+                initial_value=min(high, max(low, 0.0)),
+                hint=f"{joint.type}, {'m' if joint.type == 'prismatic' else 'rad'}",
+            )
+            slider.on_update(page.do(self._move))
+            self._sliders[joint.name] = slider
+        gui.add_button("Zero", icon=page.viser.Icon.REFRESH).on_click(page.do(self._zero))
+
+    def _zero(self) -> None:
+        for slider in self._sliders.values():
+            slider.value = min(slider.max, max(slider.min, 0.0))
+        self._move()
+
+    def _toggle(self, name: str, box: Any) -> None:
+        setattr(self._display, name, bool(box.value))
+        self._grid.visible = self._display.grid
+        self._model.show(self._display)
+
+    def _move(self) -> None:
+        positions = {name: float(slider.value) for name, slider in self._sliders.items()}
+        poses = link_poses(self._description, positions)
+        placed = [self._lift @ poses[link.name] for link in self._description.links]
+        with self._page.server.atomic():
+            self._model.move(
+                np.array([pose.position for pose in placed]),
+                np.array([to_wxyz(pose.orientation) for pose in placed]),
+            )
+
+
+def limits_of(joint: Joint) -> tuple[float, float]:
+    """The range of a joint's slider, rad or m: its limits, else one turn or a metre."""
+    reach = 1.0 if joint.type == "prismatic" else math.pi
+    low = -reach if joint.axis.lower is None else joint.axis.lower
+    high = reach if joint.axis.upper is None else joint.axis.upper
+    return (low, high) if high > low else (low - reach, low + reach)
+
+
+def _summary(description: RobotDescription) -> str:
+    rows = {
+        "name": escape(description.name),
+        "mass": "fixed" if description.static else f"{description.mass:.4g} kg",
+        "parts": f"{len(description.links)} links, {len(description.joints)} joints",
+        "file": escape(description.origin.file.rsplit("/", 1)[-1]),
+    }
+    cells = "".join(
+        f'<span class="cw-dim">{name}</span><span>{value}</span>' for name, value in rows.items()
+    )
+    return f'<div class="cw cw-properties">{cells}</div>'
