@@ -116,7 +116,7 @@ def test_joined_names_reach_inner_fields() -> None:
     odometry = from_flat("nav_msgs/Odometry", {"header_frame_id": "a", "pose_pose_position_x": 3})
     assert (odometry.header.frame_id, odometry.pose.pose.position.x) == ("a", 3.0)
     assert from_flat("nav_msgs/Odometry", {"child_frame_id": "b"}).child_frame_id == "b"
-    with pytest.raises(GraphError, match='no field "linear.w"'):
+    with pytest.raises(GraphError, match=r'no field "linear\.w"'):
         from_flat("geometry_msgs/Twist", {"linear_w": 0.5})
     with pytest.raises(GraphError, match='no field "speed"'):
         from_flat("geometry_msgs/Twist", {"speed": 0.5})

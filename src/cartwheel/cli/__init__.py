@@ -1,0 +1,1 @@
+"""The command line: parsing here, the work of each command in `commands`."""

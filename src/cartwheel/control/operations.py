@@ -12,10 +12,10 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from cartwheel.control.parameters import Parameters
+from cartwheel.control.place import AXES, placed
 from cartwheel.control.protocol import PATIENCE
 from cartwheel.description.model import RobotDescription
 from cartwheel.errors import ControlError, GraphError, UnknownNameError
-from cartwheel.geometry import Pose
 from cartwheel.graph import TopicInfo, resolve_name
 from cartwheel.messages import decode_cdr, from_dict, service_classes, to_dict, type_name
 from cartwheel.session import Session
@@ -151,19 +151,15 @@ class Operations:
         path = Path(parameters.text("file"))
         if not path.is_absolute():
             raise ControlError(f'"{path}" is no absolute path')
-        pose = None
-        axes = ("x", "y", "z", "roll", "pitch", "yaw")
-        if any(parameters.value(axis) is not None for axis in axes):
-            given = {axis: parameters.number(axis, 0.0) for axis in axes}
-            pose = Pose.from_xyz_rpy(
-                (given["x"], given["y"], given["z"]),
-                (given["roll"], given["pitch"], given["yaw"]),
-            )
+        given = {
+            axis: parameters.number(axis) for axis in AXES if parameters.value(axis) is not None
+        }
         description = self._load(
             path,
             parameters.texts("arguments"),
             [Path(folder) for folder in parameters.list_of_texts("package_path")],
         )
+        pose = placed(description.pose, given)
         wanted = parameters.text("model", "") or None
 
         def spawn() -> Answer:

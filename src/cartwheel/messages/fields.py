@@ -52,7 +52,7 @@ def fields(name: str) -> tuple[Field, ...]:
 
 
 def _field(name: str, description: Any) -> Field:
-    from rosbags.interfaces import Nodetype  # noqa: PLC0415 - see store
+    from rosbags.interfaces import Nodetype
 
     node, value = description
     if node in (Nodetype.ARRAY, Nodetype.SEQUENCE):

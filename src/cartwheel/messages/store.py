@@ -25,7 +25,7 @@ def store() -> Any:
     """The typestore: Jazzy's types and those of `DEFINITIONS`."""
     # rosbags takes as long to import as the rest of a command does to run, and many
     # commands see no message.
-    from rosbags.typesys import Stores, get_types_from_msg, get_typestore  # noqa: PLC0415
+    from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
     made = get_typestore(Stores.ROS2_JAZZY)
     ours: dict[str, Any] = {}

@@ -1,0 +1,88 @@
+"""Arguments that several commands share."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from cartwheel.control.registry import VARIABLE
+from cartwheel.errors import CartwheelError
+
+_MAPPING = re.compile(r"([A-Za-z_][\w.-]*):=(.*)", re.DOTALL)
+
+Sim = Annotated[
+    int | None,
+    typer.Option(
+        "--sim", metavar="PID", help=f"Which simulation, where several run. Also {VARIABLE}."
+    ),
+]
+Names = Annotated[
+    list[str] | None,
+    typer.Argument(metavar="[FILE] [NAME:=VALUE]...", show_default=False),
+]
+PackagePath = Annotated[
+    list[Path] | None,
+    typer.Option(
+        "--package-path",
+        metavar="FOLDER",
+        help="Look for packages and models here first. May be given again.",
+    ),
+]
+X = Annotated[float | None, typer.Option("-x", metavar="M", help="Place in the world.")]
+Y = Annotated[float | None, typer.Option("-y", metavar="M")]
+Z = Annotated[float | None, typer.Option("-z", metavar="M")]
+Roll = Annotated[float | None, typer.Option("-R", metavar="RAD", help="Roll, pitch and yaw.")]
+Pitch = Annotated[float | None, typer.Option("-P", metavar="RAD")]
+Yaw = Annotated[float | None, typer.Option("-Y", metavar="RAD")]
+Model = Annotated[
+    str | None, typer.Option("--model", metavar="NAME", help="Its name in the world.")
+]
+Host = Annotated[
+    str, typer.Option(help="Address the viewer listens on; 0.0.0.0 lets other computers in.")
+]
+Port = Annotated[
+    int, typer.Option(min=0, max=65535, help="Port of the viewer; 0 takes a free one.")
+]
+
+
+def split(words: Sequence[str] | None) -> tuple[str | None, dict[str, str]]:
+    """The file and the ``name:=value`` among the words of a command, in any order.
+
+    Raises:
+        CartwheelError: There are two files.
+    """
+    file = None
+    values: dict[str, str] = {}
+    for word in words or ():
+        match = _MAPPING.fullmatch(word)
+        if match:
+            values[match[1]] = match[2]
+        elif file is None:
+            file = word
+        else:
+            raise CartwheelError(
+                f'"{word}" is one file too many after "{file}"',
+                hint=f"An argument of a xacro file is written {word.partition('=')[0]}:=value.",
+            )
+    return file, values
+
+
+def needed(file: str | None) -> str:
+    """The file of a command that cannot do without.
+
+    Raises:
+        CartwheelError: There is none.
+    """
+    if file is None:
+        raise CartwheelError("which file?", hint="Name a xacro, URDF or SDF file.")
+    return file
+
+
+def pose(**values: float | None) -> dict[str, float] | None:
+    """The given ones of x, y, z, roll, pitch, yaw; None where none is given."""
+    given = {name: value for name, value in values.items() if value is not None}
+    return given or None

@@ -1,0 +1,66 @@
+"""Models into and out of a running simulation."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from cartwheel.cli.commands.clients import connect
+from cartwheel.cli.console import note, paint, print_warning, say, table
+
+
+def spawn(
+    sim: int | None,
+    file: str,
+    values: Mapping[str, str],
+    *,
+    place: Mapping[str, float],
+    model: str | None,
+    package_path: Sequence[Path],
+) -> None:
+    """Spawns a file; its description is read by the simulation's process."""
+    with connect(sim) as client:
+        # What a name means depends on the folder that the user is in, not the simulation.
+        from cartwheel.description.shipped import find_description
+
+        path = find_description(file, package_path).absolute()
+        answer = client.request(
+            "spawn",
+            file=str(path),
+            arguments=dict(values),
+            package_path=[str(folder.absolute()) for folder in package_path],
+            model=model or "",
+            **dict[str, Any](place),
+        )
+    for warning in answer["warnings"]:
+        print_warning(warning)
+    say(answer["name"])
+
+
+def delete(sim: int | None, model: str) -> None:
+    """Deletes a model."""
+    with connect(sim) as client:
+        client.request("delete", model=model)
+
+
+def print_list(sim: int | None) -> None:
+    """A table of all models, as the world and the user put them there."""
+    with connect(sim) as client:
+        found = client.request("models")["models"]
+    if not found:
+        note("the world is empty")
+        return
+    rows = [["model", "x", "y", "z", "yaw", "mass", "from"]]
+    for one in found:
+        x, y, z = one["position"]
+        yaw = math.degrees(one["rpy"][2])
+        mass = "static" if one["static"] else f"{one['mass']:.3g} kg"
+        rows.append(
+            [one["name"], f"{x:.3f}", f"{y:.3f}", f"{z:.3f}", f"{yaw:.0f}°", mass, one["file"]]
+        )
+    head, *lines = table(rows).splitlines()
+    say(paint(head, "dim"))
+    for line in lines:
+        say(line)

@@ -1,0 +1,82 @@
+"""The viewer of a run: started beside it, announced when it is up."""
+
+from __future__ import annotations
+
+import os
+import sys
+import threading
+
+from cartwheel.cli.commands.report import Report
+from cartwheel.control.server import ControlServer
+from cartwheel.errors import CartwheelError
+from cartwheel.session import Session
+from cartwheel.simulation.pacing import Pacer
+from cartwheel.viewer import Viewer
+
+
+class Page:
+    """The browser's page of a session.
+
+    Args:
+        session: To show.
+        server: Tells other processes where the page is.
+        report: Tells the user.
+        host: Address to listen on.
+        port: Port to listen on.
+        open_browser: Whether to open it; None does on a desktop.
+    """
+
+    def __init__(
+        self,
+        session: Session,
+        server: ControlServer,
+        report: Report,
+        *,
+        host: str,
+        port: int,
+        open_browser: bool | None,
+    ) -> None:
+        self._session = session
+        self._server = server
+        self._open = _is_desktop() if open_browser is None else open_browser
+        self._report = report
+        self._viewer = Viewer(session, host=host, port=port)
+        self._failure: CartwheelError | None = None
+
+    def start(self, pacer: Pacer) -> None:
+        """Brings the page up, while the simulation begins."""
+        self._viewer.start(pacer)
+        threading.Thread(target=self._announce, name="announce", daemon=True).start()
+
+    def raise_failure(self) -> None:
+        """Raises what kept the page from coming up.
+
+        Raises:
+            CartwheelError: That.
+        """
+        if self._failure is not None:
+            raise self._failure
+
+    def _announce(self) -> None:
+        simulation = self._session.simulation
+        try:
+            url = self._viewer.url
+        except CartwheelError as error:
+            self._failure = error
+            simulation.post(simulation.stop)
+            return
+        self._server.announce(url=url, port=int(url.rsplit(":", 1)[1]))
+        self._report.address(url)
+        if self._open:
+            import webbrowser
+
+            webbrowser.open(url)
+
+
+def _is_desktop() -> bool:
+    """Whether a browser can be expected to show up before the user."""
+    if not sys.stdout.isatty() or "SSH_CONNECTION" in os.environ:
+        return False
+    return sys.platform == "darwin" or bool(
+        os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
+    )

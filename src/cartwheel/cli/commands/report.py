@@ -1,0 +1,107 @@
+"""What a run tells its user: what was loaded, where to look, what to try, how it went."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from cartwheel.cli.console import is_terminal, note, paint, print_warning, say, table
+from cartwheel.control.registry import Running
+
+if TYPE_CHECKING:
+    from cartwheel.errors import Diagnostic
+    from cartwheel.session import Session
+
+_TOPICS = 12
+"""Lines of topics; the rest is counted."""
+
+
+class Report:
+    """Lines for a user; short, and without decoration where nobody looks.
+
+    Args:
+        verbose: Also what is merely worth knowing.
+    """
+
+    def __init__(self, *, verbose: bool) -> None:
+        self._verbose = verbose
+        self._decorated = is_terminal(sys.stdout) and sys.stdin.isatty()
+
+    def others(self, others: Sequence[Running]) -> None:
+        """Says that this is not the only simulation."""
+        print_warning(
+            "another simulation runs already, so commands need --sim PID:\n"
+            + "\n".join(f"    {entry}" for entry in others)
+        )
+
+    def loaded(self, session: Session, name: str | None) -> None:
+        """What stands in the world, what is to be known about it, and what to try."""
+        simulation = session.simulation
+        self._line("world", f"{simulation.world.name}{self._inhabitants(session, name)}")
+        for placed in simulation.scene.models:
+            if placed.name == name:
+                description = placed.description
+                parts = f"{len(description.links)} links, {len(description.joints)} joints"
+                self._line("robot", f"{name}, {description.mass:.4g} kg, {parts}")
+        for diagnostic in session.diagnostics:
+            self.diagnostic(diagnostic)
+        simulation.on_diagnostic.append(self.diagnostic)
+        self._topics(session)
+
+    def address(self, url: str) -> None:
+        """Where the viewer is."""
+        self._line("viewer", paint(url, "bold", "cyan"))
+        if self._decorated:
+            say(paint("\nCtrl-C ends.", "dim"))
+
+    def diagnostic(self, diagnostic: Diagnostic) -> None:
+        """Something about a file."""
+        place = f"{diagnostic.origin}: " if diagnostic.origin else ""
+        if diagnostic.severity != "info":
+            print_warning(f"{place}{diagnostic.message}")
+        elif self._verbose:
+            note(f"{paint('info: ', 'dim', stream=sys.stderr)}{place}{diagnostic.message}")
+
+    def ended(self, session: Session, wall: float) -> None:
+        """How it went."""
+        seconds = session.simulation.time_ns / 1e9
+        factor = f", {seconds / wall:.1f} times real time" if wall > 0 else ""
+        say(f"simulated {seconds:.3f} s in {wall:.3f} s{factor}")
+
+    def _inhabitants(self, session: Session, name: str | None) -> str:
+        others = [model for model in session.simulation.models if model != name]
+        if not others:
+            return ""
+        more = f" and {len(others) - 6} more" if len(others) > 6 else ""
+        return f" with {', '.join(others[:6])}{more}"
+
+    def _topics(self, session: Session) -> None:
+        topics = [topic for topic in session.graph.topics() if topic.name != "/clock"]
+        rows = []
+        for topic in topics[:_TOPICS]:
+            rate = f"{topic.rate:g} Hz" if topic.rate else ""
+            sense = "" if topic.publishers else "is read"
+            rows.append([topic.name, topic.type.replace("/msg/", "/"), rate or sense])
+        if rows:
+            for line in table(rows).splitlines():
+                self._line("topic", line)
+        if len(topics) > _TOPICS:
+            self._line("", f"and {len(topics) - _TOPICS} more: cartwheel topic list")
+        if self._decorated:
+            self._try(session)
+
+    def _try(self, session: Session) -> None:
+        topics = session.graph.topics()
+        if any(t.type == "geometry_msgs/msg/Twist" and t.subscribers for t in topics):
+            self._line("try", "cartwheel teleop")
+        published = [topic.name for topic in topics if topic.publishers]
+        for wanted in ("odom", "imu", "image", "clock"):
+            name = next((name for name in published if wanted in name), None)
+            if name:
+                self._line("try", f"cartwheel topic {'hz' if wanted == 'image' else 'echo'} {name}")
+                return
+
+    @staticmethod
+    def _line(title: str, text: str) -> None:
+        say(f"{paint(title.ljust(7), 'dim')} {text}")

@@ -1,0 +1,165 @@
+"""Topics of a running simulation."""
+
+from __future__ import annotations
+
+import re
+import sys
+import time
+from collections.abc import Sequence
+from typing import Any
+
+from cartwheel.cli import interrupts
+from cartwheel.cli.commands.clients import connect, parse_yaml
+from cartwheel.cli.console import note, paint, print_warning, say, table
+from cartwheel.control import ControlClient, Sample
+from cartwheel.errors import CartwheelError, GraphError, suggestion
+
+
+def print_list(sim: int | None, *, verbose: bool) -> None:
+    """The names, or a table of types, rates and ends."""
+    with connect(sim) as client:
+        found = client.request("topics")["topics"]
+    if not verbose:
+        for one in found:
+            say(one["name"])
+        return
+    rows = [["topic", "type", "rate", "published by", "read by"]]
+    for one in found:
+        rate = f"{one['rate']:g} Hz" if one["rate"] else ""
+        publishers = ", ".join(one["publishers"]) or "-"
+        rows.append([one["name"], one["type"], rate, publishers, ", ".join(one["subscribers"])])
+    head, *lines = table(rows).splitlines()
+    say(paint(head, "dim"))
+    for line in lines:
+        say(line)
+
+
+def print_info(sim: int | None, topic: str) -> None:
+    """One topic, in the layout of ``rostopic info``."""
+    with connect(sim) as client:
+        one = client.request("topic", topic=topic)
+    say(f"Type: {one['type']}")
+    if one["rate"]:
+        say(f"Rate: {one['rate']:g} Hz")
+    for title, nodes in (("Publishers", one["publishers"]), ("Subscribers", one["subscribers"])):
+        say()
+        say(f"{title}:" if nodes else f"{title}: None")
+        for node in nodes:
+            say(f" * {node}")
+
+
+def echo(
+    sim: int | None,
+    topic: str,
+    *,
+    count: int | None,
+    arrays: bool,
+    full: bool,
+    field: str | None,
+) -> None:
+    """Prints messages until there were enough, the user ends it, or the simulation ends."""
+    from cartwheel.messages import decode_cdr, to_yaml
+
+    shown = dropped = 0
+    with connect(sim) as client, client.subscribe(topic) as subscription, ends_quietly(count):
+        for sample in subscription:
+            message: Any = decode_cdr(sample.data, sample.type)
+            if field is not None:
+                message = pick(message, field)
+            sys.stdout.write(to_yaml(message, full=full, arrays=arrays) + "---\n")
+            sys.stdout.flush()
+            shown += 1
+            dropped = _tell_dropped(sample, dropped)
+            if shown == count:
+                return
+    _ended(shown, count)
+
+
+def _tell_dropped(sample: Sample, before: int) -> int:
+    if sample.dropped > before:
+        print_warning(
+            f"{sample.dropped - before} messages were lost: they come faster than they are printed"
+        )
+    return sample.dropped
+
+
+def _ended(shown: int, count: int | None) -> None:
+    if count is not None:
+        raise CartwheelError(f"the simulation ended after {shown} of {count} messages")
+    note("the simulation has ended")
+
+
+def ends_quietly(count: int | None) -> Any:
+    """An endless command is ended by Ctrl-C as it is meant to be: with status 0."""
+    import contextlib
+
+    if count is not None:
+        return contextlib.nullcontext()
+    return contextlib.suppress(interrupts.Interrupted)
+
+
+def pick(message: Any, path: str) -> Any:
+    """A field of a message, by a path such as ``transforms[0].transform.translation.x``.
+
+    Raises:
+        GraphError: There is no such field.
+    """
+    value = message
+    done = ""
+    for part in re.findall(r"[^.\[\]]+", path):
+        if part.isdecimal() and hasattr(value, "__len__") and not isinstance(value, str):
+            if int(part) >= len(value):
+                raise GraphError(f'"{done}" has {len(value)} items, so no "{path}"')
+            value = value[int(part)]
+        elif hasattr(value, "__msgtype__"):
+            names = [name for name in value.__dataclass_fields__ if not name.startswith("__")]
+            if part not in names:
+                raise GraphError(
+                    f'{value.__msgtype__} has no field "{part}"', hint=suggestion(part, names)
+                )
+            value = getattr(value, part)
+        else:
+            raise GraphError(f'"{done}" has no field "{part}"')
+        done = f"{done}.{part}".lstrip(".")
+    return value
+
+
+def publish(
+    sim: int | None,
+    topic: str,
+    type_name: str,
+    words: Sequence[str],
+    *,
+    rate: float | None,
+    count: int | None,
+) -> None:
+    """Publishes once, or at a rate of wall time."""
+    if rate is not None and not 0 < rate <= 10_000:
+        raise CartwheelError(f"a rate of {rate:g} is not between 0 and 10000 Hz")
+    message = parse_yaml(words)
+    with connect(sim) as client:
+        readers = _publish_once(client, topic, type_name, message)
+        if rate is None:
+            note(f"published to {topic}, which {_many(readers, 'subscriber')} read")
+            return
+        note(f"publishing to {topic} at {rate:g} Hz; Ctrl-C ends")
+        sent = 1
+        due = time.monotonic()
+        with ends_quietly(count):
+            while count is None or sent < count:
+                due += 1 / rate
+                time.sleep(max(0.0, due - time.monotonic()))
+                client.publish(topic, type_name, message)
+                sent += 1
+
+
+def _publish_once(client: ControlClient, topic: str, type_name: str, message: Any) -> int:
+    answer = client.request("publish", topic=topic, type=type_name, message=message)
+    if not answer["subscribers"]:
+        hint = suggestion(topic, answer["topics"]) if answer["topics"] else ""
+        print_warning(f"nobody reads {topic}. {hint}".rstrip())
+    return int(answer["subscribers"])
+
+
+def _many(count: int, what: str) -> str:
+    return f"{count} {what}{'' if count == 1 else 's'}"

@@ -1,0 +1,38 @@
+"""A description in the browser, without physics."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from cartwheel.cli import interrupts
+from cartwheel.cli.commands.ports import refuse_taken
+from cartwheel.cli.console import paint, print_warning, say
+
+
+def view(
+    file: str,
+    values: Mapping[str, str],
+    package_path: Sequence[Path],
+    *,
+    host: str,
+    port: int,
+) -> None:
+    """Shows a robot until Ctrl-C."""
+    refuse_taken(host, port)
+    from cartwheel.description import load_robot
+    from cartwheel.viewer import DescriptionViewer
+
+    description = load_robot(file, arguments=values, package_path=package_path)
+    for diagnostic in description.diagnostics:
+        if diagnostic.severity != "info":
+            print_warning(str(diagnostic).replace("warning: ", "", 1))
+    stopped = threading.Event()
+    viewer = DescriptionViewer(description, host=host, port=port)
+    with interrupts.handled_by(stopped.set, status=0):
+        viewer.start()
+        say(f"{description.name}  {paint(viewer.url, 'bold', 'cyan')}")
+        say(paint("Ctrl-C ends.", "dim"))
+        stopped.wait()
+    viewer.close()

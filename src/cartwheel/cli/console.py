@@ -1,0 +1,56 @@
+"""What commands print: results to stdout, all else to stderr; colours only on a terminal."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Iterable, Sequence
+from typing import TextIO
+
+_CODES = {"bold": "1", "dim": "2", "red": "31", "green": "32", "yellow": "33", "cyan": "36"}
+
+
+def is_terminal(stream: TextIO) -> bool:
+    """Whether colours may be written there."""
+    return stream.isatty() and "NO_COLOR" not in os.environ and os.environ.get("TERM", "") != "dumb"
+
+
+def paint(text: str, *styles: str, stream: TextIO | None = None) -> str:
+    """The text in colour, where `stream` (stdout by default) shows colours."""
+    if not styles or not is_terminal(stream or sys.stdout):
+        return text
+    return f"\033[{';'.join(_CODES[style] for style in styles)}m{text}\033[0m"
+
+
+def say(text: str = "") -> None:
+    """A line of the result; at once, so that a reader of a pipe has it."""
+    print(text, flush=True)
+
+
+def note(text: str) -> None:
+    """A line about the result."""
+    print(text, file=sys.stderr, flush=True)
+
+
+def print_error(text: str) -> None:
+    """What went wrong; the last thing a command says."""
+    sys.stdout.flush()
+    note(paint("error: ", "red", "bold", stream=sys.stderr) + text)
+
+
+def print_warning(text: str) -> None:
+    """What a user should know, though the command goes on."""
+    note(paint("warning: ", "yellow", stream=sys.stderr) + text)
+
+
+def table(rows: Iterable[Sequence[str]], *, indent: str = "") -> str:
+    """Rows in columns as wide as they need; the last may be of any width."""
+    kept = [list(row) for row in rows]
+    if not kept:
+        return ""
+    widths = [max(len(row[i]) for row in kept) for i in range(len(kept[0]))]
+    return "\n".join(
+        indent
+        + "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
+        for row in kept
+    )

@@ -1,0 +1,81 @@
+"""``cartwheel pause``, ``resume``, ``step``, ``reset``, ``speed`` and ``status``."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from cartwheel.cli.arguments import Sim
+from cartwheel.errors import CartwheelError
+
+
+def add_to(app: typer.Typer) -> None:
+    """Adds the commands."""
+    for command in (status, pause, resume, step, reset, speed):
+        app.command()(command)
+
+
+def parse_speed(text: str) -> float | None:
+    """A real-time factor, or None for ``max``.
+
+    Raises:
+        CartwheelError: It is neither.
+    """
+    if text.lower() in ("max", "inf"):
+        return None
+    try:
+        value = float(text)
+    except ValueError:
+        value = -1.0
+    if not 0 < value < 1e9:
+        raise CartwheelError(
+            f'a speed of "{text}" is neither a number above 0 nor "max"',
+            hint="1 is real time, 2 twice as fast; max is as fast as it can.",
+        )
+    return value
+
+
+def status(sim: Sim = None) -> None:
+    """Print what runs."""
+    from cartwheel.cli.commands import timing
+
+    timing.print_status(sim)
+
+
+def pause(sim: Sim = None) -> None:
+    """Hold time."""
+    from cartwheel.cli.commands import timing
+
+    timing.ask(sim, "pause")
+
+
+def resume(sim: Sim = None) -> None:
+    """Let time go on."""
+    from cartwheel.cli.commands import timing
+
+    timing.ask(sim, "resume")
+
+
+def step(count: Annotated[int, typer.Argument(metavar="[N]", min=1)] = 1, sim: Sim = None) -> None:
+    """Make N steps of a simulation that is paused, or is paused by this."""
+    from cartwheel.cli.commands import timing
+
+    timing.ask(sim, "step", count=count)
+
+
+def reset(sim: Sim = None) -> None:
+    """Take time to zero and every model to where it was spawned."""
+    from cartwheel.cli.commands import timing
+
+    timing.ask(sim, "reset")
+
+
+def speed(
+    value: Annotated[str, typer.Argument(metavar="FACTOR|max", show_default=False)],
+    sim: Sim = None,
+) -> None:
+    """Set the wanted real-time factor."""
+    from cartwheel.cli.commands import timing
+
+    timing.ask(sim, "speed", speed=parse_speed(value))

@@ -1,0 +1,60 @@
+"""``cartwheel view``, ``convert`` and ``version``: what needs no simulation."""
+
+from __future__ import annotations
+
+import enum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from cartwheel.cli import arguments
+from cartwheel.cli.console import say
+
+
+class Format(enum.StrEnum):
+    """What a description can be written as."""
+
+    URDF = "urdf"
+    MJCF = "mjcf"
+
+
+def add_to(app: typer.Typer) -> None:
+    """Adds the commands."""
+    for command in (view, convert, version):
+        app.command()(command)
+
+
+def view(
+    words: arguments.Names = None,
+    host: arguments.Host = "127.0.0.1",
+    port: arguments.Port = 8080,
+    package_path: arguments.PackagePath = None,
+) -> None:
+    """Show a description alone: joints, frames, inertia, no physics."""
+    from cartwheel.cli.commands import view as work
+
+    file, values = arguments.split(words)
+    work.view(arguments.needed(file), values, package_path or [], host=host, port=port)
+
+
+def convert(
+    to: Annotated[Format, typer.Option("--to", help="What to write.", show_default=False)],
+    words: arguments.Names = None,
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", metavar="OUT", help="By default stdout.")
+    ] = None,
+    package_path: arguments.PackagePath = None,
+) -> None:
+    """Write a description as plain URDF, or as MuJoCo's MJCF."""
+    from cartwheel.cli.commands import convert as work
+
+    file, values = arguments.split(words)
+    work.convert(arguments.needed(file), values, package_path or [], to=to.value, output=output)
+
+
+def version() -> None:
+    """Print the version."""
+    import cartwheel
+
+    say(f"cartwheel {cartwheel.__version__}")

@@ -1,0 +1,67 @@
+"""The program: runs a command, and turns what goes wrong into a message and a status.
+
+Status 0 is success; 1 a fault of Cartwheel; 2 something the user can mend; 128 and the
+signal's number where a command was interrupted before it was done.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+import traceback
+
+from cartwheel.cli import interrupts
+from cartwheel.cli.console import print_error
+from cartwheel.errors import CartwheelError
+
+
+def main() -> None:
+    """The entry point of ``cartwheel``."""
+    interrupts.install()
+    status = run()
+    interrupts.leave(status)
+
+
+def run() -> int:
+    """Runs the command that the arguments name; returns the status."""
+    try:
+        # The rest is imported only now, so that a signal meanwhile finds its handler.
+        from cartwheel.cli.app import app
+
+        app(prog_name="cartwheel")
+    except interrupts.Interrupted as interrupted:
+        return 128 + interrupted.number
+    except CartwheelError as error:
+        print_error(str(error))
+        return 2
+    except BrokenPipeError:
+        # Whoever read our output has seen enough, as `head` does.
+        _drop_output()
+        return 0
+    except SystemExit as done:
+        return done.code if isinstance(done.code, int) else 0
+    except RecursionError:
+        print_error("the file is nested too deeply")
+        return 2
+    except Exception as error:  # noqa: BLE001 - the last resort
+        return _report(error)
+    return 0
+
+
+def _report(error: Exception) -> int:
+    if "--verbose" in sys.argv:
+        traceback.print_exc()
+    print_error(
+        f"Cartwheel has a fault: {type(error).__name__}: {error}\n"
+        "  Please report it, with the output of the same command and --verbose."
+    )
+    return 1
+
+
+def _drop_output() -> None:
+    """Lets nothing be written to a closed pipe at the end of the process."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+if __name__ == "__main__":
+    main()
