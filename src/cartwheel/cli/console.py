@@ -49,8 +49,8 @@ def table(rows: Iterable[Sequence[str]], *, indent: str = "") -> str:
     if not kept:
         return ""
     widths = [max(len(row[i]) for row in kept) for i in range(len(kept[0]))]
-    return "\n".join(
-        indent
-        + "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
+    lines = (
+        "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True))
         for row in kept
     )
+    return "\n".join(f"{indent}{line}".rstrip() for line in lines)

@@ -4,17 +4,26 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
+from pathlib import PurePath
 from typing import TYPE_CHECKING
 
 from cartwheel.cli.console import is_terminal, note, paint, print_warning, say, table
 from cartwheel.control.registry import Running
 
 if TYPE_CHECKING:
+    from cartwheel.description.model import WorldDescription
     from cartwheel.errors import Diagnostic
     from cartwheel.session import Session
 
 _TOPICS = 12
 """Lines of topics; the rest is counted."""
+
+
+def world_title(world: WorldDescription) -> str:
+    """A world's name, or its file's: half of all worlds are named default."""
+    if world.name not in ("default", "world", ""):
+        return world.name
+    return PurePath(world.origin.file).stem.strip("<>")
 
 
 class Report:
@@ -38,7 +47,7 @@ class Report:
     def loaded(self, session: Session, name: str | None) -> None:
         """What stands in the world, what is to be known about it, and what to try."""
         simulation = session.simulation
-        self._line("world", f"{simulation.world.name}{self._inhabitants(session, name)}")
+        self._line("world", f"{world_title(simulation.world)}{self._inhabitants(session, name)}")
         for placed in simulation.scene.models:
             if placed.name == name:
                 description = placed.description

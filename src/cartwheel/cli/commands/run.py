@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from cartwheel.cli import interrupts
 from cartwheel.cli.commands.ports import refuse_taken
-from cartwheel.cli.commands.report import Report
+from cartwheel.cli.commands.report import Report, world_title
 from cartwheel.control import running
 from cartwheel.errors import CartwheelError
 
@@ -72,7 +72,8 @@ def simulate(options: Options) -> None:
     if robot is not None:
         pose = placed(robot.pose, options.place or {})
         name = session.spawn(robot, name=options.model, pose=pose)
-    title = f"{name} in {world.name}" if name else f"world {world.name}"
+    where = world_title(world)
+    title = f"{name} in {where}" if name else where
     server = ControlServer(session, title=title, load=_load_robot)
     with interrupts.finally_do(server.close):
         if others:
@@ -122,7 +123,14 @@ def _run(session: Session, server: ControlServer, options: Options, report: Repo
     if not options.headless:
         from cartwheel.cli.commands.page import Page
 
-        page = Page(session, server, options.host, options.port, options.open_browser, report)
+        page = Page(
+            session,
+            server,
+            report,
+            host=options.host,
+            port=options.port,
+            open_browser=options.open_browser,
+        )
 
     def stop() -> None:
         simulation.stop()

@@ -140,7 +140,7 @@ def publish(
     with connect(sim) as client:
         readers = _publish_once(client, topic, type_name, message)
         if rate is None:
-            note(f"published to {topic}, which {_many(readers, 'subscriber')} read")
+            note(f"published to {topic}: {_many(readers, 'subscriber')}")
             return
         note(f"publishing to {topic} at {rate:g} Hz; Ctrl-C ends")
         sent = 1
