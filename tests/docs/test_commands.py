@@ -1,0 +1,212 @@
+"""Every command that a page shows is run, on the page's files, and gives what is shown.
+
+A page is read as a person would follow it: `cartwheel run` goes on in a terminal of its own
+until the next one, `cartwheel view` is looked at and closed, `cartwheel teleop` gets the keys
+that a comment above its block names. Shown output is compared with ``...`` standing for anything.
+"""
+
+import contextlib
+import doctest
+import os
+import pty
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from .pages import PAGES, ROOT, Command, blocks, commands
+
+START_SECONDS = 60.0
+PATIENCE = 20.0
+"""s in which what a simulation says must have become what the page shows."""
+ASKS = ("cartwheel topic ", "cartwheel status", "cartwheel models", "cartwheel service list")
+"""Commands that change nothing, so that they may be asked again."""
+
+
+class Reader:
+    """Follows one page."""
+
+    def __init__(self, tmp_path: Path) -> None:
+        self.folder = tmp_path
+        self._tmp_path = tmp_path
+        self._runtime = tmp_path / "runtime"
+        self._runtime.mkdir(mode=0o700)
+        # pip puts `cartwheel` beside the interpreter that runs the tests.
+        path = f"{Path(sys.executable).parent}:{os.environ['PATH']}"
+        self._environment = {
+            **os.environ,
+            "PATH": path,
+            "XDG_RUNTIME_DIR": str(self._runtime),
+            "COLUMNS": "100",
+            "NO_COLOR": "1",
+        }
+        self._running: subprocess.Popen[str] | None = None
+
+    def close(self) -> None:
+        """Ends the simulation of the page."""
+        if self._running is not None:
+            self._running.send_signal(signal.SIGINT)
+            try:
+                self._running.communicate(timeout=20)
+            except subprocess.TimeoutExpired:
+                self._running.kill()
+                raise
+            finally:
+                self._running = None
+
+    def follow(self, command: Command) -> None:
+        text = command.text
+        if text.startswith("cd "):
+            self._change_folder(text.removeprefix("cd "))
+        elif text.startswith("cartwheel run") and "--for" not in text:
+            self._start(command)
+        elif text.startswith("cartwheel view"):
+            self._view(command)
+        elif text.startswith("cartwheel teleop"):
+            self._teleop(command)
+        else:
+            self._ask(command)
+
+    def _change_folder(self, name: str) -> None:
+        """Into a copy: commands write files."""
+        source = ROOT / name
+        assert source.is_dir(), f"{name} is no folder of the repository"
+        self.folder = self._tmp_path / Path(name).name
+        shutil.copytree(source, self.folder)
+
+    def _popen(self, text: str) -> subprocess.Popen[str]:
+        return subprocess.Popen(
+            ["bash", "-c", f"exec {text}"],
+            cwd=self.folder,
+            env=self._environment,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+        )
+
+    def _start(self, command: Command) -> None:
+        self.close()
+        headless = "" if "--headless" in command.text else " --headless"
+        self._running = self._popen(command.text + headless)
+        deadline = time.monotonic() + START_SECONDS
+        while not list((self._runtime / "cartwheel").glob("*.json")):
+            if self._running.poll() is not None:
+                pytest.fail(f"{command}\nended with:\n{self._running.communicate()[0]}")
+            assert time.monotonic() < deadline, f"{command}: no simulation"
+            time.sleep(0.05)
+
+    def _view(self, command: Command) -> None:
+        viewer = self._popen(f"{command.text} --port 0")
+        assert viewer.stdout is not None
+        seen = ""
+        for line in viewer.stdout:
+            seen += line
+            if "http://" in line:
+                break
+        viewer.send_signal(signal.SIGINT)
+        viewer.communicate(timeout=20)
+        assert "http://" in seen, f"{command}\n{seen}"
+
+    def _teleop(self, command: Command) -> None:
+        keys = command.block.notes.get("keys", "")
+        assert keys, f"{command}: which keys? Write <!-- keys: ... --> above the block."
+        master, slave = pty.openpty()
+        driver = subprocess.Popen(
+            ["bash", "-c", f"exec {command.text}"],
+            cwd=self.folder,
+            env=self._environment,
+            stdin=slave,
+            stdout=slave,
+            stderr=slave,
+        )
+        os.close(slave)
+        os.read(master, 4096)  # It has said how to drive, so it listens.
+        for key in keys.split():
+            os.write(master, key.encode())
+            time.sleep(0.3)
+        os.write(master, b"\x03")
+        deadline = time.monotonic() + 20
+        while driver.poll() is None and time.monotonic() < deadline:
+            _drain(master)
+            time.sleep(0.05)
+        driver.kill()
+        os.close(master)
+        assert driver.returncode in (0, 130), f"{command}: status {driver.returncode}"
+
+    def _ask(self, command: Command) -> None:
+        deadline = time.monotonic() + PATIENCE
+        while True:
+            done = subprocess.run(
+                ["bash", "-c", f"set -o pipefail; {command.text}"],
+                cwd=self.folder,
+                env=self._environment,
+                stdin=subprocess.DEVNULL,
+                capture_output=True,
+                text=True,
+                timeout=120,
+                check=False,
+            )
+            output = done.stdout + done.stderr
+            fits = done.returncode == 0 and matches(command.expected, output)
+            again = command.text.startswith(ASKS) and time.monotonic() < deadline
+            if fits or not again:
+                break
+            time.sleep(0.2)
+        assert done.returncode == 0, f"{command}\nended with {done.returncode}:\n{output}"
+        assert fits, f"{command}\nshown:\n{command.expected}\ngiven:\n{output}"
+
+
+def _drain(master: int) -> None:
+    os.set_blocking(master, False)
+    with contextlib.suppress(OSError):
+        os.read(master, 65536)
+
+
+def matches(expected: str, output: str) -> bool:
+    """Whether the shown output is that one; no shown output fits any."""
+    if not expected.strip():
+        return True
+    flags = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
+    return doctest.OutputChecker().check_output(expected, output, flags)
+
+
+@pytest.fixture
+def reader(tmp_path: Path) -> Iterator[Reader]:
+    made = Reader(tmp_path)
+    yield made
+    made.close()
+
+
+WITH_COMMANDS = [page for page in PAGES if page.is_file() and commands(page)]
+
+
+@pytest.mark.parametrize("page", WITH_COMMANDS, ids=lambda page: str(page.relative_to(ROOT)))
+def test_the_commands_of_a_page_do_what_it_says(page: Path, reader: Reader) -> None:
+    for command in commands(page):
+        reader.follow(command)
+
+
+def test_the_pages_show_commands() -> None:
+    names = {page.name for page in WITH_COMMANDS}
+    assert {"README.md", "07-drive.md"} <= names
+
+
+def test_shown_output_that_differs_is_noticed() -> None:
+    assert not matches("z: 9.8...\n", "z: 9.799999\n")
+    assert matches("a: 1\n...\nc: 3\n", "a: 1\nb: 2\nc: 3\n")
+    assert not matches("a: 1\n", "a: 1\nb: 2\n")
+
+
+@pytest.mark.parametrize("page", [page for page in PAGES if page.is_file()], ids=lambda p: p.name)
+def test_shell_commands_are_in_console_blocks(page: Path) -> None:
+    """So that none escapes being run."""
+    for block in blocks(page):
+        assert block.language not in ("sh", "bash", "shell", ""), (
+            f"{block}: say ```console or ```text"
+        )
