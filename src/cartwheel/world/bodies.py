@@ -48,8 +48,8 @@ class BodyBuilder:
         self._spec = spec
         self._assets = assets
         self._step = step
-        self.collisions: list[tuple[Any, float]] = []
-        """Every colliding geom with its friction coefficient."""
+        self.surfaces: list[contact.BuiltSurface] = []
+        """Every colliding geom, with what decides how it touches others."""
 
     def add(self, entry: ModelEntry) -> None:
         """Adds the entry's bodies, joints, geoms, motors and cameras.
@@ -71,24 +71,24 @@ class BodyBuilder:
         bodies: dict[str, Any] = {}
         links = {link.name: link for link in description.links}
 
-        def grow(link: Link, parent: Any, pose: Pose, joint: Joint | None) -> None:
+        def grow(link: Link, parent: Any, pose: Pose, joint: Joint | None, moves: bool) -> None:
             body = parent.add_body(name=scoped(entry.name, link.name), **pose_arguments(pose))
             bodies[link.name] = body
-            if joint is not None:
+            if joint is not None and not description.static:
                 self._add_joint(entry, body, joint)
-            self._fill(entry, body, link, joint)
+                moves = moves or joint.type != "fixed"
+            self._fill(entry, body, link, joint, moves=moves)
             for next_joint in children.get(link.name, ()):
                 child = links[next_joint.child]
-                grow(child, body, link.pose.inverse() @ child.pose, next_joint)
+                grow(child, body, link.pose.inverse() @ child.pose, next_joint, moves)
 
         for link in description.links:
             if link.name in inbound and inbound[link.name].parent != "world":
                 continue
             joint = inbound.get(link.name)
-            grow(
-                link, self._spec.worldbody, entry.pose @ link.pose, None if description.static else joint
-            )
-            if joint is None and not description.static and not link.kinematic:
+            free = joint is None and not description.static and not link.kinematic
+            grow(link, self._spec.worldbody, entry.pose @ link.pose, joint, free)
+            if free:
                 bodies[link.name].add_freejoint(name=scoped(entry.name, link.name))
         lost = [link for link in description.links if link.name not in bodies]
         if lost:
@@ -105,7 +105,9 @@ class BodyBuilder:
         for camera in entry.cameras:
             self._add_camera(entry, bodies[camera.link], camera)
 
-    def _fill(self, entry: ModelEntry, body: Any, link: Link, joint: Joint | None) -> None:
+    def _fill(
+        self, entry: ModelEntry, body: Any, link: Link, joint: Joint | None, *, moves: bool
+    ) -> None:
         if link.inertial is not None:
             _set_inertial(body, link.inertial)
         if not link.gravity:
@@ -130,20 +132,28 @@ class BodyBuilder:
             else:
                 arguments, pose = place(shape, collision.pose, collision.origin)
             friction = contact.friction(collision.surface)
+            reference = contact.reference(collision.surface, entry.description.mass, self._step)
             geom = body.add_geom(
                 name=name,
                 group=COLLISION_GROUP,
                 density=0,
                 condim=3,
                 friction=list(friction),
-                solref=list(
-                    contact.reference(collision.surface, entry.description.mass, self._step)
-                ),
+                solref=list(reference),
                 solimp=list(contact.IMPEDANCE),
                 **arguments,
                 **pose_arguments(pose),
             )
-            self.collisions.append((geom, friction[0]))
+            self.surfaces.append(
+                contact.BuiltSurface(
+                    geom=geom,
+                    name=name,
+                    model=entry.name,
+                    moves=moves,
+                    friction=friction,
+                    reference=reference,
+                )
+            )
 
     def _add_visual(self, body: Any, visual: Visual) -> None:
         common: dict[str, Any] = {

@@ -50,9 +50,20 @@ def build(world: WorldDescription, entries: Iterable[ModelEntry], *, xml: bool =
     entries = list(entries)
     for entry in entries:
         bodies.add(entry)
-    ranks = contact.priorities(mu for _, mu in bodies.collisions)
-    for geom, mu in bodies.collisions:
-        geom.priority = ranks[mu]
+    ranks = contact.priorities(surface.friction[0] for surface in bodies.surfaces)
+    for surface in bodies.surfaces:
+        surface.geom.priority = ranks[surface.friction[0]]
+    for still, mover, rules in contact.standing_pairs(bodies.surfaces):
+        sliding, torsional, rolling = rules.friction
+        spec.add_pair(
+            geomname1=still.name,
+            geomname2=mover.name,
+            condim=3,
+            friction=[sliding, sliding, torsional, rolling, rolling],
+            solref=list(rules.reference),
+            solreffriction=[contact.FRICTION_TIME_CONSTANT, 1.0],
+            solimp=list(contact.IMPEDANCE),
+        )
     try:
         model = spec.compile()
     except (ValueError, mujoco.FatalError) as error:
@@ -72,7 +83,7 @@ def _empty(world: WorldDescription) -> mujoco.MjSpec:
     # after the contacts were solved without it, and a driven wheel slips by that difference.
     spec.option.integrator = mujoco.mjtIntegrator.mjINT_DISCRETE
     spec.option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
-    spec.option.impratio = 10.0
+    spec.option.impratio = contact.FRICTION_IMPEDANCE_RATIO
     spec.option.enableflags |= mujoco.mjtEnableBit.mjENBL_SLEEP
     # Lengths that MuJoCo scales by the model's extent stay in metres.
     spec.stat.extent = 1.0

@@ -13,7 +13,9 @@ Derivations stand in ``docs/physics.md``. In short:
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from typing import Any
 
 from cartwheel.description.model import Collision, Cylinder, Ellipsoid, Joint, Shape, Surface
 from cartwheel.geometry import rotate
@@ -28,6 +30,23 @@ SOFTEST_TIME_CONSTANT = 0.1
 """s; beyond it a body would visibly sink."""
 IMPEDANCE = (0.95, 0.99, 0.0005, 0.5, 2.0)
 """MuJoCo's solimp: how much of the constraint is kept at and beyond 0.5 mm of depth."""
+FRICTION_TIME_CONSTANT = 0.1
+"""s; in which a slip that the friction can hold dies out."""
+FRICTION_IMPEDANCE_RATIO = 100.0
+"""How much harder friction holds than the normal direction: less creep under a steady load."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class BuiltSurface:
+    """A colliding geom of a spec, and what decides how it touches others."""
+
+    geom: Any
+    name: str
+    model: str
+    moves: bool
+    """Whether any joint lies between it and the world."""
+    friction: tuple[float, float, float]
+    reference: tuple[float, float]
 
 
 def friction(surface: Surface) -> tuple[float, float, float]:
@@ -78,6 +97,24 @@ def tyre(collision: Collision, joint: Joint | None) -> Shape:
     if abs(along) < 0.9999 or off_axis > 1e-3 * shape.radius:
         return shape
     return Ellipsoid(radii=(shape.radius, shape.radius, shape.length / 2))
+
+
+def standing_pairs(
+    surfaces: Iterable[BuiltSurface],
+) -> Iterator[tuple[BuiltSurface, BuiltSurface, BuiltSurface]]:
+    """Every moving geom with every standing one of other models, and which of both rules.
+
+    In MuJoCo's convex contact model a sliding body is lifted: one that slides at v hovers at
+    mu v b/k, with b the damping of friction and k the stiffness of the normal, and skips. Only
+    a pair stated by itself can have a b of its own; what slides, slides on what stands.
+    """
+    surfaces = list(surfaces)
+    standing = [surface for surface in surfaces if not surface.moves]
+    for mover in surfaces:
+        for still in standing if mover.moves else ():
+            if still.model != mover.model:
+                rules = still if still.friction[0] < mover.friction[0] else mover
+                yield still, mover, rules
 
 
 def priorities(coefficients: Iterable[float]) -> dict[float, int]:
