@@ -1,0 +1,206 @@
+"""Worlds and models for tests, made in a line."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import pytest
+
+import cartwheel as cw
+from cartwheel.description import load_robot
+from cartwheel.description.model import (
+    Box,
+    Collision,
+    Element,
+    Inertial,
+    Link,
+    Material,
+    Physics,
+    Plane,
+    PluginTag,
+    RobotDescription,
+    Surface,
+    Visual,
+    WorldDescription,
+)
+from cartwheel.description.packages import Packages
+from cartwheel.description.sdf import read_sdf
+from cartwheel.description.xml import parse
+from cartwheel.errors import Origin
+from cartwheel.geometry import Pose
+
+GRAVITY = 9.8
+_HERE = Origin(file="test.sdf", line=1)
+
+
+class Make:
+    """Builds what a test needs; closes the worlds it made."""
+
+    def __init__(self) -> None:
+        self._worlds: list[cw.World] = []
+
+    def world(
+        self,
+        *models: RobotDescription,
+        step: float | None = None,
+        ground: float | None = 100.0,
+        gravity: float = GRAVITY,
+        seed: int = 0,
+        **more: Any,
+    ) -> cw.World:
+        """A world of models on a ground of friction `ground`; None is without ground."""
+        standing = (() if ground is None else (self.ground(ground),)) + models
+        description = WorldDescription(
+            name="test",
+            models=standing,
+            gravity=(0.0, 0.0, -gravity),
+            physics=Physics(max_step_size=step),
+            **more,
+        )
+        world = cw.World(description, seed=seed)
+        self._worlds.append(world)
+        return world
+
+    @staticmethod
+    def ground(mu: float = 100.0) -> RobotDescription:
+        """An endless plane, light grey."""
+        surface = Surface(mu1=mu, mu2=mu)
+        link = Link(
+            name="link",
+            collisions=(
+                Collision(name="collision", shape=Plane(), surface=surface, origin=_HERE),
+            ),
+            visuals=(
+                Visual(
+                    name="visual",
+                    shape=Plane(),
+                    material=Material(diffuse=(0.7, 0.7, 0.7, 1.0)),
+                    origin=_HERE,
+                ),
+            ),
+            origin=_HERE,
+        )
+        return RobotDescription(
+            name="ground_plane", links=(link,), static=True, canonical_link="link", origin=_HERE
+        )
+
+    @staticmethod
+    def box(
+        name: str,
+        size: tuple[float, float, float],
+        *,
+        mass: float = 2.0,
+        mu: float = 1.0,
+        pose: Pose = Pose(),
+        static: bool = False,
+        colour: tuple[float, float, float] = (0.7, 0.7, 0.7),
+    ) -> RobotDescription:
+        """A uniform box about its link's origin."""
+        x, y, z = size
+        link = Link(
+            name="link",
+            inertial=Inertial(
+                mass=mass,
+                ixx=mass * (y * y + z * z) / 12,
+                iyy=mass * (x * x + z * z) / 12,
+                izz=mass * (x * x + y * y) / 12,
+                origin=_HERE,
+            ),
+            collisions=(
+                Collision(
+                    name="collision",
+                    shape=Box(size=size),
+                    surface=Surface(mu1=mu, mu2=mu),
+                    origin=_HERE,
+                ),
+            ),
+            visuals=(
+                Visual(
+                    name="visual",
+                    shape=Box(size=size),
+                    material=Material(diffuse=(*colour, 1.0)),
+                    origin=_HERE,
+                ),
+            ),
+            origin=_HERE,
+        )
+        return RobotDescription(
+            name=name, links=(link,), static=static, pose=pose, canonical_link="link", origin=_HERE
+        )
+
+    @staticmethod
+    def sdf(model: str) -> RobotDescription:
+        """What ``<model name="…">…</model>`` describes."""
+        text = f'<sdf version="1.7">{model}</sdf>'
+        described = read_sdf(parse(text, "test.sdf"), Packages(None, environment={}))
+        assert isinstance(described, RobotDescription)
+        return described
+
+    @staticmethod
+    def with_parameters(
+        description: RobotDescription, plugin: str, **tags: str
+    ) -> RobotDescription:
+        """The description with tags of the plugin of that name written anew."""
+        found = []
+
+        def edit(tag: PluginTag) -> PluginTag:
+            if tag.name != plugin:
+                return tag
+            found.append(tag)
+            kept = tuple(child for child in tag.element.children if child.tag not in tags)
+            new = tuple(
+                Element(tag=name, text=text, origin=tag.origin) for name, text in tags.items()
+            )
+            element = dataclasses.replace(tag.element, children=kept + new)
+            return dataclasses.replace(tag, element=element)
+
+        links = tuple(
+            dataclasses.replace(
+                link,
+                sensors=tuple(
+                    dataclasses.replace(sensor, plugins=tuple(edit(tag) for tag in sensor.plugins))
+                    for sensor in link.sensors
+                ),
+            )
+            for link in description.links
+        )
+        plugins = tuple(edit(tag) for tag in description.plugins)
+        assert found, f"no plugin named {plugin}"
+        return dataclasses.replace(description, links=links, plugins=plugins)
+
+    @staticmethod
+    def with_sensors(
+        description: RobotDescription, change: Callable[[Any], Any]
+    ) -> RobotDescription:
+        """The description with every sensor changed."""
+        links = tuple(
+            dataclasses.replace(link, sensors=tuple(change(sensor) for sensor in link.sensors))
+            for link in description.links
+        )
+        return dataclasses.replace(description, links=links)
+
+    def close(self) -> None:
+        for world in self._worlds:
+            world.close()
+
+
+@pytest.fixture
+def make() -> Iterator[Make]:
+    made = Make()
+    yield made
+    made.close()
+
+
+@pytest.fixture(scope="module")
+def make_once() -> Iterator[Make]:
+    """`make` for worlds that the tests of a module share."""
+    made = Make()
+    yield made
+    made.close()
+
+
+@pytest.fixture(scope="session")
+def rosbots() -> RobotDescription:
+    return load_robot("rosbots.xacro")
