@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Any, ClassVar, Generic, TypeVar
 
 from cartwheel.description.model import PluginTag, Sensor
-from cartwheel.errors import Diagnostic
+from cartwheel.errors import Diagnostic, GraphError
 from cartwheel.graph import Graph, Publisher, Qos, Service, Subscription, resolve_name
 from cartwheel.plugins.parameters import read
 from cartwheel.simulation import Part
@@ -88,8 +88,16 @@ class Plugin(Generic[C]):
         )
 
     def serve(self, name: str, type_name: str, handler: Callable[[Any], Any]) -> None:
-        """A service that closes with the plugin."""
-        self._open.append(self.graph.serve(self.resolve(name), type_name, handler, node=self.node))
+        """A service that closes with the plugin; left to another that offers it already.
+
+        Two robots of one kind can share topics, and a service must not keep the second out.
+        """
+        try:
+            service = self.graph.serve(self.resolve(name), type_name, handler, node=self.node)
+        except GraphError as error:
+            self.warn(f"{error.message}: give one of the two a namespace")
+        else:
+            self._open.append(service)
 
     def warn(self, message: str) -> None:
         """Tells the user something about this plugin's tag."""
