@@ -1,0 +1,183 @@
+"""Where packages, models and files are looked for, and what is told when they are not there."""
+
+import pytest
+
+from cartwheel.description.packages import Packages, share
+from cartwheel.errors import DescriptionError, Origin
+
+HERE = Origin(file="robot.urdf", line=3)
+
+
+def package(folder, name=None):
+    folder.mkdir(parents=True)
+    (folder / "package.xml").write_text(f"<package><name>{name or folder.name}</name></package>")
+    return folder
+
+
+def robot(folder):
+    path = folder / "urdf" / "robot.urdf"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text("<robot/>")
+    return path
+
+
+def packages(file, environment=None, **more):
+    return Packages(file, environment=environment or {}, **more)
+
+
+def test_own_package_by_the_name_in_its_manifest(tmp_path):
+    own = package(tmp_path / "ws" / "src" / "checkout-folder", "my_robot")
+    assert packages(robot(own)).find("my_robot") == own
+
+
+def test_name_in_a_comment_of_the_manifest_does_not_count(tmp_path):
+    own = package(tmp_path / "ws" / "a")
+    (own / "package.xml").write_text(
+        "<package><!-- <name>wrong</name> --><name>right</name></package>"
+    )
+    assert packages(robot(own)).find("right") == own
+
+
+@pytest.mark.parametrize("place", ["src/b", "src/meta/b", "b", "install/b/share/b", "share/b"])
+def test_packages_of_the_same_workspace(tmp_path, place):
+    own = package(tmp_path / "ws" / "src" / "a")
+    other = package(tmp_path / "ws" / place)
+    assert packages(robot(own)).find("b") == other
+
+
+def test_ignored_folders_are_not_searched(tmp_path):
+    own = package(tmp_path / "ws" / "src" / "a")
+    package(tmp_path / "ws" / "src" / "old" / "b")
+    (tmp_path / "ws" / "src" / "old" / "COLCON_IGNORE").touch()
+    with pytest.raises(DescriptionError, match='the package "b" was not found'):
+        packages(robot(own)).find("b")
+
+
+@pytest.mark.parametrize(
+    ("variable", "place", "value"),
+    [
+        ("ROS_PACKAGE_PATH", "ros/b", "ros"),
+        ("ROS_PACKAGE_PATH", "ros/b", "ros/b"),
+        ("ROS_PACKAGE_PATH", "ros/stack/b", "ros"),
+        ("AMENT_PREFIX_PATH", "opt/share/b", "opt"),
+        ("CMAKE_PREFIX_PATH", "opt/share/b", "opt"),
+        ("GAZEBO_MODEL_PATH", "models/b", "models"),
+    ],
+)
+def test_environment(tmp_path, variable, place, value):
+    other = package(tmp_path / "elsewhere" / place)
+    file = robot(tmp_path / "x1" / "x2" / "x3" / "x4" / "x5" / "x6")
+    environment = {variable: f"/nowhere:{tmp_path / 'elsewhere' / value}"}
+    assert packages(file, environment).find("b") == other
+
+
+def test_explicit_path_wins(tmp_path):
+    own = package(tmp_path / "ws" / "src" / "a")
+    other = package(tmp_path / "other" / "a")
+    found = packages(robot(own), package_path=[tmp_path / "other"])
+    assert found.find("a") == other
+
+
+def test_folder_without_manifest_is_the_second_choice(tmp_path):
+    bare = tmp_path / "ws" / "my_robot"
+    file = robot(bare)
+    assert packages(file).find("my_robot") == bare
+    true = package(tmp_path / "ws" / "src" / "my_robot")
+    assert packages(file).find("my_robot") == true
+
+
+def test_missing_package_says_where_it_was_searched_and_what_may_be_meant(tmp_path):
+    own = package(tmp_path / "ws" / "src" / "my_robot")
+    with pytest.raises(DescriptionError) as caught:
+        packages(robot(own)).find("my_robt", HERE)
+    text = str(caught.value)
+    assert text.startswith('robot.urdf:3: the package "my_robt" was not found')
+    assert 'Did you mean "my_robot"?' in text
+    assert str(own.parent) in text
+
+
+def test_uris(tmp_path):
+    own = package(tmp_path / "ws" / "src" / "a")
+    mesh = own / "meshes" / "my part.stl"
+    mesh.parent.mkdir()
+    mesh.touch()
+    found = packages(robot(own))
+    for uri in (
+        "package://a/meshes/my part.stl",
+        "package://a/meshes/my%20part.stl",
+        "$(find a)/meshes/my part.stl",
+        "file://$(find a)/meshes/my part.stl",
+        "$(find-pkg-share a)/meshes/my part.stl",
+        mesh.as_uri().replace("%20", " "),
+        mesh.as_uri(),
+        str(mesh),
+        "../meshes/my part.stl",
+        "model://a/meshes/my part.stl",
+    ):
+        assert found.resolve(uri).resolve() == mesh, uri
+
+
+def test_relative_paths_begin_at_the_file_that_names_them(tmp_path):
+    file = robot(tmp_path / "a")
+    part = tmp_path / "parts" / "wheel.stl"
+    part.parent.mkdir()
+    part.touch()
+    origin = Origin(file=str(tmp_path / "parts" / "wheel.xacro"), line=1)
+    assert packages(file).resolve("wheel.stl", origin) == part
+
+
+@pytest.mark.parametrize(
+    ("uri", "part"),
+    [
+        ("package://a/wheel.stk", 'Did you mean "wheel.stl"?'),
+        ("package:///wheel.stl", "names no package"),
+        ("https://example.org/a.stl", "nothing is downloaded"),
+        ("ftp://example.org/a.stl", 'unknown scheme "ftp"'),
+        ("file://", "a file name is empty"),
+        ("package://b/x", 'the package "b" was not found'),
+        ("model://b/x", 'the model "b" was not found'),
+        ("model://../x", 'the model ".." was not found'),
+        ("x" * 5000, "does not exist"),
+        ("a\0b", "does not exist"),
+    ],
+)
+def test_files_that_are_not_there(tmp_path, uri, part):
+    own = package(tmp_path / "ws" / "a")
+    (own / "wheel.stl").touch()
+    with pytest.raises(DescriptionError) as caught:
+        packages(robot(own)).resolve(uri, HERE)
+    assert part in str(caught.value)
+    assert str(caught.value).startswith("robot.urdf:3: ")
+
+
+@pytest.mark.parametrize("variable", ["GAZEBO_MODEL_PATH", "GZ_SIM_RESOURCE_PATH"])
+def test_models(tmp_path, variable):
+    cone = tmp_path / "elsewhere" / "cone"
+    cone.mkdir(parents=True)
+    file = tmp_path / "x1" / "x2" / "x3" / "x4" / "x5" / "x6" / "world.sdf"
+    file.parent.mkdir(parents=True)
+    found = packages(file, {variable: str(tmp_path / "elsewhere")})
+    assert found.find_model("cone") == cone
+    assert found.resolve("model://cone", folder=True) == cone
+
+
+def test_models_beside_the_world(tmp_path):
+    cone = tmp_path / "models" / "cone"
+    cone.mkdir(parents=True)
+    file = tmp_path / "worlds" / "a.world"
+    file.parent.mkdir()
+    assert packages(file).find_model("cone") == cone
+
+
+def test_shipped_things_are_found_from_anywhere(tmp_path):
+    assert (share() / "robots").is_dir()
+    found = Packages(tmp_path / "robot.urdf", environment={})
+    assert found.find("rosbots_description") == share() / "robots" / "rosbots_description"
+
+
+def test_large_trees_are_not_walked(tmp_path):
+    own = package(tmp_path / "ws" / "src" / "a")
+    for number in range(700):
+        (tmp_path / "ws" / f"f{number:03}").mkdir()
+    with pytest.raises(DescriptionError, match="was not found"):
+        packages(robot(own)).find("nowhere")

@@ -1,0 +1,360 @@
+"""xacro as in ROS; origins through includes and macros; what is told when it fails."""
+
+import threading
+from pathlib import Path
+
+import pytest
+
+from cartwheel.description import xml
+from cartwheel.description.packages import Packages
+from cartwheel.description.xacro import expand
+from cartwheel.errors import DescriptionError
+
+NS = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """The current folder, so that files are shown by their names."""
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def write(name, body, attributes='name="r"'):
+    """A file whose body begins in line 2."""
+    Path(name).parent.mkdir(parents=True, exist_ok=True)
+    Path(name).write_text(f"<robot {attributes} {NS}>\n{body}\n</robot>")
+
+
+def expanded(name="robot.xacro", **arguments):
+    path = Path(name)
+    packages = Packages(path, environment={})
+    return expand(xml.read_bytes(path), xml.shown_path(path), packages, arguments)
+
+
+def failure(name="robot.xacro", **arguments):
+    with pytest.raises(DescriptionError) as caught:
+        expanded(name, **arguments)
+    return str(caught.value)
+
+
+def test_properties_conditions_and_arguments(folder):
+    write(
+        "robot.xacro",
+        """<xacro:arg name="side" default="left"/>
+<xacro:property name="r" value="0.5"/>
+<xacro:if value="${'$(arg side)' == 'left'}"><link name="$(arg side)" d="${2 * r}"/></xacro:if>
+<xacro:unless value="true"><link name="never"/></xacro:unless>""",
+    )
+    root = expanded().root
+    assert [(n.tag, dict(n.attributes)) for n in root.children] == [
+        ("link", {"name": "left", "d": "1.0"})
+    ]
+    assert not expanded(side="right").root.children
+
+
+def test_environment(folder, monkeypatch):
+    monkeypatch.setenv("CARTWHEEL_TEST", "7")
+    write("robot.xacro", '<a b="$(env CARTWHEEL_TEST) $(optenv CARTWHEEL_NONE 8)"/>')
+    assert expanded().root.children[0].attributes["b"] == "7 8"
+
+
+def test_yaml_dirname_and_find(folder):
+    (folder / "cfg").mkdir()
+    (folder / "cfg" / "size.yaml").write_text("wheel: {radius: 0.3}\n")
+    Path("package.xml").write_text("<package><name>pkg</name></package>")
+    write(
+        "urdf/robot.xacro",
+        """<xacro:property name="c" value="${xacro.load_yaml('$(find pkg)/cfg/size.yaml')}"/>
+<a r="${c['wheel']['radius']}" s="${c.wheel.radius}" d="$(dirname)"/>""",
+    )
+    attributes = dict(expanded("urdf/robot.xacro").root.children[0].attributes)
+    assert attributes == {"r": "0.3", "s": "0.3", "d": str(folder / "urdf")}
+
+
+def test_elements_keep_file_line_and_macro_calls(folder):
+    write(
+        "parts/wheel.xacro",
+        """<xacro:macro name="wheel" params="side">
+  <link name="${side}_wheel">
+    <visual/>
+  </link>
+  <xacro:hub side="${side}"/>
+</xacro:macro>
+<xacro:macro name="hub" params="side">
+  <link name="${side}_hub"/>
+</xacro:macro>""",
+        "",
+    )
+    write(
+        "robot.xacro",
+        """<xacro:include filename="parts/wheel.xacro"/>
+<link name="base"/>
+<xacro:wheel side="left"/>
+<xacro:wheel side="right"/>""",
+    )
+    base, left, left_hub, right, _ = expanded().root.children
+    assert (str(base.origin), base.origin.stack) == ("robot.xacro:3", ())
+    assert str(left.origin) == "parts/wheel.xacro:3"
+    assert left.origin.stack == ("robot.xacro:4 xacro:wheel",)
+    assert str(left.children[0].origin) == "parts/wheel.xacro:4"
+    assert left.children[0].origin.stack == ("robot.xacro:4 xacro:wheel",)
+    assert right.origin.stack == ("robot.xacro:5 xacro:wheel",)
+    assert str(left_hub.origin) == "parts/wheel.xacro:9"
+    assert left_hub.origin.stack == (
+        "parts/wheel.xacro:6 xacro:hub",
+        "robot.xacro:4 xacro:wheel",
+    )
+
+
+def test_blocks_keep_the_place_of_the_caller(folder):
+    write(
+        "robot.xacro",
+        """<xacro:macro name="part" params="*at **more">
+  <part><xacro:insert_block name="at"/><xacro:insert_block name="more"/></part>
+</xacro:macro>
+<xacro:part>
+  <origin xyz="1 2 3"/>
+  <more><inner/></more>
+</xacro:part>
+<xacro:property name="block"><kept/></xacro:property>
+<xacro:insert_block name="block"/>""",
+    )
+    part, kept = expanded().root.children
+    origin, inner = part.children
+    assert (str(origin.origin), origin.origin.stack) == ("robot.xacro:6", ())
+    assert str(inner.origin) == "robot.xacro:7"
+    assert str(kept.origin) == "robot.xacro:9"
+
+
+def test_nothing_of_xacro_is_left(folder):
+    write("robot.xacro", '<xacro:property name="a" value="1"/><!-- c --><b c="${a}"/>')
+    root = expanded().root
+    assert not any(name.startswith("xmlns:xacro") for name in root.attributes)
+    assert [child.tag for child in root.children] == ["b"]
+
+
+def test_dynamic_calls_namespaces_and_optional_includes(folder):
+    write("lib.xacro", '<xacro:macro name="m" params="n:=1"><m n="${n}"/></xacro:macro>', "")
+    write(
+        "robot.xacro",
+        """<xacro:include filename="lib.xacro" ns="lib"/>
+<xacro:include filename="none.xacro" optional="true"/>
+<xacro:call macro="lib.m"/>
+<xacro:lib.m n="2"/>""",
+    )
+    first, second = expanded().root.children
+    assert first.attributes["n"] == "1"
+    assert second.attributes["n"] == "2"
+    assert second.origin.stack == ("robot.xacro:5 xacro:lib.m",)
+
+
+@pytest.mark.parametrize(
+    ("body", "text"),
+    [
+        (
+            '<xacro:macro name="wheel"><a/></xacro:macro>\n<xacro:wheeel/>',
+            'robot.xacro:3: unknown macro name: xacro:wheeel\n  Did you mean "xacro:wheel"?',
+        ),
+        (
+            "<xacro:wheel/>",
+            "robot.xacro:2: unknown macro name: xacro:wheel\n"
+            "  No macro is defined here. Is a xacro:include missing?",
+        ),
+        (
+            '<xacro:property name="radius" value="1"/>\n<a b="${raduis * 2}"/>',
+            'robot.xacro:3: the property "raduis" is not defined, when evaluating ${raduis * 2}\n'
+            '  Did you mean "radius"?',
+        ),
+        (
+            '<xacro:arg name="side" default="x"/>\n<a b="${side}"/>',
+            'robot.xacro:3: the property "side" is not defined, when evaluating ${side}\n'
+            "  It is an argument: write $(arg side).",
+        ),
+        (
+            '<xacro:arg name="side" default="x"/>\n<a b="$(arg sied)"/>',
+            'robot.xacro:3: the argument "sied" is not declared\n  Did you mean "side"?',
+        ),
+        (
+            '<a b="$(arg side)"/>',
+            'robot.xacro:2: the argument "side" is not declared\n'
+            '  Declare it: <xacro:arg name="side" default="…"/>.',
+        ),
+        ('<a b="${1 +}"/>', "robot.xacro:2: invalid syntax, when evaluating ${1 +}"),
+        ('<a b="${1 / 0}"/>', "robot.xacro:2: division by zero, when evaluating ${1 / 0}"),
+        (
+            '<xacro:if value="maybe"><a/></xacro:if>',
+            'robot.xacro:2: the condition "maybe" is "maybe", which is neither true nor false',
+        ),
+        ('<xacro:property value="1"/>', 'robot.xacro:2: <xacro:property> has no attribute "name"'),
+        (
+            '<xacro:insert_block name="nothing"/>',
+            'robot.xacro:2: the block "nothing" is not defined',
+        ),
+        (
+            '<xacro:macro name="w" params="side r"><a/></xacro:macro>\n<xacro:w side="l"/>',
+            'robot.xacro:3: xacro:w is called without its parameter "r"',
+        ),
+        (
+            '<xacro:macro name="w" params="side"><a/></xacro:macro>\n<xacro:w sied="l"/>',
+            'robot.xacro:3: xacro:w has no parameter "sied"\n  Did you mean "side"?',
+        ),
+        (
+            '<xacro:macro name="w" params="*at"><a/></xacro:macro>\n<xacro:w/>',
+            "robot.xacro:3: xacro:w: not enough blocks\n"
+            "  A macro takes one element in the call for each of its parameters with a *.",
+        ),
+        (
+            '<a b="$(fnid pkg)"/>',
+            'robot.xacro:2: $(fnid …) is not known\n  Did you mean "find"?',
+        ),
+        (
+            '<a b="$(env CARTWHEEL_NONE)"/>',
+            'robot.xacro:2: the environment variable "CARTWHEEL_NONE" is not set\n'
+            "  $(optenv CARTWHEEL_NONE default) takes a default where it is not.",
+        ),
+        (
+            '<xacro:property name="a" value="${b}"/><xacro:property name="b" value="${a}"/>\n'
+            '<c d="${a}"/>',
+            "robot.xacro:3: circular variable definition: a -> b -> a",
+        ),
+        (
+            '<xacro:macro name="w"><xacro:w/></xacro:macro>\n<xacro:w/>',
+            "use each other without end",
+        ),
+        (
+            '<xacro:property name="1a" value="1"/>',
+            "robot.xacro:2: Property names must be valid python identifiers: 1a",
+        ),
+        ('<xacro:macro params="a"/>', 'robot.xacro:2: <xacro:macro> has no attribute "name"'),
+    ],
+)
+def test_errors(folder, body, text):
+    write("robot.xacro", body)
+    assert text in failure()
+
+
+def test_missing_include_names_the_likely_file(folder):
+    write("wheel.xacro", "", "")
+    write("robot.xacro", '\n<xacro:include filename="whel.xacro"/>')
+    text = failure()
+    assert text.startswith("robot.xacro:3: the included file")
+    assert 'Did you mean "wheel.xacro"?' in text
+
+
+def test_missing_package_has_the_place_of_the_include(folder):
+    write("robot.xacro", '\n<xacro:include filename="$(find nowhere)/a.xacro"/>')
+    assert failure().startswith('robot.xacro:3: the package "nowhere" was not found')
+
+
+def test_missing_package_within_an_expression(folder):
+    write("robot.xacro", "\n<a b=\"${xacro.load_yaml('$(find nowhere)/a.yaml')}\"/>")
+    assert failure().startswith('robot.xacro:3: the package "nowhere" was not found')
+
+
+def test_malformed_include_names_its_own_line(folder):
+    Path("wheel.xacro").write_text("<robot>\n<link>\n</robot>")
+    write("robot.xacro", '<xacro:include filename="wheel.xacro"/>')
+    assert failure().startswith("wheel.xacro:3: a closing tag that does not fit")
+
+
+def test_include_of_itself_ends(folder):
+    write("robot.xacro", '<xacro:include filename="robot.xacro"/>')
+    assert "without end" in failure()
+
+
+def test_errors_within_macros_show_the_calls(folder):
+    write(
+        "robot.xacro",
+        """<xacro:macro name="outer">
+  <xacro:inner/>
+</xacro:macro>
+<xacro:macro name="inner">
+  <a b="${nothing}"/>
+</xacro:macro>
+<xacro:outer/>""",
+    )
+    assert failure().splitlines() == [
+        'robot.xacro:6: the property "nothing" is not defined, when evaluating ${nothing}',
+        "  in robot.xacro:3 xacro:inner",
+        "  in robot.xacro:8 xacro:outer",
+    ]
+
+
+def test_macros_that_grow_without_bound_end(folder):
+    doubling = "".join(
+        f'<xacro:macro name="m{n}"><xacro:m{n - 1}/><xacro:m{n - 1}/></xacro:macro>'
+        for n in range(1, 40)
+    )
+    body = f'<xacro:macro name="m0">{"<a/>" * 100}</xacro:macro>{doubling}<xacro:m39/>'
+    write("robot.xacro", body)
+    assert "make more than" in failure()
+
+
+def test_unknown_argument_is_told_with_the_declared_ones(folder):
+    write("part.xacro", '<xacro:arg name="laser_enabled" default="1"/>', "")
+    write("robot.xacro", '<xacro:include filename="part.xacro"/>')
+    (told,) = expanded(laser_enable="true").diagnostics
+    assert str(told) == (
+        'robot.xacro: warning: the argument "laser_enable" is not declared there and has no '
+        'effect. Did you mean "laser_enabled"?'
+    )
+    assert not expanded(laser_enabled="true").diagnostics
+
+
+def test_messages_of_xacro_become_diagnostics(folder, capfd):
+    write(
+        "robot.xacro",
+        """<xacro:property name="pi" value="3"/>
+<a b="${xacro.warning('look here')}"/>
+<xacro:include filename="no*.xacro"/>""",
+    )
+    told = [str(each) for each in expanded().diagnostics]
+    assert told == [
+        "robot.xacro:2: warning: redefining global symbol: pi",
+        "robot.xacro:3: warning: look here",
+        f'robot.xacro:4: warning: Include tag\'s filename spec "{folder}/no*.xacro" '
+        "matched no files.",
+    ]
+    assert capfd.readouterr() == ("", "")
+
+
+def test_missing_namespace_is_told(folder):
+    Path("robot.xacro").write_text(
+        '<robot name="r">\n<xacro:property name="a" value="1"/><b c="${a}"/></robot>'
+    )
+    found = expanded()
+    assert found.root.children[0].attributes["c"] == "1"
+    assert "ROS's own xacro refuses" in str(found.diagnostics[0])
+
+
+def test_loads_do_not_disturb_each_other(folder):
+    write("bad.xacro", '<xacro:property name="left" value="1"/>\n<xacro:nothing/>')
+    write("good.xacro", '<xacro:arg name="n" default="0"/><a n="$(arg n)"/>')
+    write("needs.xacro", '<a n="${left}"/>')
+    failure("bad.xacro")
+    assert 'the property "left" is not defined' in failure("needs.xacro")
+    expanded("good.xacro", n="5")
+    assert expanded("good.xacro").root.children[0].attributes["n"] == "0"
+
+    results = {}
+
+    def run(number):
+        results[number] = expanded("good.xacro", n=str(number)).root.children[0].attributes["n"]
+
+    threads = [threading.Thread(target=run, args=(number,)) for number in range(8)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert results == {number: str(number) for number in range(8)}
+
+
+def test_the_package_xacro_itself_is_left_alone(folder):
+    import xacro
+
+    before = dict(vars(xacro))
+    write("robot.xacro", '<xacro:property name="a" value="1"/>')
+    expanded()
+    assert vars(xacro) == before
+    assert xacro.process_file("robot.xacro").documentElement.tagName == "robot"

@@ -1,0 +1,202 @@
+"""What is told of malformed XML and of numbers that are none; what nobody read."""
+
+import pytest
+
+from cartwheel.description import numbers, xml
+from cartwheel.description.model import Element
+from cartwheel.errors import DescriptionError, Origin
+from cartwheel.geometry import Pose
+
+HERE = Origin(file="robot.urdf", line=12)
+
+
+def test_elements_know_the_line_of_their_first_character():
+    root = xml.parse('<robot\n  name="a">\n  <link\n    name="b"/>\n</robot>', "robot.urdf")
+    assert root.origin == Origin(file="robot.urdf", line=1)
+    assert root.children[0].origin == Origin(file="robot.urdf", line=3)
+
+
+def test_text_is_joined_and_stripped_and_prefixes_are_kept():
+    root = xml.parse("<a> x<!-- c --> <![CDATA[<y>]]> <sensor:camera/></a>")
+    assert root.text == "x <y>"
+    assert root.children[0].tag == "sensor:camera"
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "part"),
+    [
+        ("<a>\n<b>\n</a>", 3, "<b> of line 2 is still open"),
+        ("<a>\n<b>", 2, "ends while <b> of line 2 is still open"),
+        ("<a>\n&nbsp;</a>", 2, "undefined entity"),
+        ('<a>\n<b c="<"/></a>', 2, "malformed XML at column 7"),
+        ('<a>\n<b c="1" c="2"/></a>', 2, "given twice"),
+        ("\n<?xml version='1.0'?><a/>", 2, "must be the very first thing"),
+        ("<a/>\n<b/>", 2, "after the end of the root"),
+        ("hello", 1, "is not XML"),
+        ("", 1, "is not XML"),
+        ('<!DOCTYPE a [\n<!ENTITY x "y">]><a>&x;</a>', 2, "entities are not allowed"),
+        ('<?xml version="1.0" encoding="none"?><a/>'.encode(), 1, "cannot be decoded"),
+        (b"<a>\n\xff</a>", 2, "malformed XML"),
+        ("<a>\ud800</a>", 1, "cannot be decoded"),
+        ("<a>\n" * 500, 101, "nested more than 100 deep"),
+    ],
+)
+def test_malformed_text_names_its_place(text, line, part):
+    with pytest.raises(DescriptionError, match="robot.urdf") as caught:
+        xml.parse(text, "robot.urdf")
+    assert caught.value.origin == Origin(file="robot.urdf", line=line)
+    assert part in caught.value.message
+
+
+def test_external_entities_are_not_fetched(tmp_path):
+    secret = tmp_path / "secret"
+    secret.write_text("secret")
+    text = f'<!DOCTYPE a [<!ENTITY x SYSTEM "{secret.as_uri()}">]><a>&x;</a>'
+    with pytest.raises(DescriptionError, match="entities are not allowed"):
+        xml.parse(text)
+
+
+@pytest.mark.parametrize("text", ["1", "-1.5", ".5", "1.", "1e-3", "+2E+2", " 3 "])
+def test_numbers(text):
+    assert numbers.number(text, "mass", HERE) == float(text)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("abc", 'robot.urdf:12: mass "abc" is not a number'),
+        ("1_000", 'robot.urdf:12: mass "1_000" is not a number'),
+        ("nan", 'robot.urdf:12: mass "nan" is not a finite number'),
+        ("inf", 'robot.urdf:12: mass "inf" is not a finite number'),
+        ("1e999", 'robot.urdf:12: mass "1e999" is too large'),
+        ("", "robot.urdf:12: mass is empty where a number is needed"),
+        (
+            "0,5",
+            'robot.urdf:12: mass "0,5" is not a number\n'
+            '  Decimals are written with a point: "0.5".',
+        ),
+        ("١", 'robot.urdf:12: mass "١" is not a number'),
+    ],
+)
+def test_what_is_no_number(text, message):
+    with pytest.raises(DescriptionError) as caught:
+        numbers.number(text, "mass", HERE)
+    assert str(caught.value) == message
+
+
+def test_expression_outside_of_xacro_says_what_is_missing():
+    with pytest.raises(DescriptionError, match="xmlns:xacro"):
+        numbers.number("${width}", "mass", HERE)
+
+
+def test_infinity_where_it_has_a_meaning():
+    assert numbers.number("-inf", "lower", HERE, infinite=True) == float("-inf")
+
+
+def test_vectors_count_their_numbers():
+    assert numbers.vector(" 1\n2\t3 ", 3, "xyz", HERE) == (1, 2, 3)
+    with pytest.raises(DescriptionError, match='xyz "1 2" has 2 numbers, 3 are needed'):
+        numbers.vector("1 2", 3, "xyz", HERE)
+    with pytest.raises(DescriptionError, match="no list of numbers"):
+        numbers.vector("1, 2, 3", 3, "xyz", HERE)
+
+
+@pytest.mark.parametrize(("text", "value"), [("true", 1), ("1", 1), ("False", 0), ("0", 0)])
+def test_truth_values(text, value):
+    assert numbers.boolean(text, "static", HERE) is bool(value)
+
+
+def test_what_is_no_truth_value():
+    with pytest.raises(DescriptionError, match='static "maybe" is neither true nor false'):
+        numbers.boolean("maybe", "static", HERE)
+
+
+def test_whole_numbers():
+    assert numbers.integer("10.0", "width", HERE) == 10
+    with pytest.raises(DescriptionError, match="not a whole number"):
+        numbers.integer("10.5", "width", HERE)
+
+
+def test_attributes_and_descendants():
+    root = xml.parse(
+        '<a n="2" v="1 2 3" b="1"><c><d>4</d></c><pose>1 2 3 0 0 0</pose><t>true</t></a>'
+    )
+    assert root.number_of("n") == 2
+    assert root.number_of("m", 7) == 7
+    assert root.vec3_of("v") == (1, 2, 3)
+    assert root.boolean_of("b", False) is True
+    assert root.number_at("c/d", 0) == 4
+    assert root.integer_at("c/d", 0) == 4
+    assert root.optional_number_at("c/e") is None
+    assert root.pose_at("pose") == Pose((1, 2, 3))
+    assert root.boolean_at("t", False)
+    assert root.text_at("x", "none") == "none"
+
+
+def test_missing_attribute_names_the_likely_meant_one():
+    root = xml.parse('<box sice="1 1 1"/>')
+    with pytest.raises(DescriptionError, match='Is "sice" meant for it'):
+        root.vec3_of("size")
+
+
+def test_missing_child_names_the_likely_meant_one():
+    root = xml.parse('<link name="a"><inertail/></link>')
+    with pytest.raises(DescriptionError, match='link "a" has no <inertial>') as caught:
+        root.require_child("inertial")
+    assert "<inertail>" in str(caught.value)
+
+
+def test_unread_parts_are_told_with_place_and_likely_meaning():
+    root = xml.parse(
+        "<gazebo>\n<mu1>1</mu1>\n<maxContact>3</maxContact>\n<mu1>2</mu1>\n<kp valeu='1'/></gazebo>",
+        "robot.urdf",
+    )
+    root.child("mu1")
+    root.child("maxContacts")
+    root.child("kp").get("value")
+    assert [str(each) for each in xml.unread(root)] == [
+        "robot.urdf:3: warning: <maxContact> in <gazebo> is not understood and is ignored. "
+        "Did you mean <maxContacts>?",
+        "robot.urdf:4: warning: a further <mu1> in <gazebo> is ignored: only the first counts",
+        'robot.urdf:5: warning: the attribute "valeu" of <kp> is not understood and is ignored. '
+        'Did you mean "value"?',
+    ]
+
+
+def test_element_carries_the_whole_subtree_and_counts_as_read():
+    root = xml.parse('<r><plugin name="p"><rate unit="Hz">5</rate></plugin></r>', "f")
+    plugin = root.child("plugin")
+    element = xml.to_element(plugin)
+    here = Origin(file="f", line=1)
+    assert element == Element(
+        tag="plugin",
+        attributes=(("name", "p"),),
+        children=(Element(tag="rate", text="5", attributes=(("unit", "Hz"),), origin=here),),
+        origin=here,
+    )
+    assert not list(xml.unread(root))
+
+
+@pytest.mark.parametrize(
+    ("content", "part"),
+    [(b"", "is empty"), (b" \n", "is empty"), (b"solid\0\1\2", "binary file")],
+)
+def test_files_that_are_no_text(tmp_path, content, part):
+    path = tmp_path / "robot.urdf"
+    path.write_bytes(content)
+    with pytest.raises(DescriptionError, match=part):
+        xml.read_file(path)
+
+
+def test_a_file_that_is_not_there(tmp_path):
+    (tmp_path / "robot.urdf").write_text("<robot/>")
+    with pytest.raises(DescriptionError, match='no such file\n  Did you mean "robot.urdf"?'):
+        xml.read_file(tmp_path / "robt.urdf")
+    with pytest.raises(DescriptionError, match="is a folder"):
+        xml.read_file(tmp_path)
+
+
+def test_utf16_and_latin1_are_decoded_as_declared():
+    assert xml.parse('<?xml version="1.0" encoding="UTF-16"?><a>ü</a>'.encode("utf-16")).text == "ü"
+    latin = '<?xml version="1.0" encoding="ISO-8859-1"?><a>ü</a>'.encode("latin-1")
+    assert xml.parse(latin).text == "ü"
