@@ -150,6 +150,7 @@ class BodyBuilder:
                     name=name,
                     model=entry.name,
                     moves=moves,
+                    rolls=joint is not None and joint.type == "continuous",
                     friction=friction,
                     reference=reference,
                 )

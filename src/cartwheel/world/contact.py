@@ -45,6 +45,8 @@ class BuiltSurface:
     model: str
     moves: bool
     """Whether any joint lies between it and the world."""
+    rolls: bool
+    """Whether it is a wheel."""
     friction: tuple[float, float, float]
     reference: tuple[float, float]
 
@@ -107,11 +109,12 @@ def standing_pairs(
     In MuJoCo's convex contact model a sliding body is lifted: one that slides at v hovers at
     mu v b/k, with b the damping of friction and k the stiffness of the normal, and skips. Only
     a pair stated by itself can have a b of its own; what slides, slides on what stands.
+    A wheel keeps the hard one: in a turn at rate ω it slips sideways by ω v/b.
     """
     surfaces = list(surfaces)
     standing = [surface for surface in surfaces if not surface.moves]
     for mover in surfaces:
-        for still in standing if mover.moves else ():
+        for still in standing if mover.moves and not mover.rolls else ():
             if still.model != mover.model:
                 rules = still if still.friction[0] < mover.friction[0] else mover
                 yield still, mover, rules
