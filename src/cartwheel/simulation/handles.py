@@ -6,6 +6,7 @@ again, so a plugin keeps its handle for its life. For the simulation's thread al
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -13,10 +14,12 @@ import mujoco
 import numpy as np
 
 from cartwheel.description.model import CameraIntrinsics
-from cartwheel.geometry import Array, Pose, from_wxyz
+from cartwheel.geometry import Array, Pose, Quat, Vec3, from_wxyz, quat_multiply, rotate
 from cartwheel.world.entry import Motor, scoped
 
 _OBJ = mujoco.mjtObj
+_XBODY = _OBJ.mjOBJ_XBODY
+_JOINT = mujoco.mjtJoint
 
 
 class LinkHandle:
@@ -41,8 +44,20 @@ class LinkHandle:
     @property
     def pose(self) -> Pose:
         """The link's frame in the world."""
+        return Pose(*self.place())
+
+    def place(self) -> tuple[Vec3, Quat]:
+        """Position and orientation of `pose`, as bare numbers for what is read at high rates."""
         x, y, z = self._position.tolist()
-        return Pose((x, y, z), from_wxyz(self._quaternion.tolist()))
+        qw, qx, qy, qz = self._quaternion.tolist()
+        return (x, y, z), (qx, qy, qz, qw)
+
+    def motion(self, *, local: bool) -> tuple[Vec3, Vec3]:
+        """`velocity` as bare numbers."""
+        six = self._six
+        mujoco.mj_objectVelocity(self._model, self._data, _XBODY, self.id, six, int(local))
+        wx, wy, wz, vx, vy, vz = six.tolist()
+        return (vx, vy, vz), (wx, wy, wz)
 
     def velocity(self, *, local: bool) -> tuple[Array, Array]:
         """Linear velocity of the link's origin in m/s and angular in rad/s, each shape (3,).
@@ -50,11 +65,8 @@ class LinkHandle:
         Args:
             local: In the link's axes; else in the world's.
         """
-        six = self._six
-        mujoco.mj_objectVelocity(
-            self._model, self._data, _OBJ.mjOBJ_XBODY, self.id, six, int(local)
-        )
-        return six[3:].copy(), six[:3].copy()
+        linear, angular = self.motion(local=local)
+        return np.array(linear), np.array(angular)
 
     def proper_acceleration(self, offset: Sequence[float] = (0.0, 0.0, 0.0)) -> Array:
         """What an accelerometer reads: m/s², link axes, gravity's reaction included, shape (3,).
@@ -62,10 +74,14 @@ class LinkHandle:
         Args:
             offset: Where it sits in the link, m.
         """
+        if self._model.body_treeid[self.id] < 0:
+            # The engine works out nothing for what cannot move: it bears its weight.
+            turn: Array = self._data.xmat[self.id].reshape(3, 3)
+            return -turn.T @ self._model.opt.gravity
         six = np.zeros(6)
         # Fills the accelerations of all bodies, which stepping alone does not need.
         mujoco.mj_rnePostConstraint(self._model, self._data)
-        mujoco.mj_objectAcceleration(self._model, self._data, _OBJ.mjOBJ_XBODY, self.id, six, 1)
+        mujoco.mj_objectAcceleration(self._model, self._data, _XBODY, self.id, six, 1)
         acceleration: Array = six[3:]
         if any(offset):
             arm = np.asarray(offset, dtype=float)
@@ -89,6 +105,13 @@ class JointHandle:
         self._qpos, self._qvel = data.qpos, data.qvel
         self._position_index = int(model.jnt_qposadr[self.id])
         self._velocity_index = int(model.jnt_dofadr[self.id])
+        body = int(model.jnt_bodyid[self.id])
+        self._rest: Vec3 = tuple(model.body_pos[body].tolist())
+        self._rest_turn = from_wxyz(model.body_quat[body].tolist())
+        self._anchor: Vec3 = tuple(model.jnt_pos[self.id].tolist())
+        self._axis: Vec3 = tuple(model.jnt_axis[self.id].tolist())
+        self._slides = bool(model.jnt_type[self.id] == _JOINT.mjJNT_SLIDE)
+        self._zero = float(model.qpos0[self._position_index])
 
     @property
     def position(self) -> float:
@@ -107,6 +130,27 @@ class JointHandle:
     @velocity.setter
     def velocity(self, value: float) -> None:
         self._qvel[self._velocity_index] = value
+
+    def child_place(self) -> tuple[Vec3, Quat]:
+        """Position and orientation of the child link in the parent link, where it is turned to.
+
+        From the joint's position alone: exact wherever in the world the two are.
+        """
+        moved = self.position - self._zero
+        x, y, z = self._axis
+        if self._slides:
+            dx, dy, dz = rotate(self._rest_turn, (x * moved, y * moved, z * moved))
+            px, py, pz = self._rest
+            return (px + dx, py + dy, pz + dz), self._rest_turn
+        sin = math.sin(moved / 2)
+        turn = quat_multiply(self._rest_turn, (x * sin, y * sin, z * sin, math.cos(moved / 2)))
+        if not any(self._anchor):
+            return self._rest, turn
+        # The anchor stays where it is.
+        px, py, pz = self._rest
+        ax, ay, az = rotate(self._rest_turn, self._anchor)
+        dx, dy, dz = rotate(turn, self._anchor)
+        return (px + ax - dx, py + ay - dy, pz + az - dz), turn
 
 
 class MotorHandle:

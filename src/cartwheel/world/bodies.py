@@ -70,13 +70,19 @@ class BodyBuilder:
             children.setdefault(joint.parent, []).append(joint)
         bodies: dict[str, Any] = {}
         links = {link.name: link for link in description.links}
+        senses = bool(description.plugins) or any(link.sensors for link in description.links)
 
         def grow(link: Link, parent: Any, pose: Pose, joint: Joint | None, moves: bool) -> None:
             body = parent.add_body(name=scoped(entry.name, link.name), **pose_arguments(pose))
             bodies[link.name] = body
+            roots = moves and joint is None
             if joint is not None and not description.static:
                 self._add_joint(entry, body, joint)
-                moves = moves or joint.type != "fixed"
+                roots = not moves and joint.type != "fixed"
+                moves = moves or roots
+            if roots and senses:
+                # A body asleep has no accelerations and no contacts to be read.
+                body.sleep = mujoco.mjtSleepPolicy.mjSLEEP_NEVER
             self._fill(entry, body, link, joint, moves=moves)
             for next_joint in children.get(link.name, ()):
                 child = links[next_joint.child]
