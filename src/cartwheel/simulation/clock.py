@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from fractions import Fraction
 
 NANOSECONDS = 1_000_000_000
+_NEVER = 1 << 40
+"""Steps."""
 
 
 def to_ns(seconds: float) -> int:
     """Seconds as integer nanoseconds, rounded to the nearest."""
     return round(seconds * NANOSECONDS)
+
+
+def always() -> bool:
+    """Of a task that has something to do whenever it is due."""
+    return True
 
 
 class Task:
@@ -24,12 +31,12 @@ class Task:
         rate: Hz; 0 is every step.
         before: Writes controls, before the step that starts at the due time; or None.
         after: Reads the state of the due time and publishes; or None.
-        active: Whether there is anything to do; a task that says no costs nothing.
+        active: Whether there is anything to do; asked when it is due.
         step_ns: Length of a step.
         order: Tasks of one time run in this order.
     """
 
-    __slots__ = ("active", "after", "before", "due", "order", "period", "rate")
+    __slots__ = ("active", "after", "before", "order", "period", "rate")
 
     def __init__(
         self,
@@ -51,19 +58,62 @@ class Task:
             period = max(period, NANOSECONDS / Fraction(rate).limit_denominator(1_000_000))
         self.period = period / step_ns
         """In steps; a rate faster than the step runs every step."""
+
+
+class Beat:
+    """The steps at which the tasks of one period are due: ⌈k period⌉ for k = 0, 1, 2 …
+
+    Args:
+        period: In steps, 1 or more.
+    """
+
+    __slots__ = ("_denominator", "_numerator", "due", "period")
+
+    def __init__(self, period: Fraction) -> None:
+        self.period = period
+        # Integers from here on: fractions would cost more than most tasks do.
+        self._numerator, self._denominator = period.numerator, period.denominator
         self.due = 0
-        """The step at which it runs next."""
+        """The next of them."""
 
-    def reset(self, step: int) -> None:
+    def seek(self, step: int) -> None:
         """Makes the next due step the first one at or after `step`."""
-        count = -((-step * self.period.denominator) // self.period.numerator)
-        self.due = _ceil(count * self.period)
-
-    def advance(self, step: int) -> None:
-        """Moves the due step beyond `step`."""
-        count = (step * self.period.denominator) // self.period.numerator + 1
-        self.due = _ceil(count * self.period)
+        count = (step - 1) * self._denominator // self._numerator + 1
+        self.due = -(-count * self._numerator // self._denominator)
 
 
-def _ceil(value: Fraction) -> int:
-    return -((-value.numerator) // value.denominator)
+class Schedule:
+    """Tasks by period, so that a moment costs one look at each period instead of each task.
+
+    Args:
+        tasks: In any order.
+    """
+
+    def __init__(self, tasks: Iterable[Task] = ()) -> None:
+        self._tasks = sorted(tasks, key=lambda task: task.order)
+        self._beats = [Beat(period) for period in {task.period: None for task in self._tasks}]
+        self._together: dict[int, tuple[Task, ...]] = {}
+        """Tasks of the periods that are due together, by the bits of these periods."""
+
+    def at(self, step: int) -> tuple[tuple[Task, ...], int]:
+        """The tasks due at a step, in their order, and the next step at which any are."""
+        due, bit, upcoming = 0, 1, step + _NEVER
+        for beat in self._beats:
+            if beat.due < step:
+                beat.seek(step)
+            if beat.due == step:
+                due |= bit
+                beat.seek(step + 1)
+            upcoming = min(upcoming, beat.due)
+            bit <<= 1
+        tasks = self._together.get(due)
+        if tasks is None:
+            periods = {beat.period for i, beat in enumerate(self._beats) if due >> i & 1}
+            tasks = tuple(task for task in self._tasks if task.period in periods)
+            self._together[due] = tasks
+        return tasks, upcoming
+
+    def restart(self) -> None:
+        """Time is zero again."""
+        for beat in self._beats:
+            beat.seek(0)

@@ -11,7 +11,7 @@ import numpy as np
 from cartwheel.description.model import CameraIntrinsics, RobotDescription
 from cartwheel.errors import Diagnostic, Origin, UnknownNameError
 from cartwheel.geometry import Pose
-from cartwheel.simulation.clock import NANOSECONDS, Task
+from cartwheel.simulation.clock import NANOSECONDS, Task, always
 from cartwheel.simulation.contacts import read_contacts
 from cartwheel.simulation.handles import (
     CameraHandle,
@@ -131,7 +131,7 @@ class Part:
         *,
         before: Callable[[], None] | None = None,
         after: Callable[[], None] | None = None,
-        active: Callable[[], bool] = lambda: True,
+        active: Callable[[], bool] = always,
     ) -> None:
         """Does something at a rate in Hz; 0 is every step. See `Task`."""
         self.tasks.append(

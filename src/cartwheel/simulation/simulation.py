@@ -13,7 +13,7 @@ import mujoco
 from cartwheel.description.model import RobotDescription, WorldDescription
 from cartwheel.errors import Diagnostic, UnknownNameError, WorldError
 from cartwheel.geometry import Pose, from_wxyz, to_wxyz
-from cartwheel.simulation.clock import Task, to_ns
+from cartwheel.simulation.clock import Schedule, Task, always, to_ns
 from cartwheel.simulation.guard import Guard
 from cartwheel.simulation.part import Part
 from cartwheel.simulation.rendering import Renderer
@@ -85,7 +85,7 @@ class Simulation:
         self.on_diagnostic: list[Callable[[Diagnostic], None]] = []
         self._attach = attach
         self._residents: dict[str, _Resident] = {}
-        self._tasks: list[Task] = []
+        self._schedule = Schedule()
         self._world_tasks: list[Task] = []
         self._orders = itertools.count()
         self._step = 0
@@ -125,16 +125,18 @@ class Simulation:
             self.drain()
             if self.run_state is not RunState.RUNNING and not self.steps_allowed:
                 return
-            due = self._serve()
+            due, read = self._serve()
             count = min(target, due) - self._step
             if self.steps_allowed is not None:
                 count = min(count, self.steps_allowed)
                 self.steps_allowed -= count
-            # The forward pass of this state is done: only its integration is missing.
-            mujoco.mj_Euler(self.model, self.data)
-            if count > 1:
-                mujoco.mj_step(self.model, self.data, count - 1)
             self._step += count
+            if read:
+                # The forward pass of this state is done: only its integration is missing.
+                mujoco.mj_Euler(self.model, self.data)
+                count -= 1
+            if count:
+                mujoco.mj_step(self.model, self.data, count)
             if self._step >= self._guard_due:
                 self._watch()
 
@@ -143,27 +145,26 @@ class Simulation:
         while not self.commands.empty():
             self.commands.get()()
 
-    def _serve(self) -> int:
-        """Does what is due now; returns the step at which something is due next."""
-        step = self._step
-        afters: list[Callable[[], None]] = []
-        upcoming = step + (1 << 40)
-        for task in self._tasks:
-            if not task.active():
-                continue
-            if task.due < step:
-                task.reset(step)
-            if task.due == step:
+    def _serve(self) -> tuple[int, bool]:
+        """Does what is due now.
+
+        Returns:
+            The step at which something is due next, and whether a forward pass was made for
+            tasks that read: their state is what the physics would compute next anyway.
+        """
+        tasks, upcoming = self._schedule.at(self._step)
+        afters = []
+        for task in tasks:
+            if task.active is always or task.active():
                 if task.before is not None:
                     task.before()
                 if task.after is not None:
                     afters.append(task.after)
-                task.advance(step)
-            upcoming = min(upcoming, task.due)
-        mujoco.mj_forward(self.model, self.data)
-        for after in afters:
-            after()
-        return upcoming
+        if afters:
+            mujoco.mj_forward(self.model, self.data)
+            for after in afters:
+                after()
+        return upcoming, bool(afters)
 
     def _watch(self) -> None:
         self._guard_due = self._step + max(1, _GUARD_INTERVAL_NS // self.step_ns)
@@ -209,8 +210,7 @@ class Simulation:
         for resident in self._residents.values():
             for behaviour in resident.behaviours:
                 behaviour.reset()
-        for task in self._tasks:
-            task.reset(0)
+        self._schedule.restart()
         self.refresh()
         for callback in self.on_reset:
             callback()
@@ -338,7 +338,7 @@ class Simulation:
         *,
         before: Callable[[], None] | None = None,
         after: Callable[[], None] | None = None,
-        active: Callable[[], bool] = lambda: True,
+        active: Callable[[], bool] = always,
     ) -> None:
         """Does something of the world's at a rate in Hz, whatever models there are; see `Task`."""
         self._world_tasks.append(
@@ -355,7 +355,7 @@ class Simulation:
 
     def _gather_tasks(self) -> None:
         tasks = [task for resident in self._residents.values() for task in resident.part.tasks]
-        self._tasks = sorted([*self._world_tasks, *tasks], key=lambda task: task.order)
+        self._schedule = Schedule([*self._world_tasks, *tasks])
 
     def report(self, diagnostic: Diagnostic) -> None:
         """Keeps something that the user should know, and tells those who listen."""
