@@ -68,7 +68,11 @@ class Topic:
 
 
 class Publisher:
-    """The right to publish on a topic. Make a message only when `wanted`."""
+    """The right to publish on a topic. Make a message only when `wanted`.
+
+    Attributes:
+        wanted: Whether anybody would read a message published now.
+    """
 
     def __init__(
         self, graph: Graph, topic: Topic, *, node: str, rate: float | None, qos: Qos
@@ -78,6 +82,7 @@ class Publisher:
         self.node = node
         self.rate = rate
         self.qos = qos
+        self.wanted = False
 
     @property
     def topic(self) -> str:
@@ -86,11 +91,6 @@ class Publisher:
     @property
     def type(self) -> str:
         return self._topic.type
-
-    @property
-    def wanted(self) -> bool:
-        """Whether anybody would read a message published now."""
-        return bool(self._topic.subscriptions) or self.qos == "latched"
 
     def publish(self, message: Any) -> None:
         """Delivers to all subscribers at once; on the owner's thread."""
@@ -165,7 +165,7 @@ class Graph:
             topic = self._topic(name, type_name)
             publisher = Publisher(self, topic, node=node, rate=rate, qos=qos)
             topic.publishers += (publisher,)
-            self.changed += 1
+            self._changed(topic)
             return publisher
 
     def subscribe(
@@ -196,7 +196,7 @@ class Graph:
             topic = self._topic(name, type_name)
             subscription = Subscription(self, topic, callback, node=node)
             topic.subscriptions += (subscription,)
-            self.changed += 1
+            self._changed(topic)
             if topic.latched is not None:
                 self.post(lambda: callback(topic.latched))
             return subscription
@@ -303,9 +303,15 @@ class Graph:
     def _remove_publisher(self, topic: Topic, publisher: Publisher) -> None:
         with self._lock:
             topic.publishers = tuple(p for p in topic.publishers if p is not publisher)
-            self.changed += 1
+            self._changed(topic)
 
     def _remove_subscription(self, topic: Topic, subscription: Subscription) -> None:
         with self._lock:
             topic.subscriptions = tuple(s for s in topic.subscriptions if s is not subscription)
-            self.changed += 1
+            self._changed(topic)
+
+    def _changed(self, topic: Topic) -> None:
+        self.changed += 1
+        # Told to the publishers, who look several times for each message.
+        for publisher in topic.publishers:
+            publisher.wanted = bool(topic.subscriptions) or publisher.qos == "latched"
