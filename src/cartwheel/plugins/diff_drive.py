@@ -9,7 +9,7 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 
 from cartwheel.errors import Diagnostic, PluginError
-from cartwheel.geometry import IDENTITY, Pose, Quat, Vec3
+from cartwheel.geometry import Quat, Vec3, yaw_of
 from cartwheel.messages import header, message_class
 from cartwheel.plugins.base import Plugin
 from cartwheel.plugins.parameters import tag
@@ -133,12 +133,10 @@ class DiffDrive(Plugin[DiffDriveParameters]):
         self._base = part.link(config.base_frame if known else description.canonical_link)
         made = {joint.name: joint for joint in description.joints}
         self._wheels = [
-            (
-                part.link(made[handle.name].parent),
-                part.link(made[handle.name].child),
-            )
-            for handle in self._joints
+            (handle, made[handle.name].parent, made[handle.name].child) for handle in self._joints
         ]
+        self._names = [config.right_joint, config.left_joint]
+        self._encoded = config.source in ("encoder", "0")
         self._load_classes()
         rate = config.update_rate
         tells = config.publish_tf and config.publish_odom
@@ -156,6 +154,8 @@ class DiffDrive(Plugin[DiffDriveParameters]):
             if config.publish_joint_state
             else None
         )
+        told = (self._odometry, self._tf, self._joint_states)
+        self._publishers = [publisher for publisher in told if publisher is not None]
         self.subscribe(config.command_topic, "geometry_msgs/msg/Twist", self._on_command)
         part.schedule(rate, before=self._control)
         part.schedule(rate, after=self._publish, active=self._wanted)
@@ -201,16 +201,15 @@ class DiffDrive(Plugin[DiffDriveParameters]):
         now = self.part.time_ns
         seconds = 0.0 if self._updated_ns is None else (now - self._updated_ns) * 1e-9
         self._updated_ns = now
-        limit = self.config.wheel_acceleration * seconds
+        ramp = self.config.wheel_acceleration
+        limit = ramp * seconds
         for index, motor in enumerate(self._motors):
             target, ramped = self._target[index], self._ramped[index]
-            if self.config.wheel_acceleration > 0:
-                ramped += min(max(target - ramped, -limit), limit)
-            else:
-                ramped = target
-            self._ramped[index] = ramped
+            if target != ramped:
+                ramped = ramped + min(max(target - ramped, -limit), limit) if ramp > 0 else target
+                self._ramped[index] = ramped
             motor.command(ramped / self._radius)
-        if self.config.source in ("encoder", "0"):
+        if self._encoded:
             self._integrate(seconds)
 
     def _integrate(self, seconds: float) -> None:
@@ -230,91 +229,60 @@ class DiffDrive(Plugin[DiffDriveParameters]):
         self._turned = turned
 
     def _wanted(self) -> bool:
-        return bool(
-            (self._odometry and self._odometry.wanted)
-            or (self._tf and self._tf.wanted)
-            or (self._joint_states and self._joint_states.wanted)
-        )
+        return any(publisher.wanted for publisher in self._publishers)
 
     def _publish(self) -> None:
+        # The path of most messages. Fields are given by position, in the order of their
+        # definition, and parts that say the same are one object: both halve its cost.
         now = self.part.time_ns
         config = self.config
         if self._joint_states is not None and self._joint_states.wanted:
             left, right = self._joints
+            positions = np.array((right.position, left.position))
             self._joint_states.publish(
-                self._JointState(
-                    header=header(now, ""),
-                    name=[right.name, left.name],
-                    position=np.array([right.position, left.position]),
-                    velocity=_NOTHING,
-                    effort=_NOTHING,
-                )
+                self._JointState(header(now, ""), self._names, positions, _NOTHING, _NOTHING)
             )
         odometry = self._odometry is not None and self._odometry.wanted
         transforms = self._tf is not None and self._tf.wanted
         if not (odometry or transforms):
             return
-        pose, forward, sideways, turn = self._state()
+        (x, y, z), turn, forward, sideways, turn_rate = self._state()
+        Vector3 = self._Vector3
+        head, rotation = header(now, config.odometry_frame), self._Quaternion(*turn)
         if transforms:
             assert self._tf is not None
+            TransformStamped, Transform = self._TransformStamped, self._Transform
             sent = []
             if config.publish_tf and config.publish_odom_tf:
-                sent.append(self._transform(now, config.odometry_frame, config.base_frame, pose))
+                moved = Transform(Vector3(x, y, z), rotation)
+                sent.append(TransformStamped(head, config.base_frame, moved))
             if config.publish_wheel_tf:
-                for parent, child in self._wheels:
-                    sent.append(
-                        self._transform(
-                            now, parent.name, child.name, parent.pose.inverse() @ child.pose
-                        )
-                    )
-            self._tf.publish(self._TFMessage(transforms=sent))
+                for joint, parent, child in self._wheels:
+                    place, (qx, qy, qz, qw) = joint.child_place()
+                    moved = Transform(Vector3(*place), self._Quaternion(qx, qy, qz, qw))
+                    sent.append(TransformStamped(header(now, parent), child, moved))
+            self._tf.publish(self._TFMessage(sent))
         if odometry:
             assert self._odometry is not None
-            x, y, z = pose.position
-            qx, qy, qz, qw = pose.orientation
-            vector = self._Vector3
+            pose = self._Pose(self._Point(x, y, z), rotation)
+            twist = self._Twist(Vector3(forward, sideways, 0.0), Vector3(0.0, 0.0, turn_rate))
             self._odometry.publish(
                 self._Odometry(
-                    header=header(now, config.odometry_frame),
-                    child_frame_id=config.base_frame,
-                    pose=self._PoseWithCovariance(
-                        pose=self._Pose(
-                            position=self._Point(x=x, y=y, z=z),
-                            orientation=self._Quaternion(x=qx, y=qy, z=qz, w=qw),
-                        ),
-                        covariance=_COVARIANCE,
-                    ),
-                    twist=self._TwistWithCovariance(
-                        twist=self._Twist(
-                            linear=vector(x=forward, y=sideways, z=0.0),
-                            angular=vector(x=0.0, y=0.0, z=turn),
-                        ),
-                        covariance=_NO_COVARIANCE,
-                    ),
+                    head,
+                    config.base_frame,
+                    self._PoseWithCovariance(pose, _COVARIANCE),
+                    self._TwistWithCovariance(twist, _NO_COVARIANCE),
                 )
             )
 
-    def _state(self) -> tuple[Pose, float, float, float]:
-        """Pose in the odometry frame; forward and sideways speed in m/s; turning in rad/s."""
-        if self.config.source in ("encoder", "0"):
+    def _state(self) -> tuple[Vec3, Quat, float, float, float]:
+        """Place in the odometry frame; forward and sideways speed in m/s; turning in rad/s."""
+        if self._encoded:
             half = self._heading / 2
             turned: Quat = (0.0, 0.0, math.sin(half), math.cos(half))
-            place: Vec3 = (self._x, self._y, 0.0)
-            return Pose(place, turned), self._speed, 0.0, self._turn_rate
-        pose = self._base.pose
-        linear, angular = self._base.velocity(local=False)
-        cos, sin = math.cos(pose.yaw), math.sin(pose.yaw)
-        vx, vy = float(linear[0]), float(linear[1])
-        return pose, cos * vx + sin * vy, cos * vy - sin * vx, float(angular[2])
-
-    def _transform(self, time_ns: int, parent: str, child: str, pose: Pose) -> Any:
-        x, y, z = pose.position
-        qx, qy, qz, qw = pose.orientation or IDENTITY
-        return self._TransformStamped(
-            header=header(time_ns, parent),
-            child_frame_id=child,
-            transform=self._Transform(
-                translation=self._Vector3(x=x, y=y, z=z),
-                rotation=self._Quaternion(x=qx, y=qy, z=qz, w=qw),
-            ),
-        )
+            return (self._x, self._y, 0.0), turned, self._speed, 0.0, self._turn_rate
+        place, turned = self._base.place()
+        (vx, vy, _), (_, _, turn_rate) = self._base.motion(local=False)
+        yaw = yaw_of(turned)
+        cos, sin = math.cos(yaw), math.sin(yaw)
+        return place, turned, cos * vx + sin * vy, cos * vy - sin * vx, turn_rate

@@ -7,13 +7,14 @@ way and left gravity out.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
 
 from cartwheel.errors import PluginError
-from cartwheel.geometry import Array, Pose, matrix_from_quat, quat_from_rpy, quat_multiply
+from cartwheel.geometry import Pose, matrix_from_quat, quat_from_rpy, quat_multiply
 from cartwheel.messages import header, message_class
 from cartwheel.plugins.base import Plugin
 from cartwheel.plugins.parameters import tag
@@ -52,7 +53,7 @@ class _ImuBase(Plugin[Any]):
             raise PluginError("a rate or noise cannot be below 0", origin=self.tag.origin)
         self._link = self.part.link(link, origin=self.tag.origin)
         self._mount = mount
-        self._turn = matrix_from_quat(mount.orientation).T
+        self._turn = matrix_from_quat(mount.orientation).T.tolist()
         self._frame = frame
         self._noise = noise
         self._Imu = message_class("sensor_msgs/msg/Imu")
@@ -65,31 +66,32 @@ class _ImuBase(Plugin[Any]):
         self.part.schedule(rate, after=self._measure, active=lambda: self._publisher.wanted)
 
     def _measure(self) -> None:
-        orientation = quat_multiply(self._link.pose.orientation, self._mount.orientation)
+        _, turned = self._link.place()
+        x, y, z, w = quat_multiply(turned, self._mount.orientation)
         # Rates first: the unit sits on a rigid link, so only its acceleration depends on where.
-        _, rate = self._link.velocity(local=True)
-        acceleration = self._link.proper_acceleration(self._mount.position)
-        rate, acceleration = self._turn @ rate, self._turn @ acceleration
+        _, turning = self._link.motion(local=True)
+        rate = self._turned(turning)
+        acceleration = self._turned(self._link.proper_acceleration(self._mount.position).tolist())
         if self._noise > 0:
             random = self.part.random(f"imu {self._publisher.topic}")
-            rate = rate + random.normal(0.0, self._noise, 3)
-            acceleration = acceleration + random.normal(0.0, self._noise, 3)
-        x, y, z, w = orientation
+            rate = (rate + random.normal(0.0, self._noise, 3)).tolist()
+            acceleration = (acceleration + random.normal(0.0, self._noise, 3)).tolist()
         self._publisher.publish(
             self._Imu(
                 header=header(self.part.time_ns, self._frame),
                 orientation=self._Quaternion(x=x, y=y, z=z, w=w),
                 orientation_covariance=self._covariance,
-                angular_velocity=self._vector(rate),
+                angular_velocity=self._Vector3(*rate),
                 angular_velocity_covariance=self._covariance,
-                linear_acceleration=self._vector(acceleration),
+                linear_acceleration=self._Vector3(*acceleration),
                 linear_acceleration_covariance=self._covariance,
             )
         )
 
-    def _vector(self, values: Array) -> Any:
-        x, y, z = values.tolist()
-        return self._Vector3(x=x, y=y, z=z)
+    def _turned(self, vector: Sequence[float]) -> Sequence[float]:
+        """A vector of the link in the unit's axes."""
+        x, y, z = vector
+        return [a * x + b * y + c * z for a, b, c in self._turn]
 
 
 class Imu(_ImuBase):
