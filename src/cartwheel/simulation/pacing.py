@@ -45,7 +45,9 @@ class Pacer:
         self._until_ns = until_ns
         self._frames: tuple[_Frames, ...] = ()
         self._history: deque[tuple[float, int]] = deque()
-        simulation.on_reset.append(self._history.clear)
+        self._anchored: float | None = None
+        """The speed from whose setting on time is counted; None when it must be counted anew."""
+        simulation.on_reset.append(self._restart)
 
     def add_listener(self, listener: Listener, *, rate: float = 30.0) -> None:
         """Calls `listener` with a snapshot at `rate` Hz of wall time, on the owner's thread.
@@ -54,6 +56,10 @@ class Pacer:
         """
         self._frames += (_Frames(listener, rate),)
 
+    def _restart(self) -> None:
+        self._history.clear()
+        self._anchored = None
+
     def run(self) -> None:
         """Runs until the time is reached or the simulation is stopped.
 
@@ -61,7 +67,7 @@ class Pacer:
             SimulationError: The simulation diverged.
         """
         simulation = self._simulation
-        anchor_wall, anchor_ns, anchor_speed = time.perf_counter(), simulation.time_ns, None
+        anchor_wall, anchor_ns, self._anchored = time.perf_counter(), simulation.time_ns, None
         while simulation.run_state is not RunState.STOPPED:
             if self._until_ns is not None and simulation.time_ns >= self._until_ns:
                 break
@@ -77,7 +83,7 @@ class Pacer:
                 simulation.real_time_factor = 0.0
                 self._show(now)
                 self._wait(self._next_frame(now + 0.1) - time.perf_counter())
-                anchor_speed = -1.0
+                self._anchored = None
                 continue
             if simulation.run_state is RunState.STOPPED:
                 break
@@ -91,8 +97,8 @@ class Pacer:
             else:
                 wanted = anchor_ns + int((now - anchor_wall) * speed * NANOSECONDS)
                 lag = (wanted - now_ns) / NANOSECONDS / speed
-                if speed != anchor_speed or lag > _PATIENCE or lag < -_PATIENCE:
-                    anchor_wall, anchor_ns, anchor_speed = now, now_ns, speed
+                if speed != self._anchored or lag > _PATIENCE or lag < -_PATIENCE:
+                    anchor_wall, anchor_ns, self._anchored = now, now_ns, speed
                     wanted = now_ns + simulation.step_ns
                 goal_ns = wanted
             if self._until_ns is not None:
