@@ -29,7 +29,7 @@ from cartwheel.viewer.shapes import (
 )
 
 COLLISION: Rgba = (0.96, 0.55, 0.15, 0.45)
-INERTIA: Rgba = (0.55, 0.30, 0.75, 0.45)
+INERTIA: Rgba = (0.55, 0.30, 0.75, 0.30)
 _SEE_THROUGH = 0.35
 _STILL = 1e-5
 """m, and parts of a unit quaternion: no screen shows less, and resting bodies shiver less."""

@@ -1,0 +1,223 @@
+"""A running simulation with its page, and a real browser to look at it."""
+
+from __future__ import annotations
+
+import io
+import shutil
+import threading
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from cartwheel.description import load_robot, load_world
+from cartwheel.description.packages import share
+from cartwheel.geometry import Pose, matrix_from_quat
+from cartwheel.session import Session
+from cartwheel.viewer import Viewer
+
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
+FLAGS = [
+    "--no-sandbox",
+    "--use-gl=angle",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+]
+SIZE = {"width": 1000, "height": 720}
+LEFT, RIGHT = 306, 674
+"""Columns between which the scene lies."""
+CART = "rosbots"
+TWIST = "/part2_cmr/cmd_vel"
+
+
+def eventually(condition, *, seconds=30.0, what="it"):
+    """Waits for a condition, and gives what it returned."""
+    deadline = time.monotonic() + seconds
+    while time.monotonic() < deadline:
+        found = condition()
+        if found:
+            return found
+        time.sleep(0.02)
+    raise AssertionError(f"{what} did not come within {seconds} s")
+
+
+class Arena:
+    """A session on a thread of its own, with the viewer."""
+
+    def __init__(self, world="post.world"):
+        self.session = Session(load_world(share() / "worlds" / world))
+        self.session.spawn(
+            load_robot(share() / "robots/rosbots_description/urdf/rosbots.xacro"),
+            pose=Pose((0.0, 0.0, 0.1)),
+        )
+        self.graph = self.session.graph
+        self.simulation = self.session.simulation
+        self.twists = []
+        self.graph.subscribe(
+            TWIST, lambda m: self.twists.append((m.linear.x, m.angular.z)), node="test"
+        )
+        self.viewer = Viewer(self.session, port=0)
+        pacer = self.session.pacer()
+        self.viewer.start(pacer)
+        self._thread = threading.Thread(target=self._run, args=(pacer,), daemon=True)
+        self._thread.start()
+        self.url = self.viewer.url
+
+    def _run(self, pacer):
+        try:
+            pacer.run()
+        finally:
+            # On the thread that rendered: an OpenGL context belongs to one.
+            self.session.close()
+
+    def ask(self, function):
+        """Runs a function on the simulation's thread."""
+        return self.simulation.call(function).result(10)
+
+    def pose(self, name=CART):
+        return self.ask(lambda: self.simulation.pose(name))
+
+    def models(self):
+        return self.ask(lambda: self.simulation.models)
+
+    def start_over(self):
+        """The state that each test begins with."""
+
+        def run():
+            for name in self.simulation.models:
+                if name not in ("ground_plane", "post", CART):
+                    self.simulation.delete(name)
+            self.simulation.reset()
+            self.simulation.set_speed(1.0)
+            self.simulation.resume()
+
+        self.ask(run)
+        self.twists.clear()
+
+    def readers(self, topic):
+        return self.graph.topic(topic).subscribers
+
+    def camera(self):
+        """The one browser's camera, as it reports it."""
+        clients = self.viewer._page.server.get_clients()
+        return next(iter(clients.values())).camera
+
+    def close(self):
+        self.viewer.close()
+        self.ask(self.simulation.stop)
+        self._thread.join(10)
+
+
+@pytest.fixture(scope="session")
+def browser():
+    if CHROMIUM is None:
+        pytest.skip("no Chromium: apt-get install chromium")
+    api = pytest.importorskip("playwright.sync_api")
+    with api.sync_playwright() as playwright:
+        made = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
+        yield made
+        made.close()
+
+
+@pytest.fixture(scope="module")
+def arena():
+    made = Arena()
+    yield made
+    made.close()
+
+
+def open_page(browser, arena):
+    """A page that shows the scene."""
+    page = browser.new_page(viewport=SIZE)
+    page.set_default_timeout(40_000)
+    page.faults = []
+    page.on("pageerror", lambda error: page.faults.append(error.stack))
+    page.goto(arena.url)
+    page.locator("[data-key='i']").wait_for()
+    page.get_by_role("button", name=CART, exact=True).wait_for()
+    eventually(lambda: arena.viewer._page.clients, what="the browser")
+    return page
+
+
+@pytest.fixture(scope="module")
+def shared_page(browser, arena):
+    page = open_page(browser, arena)
+    yield page
+    page.close()
+    assert page.faults == []
+
+
+@pytest.fixture
+def page(shared_page, arena):
+    """The module's page, at the start of a new run."""
+    shared_page.keyboard.press("k")
+    arena.start_over()
+    yield shared_page
+
+
+def screenshot(page):
+    """What the page shows, shape (height, width, 3)."""
+    from PIL import Image
+
+    return np.asarray(Image.open(io.BytesIO(page.screenshot())).convert("RGB")).astype(int)
+
+
+def stage(picture):
+    """The part of the page between its panels."""
+    return picture[:, LEFT:RIGHT]
+
+
+def count(picture, channel):
+    """Pixels that are plainly of one channel's colour."""
+    others = [c for c in range(3) if c != channel]
+    own = picture[:, :, channel]
+    return int(((own > 90) & (own > 2.2 * picture[:, :, others].max(axis=2))).sum())
+
+
+def project(camera, point, box):
+    """Where a point of the world is on the screen, in pixels.
+
+    Args:
+        camera: viser's: looks along z, y down; `fov` is vertical.
+        point: m.
+        box: The canvas: x, y, width, height.
+    """
+    w, x, y, z = camera.wxyz
+    local = matrix_from_quat((x, y, z, w)).T @ (np.asarray(point) - camera.position)
+    focal = box["height"] / 2 / np.tan(camera.fov / 2)
+    return (
+        box["x"] + box["width"] / 2 + focal * local[0] / local[2],
+        box["y"] + box["height"] / 2 + focal * local[1] / local[2],
+    )
+
+
+def picture_of(page):
+    """The camera panel's image as the browser decoded it, shape (height, width, 3); None without."""
+    found = page.evaluate(
+        """() => {
+          const image = [...document.querySelectorAll("img")].find(i => i.naturalWidth >= 64);
+          if (!image || !image.complete) return null;
+          const canvas = document.createElement("canvas");
+          canvas.width = image.naturalWidth; canvas.height = image.naturalHeight;
+          const context = canvas.getContext("2d");
+          context.drawImage(image, 0, 0);
+          const data = context.getImageData(0, 0, canvas.width, canvas.height).data;
+          return [canvas.width, canvas.height, Array.from(data)];
+        }"""
+    )
+    if found is None:
+        return None
+    width, height, data = found
+    return np.array(data).reshape(height, width, 4)[:, :, :3]
+
+
+def write(folder: Path, name: str, text: str) -> Path:
+    path = folder / name
+    path.write_text(text)
+    return path

@@ -1,0 +1,82 @@
+"""The scene in a real browser."""
+
+import math
+
+from cartwheel.geometry import Pose
+
+from .conftest import CART, LEFT, RIGHT, count, eventually, open_page, project, screenshot, stage
+
+RED, BLUE = 0, 2
+
+
+def colours(page):
+    picture = stage(screenshot(page))
+    return count(picture, RED), count(picture, BLUE)
+
+
+def close_notes(page):
+    for button in page.locator(".mantine-Notification-root button").all():
+        button.click()
+
+
+def test_the_cart_is_blue_and_the_post_red(page):
+    assert page.title() == "Cartwheel"
+    close_notes(page)
+    # The pyramid of the camera is blue as well.
+    page.get_by_text("View", exact=True).click()
+    page.get_by_label("Camera frustum").click()
+    red, blue = eventually(lambda: min(c := colours(page)) > 800 and c, what="red and blue")
+    # It is the visuals that are seen: without them nothing of either colour is left.
+    page.get_by_label("Visual shapes").click()
+    eventually(lambda: max(colours(page)) < 20, what="the empty scene")
+    page.get_by_label("Visual shapes").click()
+    eventually(lambda: abs(colours(page)[0] - red) < 0.2 * red, what="the post")
+    page.get_by_label("Camera frustum").click()
+    page.get_by_text("World", exact=True).click()
+
+
+def test_the_post_is_drawn_where_it_stands(page, arena):
+    """Every corner of the picture's red lies where the eight corners of the post project to."""
+    close_notes(page)
+    picture = screenshot(page)
+    box = page.locator("canvas[data-engine]").bounding_box()
+    post = arena.pose("post")
+    corners = [
+        project(arena.camera(), (post.x + x, post.y + y, post.z + z), box)
+        for x in (-0.1, 0.1)
+        for y in (-0.1, 0.1)
+        for z in (0.0, 1.0)
+    ]
+    red = picture[:, :, RED]
+    is_red = (red > 90) & (red > 2.2 * picture[:, :, 1:].max(axis=2))
+    is_red[:, :LEFT] = is_red[:, RIGHT:] = False
+    rows, columns = is_red.nonzero()
+    assert abs(columns.min() - min(x for x, _ in corners)) < 6
+    assert abs(columns.max() - max(x for x, _ in corners)) < 6
+    assert abs(rows.min() - min(y for _, y in corners)) < 6
+
+
+def test_links_follow_the_simulation(page, arena):
+    before = colours(page)[0]
+    arena.ask(lambda: arena.simulation.set_pose("post", Pose((0.0, 60.0, 0.0))))
+    eventually(lambda: colours(page)[0] < 0.05 * before, what="the post to leave the picture")
+
+
+def test_two_browsers_see_the_same(browser, arena, page):
+    second = open_page(browser, arena)
+    close_notes(page)
+    close_notes(second)
+    arena.ask(arena.simulation.pause)
+    arena.ask(lambda: arena.simulation.set_pose("post", Pose((1.6, 0.4, 0.0))))
+    for one in (page, second):
+        one.locator(".cw-paused").wait_for()
+    red = eventually(lambda: colours(page)[0], what="the post")
+    eventually(lambda: math.isclose(colours(second)[0], red, rel_tol=0.03), what="the same post")
+    # What one does, the other sees.
+    second.get_by_role("button", name="post", exact=True).click()
+    second.get_by_role("button", name="Delete post").click()
+    for one in (page, second):
+        one.get_by_role("button", name="post", exact=True).wait_for(state="detached")
+        eventually(lambda one=one: colours(one)[0] < 20, what="the post to go")
+    second.close()
+    assert set(arena.models()) == {"ground_plane", CART}
