@@ -35,14 +35,14 @@ def test_text_is_joined_and_stripped_and_prefixes_are_kept():
         ("hello", 1, "is not XML"),
         ("", 1, "is not XML"),
         ('<!DOCTYPE a [\n<!ENTITY x "y">]><a>&x;</a>', 2, "entities are not allowed"),
-        ('<?xml version="1.0" encoding="none"?><a/>'.encode(), 1, "cannot be decoded"),
+        (b'<?xml version="1.0" encoding="none"?><a/>', 1, "cannot be decoded"),
         (b"<a>\n\xff</a>", 2, "malformed XML"),
         ("<a>\ud800</a>", 1, "cannot be decoded"),
         ("<a>\n" * 500, 101, "nested more than 100 deep"),
     ],
 )
 def test_malformed_text_names_its_place(text, line, part):
-    with pytest.raises(DescriptionError, match="robot.urdf") as caught:
+    with pytest.raises(DescriptionError, match=r"robot\.urdf") as caught:
         xml.parse(text, "robot.urdf")
     assert caught.value.origin == Origin(file="robot.urdf", line=line)
     assert part in caught.value.message
@@ -148,7 +148,8 @@ def test_missing_child_names_the_likely_meant_one():
 
 def test_unread_parts_are_told_with_place_and_likely_meaning():
     root = xml.parse(
-        "<gazebo>\n<mu1>1</mu1>\n<maxContact>3</maxContact>\n<mu1>2</mu1>\n<kp valeu='1'/></gazebo>",
+        "<gazebo>\n<mu1>1</mu1>\n<maxContact>3</maxContact>\n<mu1>2</mu1>\n"
+        "<kp valeu='1'/></gazebo>",
         "robot.urdf",
     )
     root.child("mu1")
@@ -190,7 +191,7 @@ def test_files_that_are_no_text(tmp_path, content, part):
 
 def test_a_file_that_is_not_there(tmp_path):
     (tmp_path / "robot.urdf").write_text("<robot/>")
-    with pytest.raises(DescriptionError, match='no such file\n  Did you mean "robot.urdf"?'):
+    with pytest.raises(DescriptionError, match=r'no such file\n  Did you mean "robot\.urdf"\?'):
         xml.read_file(tmp_path / "robt.urdf")
     with pytest.raises(DescriptionError, match="is a folder"):
         xml.read_file(tmp_path)

@@ -26,7 +26,8 @@ def name_collisions(links: Sequence[Link], tree: Tree, preserved: Iterable[str])
     """
     kept = frozenset(preserved)
     by_name = {link.name: link for link in links}
-    # Gazebo numbers the collisions of all that it merges into one link in one sequence.
+    # Gazebo numbers the collisions of all that it merges into one link in one sequence. A
+    # link's own number is never the larger, so it takes no name from a collision further on.
     counts: dict[str, int] = {}
     named: dict[str, Link] = {}
     taken = {each.name for link in links for each in link.collisions}

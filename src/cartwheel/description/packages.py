@@ -192,16 +192,19 @@ class Packages:
             self._environment_roots,
             lambda: iter((share() / "robots", share() / "models")),
         )
-        # A folder with the right name but without package.xml is what remains when somebody
-        # copied a description out of its workspace: second choice, but better than failing.
-        bare: Path | None = None
         for roots in searches:
             for root in roots():
                 found = _package_in(root, name)
-                if found is not None and _package_name(found) == name:
+                if found is not None:
                     return found
-                bare = bare or found
-        return bare
+        # A folder with the right name but without package.xml is what remains when somebody
+        # copied a description out of its workspace: second choice, but better than failing.
+        for roots in searches:
+            for root in roots():
+                for bare in (root, root / name):
+                    if bare.name == name and _is_dir(bare):
+                        return bare
+        return None
 
     def _environment_roots(self) -> Iterator[Path]:
         yield from self._paths(_ROS1)
@@ -247,17 +250,7 @@ class Packages:
 
 def _package_in(root: Path, name: str) -> Path | None:
     """The package of that name that `root` is or holds, at most one folder between."""
-    if root.name == name and _is_dir(root):
-        return root
-    if _package_name(root) == name:
-        return root
-    by_name = None
-    for folder in _nested(root):
-        if _package_name(folder) == name:
-            return folder
-        if by_name is None and folder.name == name:
-            by_name = folder
-    return by_name
+    return next((f for f in (root, *_nested(root)) if _package_name(f) == name), None)
 
 
 def _nested(root: Path) -> Iterator[Path]:

@@ -67,9 +67,9 @@ def _shipped(name: str) -> Path | None:
         if any(path.name == name + suffix for suffix in SUFFIXES):
             return path
     for kind in ("models", "robots"):
-        folder = share() / kind / name
-        if name not in ("", ".", "..") and folder.is_dir():
-            return _in_folder(folder)
+        for folder in (share() / kind).glob("*"):
+            if folder.name == name and folder.is_dir():
+                return _in_folder(folder)
     return None
 
 

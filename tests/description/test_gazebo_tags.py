@@ -1,0 +1,305 @@
+"""What ``<gazebo>`` tags say, tag by tag, and what is told of those that do nothing."""
+
+import pytest
+
+from cartwheel.description import load_text
+from cartwheel.description import model as m
+from cartwheel.errors import DescriptionError
+from cartwheel.geometry import Pose
+
+BODY = '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial>'
+SHAPE = '<geometry><box size="1 1 1"/></geometry>'
+LINKS = (
+    f'<link name="base">{BODY}<visual>{SHAPE}'
+    f'<material name="own"><color rgba="0.5 0.5 0.5 1"/></material></visual>'
+    f"<collision>{SHAPE}</collision></link>"
+    f'<link name="arm">{BODY}</link><link name="tip">{BODY}<collision>{SHAPE}</collision></link>'
+    '<joint name="hinge" type="continuous"><parent link="base"/><child link="arm"/></joint>'
+    '<joint name="weld" type="fixed"><parent link="arm"/><child link="tip"/></joint>'
+)
+
+
+def load(*tags):
+    """A robot whose tags begin in line 2."""
+    text = f'<robot name="r">{LINKS}\n' + "\n".join(tags) + "\n</robot>"
+    return load_text(text, file="robot.urdf")
+
+
+def on(reference, *content):
+    return f'<gazebo reference="{reference}">' + "".join(content) + "</gazebo>"
+
+
+def told(description):
+    return [str(each) for each in description.diagnostics]
+
+
+@pytest.mark.parametrize(
+    ("tag", "field", "value"),
+    [
+        ("<mu1>0.3</mu1>", "mu1", 0.3),
+        ("<mu>0.3</mu>", "mu1", 0.3),
+        ('<mu1 value="0.3"/>', "mu1", 0.3),
+        ("<mu2>0.4</mu2>", "mu2", 0.4),
+        ("<kp>1e6</kp>", "kp", 1e6),
+        ("<kd>100.0</kd>", "kd", 100),
+        ("<minDepth>0.001</minDepth>", "min_depth", 0.001),
+        ("<maxVel>1.0</maxVel>", "max_vel", 1.0),
+        ("<maxContacts>10</maxContacts>", "max_contacts", 10),
+        ("<fdir1>1 0 0</fdir1>", "fdir1", (1, 0, 0)),
+        ("<fdir1>0 0 0</fdir1>", "fdir1", None),
+        (
+            "<collision><surface><friction><ode><mu>0.7</mu></ode></friction></surface></collision>",
+            "mu1",
+            0.7,
+        ),
+        (
+            "<collision><surface><contact><ode><max_vel>2</max_vel></ode></contact></surface>"
+            "</collision>",
+            "max_vel",
+            2,
+        ),
+        ("<collision><max_contacts>3</max_contacts></collision>", "max_contacts", 3),
+    ],
+)
+def test_surface(tag, field, value):
+    robot = load(on("base", tag))
+    assert getattr(robot.link("base").collisions[0].surface, field) == value
+    assert robot.link("tip").collisions[0].surface == m.Surface()
+    assert not robot.diagnostics
+
+
+@pytest.mark.parametrize(
+    ("tag", "field", "value"),
+    [
+        ("<selfCollide>true</selfCollide>", "self_collide", True),
+        ("<self_collide>0</self_collide>", "self_collide", False),
+        ("<turnGravityOff>true</turnGravityOff>", "gravity", False),
+        ("<turnGravityOff>false</turnGravityOff>", "gravity", True),
+        ("<gravity>0</gravity>", "gravity", False),
+        ("<kinematic>1</kinematic>", "kinematic", True),
+        ("<dampingFactor>0.01</dampingFactor>", "linear_damping", 0.01),
+        ("<dampingFactor>0.01</dampingFactor>", "angular_damping", 0.01),
+        ("<velocity_decay><linear>0.2</linear></velocity_decay>", "linear_damping", 0.2),
+    ],
+)
+def test_link(tag, field, value):
+    robot = load(on("base", tag))
+    assert getattr(robot.link("base"), field) == value
+    assert not robot.diagnostics
+
+
+def test_laser_retro_holds_for_all_that_a_laser_may_meet():
+    base = load(on("base", "<laserRetro>50</laserRetro>")).link("base")
+    assert base.visuals[0].laser_retro == base.collisions[0].laser_retro == 50
+
+
+def test_material_overrides_the_colour():
+    robot = load(on("base", "<material>Gazebo/Blue</material>"))
+    material = robot.link("base").visuals[0].material
+    assert (material.name, material.diffuse) == ("Gazebo/Blue", (0, 0, 1, 1))
+    assert not material.yields_to_mesh
+
+
+def test_unknown_material_keeps_the_colour_and_is_told():
+    robot = load(on("base", "<material>Gazebo/Bleu</material>"))
+    assert robot.link("base").visuals[0].material.diffuse == (0.5, 0.5, 0.5, 1)
+    assert told(robot) == [
+        'robot.urdf:2: warning: the material "Gazebo/Bleu" is none of Gazebo\'s: the colour stays '
+        'as it is. Did you mean "Gazebo/Blue"?'
+    ]
+
+
+def test_visual_as_sdf_states_it():
+    robot = load(
+        on(
+            "base",
+            "<visual><material><diffuse>1 0 0 1</diffuse></material>",
+            "<transparency>0.5</transparency><cast_shadows>0</cast_shadows></visual>",
+        )
+    )
+    (visual,) = robot.link("base").visuals
+    assert visual.material.diffuse == (1, 0, 0, 1)
+    assert visual.transparency == 0.5
+    assert not visual.cast_shadows
+
+
+def test_several_tags_of_one_link_add_up_and_the_last_wins():
+    robot = load(on("base", "<mu1>1</mu1><kp>5</kp>"), on("base", "<mu1>2</mu1>"))
+    surface = robot.link("base").collisions[0].surface
+    assert (surface.mu1, surface.kp) == (2, 5)
+
+
+@pytest.mark.parametrize(
+    ("tag", "field", "value"),
+    [
+        ("<stopCfm>0.1</stopCfm>", "stop_cfm", 0.1),
+        ("<stopErp>0.2</stopErp>", "stop_erp", 0.2),
+        ("<provideFeedback>true</provideFeedback>", "provide_feedback", True),
+        ("<implicitSpringDamper>1</implicitSpringDamper>", "implicit_spring_damper", True),
+        ("<cfmDamping>1</cfmDamping>", "implicit_spring_damper", True),
+        (
+            "<physics><ode><implicit_spring_damper>1</implicit_spring_damper></ode></physics>",
+            "implicit_spring_damper",
+            True,
+        ),
+    ],
+)
+def test_joint(tag, field, value):
+    robot = load(on("hinge", tag))
+    assert getattr(robot.joint("hinge"), field) == value
+    assert not robot.diagnostics
+
+
+def test_springs():
+    robot = load(
+        on(
+            "hinge",
+            "<springStiffness>3</springStiffness><springReference>0.4</springReference>",
+        )
+    )
+    axis = robot.joint("hinge").axis
+    assert (axis.spring_stiffness, axis.spring_reference) == (3, 0.4)
+
+
+@pytest.mark.parametrize("tag", ["preserveFixedJoint", "disableFixedJointLumping"])
+def test_preserved_joints(tag):
+    assert load(on("weld", f"<{tag}>true</{tag}>")).joint("weld").preserve_fixed
+    assert not load(on("weld", f"<{tag}>false</{tag}>")).joint("weld").preserve_fixed
+
+
+def test_robot():
+    robot = load(
+        "<gazebo><static>true</static><self_collide>1</self_collide>"
+        '<plugin name="drive" filename="libgazebo_ros_diff_drive.so">'
+        "<torque>20</torque></plugin></gazebo>"
+    )
+    assert robot.static
+    assert robot.self_collide
+    (plugin,) = robot.plugins
+    assert (plugin.name, plugin.filename) == ("drive", "libgazebo_ros_diff_drive.so")
+    assert plugin.element.find("torque").text == "20"
+    assert str(plugin.origin) == "robot.urdf:2"
+    assert not robot.diagnostics
+
+
+def test_camera():
+    robot = load(
+        on(
+            "tip",
+            '<sensor type="camera" name="eye"><pose>1 0 0 0 0 0</pose>'
+            "<update_rate>30</update_rate><always_on>1</always_on><visualize>true</visualize>"
+            '<topic>pictures</topic><camera name="head"><horizontal_fov>1.5</horizontal_fov>'
+            "<image><width>640</width><height>480</height><format>L8</format></image>"
+            "<clip><near>0.2</near><far>9</far></clip>"
+            "<noise><type>gaussian</type><mean>0.1</mean><stddev>0.007</stddev></noise>"
+            "<distortion><k1>0.1</k1><k2>0.2</k2><k3>0.3</k3><p1>0.4</p1><p2>0.5</p2>"
+            "<center>0.4 0.6</center></distortion></camera>"
+            '<plugin name="c" filename="libgazebo_ros_camera.so"/></sensor>',
+        )
+    )
+    (sensor,) = robot.link("tip").sensors  # which Gazebo would have merged into arm
+    assert (sensor.name, sensor.type, sensor.link) == ("eye", "camera", "tip")
+    assert (sensor.update_rate, sensor.always_on, sensor.visualize) == (30, True, True)
+    assert sensor.topic == "pictures"
+    assert sensor.pose == Pose((1, 0, 0))
+    assert sensor.plugins[0].filename == "libgazebo_ros_camera.so"
+    assert sensor.cameras == (
+        m.CameraIntrinsics(
+            name="head",
+            horizontal_fov=1.5,
+            width=640,
+            height=480,
+            format="L8",
+            near=0.2,
+            far=9,
+            k1=0.1,
+            k2=0.2,
+            k3=0.3,
+            p1=0.4,
+            p2=0.5,
+            distortion_center=(0.4, 0.6),
+            noise_mean=0.1,
+            noise_stddev=0.007,
+        ),
+    )
+    assert not robot.diagnostics
+
+
+def test_sensor_of_a_joint():
+    robot = load(on("hinge", '<sensor type="force_torque" name="ft"/>'))
+    (sensor,) = robot.link("arm").sensors
+    assert (sensor.joint, sensor.link) == ("hinge", "arm")
+
+
+def test_light():
+    robot = load(on("tip", '<light type="spot" name="lamp"><pose>0 0 1 0 0 0</pose></light>'))
+    (light,) = robot.link("tip").lights
+    assert (light.name, light.type, light.pose) == ("lamp", "spot", Pose((0, 0, 1)))
+
+
+@pytest.mark.parametrize(
+    ("tags", "message"),
+    [
+        (
+            on("base", "<maxContact>3</maxContact>"),
+            "<maxContact> in <gazebo> is not understood and is ignored. "
+            "Did you mean <maxContacts>?",
+        ),
+        (on("base", "<min_depth>3</min_depth>"), "Did you mean <minDepth>?"),
+        (
+            on("base", "<canonicalBody>base</canonicalBody>"),
+            "<canonicalBody> has no effect here: the root link is the robot's own frame",
+        ),
+        (on("base", "<projector/>x"), "<projector> is empty"),
+        (on("base", '<projector name="p"/>'), "<projector> has no effect here"),
+        (on("hinge", "<fudgeFactor>1</fudgeFactor>"), "<fudgeFactor> has no effect here"),
+        (
+            on("base", "<preserveFixedJoint>1</preserveFixedJoint>"),
+            '<preserveFixedJoint> acts on a joint, but "base" is a link: it has no effect',
+        ),
+        (
+            on("hinge", "<mu1>1</mu1>"),
+            '<mu1> acts on a link, but "hinge" is a joint: it has no effect',
+        ),
+        (
+            "<gazebo><mu1>1</mu1></gazebo>",
+            "<mu1> has no effect in a <gazebo> without a reference",
+        ),
+        ("<gazebo><gripper><a/></gripper></gazebo>", "<gripper> has no effect here"),
+        (on("base", "<mu1>-1</mu1>"), "mu1 -1 is below 0: the default counts"),
+        (on("base", "<mu1></mu1>"), "<mu1> is empty: the default counts"),
+        (
+            on("base", '<plugin name="p" filename="libp.so"/>'),
+            'plugin "p" stands in the <gazebo> of "base", where Gazebo Classic does not load it; '
+            "here it is loaded as a plugin of the robot",
+        ),
+        (
+            on("base", '<sensor type="imu" name="i"/><sensor type="imu" name="i"/>'),
+            'link "base" has two sensors of the name "i"',
+        ),
+    ],
+)
+def test_warnings(tags, message):
+    (diagnostic,) = load(tags).diagnostics
+    assert str(diagnostic).startswith("robot.urdf:2: warning: ")
+    assert message in diagnostic.message
+
+
+@pytest.mark.parametrize(
+    ("tags", "message"),
+    [
+        (
+            on("bas", "<mu1>1</mu1>"),
+            '<gazebo> refers to "bas", which is neither a link nor a joint\n  Did you mean "base"?',
+        ),
+        (on("base", "<mu1>x</mu1>"), 'mu1 "x" is not a number'),
+        (on("base", "<selfCollide>perhaps</selfCollide>"), "neither true nor false"),
+        (on("base", '<sensor name="a"/>'), 'sensor "a" has no attribute "type"'),
+        ('<gazebo><plugin name="a"/></gazebo>', 'plugin "a" has no attribute "filename"'),
+    ],
+)
+def test_errors(tags, message):
+    with pytest.raises(DescriptionError) as caught:
+        load(tags)
+    assert str(caught.value).startswith("robot.urdf:2: ")
+    assert message in str(caught.value)

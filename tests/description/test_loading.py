@@ -1,0 +1,195 @@
+"""One call for every kind of file, and what it says of those that are of no kind."""
+
+import subprocess
+import sys
+import time
+
+import pytest
+
+from cartwheel.description import load, load_robot, load_text, load_world
+from cartwheel.description.model import RobotDescription, WorldDescription
+from cartwheel.description.shipped import shipped_descriptions
+from cartwheel.errors import DescriptionError
+
+BODY = '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial>'
+URDF = f'<robot name="r"><link name="a">{BODY}</link></robot>'
+XACRO = (
+    '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'
+    f'<xacro:arg name="n" default="a"/><link name="$(arg n)">{BODY}</link></robot>'
+)
+SDF = '<sdf version="1.6"><model name="m"><link name="l"/></model></sdf>'
+WORLD = '<sdf version="1.6"><world name="w"/></sdf>'
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def write(path, text):
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(text)
+    return path
+
+
+def failure(path, call=load, **more):
+    with pytest.raises(DescriptionError) as caught:
+        call(path, **more)
+    return str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("text", "kind", "name"),
+    [
+        (URDF, RobotDescription, "r"),
+        (XACRO, RobotDescription, "r"),
+        (SDF, RobotDescription, "m"),
+        (WORLD, WorldDescription, "w"),
+    ],
+)
+def test_content_decides_not_the_name(folder, text, kind, name):
+    found = load(write(folder / "file.txt", text))
+    assert isinstance(found, kind)
+    assert found.name == name
+
+
+def test_arguments():
+    robot = load_text(XACRO, arguments={"n": "b"})
+    assert robot.links[0].name == "b"
+    assert "xacro" not in robot.text
+    assert '<link name="b">' in robot.text
+
+
+def test_arguments_of_what_is_no_xacro_are_told():
+    (told,) = load_text(URDF, file="r.urdf", arguments={"n": "b"}).diagnostics
+    assert str(told) == ('r.urdf: warning: the argument "n" has no effect: the file is no xacro')
+
+
+def test_robot_or_world(folder):
+    robot, world = write(folder / "r.urdf", URDF), write(folder / "w.world", WORLD)
+    assert load_robot(robot).name == "r"
+    assert load_world(world).name == "w"
+    assert failure(world, load_robot).startswith('w.world:1: describes the world "w", not a robot')
+    assert failure(robot, load_world).startswith('r.urdf:1: describes the model "r", not a world')
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        (b"", "file: the file is empty"),
+        (b"solid x\0\0\0", "file: is a binary file, not a description"),
+        (b"a: 1\n", "file:1: is not XML"),
+        (b"<launch/>", "file:1: is a launch file: name the description that it loads"),
+        (b"<mujoco/>", "file:1: is a MuJoCo model"),
+        (b"<COLLADA/>", "file:1: is a mesh"),
+        (b"<html/>", "file:1: begins with <html>, which is no description"),
+        (b"<gazebo version='1.0'/>", "file:1: SDF version"),
+    ],
+)
+def test_other_files(folder, content, message):
+    (folder / "file").write_bytes(content)
+    assert failure("file").startswith(message)
+
+
+def test_missing_file_suggests_near_names(folder):
+    write(folder / "robots" / "cart.urdf", URDF)
+    assert failure("robots/crt.urdf") == (
+        'robots/crt.urdf: no such file\n  Did you mean "cart.urdf"?'
+    )
+    assert "does not exist either" in failure("robot/cart.urdf")
+    write(folder / "cart.urdf", URDF)
+    assert 'Did you mean "cart.urdf"?' in failure("cart.udf")
+    assert 'Did you mean "rosbots.xacro"?' in failure("robots.xacro")
+    assert "Shipped with Cartwheel are:" in failure("zzzzz")
+
+
+@pytest.mark.parametrize("name", ["a\0b", "x" * 5000, "", "."])
+def test_impossible_names(folder, name):
+    failure(name)
+
+
+def test_folders(folder):
+    write(folder / "cone" / "model.sdf", SDF)
+    assert load(folder / "cone").name == "m"
+    write(folder / "box" / "box-1_4.sdf", SDF)
+    write(
+        folder / "box" / "model.config",
+        '<model><sdf version="1.3">old.sdf</sdf><sdf version="1.4">box-1_4.sdf</sdf></model>',
+    )
+    assert load("box").name == "m"
+    write(folder / "single" / "urdf" / "robot.urdf", URDF)
+    assert load("single").name == "r"
+    write(folder / "several" / "a.urdf", URDF)
+    write(folder / "several" / "b.urdf", URDF)
+    assert failure("several") == (
+        "several: is a folder with several descriptions\n  Name one of: a.urdf, b.urdf."
+    )
+    (folder / "none").mkdir()
+    assert failure("none").startswith("none: is a folder without a description")
+    write(folder / "broken" / "model.config", "<model><sdf>x.sdf</sdf></model>")
+    assert failure("broken") == 'broken: model.config names "x.sdf", which does not exist'
+
+
+def test_uris(folder):
+    write(folder / "ws" / "pkg" / "package.xml", "<package><name>pkg</name></package>")
+    write(folder / "ws" / "pkg" / "urdf" / "r.urdf", URDF)
+    found = load("package://pkg/urdf/r.urdf", package_path=[folder / "ws"])
+    assert found.name == "r"
+    assert load((folder / "ws/pkg/urdf/r.urdf").as_uri()).name == "r"
+    assert "was not found" in failure("package://none/r.urdf")
+
+
+def test_shipped_things_by_their_names(folder):
+    assert load("rosbots.xacro").name == "rosbots"
+    assert load("rosbots").name == "rosbots"
+    write(folder / "rosbots.xacro", XACRO)
+    assert load("rosbots.xacro").name == "r"  # what lies here comes first
+
+
+def test_everything_shipped_loads_without_a_word():
+    parts = ("camera.xacro", "inertia.xacro", "materials.xacro", "rosbots.gazebo.xacro")
+    for path in shipped_descriptions():
+        # The sun is but a light, for worlds to include.
+        if path.name not in parts and path.parent.name != "sun":
+            assert not load(path).diagnostics, path
+
+
+def test_text_finds_packages_around_the_file_it_is_said_to_be(folder):
+    write(folder / "package.xml", "<package><name>pkg</name></package>")
+    write(folder / "a.stl", "solid")
+    text = URDF.replace(
+        "</link>",
+        '<visual><geometry><mesh filename="package://pkg/a.stl"/></geometry></visual></link>',
+    )
+    robot = load_text(text, file=str(folder / "r.urdf"))
+    assert robot.links[0].visuals[0].shape.path == folder / "a.stl"
+
+
+@pytest.mark.parametrize("text", ["", " ", b""])
+def test_empty_text(text):
+    with pytest.raises(DescriptionError, match="the description is empty"):
+        load_text(text)
+
+
+def test_the_cart_loads_quickly():
+    load("rosbots.xacro")
+    best = min(timed() for _ in range(5))
+    assert best < 0.15
+
+
+def timed():
+    start = time.perf_counter()
+    load("rosbots.xacro")
+    return time.perf_counter() - start
+
+
+def test_nothing_slow_is_imported_before_it_is_needed():
+    script = (
+        "import sys, cartwheel.description as d; d.load_text(sys.argv[1]);"
+        "print([m for m in ('xacro', 'lxml', 'trimesh', 'mujoco', 'yaml') if m in sys.modules])"
+    )
+    out = subprocess.run(
+        [sys.executable, "-c", script, URDF], capture_output=True, text=True, check=True
+    )
+    assert out.stdout == "[]\n"
