@@ -50,6 +50,9 @@ def build(world: WorldDescription, entries: Iterable[ModelEntry], *, xml: bool =
     entries = list(entries)
     for entry in entries:
         bodies.add(entry)
+    if any(_feels_touch(entry) for entry in entries if entry.description.static):
+        # A body asleep on something that stands has no contact with it to be reported.
+        spec.option.enableflags &= ~mujoco.mjtEnableBit.mjENBL_SLEEP
     ranks = contact.priorities(surface.friction[0] for surface in bodies.surfaces)
     for surface in bodies.surfaces:
         surface.geom.priority = ranks[surface.friction[0]]
@@ -69,6 +72,12 @@ def build(world: WorldDescription, entries: Iterable[ModelEntry], *, xml: bool =
     except (ValueError, mujoco.FatalError) as error:
         raise _explain(str(error), entries) from None
     return Build(model=model, xml=spec.to_xml() if xml else None)
+
+
+def _feels_touch(entry: ModelEntry) -> bool:
+    return any(
+        sensor.type == "contact" for link in entry.description.links for sensor in link.sensors
+    )
 
 
 def _empty(world: WorldDescription) -> mujoco.MjSpec:
