@@ -69,9 +69,7 @@ class Make:
         surface = Surface(mu1=mu, mu2=mu)
         link = Link(
             name="link",
-            collisions=(
-                Collision(name="collision", shape=Plane(), surface=surface, origin=_HERE),
-            ),
+            collisions=(Collision(name="collision", shape=Plane(), surface=surface, origin=_HERE),),
             visuals=(
                 Visual(
                     name="visual",

@@ -19,7 +19,9 @@ def slide_down(make, degrees, mu_ramp, mu_box):
     down = np.array([math.cos(slope), 0, -math.sin(slope)])
     up = np.array([math.sin(slope), 0, math.cos(slope)])
     turn = quat_from_rpy(0, slope, 0)
-    ramp = make.box("ramp", (20, 2, 0.2), mu=mu_ramp, pose=Pose(tuple(-0.1 * up), turn), static=True)
+    ramp = make.box(
+        "ramp", (20, 2, 0.2), mu=mu_ramp, pose=Pose(tuple(-0.1 * up), turn), static=True
+    )
     block = make.box("block", (0.3, 0.3, 0.1), mu=mu_box, pose=Pose(tuple(0.05 * up), turn))
     world = make.world(ramp, block, ground=None)
     world.run(0.2)
@@ -203,7 +205,9 @@ def test_a_dropped_ball_neither_bounces_nor_sinks(make):
 
 def test_a_stack_stays(make):
     boxes = [
-        make.box(f"box_{i}", (0.4, 0.4, 0.4), mass=3, mu=0.5, pose=Pose((0.01 * i, 0, 0.2 + 0.4 * i)))
+        make.box(
+            f"box_{i}", (0.4, 0.4, 0.4), mass=3, mu=0.5, pose=Pose((0.01 * i, 0, 0.2 + 0.4 * i))
+        )
         for i in range(4)
     ]
     world = make.world(*boxes)

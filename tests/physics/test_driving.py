@@ -57,9 +57,7 @@ def test_speed_and_way_follow_the_ramp(make, rosbots):
     time, way, speed = rows[:, 0], rows[:, 1] - x0, rows[:, 4]
     ramp_end = 0.5 / RAMP
     wanted_speed = np.minimum(RAMP * time, 0.5)
-    wanted_way = np.where(
-        time < ramp_end, RAMP * time**2 / 2, 0.5 * time - 0.5 * ramp_end / 2
-    )
+    wanted_way = np.where(time < ramp_end, RAMP * time**2 / 2, 0.5 * time - 0.5 * ramp_end / 2)
     # The ramp is climbed in stairs of one control period. The servo lags by that part of
     # _VELOCITY_ERROR which the torque for the ramp is of the torque limit.
     torque = effective_mass(rosbots) * RAMP * RADIUS / 2
@@ -135,9 +133,7 @@ def test_it_holds_on_a_ramp(make, rosbots):
     slope = math.radians(8)
     up = np.array([math.sin(slope), 0, math.cos(slope)])
     turn = Pose.from_xyz_rpy((0, 0, 0), (0, slope, 0)).orientation
-    ramp = make.box(
-        "ramp", (30, 4, 0.2), mu=1.0, static=True, pose=Pose(tuple(-0.1 * up), turn)
-    )
+    ramp = make.box("ramp", (30, 4, 0.2), mu=1.0, static=True, pose=Pose(tuple(-0.1 * up), turn))
     world = make.world(ramp, ground=None)
     world.session.spawn(rosbots, pose=Pose(tuple(0.01 * up), turn))
     world.run(1.0)

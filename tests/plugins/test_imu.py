@@ -160,9 +160,7 @@ def test_noise_has_the_spread_that_is_asked_for(make):
     assert np.abs(correlation).max() < 5 / math.sqrt(count)
     follows = [np.corrcoef(column[:-1], column[1:])[0, 1] for column in values.T]
     assert np.abs(follows).max() < 5 / math.sqrt(count)
-    assert messages[0].angular_velocity_covariance == pytest.approx(
-        np.diag([noise**2] * 3).ravel()
-    )
+    assert messages[0].angular_velocity_covariance == pytest.approx(np.diag([noise**2] * 3).ravel())
 
 
 def test_noise_is_that_of_the_seed(make):

@@ -1,0 +1,221 @@
+"""The bumper: what touches, where, how hard, and by which names."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from cartwheel.geometry import Pose
+from cartwheel.simulation.contacts import read_contacts
+
+COMMAND = "/part2_cmr/cmd_vel"
+G, RADIUS, TORQUE = 9.8, 0.26, 20.0
+FRONT = 0.6
+"""m, of the chassis box ahead of base_link: 0.10 + 1.00 / 2."""
+CHASSIS = "rosbots::base_link::base_link_collision"
+
+
+def vector(message):
+    return np.array([message.x, message.y, message.z])
+
+
+def read(world, seconds):
+    box = world.mailbox("/bumpers", size=10_000)
+    world.run(seconds)
+    box.close()
+    return box.drain()
+
+
+def naming(make, robot, *names):
+    """The robot with a bumper that asks for these collisions."""
+    return make.with_sensors(
+        robot,
+        lambda sensor: (
+            dataclasses.replace(sensor, collisions=names) if sensor.type == "contact" else sensor
+        ),
+    )
+
+
+def push(make, robot, *, static=True, seconds=3.0):
+    """The cart at full torque against a wall whose face is at x = 1."""
+    wall = make.box(
+        "wall", (0.5, 3, 1), mass=2000, mu=0.5, static=static, pose=Pose((1.25, 0, 0.5))
+    )
+    world = make.world(wall)
+    world.session.spawn(robot, pose=Pose((0, 0, 0.01)))
+    world.publish(COMMAND, linear_x=0.5)
+    world.run(seconds)
+    return world
+
+
+def test_nothing_touches_and_it_says_so_fifty_times_a_second(make, rosbots):
+    world = make.world()
+    world.session.spawn(rosbots, pose=Pose((0, 0, 0.05)))
+    messages = read(world, 2.0)
+    assert len(messages) == 100
+    assert all(len(message.states) == 0 for message in messages)
+    # As Gazebo: the frame's name is the tag's, the values are the world's.
+    assert messages[0].header.frame_id == "base_link"
+
+
+@pytest.mark.parametrize("static", [True, False])
+def test_pushing_a_wall(make, rosbots, static):
+    """Both motors stall: 2 T / r at the wheels' rims is what the wall bears."""
+    world = push(make, rosbots, static=static)
+    (state,) = read(world, 0.02)[-1].states
+    assert state.collision1_name == CHASSIS
+    assert state.collision2_name == "wall::link::collision"
+    total = vector(state.total_wrench.force)
+    assert total[0] == pytest.approx(-2 * TORQUE / RADIUS, rel=0.01)
+    assert total == pytest.approx(
+        np.sum([vector(wrench.force) for wrench in state.wrenches], axis=0)
+    )
+    count = len(state.contact_positions)
+    assert count == len(state.contact_normals) == len(state.depths) == len(state.wrenches) >= 1
+    for position, normal, depth in zip(
+        state.contact_positions, state.contact_normals, state.depths, strict=True
+    ):
+        # On the wall's face, to half of what the contact gives way; over the box's front.
+        assert position.x == pytest.approx(1.0, abs=1e-3)
+        assert abs(position.y) <= 0.45 + 1e-3
+        assert 0.14 - 1e-2 <= position.z <= 0.36 + 1e-2
+        assert vector(normal) == pytest.approx([-1, 0, 0], abs=0.01)
+        assert 0 <= depth < 1e-3
+    x = world.model("rosbots").pose.x
+    assert x == pytest.approx(1.0 - FRONT, abs=1e-3)
+
+
+def test_torques_are_about_the_links_centre_of_mass(make, rosbots):
+    world = push(make, rosbots)
+    (state,) = read(world, 0.02)[-1].states
+    simulation = world.session.simulation
+    centre = simulation.data.body("rosbots::base_link").xipos
+    for position, wrench in zip(state.contact_positions, state.wrenches, strict=True):
+        expected = np.cross(vector(position) - centre, vector(wrench.force))
+        assert vector(wrench.torque) == pytest.approx(expected, abs=1e-6)
+
+
+def contacts_of(world, model):
+    """All contacts of a model, each with the model's geom first."""
+    simulation = world.session.simulation
+    simulation.refresh()
+    names = [
+        simulation.model.geom(i).name
+        for i in range(simulation.model.ngeom)
+        if simulation.model.geom(i).name.startswith(f"{model}::")
+    ]
+    return read_contacts(simulation.model, simulation.data, names)
+
+
+def test_forces_balance(make, rosbots):
+    """In the steady push all contacts and the weight add up to nothing: m a = 0."""
+    world = push(make, rosbots)
+    contacts = contacts_of(world, "rosbots")
+    total = np.sum([contact.force for contact in contacts], axis=0)
+    weight = rosbots.mass * G
+    assert total == pytest.approx([0, 0, weight], abs=0.01 * weight)
+    # And it is no empty balance: the wall takes 154 N of it.
+    wall = sum(c.force[0] for c in contacts if c.second.startswith("wall"))
+    assert wall < -100
+
+
+def test_standing_weight_is_borne_by_wheels_and_caster(make, rosbots):
+    """By the lever: the caster bears m g x / x_caster, x that of the centre of mass."""
+    world = make.world()
+    world.session.spawn(rosbots, pose=Pose((0, 0, 0.01)))
+    world.run(2.0)
+    borne = {}
+    for contact in contacts_of(world, "rosbots"):
+        borne[contact.first] = borne.get(contact.first, 0.0) + contact.force[2]
+    weight = rosbots.mass * G
+    assert sum(borne.values()) == pytest.approx(weight, rel=1e-3)
+    moment = sum(
+        link.inertial.mass * (link.pose @ link.inertial.pose).x
+        for link in rosbots.links
+        if link.inertial
+    )
+    caster = borne["rosbots::caster_link::caster_link_collision"]
+    assert caster == pytest.approx(moment * G / 0.45, rel=5e-3)
+
+
+def test_action_is_reaction(make, rosbots):
+    world = push(make, rosbots, static=False)
+    ours = [c for c in contacts_of(world, "rosbots") if c.second.startswith("wall")]
+    theirs = [c for c in contacts_of(world, "wall") if c.second.startswith("rosbots")]
+    assert len(ours) == len(theirs) >= 1
+    for one, other in zip(ours, theirs, strict=True):
+        assert one.force == pytest.approx(-other.force)
+        assert one.normal == pytest.approx(-other.normal)
+        assert one.position == pytest.approx(other.position)
+        assert (one.first, one.second) == (other.second, other.first)
+
+
+def test_pushing_a_box_along_takes_its_friction(make, rosbots):
+    """A steady push of a box on ground: the bumper reads mu m g."""
+    box = make.box("box", (0.6, 0.6, 0.6), mass=20, mu=0.3, pose=Pose((1.2, 0, 0.3)))
+    world = make.world(box)
+    world.session.spawn(rosbots, pose=Pose((0, 0, 0.01)))
+    world.publish(COMMAND, linear_x=0.3)
+    world.run(4.0)
+    messages = read(world, 4.0)
+    forces = [
+        sum(vector(state.total_wrench.force)[0] for state in message.states) for message in messages
+    ]
+    # Averaged over four seconds, as the box skips a little.
+    assert np.mean(forces) == pytest.approx(-0.3 * 20 * G, rel=0.05)
+    assert {state.collision2_name for m in messages for state in m.states} == {
+        "box::link::collision"
+    }
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "base_link_collision",
+        "base_footprint_fixed_joint_lump__base_link_collision",
+        "base_footprint_collision_base_link",
+        "rosbots::base_footprint::base_footprint_fixed_joint_lump__base_link_collision",
+        "base_link::base_link_collision",
+        "  base_link_collision ",
+    ],
+)
+def test_every_spelling_of_a_collision_works(make, rosbots, name):
+    world = push(make, naming(make, rosbots, name))
+    assert not [d for d in world.diagnostics if "collision" in d.message]
+    assert read(world, 0.02)[-1].states[0].collision1_name == CHASSIS
+
+
+def test_a_wrong_collision_is_told_with_the_likely_one(make, rosbots):
+    world = make.world()
+    world.session.spawn(naming(make, rosbots, "base_link_colision"), pose=Pose((0, 0, 0.05)))
+    (told,) = [d for d in world.diagnostics if d.severity == "warning"]
+    assert 'there is no collision "base_link_colision"' in told.message
+    assert 'Did you mean "base_link_collision"?' in told.message
+    assert told.origin is not None
+
+
+def test_a_bumper_without_a_collision_is_told(make, rosbots):
+    world = make.world()
+    world.session.spawn(naming(make, rosbots), pose=Pose((0, 0, 0.05)))
+    assert any("names no <collision>" in d.message for d in world.diagnostics)
+
+
+def test_what_rests_on_a_standing_bumper_is_felt_for_as_long_as_it_rests(make):
+    """The weight of a box on a plate, also after both have long been at rest."""
+    plate = make.sdf(
+        """<model name="plate"><static>1</static><link name="link">
+        <collision name="c"><pose>0 0 0.05 0 0 0</pose>
+          <geometry><box><size>1 1 0.1</size></box></geometry></collision>
+        <sensor name="s" type="contact"><update_rate>50</update_rate>
+          <contact><collision>c</collision></contact>
+          <plugin name="b" filename="libgazebo_ros_bumper.so">
+            <bumperTopicName>bumpers</bumperTopicName></plugin></sensor>
+        </link></model>"""
+    )
+    box = make.box("box", (0.3, 0.3, 0.3), mass=5, pose=Pose((0, 0, 0.25)))
+    world = make.world(plate, box)
+    world.run(5.0)
+    for message in read(world, 1.0):
+        forces = [vector(state.total_wrench.force) for state in message.states]
+        assert forces
+        assert np.sum(forces, axis=0) == pytest.approx([0, 0, -5 * G], rel=0.01, abs=0.1)
