@@ -1,0 +1,77 @@
+"""Robots that others published load, with what is wrong with them said."""
+
+import os
+from pathlib import Path
+
+import pytest
+
+from cartwheel.description import load, load_robot
+from cartwheel.errors import DescriptionError
+
+ROOT = Path(__file__).parents[2]
+CORPUS = Path(os.environ.get("CARTWHEEL_CORPUS", ROOT.parent / "shared" / "corpus"))
+
+pytestmark = pytest.mark.skipif(
+    not CORPUS.is_dir(), reason=f"no corpus of others' robots in {CORPUS}"
+)
+
+TURTLEBOT = "turtlebot3/turtlebot3_description/urdf/turtlebot3_"
+ROBOTS = {
+    f"{TURTLEBOT}burger.urdf.xacro": 7,
+    f"{TURTLEBOT}burger_for_autorace.urdf.xacro": 10,
+    f"{TURTLEBOT}burger_for_autorace_2020.urdf.xacro": 10,
+    f"{TURTLEBOT}waffle.urdf.xacro": 13,
+    f"{TURTLEBOT}waffle_for_open_manipulator.urdf.xacro": 13,
+    f"{TURTLEBOT}waffle_pi.urdf.xacro": 11,
+    f"{TURTLEBOT}waffle_pi_for_open_manipulator.urdf.xacro": 11,
+    "andino/andino_description/urdf/andino.urdf.xacro": 12,
+    "mir_robot/mir_description/urdf/mir.urdf.xacro": 19,
+    "gazebo_ros_demos/rrbot_description/urdf/rrbot.xacro": 6,
+    "linorobot2/linorobot2_description/urdf/robots/2wd.urdf.xacro": 10,
+    "linorobot2/linorobot2_description/urdf/robots/4wd.urdf.xacro": 10,
+    "linorobot2/linorobot2_description/urdf/robots/mecanum.urdf.xacro": 10,
+    "urdf_sim_tutorial/urdf/10-firsttransmission.urdf.xacro": 16,
+    "urdf_sim_tutorial/urdf/11-limittransmission.urdf.xacro": 16,
+    "urdf_sim_tutorial/urdf/12-gripper.urdf.xacro": 16,
+    "gazebo_plugins_tests/gazebo_plugins/test/multi_robot_scenario/xacro/p3dx/pioneer3dx.xacro": 14,
+    "gazebo_plugins_tests/gazebo_plugins/test/tricycle_drive/xacro/tricycle/tricycle.xacro": 6,
+}
+
+
+@pytest.mark.parametrize(("name", "links"), ROBOTS.items(), ids=lambda value: str(value)[-40:])
+def test_robots_load(name, links):
+    robot = load_robot(CORPUS / name, meshes="warn")
+    world = any(joint.parent == "world" for joint in robot.joints)
+    assert len(robot.links) == links
+    assert len(robot.joints) == links - (not world)
+    assert robot.mass > 0
+    assert not [each for each in robot.diagnostics if each.severity == "error"]
+
+
+def test_missing_meshes_of_the_waffle_are_named():
+    path = CORPUS / f"{TURTLEBOT}waffle.urdf.xacro"
+    with pytest.raises(DescriptionError) as caught:
+        load(path)
+    text = str(caught.value)
+    assert "meshes/bases/waffle_base.stl" in text
+    assert "turtlebot3_waffle.urdf.xacro:23: " in text
+    assert 'Did you mean "waffle_pi_base.stl"?' in text
+    told = [each.message for each in load(path, meshes="warn").diagnostics]
+    assert any("waffle_base.stl" in message for message in told)
+
+
+def test_mir_s_friction_is_read_from_its_attributes():
+    robot = load_robot(CORPUS / "mir_robot/mir_description/urdf/mir.urdf.xacro", meshes="warn")
+    assert robot.link("left_wheel_link").collisions[0].surface.mu1 == 200
+
+
+def test_a_package_that_is_not_there_is_named_with_the_include():
+    with pytest.raises(DescriptionError) as caught:
+        load(CORPUS / "husky/husky_description/urdf/husky.urdf.xacro")
+    assert 'the package "fath_pivot_mount_description" was not found' in str(caught.value)
+    assert "flir_blackfly_mount.urdf.xacro:3: " in str(caught.value)
+
+
+def test_files_of_macros_alone_say_so():
+    with pytest.raises(DescriptionError, match="neither a name nor links"):
+        load(CORPUS / "linorobot2/linorobot2_description/urdf/mech/base.urdf.xacro")
