@@ -52,7 +52,7 @@ def build(world: WorldDescription, entries: Iterable[ModelEntry], *, xml: bool =
         bodies.add(entry)
     if any(_feels_touch(entry) for entry in entries if entry.description.static):
         # A body asleep on something that stands has no contact with it to be reported.
-        spec.option.enableflags &= ~mujoco.mjtEnableBit.mjENBL_SLEEP
+        spec.option.enableflags &= ~mujoco.mjtEnableBit.mjENBL_SLEEP.value
     ranks = contact.priorities(surface.friction[0] for surface in bodies.surfaces)
     for surface in bodies.surfaces:
         surface.geom.priority = ranks[surface.friction[0]]
