@@ -17,6 +17,7 @@ from cartwheel.simulation.clock import Schedule, Task, always, to_ns
 from cartwheel.simulation.guard import Guard
 from cartwheel.simulation.part import Part
 from cartwheel.simulation.rendering import Renderer
+from cartwheel.simulation.separation import Separation
 from cartwheel.simulation.snapshot import PlacedModel, RunState, Scene, Snapshot
 from cartwheel.world import build
 from cartwheel.world.build import step_of
@@ -90,6 +91,7 @@ class Simulation:
         self._orders = itertools.count()
         self._step = 0
         self._guard = Guard()
+        self._separation = Separation()
         self._guard_due = 0
         self._version = 0
         self._compile({})
@@ -127,6 +129,8 @@ class Simulation:
                 return
             due, read = self._serve()
             count = min(target, due) - self._step
+            if self._separation.active:
+                count = 1
             if self.steps_allowed is not None:
                 count = min(count, self.steps_allowed)
                 self.steps_allowed -= count
@@ -137,6 +141,8 @@ class Simulation:
                 count -= 1
             if count:
                 mujoco.mj_step(self.model, self.data, count)
+            if self._separation.active:
+                self._separation.limit(self.model, self.data)
             if self._step >= self._guard_due:
                 self._watch()
 
@@ -207,6 +213,7 @@ class Simulation:
         self._step = 0
         self._guard_due = 0
         self._guard.forget()
+        self._separation.forget()
         for resident in self._residents.values():
             for behaviour in resident.behaviours:
                 behaviour.reset()
@@ -278,6 +285,7 @@ class Simulation:
         resident.part.spawned = True
         for diagnostic in (*description.diagnostics, *resident.part.diagnostics):
             self.report(diagnostic)
+        self._separate(name)
         return name
 
     def delete(self, name: str) -> None:
@@ -311,6 +319,7 @@ class Simulation:
         if joint < 0:
             entry.pose = pose
             self._compile(self._residents)
+            self._separate(name)
             return
         position, velocity = self.model.jnt_qposadr[joint], self.model.jnt_dofadr[joint]
         pose = pose @ _canonical_pose(entry.description)
@@ -318,6 +327,7 @@ class Simulation:
         self.data.qpos[position + 3 : position + 7] = to_wxyz(pose.orientation)
         self.data.qvel[velocity : velocity + 6] = 0
         self.refresh()
+        self._separate(name)
 
     def joint_position(self, name: str, joint: str) -> float:
         """Position of a joint of one degree of freedom, rad or m.
@@ -367,6 +377,24 @@ class Simulation:
         """A number that rises with each task."""
         return next(self._orders)
 
+    def _separate(self, name: str) -> None:
+        """Sees to it that a model that was put into another one comes out gently."""
+        description = self._resident(name).entry.description
+        roots = {
+            int(self.model.body_rootid[self._body_id(name, link.name)])
+            for link in description.links
+        }
+        overlaps = self._separation.begin(self.model, self.data, roots)
+        if overlaps:
+            others = ", ".join(f"{other} by {depth * 100:.0f} cm" for other, depth in overlaps)
+            self.report(
+                Diagnostic(
+                    severity="warning",
+                    message=f'model "{name}" was put into {others}: they are pushed apart',
+                    origin=description.origin,
+                )
+            )
+
     def _resident(self, name: str) -> _Resident:
         if name not in self._residents:
             raise UnknownNameError("model", name, self._residents)
@@ -391,6 +419,7 @@ class Simulation:
         self._residents = residents
         self._version += 1
         self._guard.forget()
+        self._separation.forget()
         self.renderer.bind(model)
         for resident in residents.values():
             for handle in resident.part.handles:

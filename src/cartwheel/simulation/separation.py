@@ -1,0 +1,84 @@
+"""Models put into each other come apart at a walking pace."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import mujoco
+import numpy as np
+
+DEEP = 0.005
+"""m; no contact between models that met in motion gets that deep."""
+_SPEED = 0.5
+"""m/s of each model's root, at most, while it overlaps another."""
+_TURN = 2.0
+"""rad/s."""
+
+
+class Separation:
+    """Holds the speed of models that were put where another one stands.
+
+    A contact is undone within hundredths of a second, which from a depth of decimetres
+    would throw both across the room.
+    """
+
+    def __init__(self) -> None:
+        self._roots: set[int] = set()
+
+    @property
+    def active(self) -> bool:
+        return bool(self._roots)
+
+    def forget(self) -> None:
+        """Ends it: time went back, or the model was compiled anew."""
+        self._roots.clear()
+
+    def begin(self, model: Any, data: Any, placed: set[int]) -> list[tuple[str, float]]:
+        """Looks for overlaps of a model that was just put somewhere.
+
+        Args:
+            model: Compiled.
+            data: After a forward pass.
+            placed: The ids of its root bodies.
+
+        Returns:
+            The bodies that it overlaps, each once, with the depth in m.
+        """
+        found: dict[str, float] = {}
+        for one, two, depth in _deep(model, data):
+            if (one in placed) == (two in placed):
+                continue
+            other = two if one in placed else one
+            name = mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_BODY, other) or "world"
+            found[name] = max(found.get(name, 0.0), depth)
+            self._roots |= {one, two}
+        return sorted(found.items())
+
+    def limit(self, model: Any, data: Any) -> None:
+        """Takes off the speed that the last step gave; ends when nothing overlaps any more."""
+        roots = {root for one, two, _ in _deep(model, data) for root in (one, two)}
+        self._roots &= roots
+        for root in sorted(self._roots):
+            joint = int(model.body_jntadr[root])
+            if joint < 0 or model.jnt_type[joint] != mujoco.mjtJoint.mjJNT_FREE:
+                continue
+            start = int(model.jnt_dofadr[joint])
+            for part, most in (
+                (slice(start, start + 3), _SPEED),
+                (slice(start + 3, start + 6), _TURN),
+            ):
+                speed = float(np.linalg.norm(data.qvel[part]))
+                if speed > most:
+                    data.qvel[part] *= most / speed
+
+
+def _deep(model: Any, data: Any) -> list[tuple[int, int, float]]:
+    """Pairs of root bodies that overlap deeply, and how deeply in m."""
+    if data.ncon == 0:
+        return []
+    distances = data.contact.dist
+    found = []
+    for index in np.flatnonzero(distances < -DEEP):
+        one, two = (int(model.body_rootid[model.geom_bodyid[g]]) for g in data.contact.geom[index])
+        found.append((one, two, -float(distances[index])))
+    return found

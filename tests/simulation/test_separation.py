@@ -1,0 +1,53 @@
+"""A model put where another one stands is not thrown across the room."""
+
+import numpy as np
+import pytest
+
+import cartwheel as cw
+
+
+@pytest.fixture
+def world():
+    with cw.World("empty") as made:
+        yield made
+
+
+def fastest(world: cw.World) -> float:
+    return float(np.abs(world.session.simulation.data.qvel).max())
+
+
+def test_overlapping_models_come_apart_at_walking_pace_and_it_is_said(world):
+    first = world.spawn("object.urdf", name="first", x=2.0)
+    world.run(0.5)
+    second = world.spawn("object.urdf", name="second", x=2.05)
+    said = [d.message for d in world.diagnostics if "pushed apart" in d.message]
+    assert len(said) == 1
+    assert '"second" was put into first::' in said[0]
+    speeds = []
+    for _ in range(600):
+        world.run(0.005)
+        speeds.append(fastest(world))
+    # A post of 1 m that tips over ends faster than what pushed it: g and its height bound that.
+    assert max(speeds) < 8.0
+    assert np.hypot(first.pose.x - 2.0, first.pose.y) < 1.5
+    assert np.hypot(second.pose.x - 2.05, second.pose.y) < 1.5
+    world.run(5.0)
+    assert fastest(world) < 0.05
+
+
+def test_a_model_moved_into_another_one_comes_out_gently(world):
+    first = world.spawn("box_medium.urdf", name="first", x=2.0)
+    second = world.spawn("box_medium.urdf", name="second", x=4.0)
+    world.run(0.5)
+    second.pose = cw.Pose((2.1, 0.0, second.pose.z))
+    world.run(0.05)
+    assert fastest(world) <= 2.0
+    world.run(3.0)
+    assert abs(first.pose.x - 2.0) < 1.0
+    assert fastest(world) < 0.05
+
+
+def test_models_that_only_touch_are_left_alone(world):
+    world.spawn("box_medium.urdf", name="first", x=2.0)
+    world.run(1.0)
+    assert not [d for d in world.diagnostics if "pushed apart" in d.message]
