@@ -82,20 +82,36 @@ def finally_do(rite: Callable[[], None]) -> Iterator[None]:
             rite()
 
 
+def came() -> bool:
+    """Whether a signal has come and was not the end that a command waits for."""
+    return _state.count > 0
+
+
 def last_signal() -> int:
     """The number of the last signal that came."""
     return _state.number
 
 
-def leave(status: int) -> None:
-    """Ends the process now: no thread and no library has a say, or a word, any more."""
+def leave(status: int, *, patience: float | None = None) -> None:
+    """Ends the process now: no thread and no library has a say, or a word, any more.
+
+    Args:
+        status: Of the process.
+        patience: s that whoever reads our output has for the rest of it; None waits for it.
+    """
     for rite in reversed(_state.last_rites):
         with contextlib.suppress(Exception):
             rite()
+    flushing = threading.Thread(target=_flush, daemon=True)
+    flushing.start()
+    flushing.join(patience)
+    os._exit(status)
+
+
+def _flush() -> None:
     for stream in (sys.stdout, sys.stderr):
         with contextlib.suppress(Exception):
             stream.flush()
-    os._exit(status)
 
 
 def _on_signal(number: int, _: FrameType | None) -> None:
@@ -114,4 +130,4 @@ def _watch(reader: socket.socket, _writer: socket.socket) -> None:
     reader.settimeout(PATIENCE)
     with contextlib.suppress(TimeoutError):
         reader.recv(1)
-    leave(_state.status)
+    leave(_state.status, patience=0.05)

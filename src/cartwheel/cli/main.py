@@ -19,6 +19,9 @@ def main() -> None:
     """The entry point of ``cartwheel``."""
     interrupts.install()
     status = run()
+    if status not in (0, 130) and interrupts.came():
+        # It was raised within something that made another error of it.
+        status = 128 + interrupts.last_signal()
     interrupts.leave(status)
 
 
@@ -32,7 +35,8 @@ def run() -> int:
     except interrupts.Interrupted as interrupted:
         return 128 + interrupted.number
     except CartwheelError as error:
-        print_error(str(error))
+        if not interrupts.came():
+            print_error(str(error))
         return 2
     except BrokenPipeError:
         # Whoever read our output has seen enough, as `head` does.
@@ -44,18 +48,19 @@ def run() -> int:
         print_error("the file is nested too deeply")
         return 2
     except Exception as error:  # noqa: BLE001 - the last resort
-        return _report(error)
+        if not interrupts.came():
+            _report(error)
+        return 1
     return 0
 
 
-def _report(error: Exception) -> int:
+def _report(error: Exception) -> None:
     if "--verbose" in sys.argv:
         traceback.print_exc()
     print_error(
         f"Cartwheel has a fault: {type(error).__name__}: {error}\n"
         "  Please report it, with the output of the same command and --verbose."
     )
-    return 1
 
 
 def _drop_output() -> None:

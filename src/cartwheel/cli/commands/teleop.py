@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import sys
 from collections.abc import Iterator
@@ -90,12 +91,13 @@ def drive(sim: int | None, topic: str | None, *, speed: float, turn: float) -> N
         driver = Driver(speed, turn)
         if not client.publish(topic, TWIST, driver.twist):
             raise CartwheelError(f"nobody reads {topic}", hint="See: cartwheel topic list -v")
-        note(f"driving {paint(topic, 'bold', stream=sys.stderr)}\n\n{HELP}\n")
         try:
-            for key in keys():
-                driver.press(key)
-                client.publish(topic, TWIST, driver.twist)
-                _show(driver)
+            with single_keys():
+                note(f"driving {paint(topic, 'bold', stream=sys.stderr)}\n\n{HELP}\n")
+                for key in keys():
+                    driver.press(key)
+                    client.publish(topic, TWIST, driver.twist)
+                    _show(driver)
         except interrupts.Interrupted:
             pass  # The way to end it.
         finally:
@@ -128,29 +130,29 @@ def find_topic(client: ControlClient) -> str:
     return str(driven[0])
 
 
-def keys() -> Iterator[str]:
-    """Keys as they are pressed, or the letters of a pipe; ends with it."""
+@contextlib.contextmanager
+def single_keys() -> Iterator[None]:
+    """Makes a terminal hand over each key as it is pressed, and puts it back as it was."""
     descriptor = sys.stdin.fileno()
     if not os.isatty(descriptor):
-        while data := os.read(descriptor, 1):
-            if not data.isspace():
-                yield data.decode("latin-1")
+        yield
         return
     import termios
     import tty
 
     before = termios.tcgetattr(descriptor)
-
-    def restore() -> None:
-        termios.tcsetattr(descriptor, termios.TCSANOW, before)
-
-    with interrupts.finally_do(restore):
+    with interrupts.finally_do(lambda: termios.tcsetattr(descriptor, termios.TCSANOW, before)):
         # Ctrl-C stays a signal, which also another process can send.
-        tty.setcbreak(descriptor)
-        while data := os.read(descriptor, 64):
-            text = data.decode("utf-8", "replace")
-            # An arrow or a function key is an escape and letters that mean nothing here.
-            yield from ("k",) if text.startswith("\x1b") else text
+        tty.setcbreak(descriptor, termios.TCSANOW)
+        yield
+
+
+def keys() -> Iterator[str]:
+    """Keys as they are pressed, or the letters of a pipe; ends with it."""
+    while data := os.read(sys.stdin.fileno(), 64):
+        text = data.decode("utf-8", "replace")
+        # An arrow or a function key is an escape and letters that mean nothing here.
+        yield from ("k",) if text.startswith("\x1b") else "".join(text.split("\n"))
 
 
 def _show(driver: Driver) -> None:

@@ -61,7 +61,7 @@ def echo(
     from cartwheel.messages import decode_cdr, to_yaml
 
     shown = dropped = 0
-    with connect(sim) as client, client.subscribe(topic) as subscription, ends_quietly(count):
+    with ends_quietly(count), connect(sim) as client, client.subscribe(topic) as subscription:
         for sample in subscription:
             message: Any = decode_cdr(sample.data, sample.type)
             if field is not None:
@@ -72,7 +72,7 @@ def echo(
             dropped = _tell_dropped(sample, dropped)
             if shown == count:
                 return
-    _ended(shown, count)
+        _ended(shown, count)
 
 
 def _tell_dropped(sample: Sample, before: int) -> int:

@@ -1,0 +1,110 @@
+"""What is wrong with a file is said with its place; a running simulation goes on."""
+
+import pytest
+
+from .test_run import BOX
+
+XACRO = '<robot name="box" xmlns:xacro="http://www.ros.org/wiki/xacro">'
+JOINT = """
+  <joint name="j" type="fixed">
+    <parent link="base"/>
+    <child link="bass"/>
+  </joint>
+</robot>"""
+MESH = '<mesh filename="package://{}/meshes/none.stl"/>'
+
+BAD = {
+    "malformed": ("bad.urdf", "<robot name='x'>\n<link name='a'>\n</robot>", "bad.urdf:3: "),
+    "macro": ("bad.xacro", f"{XACRO}\n<xacro:wheel name='a'/>\n</robot>", "bad.xacro:2: "),
+    "package": (
+        "bad.urdf",
+        BOX.replace('<box size="1 1 1"/>', MESH.format("no_such_package")),
+        'bad.urdf:6: the package "no_such_package" was not found',
+    ),
+    "mesh": (
+        "bad.urdf",
+        BOX.replace('<box size="1 1 1"/>', MESH.format("rosbots_description")),
+        "bad.urdf:6: ",
+    ),
+    "link": ("bad.urdf", BOX.replace("</robot>", JOINT), "bad.urdf:11: "),
+    "kind": ("bad.launch", "<launch>\n</launch>", "bad.launch:1: "),
+    "text": ("bad.txt", "robots are nice", "bad.txt:1: "),
+    "empty": ("bad.urdf", "", "bad.urdf"),
+}
+
+
+@pytest.mark.parametrize("name", BAD)
+def test_run(program, name):
+    file, text, place = BAD[name]
+    (program.folder / file).write_text(text)
+    done = program("run", file, "--headless", "--for", "1", status=2)
+    assert done.stderr.startswith("error: "), done.stderr
+    assert place in done.stderr
+    if name not in ("malformed", "empty"):
+        assert "\n  " in done.stderr.rstrip(), "no hint"
+    assert done.stdout == ""
+
+
+@pytest.mark.parametrize("name", BAD)
+def test_spawn(cart, name):
+    file, text, place = BAD[name]
+    (cart.folder / file).write_text(text)
+    done = cart("spawn", file, status=2)
+    assert done.stderr.startswith("error: "), done.stderr
+    assert place in done.stderr
+    assert "bad" not in cart("models").stdout
+
+
+def test_a_missing_file(cart):
+    (cart.folder / "robot.urdf").write_text(BOX)
+    for command in (("run", "--headless"), ("spawn",), ("convert", "--to", "urdf"), ("view",)):
+        done = cart(*command, "robt.urdf", status=2)
+        assert done.stderr.startswith("error: robt.urdf: ")
+        assert 'Did you mean "robot.urdf"?' in done.stderr
+
+
+def test_a_name_used_twice(cart):
+    (cart.folder / "box.urdf").write_text(BOX)
+    cart("spawn", "box.urdf", "-x", "9")
+    done = cart("spawn", "box.urdf", "-x", "9", status=2)
+    assert 'a model named "box" stands in the world already' in done.stderr
+    assert "box_1" in done.stderr
+    cart("delete", "box")
+
+
+def test_the_simulation_went_on(cart):
+    """After all of the above, on the same simulation."""
+    before = cart("topic", "echo", "/clock", "-n", "1").stdout
+    assert cart("topic", "echo", "/clock", "-n", "1").stdout != before
+    status = cart("status").stdout
+    assert "running" in status
+    assert "rosbots" in status
+
+
+def test_no_simulation(program):
+    for command in (
+        ["status"],
+        ["topic", "list"],
+        ["topic", "echo", "/odom"],
+        ["service", "list"],
+        ["spawn", "x.urdf"],
+        ["delete", "x"],
+        ["models"],
+        ["pause"],
+        ["teleop"],
+    ):
+        done = program(*command, status=2)
+        expected = "error: no simulation is running; start one with: cartwheel run\n"
+        assert done.stderr == expected
+
+
+def test_a_fault_of_ours_asks_for_a_report(program):
+    (program.folder / "sitecustomize.py").write_text(
+        "import cartwheel.cli.console as c\n"
+        "def say(text=''): raise ZeroDivisionError('so it goes')\n"
+        "c.say = say\n"
+    )
+    program.environment["PYTHONPATH"] = str(program.folder)
+    done = program("version", status=1)
+    assert "Cartwheel has a fault: ZeroDivisionError: so it goes" in done.stderr
+    assert "--verbose" in done.stderr

@@ -1,0 +1,236 @@
+"""The commands for a running simulation, on the shipped cart."""
+
+import math
+import os
+import pty
+import re
+import select
+import signal
+import subprocess
+import termios
+import time
+
+import pytest
+import yaml
+
+from .conftest import CART_TOPIC, PROGRAM
+
+
+def position(cart):
+    text = cart("topic", "echo", "/odom", "-n", "1", "--field", "pose.pose.position").stdout
+    return yaml.safe_load(text.removesuffix("---\n"))
+
+
+def models(cart):
+    return {line.split()[0] for line in cart("models").stdout.splitlines()[1:]}
+
+
+def test_topic_list_and_info(cart):
+    names = cart("topic", "list").stdout.splitlines()
+    assert {"/clock", "/odom", "/imu/data", CART_TOPIC} <= set(names)
+    long = cart("topic", "list", "-v").stdout
+    assert re.search(r"/odom +nav_msgs/msg/Odometry +100 Hz", long)
+    info = cart("topic", "info", CART_TOPIC).stdout
+    assert info.startswith("Type: geometry_msgs/msg/Twist\n")
+    assert "Publishers: None" in info
+    done = cart("topic", "info", "/odm", status=2)
+    assert 'topic "/odm" does not exist\n  Did you mean "/odom"?' in done.stderr
+
+
+def test_echo(cart):
+    text = cart("topic", "echo", "odom", "-n", "2").stdout
+    assert text.count("---\n") == 2
+    assert text.startswith("header: \n  stamp: \n    sec: ")
+    first = yaml.safe_load(text.split("---\n")[0])
+    assert first["child_frame_id"] == "base_link"
+    assert "<array of float64, 36 long>" in cart("topic", "echo", "/odom", "-n1", "--no-arr").stdout
+    name = cart("topic", "echo", "/tf", "-n1", "--field", "transforms[0].child_frame_id").stdout
+    assert name == '"base_link"\n---\n'
+    done = cart("topic", "echo", "/odom", "-n1", "--field", "pose.psoe", status=2)
+    assert 'Did you mean "pose"' in done.stderr
+    done = cart("topic", "echo", "/tf", "-n1", "--field", "transforms[9]", status=2)
+    assert 'has 3 items, so no "transforms[9]"' in done.stderr
+
+
+def test_echo_ends_with_ctrl_c_and_with_its_reader(cart, ends):
+    process = cart.start("topic", "echo", "/clock")
+    assert process.stdout.readline() == "clock: \n"
+    assert ends(process, signal.SIGINT) < 0.9
+    assert process.returncode == 0
+    assert process.stderr.read() == ""
+    done = subprocess.run(
+        f"{PROGRAM} topic echo /clock | head -2",
+        shell=True,
+        capture_output=True,
+        text=True,
+        env=cart.environment,
+        timeout=20,
+        check=False,
+    )
+    assert done.stdout.startswith("clock: \n")
+    assert done.stderr == ""
+
+
+def test_hz_is_that_of_the_publisher(cart):
+    lines = cart("topic", "hz", "/odom", "-n", "2").stdout.splitlines()
+    assert float(lines[-2].split()[2]) == pytest.approx(100, abs=0.5)
+    assert "window: " in lines[-1]
+
+
+def test_images_arrive(cart):
+    text = cart("topic", "echo", "/rosbots/camera1/image_raw", "-n", "1").stdout
+    assert "width: 320\n" in text
+    assert re.search(r"data: \[\d+, .*, \.\.\.\]\n", text)
+
+
+@pytest.mark.parametrize(
+    "message",
+    [
+        ["geometry_msgs/Twist", "{linear: {x: 0.3}}"],
+        ["geometry_msgs/msg/Twist", "[0.3, 0, 0]", "[0, 0, 0]"],
+    ],
+)
+def test_pub_drives(cart, message):
+    before = position(cart)["x"]
+    done = cart("topic", "pub", CART_TOPIC, *message)
+    assert "1 subscriber" in done.stderr
+    deadline = time.monotonic() + 10
+    while position(cart)["x"] < before + 0.05:
+        assert time.monotonic() < deadline
+    cart("topic", "pub", "-1", CART_TOPIC, "geometry_msgs/Twist")
+    cart("reset")
+
+
+def test_pub_at_a_rate(cart):
+    start = time.monotonic()
+    command = ("topic", "pub", CART_TOPIC, "geometry_msgs/Twist", "{}", "-r", "50", "-n", "30")
+    done = cart(*command)
+    assert 29 / 50 < time.monotonic() - start < 5
+    assert "at 50 Hz" in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("arguments", "text"),
+    [
+        ((CART_TOPIC, "geometry_msgs/Twits", "{}"), 'Did you mean "geometry_msgs/msg/Twist"'),
+        ((CART_TOPIC, "geometry_msgs/Twist", "{linar: {}}"), 'no field "linar"\n  Did you mean'),
+        ((CART_TOPIC, "geometry_msgs/Twist", "{linear: {x: a}}"), 'linear.x: "a" is no number'),
+        ((CART_TOPIC, "geometry_msgs/Twist", "{linear: [}"), "the message is no YAML"),
+        ((CART_TOPIC, "std_msgs/Empty", "{}"), "has type geometry_msgs/msg/Twist"),
+        (("/1x", "std_msgs/Empty", "{}"), '"/1x" is no valid name'),
+        ((CART_TOPIC, "geometry_msgs/Twist", "{}", "-r", "0"), "a rate of 0"),
+    ],
+)
+def test_wrong_messages(cart, arguments, text):
+    assert text in cart("topic", "pub", *arguments, status=2).stderr
+
+
+def test_pub_to_nobody_is_said(cart):
+    done = cart("topic", "pub", "/cmd_vel", "geometry_msgs/Twist", "{}")
+    assert f'nobody reads /cmd_vel. Did you mean "{CART_TOPIC}"?' in done.stderr
+
+
+def test_services(cart):
+    assert cart("service", "list").stdout == "/imu/service\n"
+    assert "std_srvs/srv/Empty" in cart("service", "list", "-v").stdout
+    assert cart("service", "call", "/imu/service").stdout == ""
+    assert "Did you mean" in cart("service", "call", "/imu/servce", status=2).stderr
+    done = cart("service", "call", "/imu/service", "{x: 1}", status=2)
+    assert 'has no field "x"' in done.stderr
+
+
+def test_spawn_and_delete(cart):
+    done = cart("spawn", "box_small", "-x", "5", "-y", "-2", "-z", "1", "--model", "my_box")
+    assert done.stdout == "my_box\n"
+    row = next(line for line in cart("models").stdout.splitlines() if line.startswith("my_box"))
+    assert row.split()[1:3] == ["5.000", "-2.000"]
+    cart("spawn", "barrel", "-x", "7")
+    assert {"my_box", "barrel", "rosbots"} <= models(cart)
+    cart("delete", "my_box")
+    cart("delete", "barrel")
+    assert not {"my_box", "barrel"} & models(cart)
+    assert "does not exist" in cart("delete", "my_box", status=2).stderr
+    assert "which file?" in cart("spawn", status=2).stderr
+
+
+def test_time(cart):
+    held = cart("pause").stdout
+    assert held.startswith("paused at ")
+    assert cart("pause").stdout == held
+    seconds = float(held.split()[2])
+    assert cart("step").stdout == f"paused at {seconds + 0.005:.3f} s\n"
+    assert cart("step", "20").stdout == f"paused at {seconds + 0.105:.3f} s\n"
+    assert "state       paused" in cart("status").stdout
+    assert cart("resume").stdout.startswith("running at ")
+    cart("speed", "2.5")
+    assert "speed       2.5" in cart("status").stdout
+    cart("speed", "1")
+    assert cart("reset").stdout == "running at 0.000 s\n"
+    for wrong in (["speed", "0"], ["speed", "fast"], ["step", "0"]):
+        cart(*wrong, status=2)
+
+
+def test_teleop_over_a_pipe(cart):
+    done = cart("teleop", stdin="qqi l k")
+    assert "travel 0.61 m/s" in done.stderr
+    assert CART_TOPIC in done.stderr
+    process = cart.start("teleop", "--speed", "0.4", stdin=subprocess.PIPE)
+    process.stdin.write("i")
+    process.stdin.flush()
+    deadline = time.monotonic() + 10
+    while position(cart)["x"] < 0.05:
+        assert time.monotonic() < deadline
+    process.stdin.close()
+    assert process.wait(10) == 0
+    # It stops what it has set in motion.
+    deadline = time.monotonic() + 10
+    while speed(cart) > 0.01:
+        assert time.monotonic() < deadline
+    cart("reset")
+
+
+def speed(cart):
+    text = cart("topic", "echo", "/odom", "-n", "1", "--field", "twist.twist.linear.x").stdout
+    return abs(float(text.split()[0]))
+
+
+@pytest.mark.parametrize("end", [b"\x03", None])
+def test_teleop_at_a_terminal_leaves_it_as_it_was(cart, end):
+    leader, follower = pty.openpty()
+    before = termios.tcgetattr(follower)
+    process = cart.start(
+        "teleop", stdin=follower, stdout=follower, stderr=follower, preexec_fn=take_terminal
+    )
+    read_until(leader, b"Ctrl-C ends")
+    os.write(leader, b"i")
+    read_until(leader, b"travel 0.50")
+    assert termios.tcgetattr(follower)[3] != before[3]
+    if end is None:
+        process.send_signal(signal.SIGTERM)
+    else:
+        os.write(leader, end)
+    assert process.wait(10) == 0
+    assert termios.tcgetattr(follower) == before
+    os.close(leader)
+    os.close(follower)
+
+
+def take_terminal():
+    os.setsid()
+    import fcntl
+
+    fcntl.ioctl(0, termios.TIOCSCTTY, 0)
+
+
+def read_until(descriptor, text):
+    data = b""
+    deadline = time.monotonic() + 20
+    while text not in data:
+        assert time.monotonic() < deadline, data
+        if select.select([descriptor], [], [], 1)[0]:
+            data += os.read(descriptor, 10_000)
+
+
+def test_nothing_was_lost_by_all_this(cart):
+    assert math.isfinite(position(cart)["x"])
+    assert "rosbots" in models(cart)

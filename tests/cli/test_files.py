@@ -1,0 +1,65 @@
+"""Commands that need no simulation."""
+
+import signal
+import urllib.request
+
+import mujoco
+import pytest
+
+from cartwheel.description import load_robot
+
+
+def test_version(program):
+    assert program("version").stdout == program("--version").stdout == "cartwheel 0.1.0\n"
+
+
+def test_help_names_every_command(program):
+    text = program("--help").stdout
+    for name in ("run", "topic", "spawn", "teleop", "convert", "status"):
+        assert f"\n  {name} " in text
+    assert "Did you mean 'run'" in program("rnu", status=2).stderr
+
+
+def test_urdf_is_the_same_robot(program):
+    program("convert", "rosbots.xacro", "--to", "urdf", "-o", "out.urdf")
+    text = (program.folder / "out.urdf").read_text()
+    assert "xacro:" not in text
+    again = load_robot(program.folder / "out.urdf")
+    assert again.mass == pytest.approx(load_robot("rosbots.xacro").mass)
+    assert program("convert", "--to", "urdf", "rosbots.xacro").stdout == text
+
+
+@pytest.mark.parametrize(("name", "bodies"), [("rosbots.xacro", 9), ("post.world", 3)])
+def test_mjcf_loads_in_mujoco(program, name, bodies):
+    text = program("convert", name, "--to", "mjcf").stdout
+    model = mujoco.MjModel.from_xml_string(text)
+    assert model.nbody == bodies
+    data = mujoco.MjData(model)
+    mujoco.mj_step(model, data, 100)
+    assert data.time > 0
+
+
+def test_mjcf_of_a_mesh_keeps_it(program):
+    """The ramp and the cone are of meshes, which MuJoCo must find in the text itself."""
+    text = program("convert", "traffic_cone", "--to", "mjcf").stdout
+    model = mujoco.MjModel.from_xml_string(text)
+    assert model.nmesh >= 1
+    assert model.mesh_vertnum.sum() > 10
+
+
+def test_what_cannot_be_converted(program):
+    assert "--to" in program("convert", "rosbots.xacro", status=2).stderr
+    assert "--to" in program("convert", "rosbots.xacro", "--to", "usd", status=2).stderr
+    assert "is no URDF" in program("convert", "post.world", "--to", "urdf", status=2).stderr
+    done = program("convert", "rosbots.xacro", "--to", "urdf", "-o", "/no/where", status=2)
+    assert "/no/where cannot be written: No such file" in done.stderr
+
+
+def test_view(program, ends):
+    process = program.start("view", "rosbots.xacro", "--port", "0")
+    url = process.stdout.readline().split()[1]
+    with urllib.request.urlopen(url) as page:
+        assert page.status == 200
+    assert ends(process, signal.SIGINT) < 0.9
+    assert process.returncode == 0
+    assert process.stderr.read() == ""

@@ -1,0 +1,229 @@
+"""Running a simulation from its start to its end."""
+
+import os
+import pty
+import signal
+import socket
+import time
+
+import pytest
+
+# Of these, 0.35 s are what the first signal is given before the process is ended.
+AT_ONCE = 0.9
+
+
+def test_a_bounded_run_says_how_it_went(program):
+    done = program("run", "--headless", "--for", "1.5", "--speed", "max")
+    assert "robot   rosbots, 50.4 kg" in done.stdout
+    assert "/odom" in done.stdout
+    assert "simulated 1.500 s in " in done.stdout
+    assert "\033" not in done.stdout + done.stderr
+
+
+def test_real_time_is_kept(program):
+    done = program("run", "--headless", "--for", "1")
+    wall = float(done.stdout.split(" s in ")[1].split(" s")[0])
+    assert 0.9 < wall < 1.6
+
+
+def test_any_file_from_any_folder(program):
+    (program.folder / "box.urdf").write_text(BOX)
+    done = program("run", "box.urdf", "--headless", "--for", "0.1", "--speed", "max", "-x", "-1.5")
+    assert "robot   box, 2 kg, 1 links" in done.stdout
+    assert "world   empty with ground_plane" in done.stdout
+    done = program("run", "--headless", "--for", "0.1", "box.urdf", "--world", "walls")
+    assert "world   " in done.stdout
+
+
+def test_a_world_is_the_world(program):
+    done = program("run", "walls", "--headless", "--for", "0.1", "--speed", "max")
+    assert "robot" not in done.stdout
+    done = program("run", "walls", "--world", "empty", "--headless", status=2)
+    assert '"walls" is a world, and so is "empty"' in done.stderr
+    done = program("run", "walls", "-x", "1", "--headless", status=2)
+    assert "has no place" in done.stderr
+
+
+@pytest.mark.parametrize("order", [("size:=2", "box.xacro"), ("box.xacro", "size:=2")])
+def test_arguments_of_a_xacro_stand_anywhere(program, order):
+    (program.folder / "box.xacro").write_text(
+        '<robot name="box" xmlns:xacro="http://www.ros.org/wiki/xacro">'
+        '<xacro:arg name="size" default="1"/>'
+        '<link name="base"><inertial><mass value="$(arg size)"/>'
+        '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link></robot>'
+    )
+    done = program("run", *order, "--headless", "--for", "0.1", "--speed", "max")
+    assert "box, 2 kg" in done.stdout
+
+
+def test_warnings_have_their_place_and_strict_makes_them_errors(program):
+    text = BOX.replace(
+        "</robot>", '<gazebo><plugin name="p" filename="libnone.so"/></gazebo></robot>'
+    )
+    (program.folder / "box.urdf").write_text(text)
+    done = program("run", "box.urdf", "--headless", "--for", "0.1", "--speed", "max")
+    assert 'warning: box.urdf:8: plugin "libnone.so" is not supported' in done.stderr
+    done = program("run", "box.urdf", "--headless", "--for", "0.1", "--strict", status=2)
+    assert 'error: box.urdf:8: plugin "libnone.so"' in done.stderr
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("speed", ["1", "max"])
+def test_an_endless_run_ends_at_once_and_well(program, ends, number, speed):
+    process = program.start("run", "--headless", "--speed", speed)
+    program.wait_until_up(process)
+    time.sleep(0.1)
+    assert ends(process, number) < AT_ONCE
+    assert process.returncode == 0
+    assert process.stderr.read() == ""
+    assert "simulated" in process.stdout.read()
+    assert list((program.folder / "cartwheel").iterdir()) == []
+
+
+def test_a_run_that_is_held_ends_at_once(program, ends):
+    process = program.start("run", "--headless", "--paused")
+    program.wait_until_up(process)
+    assert ends(process, signal.SIGINT) < AT_ONCE
+    assert process.returncode == 0
+
+
+def test_a_bounded_run_that_is_ended_has_failed(program, ends):
+    process = program.start("run", "--headless", "--for", "100")
+    program.wait_until_up(process)
+    assert ends(process, signal.SIGINT) < AT_ONCE
+    assert process.returncode == 130
+
+
+@pytest.mark.parametrize(
+    "module", ["typer", "xml.parsers", "cartwheel.description", "mujoco", "rosbags.typesys.idl"]
+)
+@pytest.mark.parametrize("delay", [0, 0.02])
+def test_loading_ends_at_once_without_a_word(program, ends, module, delay):
+    """Interrupted at and shortly after the import of a module, which the interpreter reports."""
+    program.environment["PYTHONPROFILEIMPORTTIME"] = "1"
+    process = program.start("run", "--headless")
+    while process.stderr.readline().rsplit("|", 1)[-1].strip() != module:
+        assert process.poll() is None
+    time.sleep(delay)
+    assert ends(process, signal.SIGINT) < AT_ONCE
+    lines = process.stderr.read().splitlines()
+    assert [line for line in lines if not line.startswith("import time:")] == []
+    assert process.returncode in (0, 130)
+
+
+def test_a_second_signal_ends_it_too(program):
+    process = program.start("run", "--headless", "--speed", "max")
+    program.wait_until_up(process)
+    process.send_signal(signal.SIGINT)
+    process.send_signal(signal.SIGINT)
+    process.wait(timeout=AT_ONCE)
+    assert process.returncode == 0
+    assert process.stderr.read() == ""
+
+
+def test_the_viewer_is_announced(program, ends):
+    process = program.start("run", "--port", "0")
+    program.wait_until_up(process)
+    line = ""
+    while not line.startswith("viewer"):
+        line = process.stdout.readline()
+    url = line.split()[1]
+    assert url.startswith("http://127.0.0.1:")
+    assert url in program("status").stdout
+    port = url.rsplit(":", 1)[1]
+    done = program("run", "--port", port, status=2)
+    assert f"port {port} is used by simulation {process.pid} (rosbots in" in done.stderr
+    assert f"kill {process.pid}" in done.stderr
+    assert ends(process, signal.SIGINT) < AT_ONCE
+    assert process.returncode == 0
+    assert process.stderr.read() == ""
+
+
+def test_a_port_of_another_program_is_said(program):
+    with socket.create_server(("127.0.0.1", 0)) as other:
+        port = other.getsockname()[1]
+        done = program("run", "--port", port, status=2)
+    assert f"port {port} is used by another program\n  Use another one: --port " in done.stderr
+
+
+def test_two_simulations_are_told_apart(program, ends):
+    first = program.start("run", "--headless")
+    program.wait_until_up(first)
+    second = program.start("run", "--headless", "empty")
+    program.wait_until_up(second)
+    done = program("topic", "list", status=2)
+    assert "2 simulations are running; name one with --sim PID" in done.stderr
+    assert f"{first.pid}: rosbots in" in done.stderr
+    assert "/odom" in program("topic", "list", "--sim", first.pid).stdout
+    assert "/odom" not in program("topic", "list", "--sim", second.pid).stdout
+    program.environment["CARTWHEEL_SIM"] = str(first.pid)
+    assert "/odom" in program("topic", "list").stdout
+    for process in (first, second):
+        ends(process, signal.SIGTERM)
+    assert "another simulation runs already" in second.stderr.read()
+
+
+def test_a_terminal_gets_colours_and_something_to_try(program):
+    leader, follower = pty.openpty()
+    process = program.start(
+        "run", "--headless", "--for", "0.2", stdin=follower, stdout=follower, stderr=follower
+    )
+    process.wait(timeout=20)
+    os.close(follower)
+    text = os.read(leader, 100_000).decode()
+    os.close(leader)
+    assert "cartwheel teleop" in text
+    assert "\033[2m" in text
+
+
+@pytest.mark.parametrize(
+    ("arguments", "text"),
+    [
+        (["--wrold", "empty"], "--world"),
+        (["--speed", "fast"], 'a speed of "fast" is neither'),
+        (["--speed", "0"], 'a speed of "0" is neither'),
+        (["--for", "-1"], "--for -1 is no time to run"),
+        (["--for", "nan"], "--for nan is no time to run"),
+        (["--seed", "x"], "--seed"),
+        (["--port", "70000"], "--port"),
+        (["a.urdf", "b.urdf"], '"b.urdf" is one file too many after "a.urdf"'),
+        (["--world", "nowhere"], "nowhere: no such file"),
+    ],
+)
+def test_wrong_options(program, arguments, text):
+    assert text in program("run", "--headless", *arguments, status=2).stderr
+
+
+def test_the_same_seed_gives_the_same_run(program):
+    outputs = [
+        program("run", "--headless", "--for", "1", "--speed", "max", "--seed", "7").stdout
+        for _ in range(2)
+    ]
+    assert outputs[0].splitlines()[:-1] == outputs[1].splitlines()[:-1]
+
+
+def test_commands_import_only_what_they_need(program):
+    heavy = {"mujoco", "rosbags", "viser", "rich", "xacro", "trimesh", "yaml"}
+    assert imported(program, heavy, "topic", "list", status=2) == set()
+    assert imported(program, heavy, "version") == set()
+    run = imported(program, heavy, "run", "--headless", "--for", "0.1", "--speed", "max")
+    assert not run & {"viser", "rich", "trimesh"}
+
+
+def imported(program, heavy, *arguments, status=0):
+    program.environment["PYTHONPROFILEIMPORTTIME"] = "1"
+    done = program(*arguments, status=status)
+    names = {line.rsplit("|", 1)[-1].strip() for line in done.stderr.splitlines()}
+    assert "cartwheel.cli.app" in names
+    return names & heavy
+
+
+BOX = """<robot name="box">
+  <link name="base">
+    <inertial><mass value="2"/>
+      <inertia ixx="0.1" iyy="0.1" izz="0.1" ixy="0" ixz="0" iyz="0"/>
+    </inertial>
+    <collision><geometry><box size="1 1 1"/></geometry></collision>
+  </link>
+</robot>
+"""
