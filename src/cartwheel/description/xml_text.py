@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from xml.sax.saxutils import escape, quoteattr
 
 from cartwheel.description.packages import Packages
 from cartwheel.description.xml import Node
@@ -25,6 +24,16 @@ def write_xml(root: Node, packages: Packages | None = None) -> str:
     return '<?xml version="1.0"?>\n' + "".join(_lines(root, 0, packages))
 
 
+def _escaped(text: str) -> str:
+    return text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
+
+
+def _quoted(text: str) -> str:
+    # The reader would make a space of a line break that is not written so.
+    text = _escaped(text).replace('"', "&quot;")
+    return '"' + text.replace("\n", "&#10;").replace("\t", "&#9;").replace("\r", "&#13;") + '"'
+
+
 def _lines(node: Node, level: int, packages: Packages | None) -> Iterator[str]:
     indent = "  " * level
     opening = f"{indent}<{node.tag}"
@@ -33,13 +42,13 @@ def _lines(node: Node, level: int, packages: Packages | None) -> Iterator[str]:
             continue
         if packages is not None and name == "filename" and node.tag in _WITH_FILES and value:
             value = packages.resolve(value, node.origin, what=node.tag).as_uri()  # noqa: PLW2901
-        opening += f" {name}={quoteattr(value)}"
+        opening += f" {name}={_quoted(value)}"
     if not node.children:
-        yield f"{opening}>{escape(node.text)}</{node.tag}>\n" if node.text else f"{opening}/>\n"
+        yield f"{opening}>{_escaped(node.text)}</{node.tag}>\n" if node.text else f"{opening}/>\n"
         return
     yield f"{opening}>\n"
     if node.text:
-        yield f"{indent}  {escape(node.text)}\n"
+        yield f"{indent}  {_escaped(node.text)}\n"
     for child in node.children:
         yield from _lines(child, level + 1, packages)
     yield f"{indent}</{node.tag}>\n"
