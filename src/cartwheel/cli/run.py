@@ -50,7 +50,8 @@ def run(
 ) -> None:
     """Simulate a robot: FILE is a xacro, URDF or SDF; the shipped cart where none is given.
 
-    A world's SDF as FILE is the world. NAME:=VALUE sets arguments of the xacro file.
+    FILE may also be a world, which then stands alone. NAME:=VALUE sets an argument of the
+    xacro file; world:=FILE is the same as --world.
     """
     from cartwheel.cli.commands.run import Options, simulate
 
