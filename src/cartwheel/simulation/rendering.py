@@ -17,6 +17,9 @@ from cartwheel.world.bodies import VISUAL_GROUP
 _PACKAGES = "libegl1 libegl-mesa0 libgl1-mesa-dri"
 _BACKENDS = {"egl": "mujoco.egl", "osmesa": "mujoco.osmesa"}
 
+_PIXEL = np.dtype((np.void, 3))
+"""Three bytes as one value: numpy fills those by a mask many times faster."""
+
 Image = np.ndarray[tuple[int, int, int], np.dtype[np.uint8]]
 
 
@@ -28,6 +31,7 @@ class Renderer:
 
     def __init__(self) -> None:
         self._model: Any = None
+        self._background: Any = np.zeros(3, dtype=np.uint8).view(_PIXEL)[0]
         self._gl: Any = None
         self._context: Any = None
         self._scene: Any = None
@@ -42,6 +46,7 @@ class Renderer:
     def bind(self, model: Any) -> None:
         """Draws this model from now on."""
         self._model = model
+        self._background = _background(model)
         self._drop_scene()
 
     def close(self) -> None:
@@ -79,7 +84,10 @@ class Renderer:
         viewport = mujoco.MjrRect(0, 0, lens.width, lens.height)
         mujoco.mjr_render(viewport, self._scene, self._context)
         pixels = np.empty((lens.height, lens.width, 3), dtype=np.uint8)
-        mujoco.mjr_readPixels(pixels, None, viewport, self._context)
+        depths = np.empty((lens.height, lens.width), dtype=np.float32)
+        mujoco.mjr_readPixels(pixels, depths, viewport, self._context)
+        # The background, where nothing was drawn.
+        pixels.reshape(-1).view(_PIXEL)[(depths == 1.0).ravel()] = self._background
         return np.ascontiguousarray(pixels[::-1])
 
     def _prepare(self, width: int, height: int) -> None:
@@ -89,7 +97,9 @@ class Renderer:
         if self._scene is None:
             self._scene = mujoco.MjvScene(self._model, maxgeom=self._model.ngeom + 100)
             flags = self._scene.flags
-            for flag in ("SHADOW", "REFLECTION", "FOG", "HAZE"):
+            # The engine draws its sky as a dome of 0.7 of the far distance, which hides what
+            # stands beyond.
+            for flag in ("SHADOW", "REFLECTION", "FOG", "HAZE", "SKYBOX"):
                 flags[getattr(mujoco.mjtRndFlag, f"mjRND_{flag}")] = 0
             self._context = mujoco.MjrContext(self._model, mujoco.mjtFontScale.mjFONTSCALE_50)
             self._size = (self._context.offWidth, self._context.offHeight)
@@ -103,6 +113,15 @@ class Renderer:
             self._gl.make_current()
             self._context.free()
         self._context = self._scene = None
+
+
+def _background(model: Any) -> Any:
+    """The colour of the model's sky."""
+    for index in range(model.ntex):
+        if model.tex_type[index] == mujoco.mjtTexture.mjTEXTURE_SKYBOX:
+            start = model.tex_adr[index]
+            return np.ascontiguousarray(model.tex_data[start : start + 3]).view(_PIXEL)[0]
+    return np.zeros(3, dtype=np.uint8).view(_PIXEL)[0]
 
 
 def _open_gl(width: int, height: int) -> Any:
