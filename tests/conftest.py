@@ -32,7 +32,8 @@ from cartwheel.errors import Origin
 from cartwheel.geometry import Pose
 
 GRAVITY = 9.8
-_HERE = Origin(file="test.sdf", line=1)
+HERE = Pose()
+_PLACE = Origin(file="test.sdf", line=1)
 
 
 class Make:
@@ -69,19 +70,21 @@ class Make:
         surface = Surface(mu1=mu, mu2=mu)
         link = Link(
             name="link",
-            collisions=(Collision(name="collision", shape=Plane(), surface=surface, origin=_HERE),),
+            collisions=(
+                Collision(name="collision", shape=Plane(), surface=surface, origin=_PLACE),
+            ),
             visuals=(
                 Visual(
                     name="visual",
                     shape=Plane(),
                     material=Material(diffuse=(0.7, 0.7, 0.7, 1.0)),
-                    origin=_HERE,
+                    origin=_PLACE,
                 ),
             ),
-            origin=_HERE,
+            origin=_PLACE,
         )
         return RobotDescription(
-            name="ground_plane", links=(link,), static=True, canonical_link="link", origin=_HERE
+            name="ground_plane", links=(link,), static=True, canonical_link="link", origin=_PLACE
         )
 
     @staticmethod
@@ -91,7 +94,7 @@ class Make:
         *,
         mass: float = 2.0,
         mu: float = 1.0,
-        pose: Pose = Pose(),
+        pose: Pose = HERE,
         static: bool = False,
         colour: tuple[float, float, float] = (0.7, 0.7, 0.7),
     ) -> RobotDescription:
@@ -104,14 +107,14 @@ class Make:
                 ixx=mass * (y * y + z * z) / 12,
                 iyy=mass * (x * x + z * z) / 12,
                 izz=mass * (x * x + y * y) / 12,
-                origin=_HERE,
+                origin=_PLACE,
             ),
             collisions=(
                 Collision(
                     name="collision",
                     shape=Box(size=size),
                     surface=Surface(mu1=mu, mu2=mu),
-                    origin=_HERE,
+                    origin=_PLACE,
                 ),
             ),
             visuals=(
@@ -119,13 +122,13 @@ class Make:
                     name="visual",
                     shape=Box(size=size),
                     material=Material(diffuse=(*colour, 1.0)),
-                    origin=_HERE,
+                    origin=_PLACE,
                 ),
             ),
-            origin=_HERE,
+            origin=_PLACE,
         )
         return RobotDescription(
-            name=name, links=(link,), static=static, pose=pose, canonical_link="link", origin=_HERE
+            name=name, links=(link,), static=static, pose=pose, canonical_link="link", origin=_PLACE
         )
 
     @staticmethod

@@ -16,8 +16,10 @@ RADIUS, SEPARATION, TORQUE, RAMP, CONTROL = 0.26, 1.1, 20.0, 1.0, 0.01
 """m, m, N m, m/s² and s: wheelDiameter / 2, wheelSeparation, wheelTorque, wheelAcceleration and
 1 / updateRate of the description."""
 
+DROPPED = Pose((0, 0, 0.1))
 
-def stand(make, robot, *, step=None, pose=Pose((0, 0, 0.1)), settle=1.0):
+
+def stand(make, robot, *, step=None, pose=DROPPED, settle=1.0):
     world = make.world(step=step)
     world.session.spawn(robot, pose=pose)
     world.run(settle)
@@ -151,7 +153,7 @@ LEGS = {
     "backing": [(5, 0.5, 0), (5, 0.5, 0.3), (5, -0.5, 0), (3, 0, 0)],
 }
 STARTS = {
-    "dropped": Pose((0, 0, 0.1)),
+    "dropped": DROPPED,
     "on the ground": Pose((0, 0, 0)),
     "turned": Pose.from_xyz_rpy((3, -2, 0.05), (0, 0, 2.1)),
     "from high": Pose.from_xyz_rpy((-1, 1, 0.3), (0, 0, -0.7)),

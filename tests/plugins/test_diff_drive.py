@@ -14,6 +14,8 @@ RADIUS, SEPARATION = 0.26, 1.1
 PLUGIN = "differential_drive_controller"
 JOINTS = {"right": "wheel_right_joint", "left": "wheel_left_joint"}
 
+START = Pose((0, 0, 0.05))
+
 
 def stamp(message):
     return message.header.stamp.sec * 1_000_000_000 + message.header.stamp.nanosec
@@ -24,7 +26,7 @@ def pose_of(message):
     return Pose((place.x, place.y, place.z), (turn.x, turn.y, turn.z, turn.w))
 
 
-def place(make, robot, pose=Pose((0, 0, 0.05)), **more):
+def place(make, robot, pose=START, **more):
     world = make.world(**more)
     world.session.spawn(robot, pose=pose)
     world.run(1.0)
