@@ -1,0 +1,50 @@
+"""The benchmark runs and writes what its readers expect; how fast is not asked here."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+FIELDS = {"group", "name", "value", "unit", "goal", "better", "note", "met"}
+
+
+def measure(tmp_path: Path, *parts: str) -> dict:
+    output = tmp_path / "figures.json"
+    subprocess.run(
+        [sys.executable, "-m", "benchmarks", *parts, "--quick", "--output", str(output)],
+        check=True,
+        cwd=ROOT,
+        env=os.environ | {"MUJOCO_GL": "egl"},
+        capture_output=True,
+        timeout=240,
+    )
+    return json.loads(output.read_text())
+
+
+@pytest.mark.parametrize("part", ["headless", "process"])
+def test_figures_name_themselves_and_are_measured(tmp_path: Path, part: str):
+    found = measure(tmp_path, part)
+    assert found["figures"]
+    for figure in found["figures"]:
+        assert set(figure) == FIELDS
+        assert figure["value"] > 0
+        assert figure["met"] in (None, True, False)
+    assert {"processor", "cores", "load", "opengl"} <= set(found["machine"])
+    assert {"cartwheel", "mujoco", "numpy", "rosbags", "python"} <= set(found["versions"])
+
+
+def test_every_frame_is_delivered(tmp_path: Path):
+    pytest.importorskip("OpenGL")
+    found = measure(tmp_path, "camera")
+    frames = next(f for f in found["figures"] if f["name"] == "frames delivered")
+    # 30 Hz in three runs of 50 ms, and one frame at the start of the first.
+    assert frames["value"] == pytest.approx(30, rel=0.35)
+
+
+def test_an_unknown_part_is_refused(tmp_path: Path):
+    with pytest.raises(subprocess.CalledProcessError):
+        measure(tmp_path, "gazebo")
