@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 import cartwheel as cw
-from cartwheel.description import load_robot
+from cartwheel.description import load_robot, load_text
 from cartwheel.description.model import (
     Box,
     Collision,
@@ -25,9 +25,6 @@ from cartwheel.description.model import (
     Visual,
     WorldDescription,
 )
-from cartwheel.description.packages import Packages
-from cartwheel.description.sdf import read_sdf
-from cartwheel.description.xml import parse
 from cartwheel.errors import Origin
 from cartwheel.geometry import Pose
 
@@ -135,7 +132,7 @@ class Make:
     def sdf(model: str) -> RobotDescription:
         """What ``<model name="…">…</model>`` describes."""
         text = f'<sdf version="1.7">{model}</sdf>'
-        described = read_sdf(parse(text, "test.sdf"), Packages(None, environment={}))
+        described = load_text(text, file="test.sdf")
         assert isinstance(described, RobotDescription)
         return described
 

@@ -10,7 +10,7 @@ from cartwheel.description import xml
 from cartwheel.description.model import RobotDescription, WorldDescription
 from cartwheel.description.packages import Packages
 from cartwheel.description.shipped import find_description
-from cartwheel.description.urdf_link import Meshes
+from cartwheel.description.urdf.link import Meshes
 from cartwheel.description.xml import Node
 from cartwheel.description.xml_text import write_xml
 from cartwheel.errors import DescriptionError, Diagnostic, Origin

@@ -57,6 +57,10 @@
   document.addEventListener("click", (event) => {
     const cap = event.target.closest("[data-key]");
     if (cap) press(cap.dataset.key);
+    // A list keeps the focus after the choice, and Ctrl+K would not be heard in it.
+    if (event.target.closest("[role=option]")) {
+      setTimeout(() => document.activeElement && document.activeElement.blur(), 50);
+    }
   });
 
   // Shadows double the time of a picture where no GPU draws it.
@@ -68,7 +72,7 @@
     const wait = setInterval(() => {
       if (!document.querySelector("canvas[data-engine]")) return;
       clearInterval(wait);
-      setTimeout(() => press("__LIGHTLY__"), 200);
+      setTimeout(() => press("__LIGHTLY__"), 1500);
     }, 100);
   }
 })();

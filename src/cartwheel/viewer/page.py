@@ -16,8 +16,8 @@ from cartwheel.errors import CartwheelError, ControlError
 _log = logging.getLogger(__name__)
 _FOLDER = Path(__file__).parent
 _KEEP_SECONDS = 8.0
-_LIGHTLY = "f9"
-"""Key of the command that a browser without a GPU gives by itself."""
+_LIGHTLY: Any = "f9"
+"""Key of the command that a browser without a GPU gives by itself; viser's types know no F9."""
 
 T = TypeVar("T")
 

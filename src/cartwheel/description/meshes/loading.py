@@ -18,11 +18,11 @@ from pathlib import Path
 import numpy as np
 
 from cartwheel.description import model
-from cartwheel.description.mesh_dae import read_dae
-from cartwheel.description.mesh_obj import read_obj
-from cartwheel.description.mesh_stl import read_stl
-from cartwheel.description.mesh_trimesh import read_with_trimesh
-from cartwheel.description.submesh import (
+from cartwheel.description.meshes.dae import read_dae
+from cartwheel.description.meshes.generic import read_with_trimesh
+from cartwheel.description.meshes.obj import read_obj
+from cartwheel.description.meshes.stl import read_stl
+from cartwheel.description.meshes.submesh import (
     Floats,
     Ints,
     MeshError,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Literal
 
 from cartwheel.description.model import Light
-from cartwheel.description.sdf_context import read_rgba, require_name
+from cartwheel.description.sdf.context import read_rgba, require_name
 from cartwheel.description.xml import Node
 from cartwheel.geometry import Pose
 

@@ -7,11 +7,11 @@ from typing import Any
 
 from cartwheel.description.materials import gazebo_material, unknown_material
 from cartwheel.description.model import Light, Link, Material, Sensor, Visual
-from cartwheel.description.sdf_context import Context, read_pose
-from cartwheel.description.sdf_light import read_light
-from cartwheel.description.sdf_material import read_material
-from cartwheel.description.sdf_sensors import read_sensor
-from cartwheel.description.urdf_link import UrdfContext
+from cartwheel.description.sdf.context import Context, read_pose
+from cartwheel.description.sdf.light import read_light
+from cartwheel.description.sdf.material import read_material
+from cartwheel.description.sdf.sensors import read_sensor
+from cartwheel.description.urdf.link import UrdfContext
 from cartwheel.description.xml import Node
 
 LINK_TAGS = (

@@ -6,7 +6,7 @@ import re
 
 import numpy as np
 
-from cartwheel.description.submesh import Submesh, build_submesh, unique_rows
+from cartwheel.description.meshes.submesh import Submesh, build_submesh, unique_rows
 
 _HEADER = 84
 _RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])

@@ -6,12 +6,12 @@ from dataclasses import dataclass, field, replace
 
 from cartwheel.description.inertia import impossibility, principal_moments
 from cartwheel.description.model import Joint, Link, PluginTag, RobotDescription, Sensor
-from cartwheel.description.sdf_context import Context, read_pose, reference_of, require_name
-from cartwheel.description.sdf_frames import MODEL, WORLD, Frames
-from cartwheel.description.sdf_include import Included, open_include
-from cartwheel.description.sdf_joint import child_frame_of, read_joint, read_joint_sensors
-from cartwheel.description.sdf_link import read_link
-from cartwheel.description.sdf_sensors import read_plugin
+from cartwheel.description.sdf.context import Context, read_pose, reference_of, require_name
+from cartwheel.description.sdf.frames import MODEL, WORLD, Frames
+from cartwheel.description.sdf.include import Included, open_include
+from cartwheel.description.sdf.joint import child_frame_of, read_joint, read_joint_sensors
+from cartwheel.description.sdf.link import read_link
+from cartwheel.description.sdf.sensors import read_plugin
 from cartwheel.description.xml import Node, unread
 from cartwheel.errors import DescriptionError, Origin, suggestion
 from cartwheel.geometry import Pose

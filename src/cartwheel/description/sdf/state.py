@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 from cartwheel.description.model import Light, Link, RobotDescription
-from cartwheel.description.sdf_context import Context, read_pose, require_name
-from cartwheel.description.sdf_model import read_model
+from cartwheel.description.sdf.context import Context, read_pose, require_name
+from cartwheel.description.sdf.model import read_model
 from cartwheel.description.xml import Node
 from cartwheel.geometry import Pose
 

@@ -5,19 +5,19 @@ from __future__ import annotations
 from dataclasses import replace
 
 from cartwheel.description.model import Light, Physics, WorldDescription
-from cartwheel.description.sdf_context import (
+from cartwheel.description.sdf.context import (
     Context,
     read_pose,
     read_rgba,
     reference_of,
     require_name,
 )
-from cartwheel.description.sdf_frames import WORLD, Frames
-from cartwheel.description.sdf_include import Included, open_include
-from cartwheel.description.sdf_light import read_light
-from cartwheel.description.sdf_model import Model, read_included, read_model
-from cartwheel.description.sdf_sensors import read_plugin
-from cartwheel.description.sdf_state import apply_state
+from cartwheel.description.sdf.frames import WORLD, Frames
+from cartwheel.description.sdf.include import Included, open_include
+from cartwheel.description.sdf.light import read_light
+from cartwheel.description.sdf.model import Model, read_included, read_model
+from cartwheel.description.sdf.sensors import read_plugin
+from cartwheel.description.sdf.state import apply_state
 from cartwheel.description.xml import Node, to_element, unread
 from cartwheel.geometry import Vec3
 

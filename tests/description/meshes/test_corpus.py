@@ -12,7 +12,7 @@ import pytest
 from cartwheel.description.meshes import convex_hull_input, load_mesh
 from cartwheel.description.model import Mesh
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 CORPUS = Path(os.environ.get("CARTWHEEL_CORPUS", ROOT.parent / "shared" / "corpus"))
 FILES = sorted([*CORPUS.rglob("*.dae"), *CORPUS.rglob("*.stl")]) if CORPUS.is_dir() else []
 

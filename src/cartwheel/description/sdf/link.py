@@ -14,19 +14,19 @@ from cartwheel.description.model import (
     Surface,
     Visual,
 )
-from cartwheel.description.sdf_context import (
+from cartwheel.description.sdf.context import (
     Context,
     check_unique,
     read_pose,
     reference_of,
     require_name,
 )
-from cartwheel.description.sdf_frames import Frames
-from cartwheel.description.sdf_inertia import WATER, inertial_of
-from cartwheel.description.sdf_light import read_light
-from cartwheel.description.sdf_material import read_material
-from cartwheel.description.sdf_sensors import read_sensor
-from cartwheel.description.sdf_shapes import read_shape
+from cartwheel.description.sdf.frames import Frames
+from cartwheel.description.sdf.inertia import WATER, inertial_of
+from cartwheel.description.sdf.light import read_light
+from cartwheel.description.sdf.material import read_material
+from cartwheel.description.sdf.sensors import read_sensor
+from cartwheel.description.sdf.shapes import read_shape
 from cartwheel.description.xml import Node
 from cartwheel.geometry import Pose, Vec3
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from cartwheel.description.model import PluginTag
-from cartwheel.description.sdf_context import MAX_INCLUDES, Context, read_version
-from cartwheel.description.sdf_sensors import read_plugin
+from cartwheel.description.sdf.context import MAX_INCLUDES, Context, read_version
+from cartwheel.description.sdf.sensors import read_plugin
 from cartwheel.description.xml import Node, read_file
 from cartwheel.errors import DescriptionError, Origin
 

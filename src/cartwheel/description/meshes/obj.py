@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from cartwheel.description.mesh_corners import weld
+from cartwheel.description.meshes.corners import weld
+from cartwheel.description.meshes.submesh import Submesh
 from cartwheel.description.model import Rgba
-from cartwheel.description.submesh import Submesh
 
 _IGNORED = frozenset({"s", "g", "l", "p", "vp", "#", "mg"})
 

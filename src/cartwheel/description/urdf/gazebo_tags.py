@@ -9,10 +9,10 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from cartwheel.description.gazebo_link_tags import LINK_TAGS, LinkTags, read_link_tags
 from cartwheel.description.model import Joint, Link, PluginTag
-from cartwheel.description.sdf_sensors import read_plugin, read_sensor
-from cartwheel.description.urdf_link import UrdfContext
+from cartwheel.description.sdf.sensors import read_plugin, read_sensor
+from cartwheel.description.urdf.gazebo_link_tags import LINK_TAGS, LinkTags, read_link_tags
+from cartwheel.description.urdf.link import UrdfContext
 from cartwheel.description.xml import Node
 from cartwheel.errors import suggestion
 

@@ -13,9 +13,9 @@ from pathlib import Path
 
 from cartwheel.description.model import RobotDescription, WorldDescription
 from cartwheel.description.packages import Packages
-from cartwheel.description.sdf_context import NEWEST, Context, read_version
-from cartwheel.description.sdf_model import read_model
-from cartwheel.description.sdf_world import read_world
+from cartwheel.description.sdf.context import NEWEST, Context, read_version
+from cartwheel.description.sdf.model import read_model
+from cartwheel.description.sdf.world import read_world
 from cartwheel.description.xml import Node, unread
 from cartwheel.errors import Diagnostic
 

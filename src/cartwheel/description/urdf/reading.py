@@ -9,12 +9,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
-from cartwheel.description.collision_names import check_contact_sensors, name_collisions
-from cartwheel.description.gazebo_tags import GazeboTags, read_gazebo_tags
 from cartwheel.description.model import Inertial, Link, RobotDescription
 from cartwheel.description.packages import Packages
-from cartwheel.description.urdf_joint import check_mimics, read_joint
-from cartwheel.description.urdf_link import (
+from cartwheel.description.urdf.collision_names import check_contact_sensors, name_collisions
+from cartwheel.description.urdf.gazebo_tags import GazeboTags, read_gazebo_tags
+from cartwheel.description.urdf.joint import check_mimics, read_joint
+from cartwheel.description.urdf.link import (
     Meshes,
     ReadLink,
     UrdfContext,
@@ -22,7 +22,7 @@ from cartwheel.description.urdf_link import (
     read_link,
     read_materials,
 )
-from cartwheel.description.urdf_tree import WORLD, Tree, build_tree
+from cartwheel.description.urdf.tree import WORLD, Tree, build_tree
 from cartwheel.description.xml import Node, to_element, unread
 from cartwheel.errors import DescriptionError, Diagnostic, Origin
 from cartwheel.geometry import Pose

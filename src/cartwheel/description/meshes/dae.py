@@ -11,9 +11,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from cartwheel.description.mesh_corners import weld
-from cartwheel.description.mesh_dae_material import Library, MaterialLook, read_look
-from cartwheel.description.submesh import Submesh
+from cartwheel.description.meshes.corners import weld
+from cartwheel.description.meshes.dae_material import Library, MaterialLook, read_look
+from cartwheel.description.meshes.submesh import Submesh
 
 Array = NDArray[np.float64]
 MAX_DEPTH = 100

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from cartwheel.description.model import CameraIntrinsics, PluginTag, Sensor
-from cartwheel.description.sdf_context import read_pose
+from cartwheel.description.sdf.context import read_pose
 from cartwheel.description.xml import Node, to_element
 from cartwheel.geometry import Pose
 

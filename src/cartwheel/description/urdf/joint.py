@@ -6,7 +6,7 @@ import math
 from collections.abc import Collection, Iterable
 
 from cartwheel.description.model import Axis, Joint, JointType, Mimic
-from cartwheel.description.urdf_link import UrdfContext, read_origin
+from cartwheel.description.urdf.link import UrdfContext, read_origin
 from cartwheel.description.xml import Node
 from cartwheel.errors import DescriptionError, suggestion
 from cartwheel.geometry import Pose, Vec3

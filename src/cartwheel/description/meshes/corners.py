@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cartwheel.description.mesh_polygons import triangulate
-from cartwheel.description.submesh import Submesh, build_submesh
+from cartwheel.description.meshes.polygons import triangulate
+from cartwheel.description.meshes.submesh import Submesh, build_submesh
 
 if TYPE_CHECKING:
     from cartwheel.description.model import Rgba

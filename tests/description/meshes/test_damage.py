@@ -23,7 +23,7 @@ def _sibling(name: str):
     return module
 
 
-_meshes, _dae = _sibling("test_meshes"), _sibling("test_mesh_dae")
+_meshes, _dae = _sibling("test_loading"), _sibling("test_dae")
 SAMPLES = {
     "stl": _meshes.tetra_stl(),
     "obj": _meshes.OBJ.encode(),

@@ -6,9 +6,9 @@ import math
 from dataclasses import replace
 
 from cartwheel.description.model import Axis, Joint, JointType, Mimic, Sensor
-from cartwheel.description.sdf_context import Context, read_pose, reference_of, require_name
-from cartwheel.description.sdf_frames import WORLD, Frames
-from cartwheel.description.sdf_sensors import read_sensor
+from cartwheel.description.sdf.context import Context, read_pose, reference_of, require_name
+from cartwheel.description.sdf.frames import WORLD, Frames
+from cartwheel.description.sdf.sensors import read_sensor
 from cartwheel.description.xml import Node
 from cartwheel.errors import DescriptionError, suggestion
 from cartwheel.geometry import Pose, Vec3, quat_conjugate, rotate

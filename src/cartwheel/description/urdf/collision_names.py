@@ -10,7 +10,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
 from cartwheel.description.model import Collision, Link, Sensor
-from cartwheel.description.urdf_tree import Tree
+from cartwheel.description.urdf.tree import Tree
 from cartwheel.errors import Diagnostic, suggestion
 
 _LUMP = "_fixed_joint_lump__"

@@ -17,7 +17,7 @@ from cartwheel.description.xml import parse, read_file
 from cartwheel.errors import CartwheelError, DescriptionError
 
 QUARTER = math.pi / 2
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 CORPUS = Path(os.environ.get("CARTWHEEL_CORPUS", ROOT.parent / "shared" / "corpus"))
 
 

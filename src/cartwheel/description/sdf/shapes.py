@@ -15,7 +15,7 @@ from cartwheel.description.model import (
     Shape,
     Sphere,
 )
-from cartwheel.description.sdf_context import Context, positive
+from cartwheel.description.sdf.context import Context, positive
 from cartwheel.description.xml import Node
 from cartwheel.errors import DescriptionError, suggestion
 from cartwheel.geometry import Vec3

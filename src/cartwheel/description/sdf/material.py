@@ -6,8 +6,8 @@ from pathlib import Path
 
 from cartwheel.description.materials import gazebo_material, unknown_material
 from cartwheel.description.model import Material, Rgba
-from cartwheel.description.sdf_context import Context, read_rgba
-from cartwheel.description.sdf_script import find_script
+from cartwheel.description.sdf.context import Context, read_rgba
+from cartwheel.description.sdf.script import find_script
 from cartwheel.description.xml import Node
 from cartwheel.errors import DescriptionError
 

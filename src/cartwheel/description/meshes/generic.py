@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from cartwheel.description.meshes.submesh import Submesh, build_submesh
 from cartwheel.description.model import Rgba
-from cartwheel.description.submesh import Submesh, build_submesh
 
 
 def read_with_trimesh(path: Path, data: bytes, _notes: list[str]) -> list[Submesh]:
