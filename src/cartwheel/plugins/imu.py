@@ -76,15 +76,16 @@ class _ImuBase(Plugin[Any]):
             random = self.part.random(f"imu {self._publisher.topic}")
             rate = (rate + random.normal(0.0, self._noise, 3)).tolist()
             acceleration = (acceleration + random.normal(0.0, self._noise, 3)).tolist()
+        covariance = self._covariance
         self._publisher.publish(
             self._Imu(
-                header=header(self.part.time_ns, self._frame),
-                orientation=self._Quaternion(x=x, y=y, z=z, w=w),
-                orientation_covariance=self._covariance,
-                angular_velocity=self._Vector3(*rate),
-                angular_velocity_covariance=self._covariance,
-                linear_acceleration=self._Vector3(*acceleration),
-                linear_acceleration_covariance=self._covariance,
+                header(self.part.time_ns, self._frame),
+                self._Quaternion(x, y, z, w),
+                covariance,
+                self._Vector3(*rate),
+                covariance,
+                self._Vector3(*acceleration),
+                covariance,
             )
         )
 

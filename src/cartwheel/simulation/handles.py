@@ -40,6 +40,8 @@ class LinkHandle:
         self._model, self._data = model, data
         self.id = mujoco.mj_name2id(model, _OBJ.mjOBJ_BODY, scoped(self.model_name, self.name))
         self._position, self._quaternion = data.xpos[self.id], data.xquat[self.id]
+        self._spatial = data.cvel[self.id]
+        self._centre = data.subtree_com[model.body_rootid[self.id]]
 
     @property
     def pose(self) -> Pose:
@@ -54,10 +56,21 @@ class LinkHandle:
 
     def motion(self, *, local: bool) -> tuple[Vec3, Vec3]:
         """`velocity` as bare numbers."""
-        six = self._six
-        mujoco.mj_objectVelocity(self._model, self._data, _XBODY, self.id, six, int(local))
-        wx, wy, wz, vx, vy, vz = six.tolist()
-        return (vx, vy, vz), (wx, wy, wz)
+        if local:
+            mujoco.mj_objectVelocity(self._model, self._data, _XBODY, self.id, self._six, 1)
+            wx, wy, wz, vx, vy, vz = self._six.tolist()
+            return (vx, vy, vz), (wx, wy, wz)
+        # What mj_objectVelocity does without turning, for less than the call costs: MuJoCo
+        # keeps a body's velocity as that of the point at the centre of mass of its model.
+        wx, wy, wz, vx, vy, vz = self._spatial.tolist()
+        x, y, z = self._position.tolist()
+        cx, cy, cz = self._centre.tolist()
+        x, y, z = x - cx, y - cy, z - cz
+        return (vx - (y * wz - z * wy), vy - (z * wx - x * wz), vz - (x * wy - y * wx)), (
+            wx,
+            wy,
+            wz,
+        )
 
     def velocity(self, *, local: bool) -> tuple[Array, Array]:
         """Linear velocity of the link's origin in m/s and angular in rad/s, each shape (3,).
