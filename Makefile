@@ -12,7 +12,7 @@ run: ## the cart in the browser, with a post before its camera
 
 test: ## all tests
 	@tools/setup.sh test
-	@$(BIN)/pytest $(ARGS)
+	@$(BIN)/pytest -q $(ARGS)
 
 lint: ## style, format and types
 	@tools/setup.sh lint

@@ -12,13 +12,15 @@ cart = world.spawn("rosbots.xacro")
 imu = world.mailbox("/imu/data")
 cart.publish("/part2_cmr/cmd_vel", linear_x=0.5)
 
-steepest = 0.0
-while world.time < 8 and cart.pose.x < 2.8:
+# The ramp begins at x = 1.9; from 2.2 on the cart is on it with wheels and caster.
+slopes = []
+while cart.pose.x < 2.6:
     world.run(seconds=0.1)
-    for reading in imu.drain():
+    readings = imu.drain()
+    if cart.pose.x > 2.2:
         # On a slope a part of gravity's reaction points forward.
-        forward, up = reading.linear_acceleration.x, reading.linear_acceleration.z
-        steepest = max(steepest, math.atan2(forward, up))
+        slopes += [math.atan2(r.linear_acceleration.x, r.linear_acceleration.z) for r in readings]
 
-print(f"the ramp rises by {math.degrees(SLOPE):.1f} degrees, felt {math.degrees(steepest):.1f}")
-assert abs(cart.pose.rpy[1] + SLOPE) < math.radians(2)
+felt = sum(slopes) / len(slopes)
+print(f"the ramp rises by {math.degrees(SLOPE):.1f} degrees, felt are {math.degrees(felt):.1f}")
+assert abs(felt - SLOPE) < math.radians(1)

@@ -23,6 +23,7 @@ from cartwheel.description.model import (
     CameraIntrinsics,
     Collision,
     Element,
+    Inertial,
     Joint,
     Link,
     PluginTag,
@@ -32,13 +33,9 @@ from cartwheel.description.model import (
     WorldDescription,
 )
 from cartwheel.errors import Origin
-from cartwheel.geometry import Pose
-from cartwheel.graph import Graph
 from cartwheel.plugins.base import Plugin
 from cartwheel.plugins.registry import plugins
 from cartwheel.session import Session
-from cartwheel.simulation import Part
-from cartwheel.world.entry import ModelEntry
 
 TARGET = Path(__file__).resolve().parent.parent / "docs" / "plugins.md"
 HERE = Origin(file="<reference>")
@@ -154,21 +151,16 @@ def _default(item: dataclasses.Field[Any]) -> str:
 
 
 def _interface(plugin: type[Plugin[Any]]) -> list[str]:
-    """What a plugin puts on the graph, as rows; made from one that is there."""
-    graph = Graph()
+    """What a plugin puts on the graph, as rows; asked of one that runs."""
     session = Session(WorldDescription(name="reference"))
-    description = _robot(plugin)
-    entry = ModelEntry(name=MODEL, description=description, pose=Pose())
-    sensor = description.links[0].sensors[0] if plugin.for_sensor else None
-    tag = sensor.plugins[0] if sensor else description.plugins[0]
-    made = plugin(Part(session.simulation, entry), graph, tag, sensor)
+    before = {topic.name for topic in session.graph.topics()}
+    session.spawn(_robot(plugin))
     rows = []
-    for topic in graph.topics():
+    for topic in session.graph.topics():
         for role, nodes in (("publishes", topic.publishers), ("reads", topic.subscribers)):
-            if nodes:
+            if nodes and topic.name not in before:
                 rows.append((role, topic.name, topic.type))
-    rows += [("offers", service.name, service.type) for service in graph.services()]
-    made.close()
+    rows += [("offers", service.name, service.type) for service in session.graph.services()]
     session.close()
     return [f"| `{name}` | `{kind}` | {role} |" for role, name, kind in rows]
 
@@ -193,10 +185,14 @@ def _robot(plugin: type[Plugin[Any]]) -> RobotDescription:
         origin=HERE,
     )
     body = Collision(name="base_footprint_collision", shape=Sphere(radius=0.1), origin=HERE)
-    links = [Link(name="base_footprint", collisions=(body,), sensors=(sensor,), origin=HERE)]
+    mass = Inertial(mass=1.0, ixx=1.0, iyy=1.0, izz=1.0, origin=HERE)
+    base = Link(
+        name="base_footprint", inertial=mass, collisions=(body,), sensors=(sensor,), origin=HERE
+    )
+    links = [base]
     joints = []
     for side in ("left", "right"):
-        links.append(Link(name=f"{side}_wheel", origin=HERE))
+        links.append(Link(name=f"{side}_wheel", inertial=mass, origin=HERE))
         joints.append(
             Joint(
                 name=f"{side}_joint",

@@ -9,50 +9,68 @@ venv=${VENV:-.venv}
 
 say() { printf '%s\n' "$*" >&2; }
 
-# Asks apt for the packages of which a probe says that they are missing.
+# Installs Debian packages; where that cannot be, says which ones and fails.
 install() {
     if ! command -v apt-get >/dev/null 2>&1; then
-        say "missing: $* (by their Debian names). Install them with your system's package manager."
+        say "missing, by their Debian names: $*"
+        say "Install them with your system's package manager."
         return 1
     fi
     if [ "$(id -u)" = 0 ]; then as_root=""
     elif command -v sudo >/dev/null 2>&1 && sudo -n true 2>/dev/null; then as_root="sudo"
     else
         say "missing: $*"
-        say "Not allowed to install here. Run: sudo apt-get install --no-install-recommends $*"
+        say "Installing is not allowed here. Ask for: sudo apt-get install --no-install-recommends $*"
         return 1
     fi
     say "installing: $*"
     $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -qq -y --no-install-recommends "$@" >/dev/null 2>&1 || {
-        $as_root apt-get update -qq
+        # The package lists may be missing or old.
+        $as_root apt-get update -qq >/dev/null 2>&1 || true
         $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -qq -y --no-install-recommends "$@" >/dev/null
     }
 }
 
-has_library() { ldconfig -p 2>/dev/null | grep -q "$1" || /sbin/ldconfig -p 2>/dev/null | grep -q "$1"; }
+has_library() { (ldconfig -p 2>/dev/null || /sbin/ldconfig -p) | grep -q "$1"; }
+has_driver() { ls /usr/lib/*/dri/*swrast* >/dev/null 2>&1 || ls /usr/lib/*/libgallium* >/dev/null 2>&1; }
 
-command -v "$python" >/dev/null 2>&1 || install python3 python3-venv
+# What nothing works without.
+needed=""
+if ! command -v "$python" >/dev/null 2>&1; then needed="python3 python3-venv"
+elif ! "$python" -c 'import ensurepip, venv' 2>/dev/null; then needed="python3-venv"; fi
+# What some things work without: cameras need OpenGL, the viewer's tests a browser.
+wanted=""
+has_library libEGL.so.1 || wanted="$wanted libegl1"
+has_library libGL.so.1 || wanted="$wanted libgl1"
+has_driver || wanted="$wanted libgl1-mesa-dri"
+[ -z "$wanted" ] || loss="Going on without: cameras will show nothing."
+if [ "$purpose" = test ] && ! command -v chromium >/dev/null 2>&1; then
+    wanted="$wanted chromium"
+    loss="Going on without: tests of the browser and of cameras that cannot run are skipped."
+fi
+
+# Asked for together, so that nobody has to ask twice.
+# shellcheck disable=SC2086 # they are words
+if [ -n "$needed" ]; then
+    install $needed $wanted || exit 1
+elif [ -n "$wanted" ]; then
+    install $wanted || say "$loss"
+fi
+
 "$python" -c 'import sys; sys.exit(sys.version_info < (3, 11))' || {
     say "Cartwheel needs Python 3.11 or newer; $python is $("$python" --version). Set PYTHON=/path/to/python3.11."
     exit 1
 }
-"$python" -c 'import ensurepip, venv' 2>/dev/null || install python3-venv
 
-# Cameras need OpenGL; all else works without, so a refusal here is no end.
-has_library libEGL.so.1 && has_library libEGL_mesa.so.0 && ls /usr/lib/*/dri/*swrast* >/dev/null 2>&1 ||
-    install libegl1 libegl-mesa0 libgl1-mesa-dri libgl1 || say "Going on without cameras."
-
-extras=""
-if [ "$purpose" = test ]; then
-    extras="[test,lint]"
-    command -v chromium >/dev/null 2>&1 || install chromium || say "The browser tests will be skipped."
-elif [ "$purpose" = lint ]; then
-    extras="[test,lint]"
+extras="[test,lint]"
+stamp="$venv/.ready-tools"
+if [ "$purpose" = run ] && [ ! -e "$stamp" ]; then
+    extras=""
+    stamp="$venv/.ready"
 fi
-
-stamp="$venv/.ready-$purpose"
 if [ ! -e "$stamp" ] || [ pyproject.toml -nt "$stamp" ]; then
-    [ -x "$venv/bin/python" ] || "$python" -m venv "$venv"
+    # One that was interrupted while it was made has no pip.
+    "$venv/bin/python" -m pip --version >/dev/null 2>&1 || "$python" -m venv --clear "$venv"
     say "installing Cartwheel${extras:+ with its tools} into $venv"
     "$venv/bin/python" -m pip install --quiet --disable-pip-version-check -e ".$extras"
     touch "$stamp"

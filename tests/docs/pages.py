@@ -16,7 +16,7 @@ PAGES = [
 ]
 
 _FENCE = re.compile(r"^```(\w*)\s*$")
-_NOTE = re.compile(r"^<!-- (not run|keys): (.+) -->$")
+_NOTE = re.compile(r"^<!-- (not run|keys|fails): (.+) -->$")
 
 
 @dataclass
@@ -28,7 +28,8 @@ class Block:
     language: str
     lines: list[str] = field(default_factory=list)
     notes: dict[str, str] = field(default_factory=dict)
-    """From the comment above it: ``not run`` with the reason, ``keys`` to type."""
+    """From the comment above it: ``not run`` with the reason, ``keys`` to type, ``fails`` with why
+    the last of its commands does."""
 
     def __str__(self) -> str:
         return f"{self.page.relative_to(ROOT)}:{self.line}"
@@ -42,6 +43,7 @@ class Command:
     line: int
     text: str
     expected: str = ""
+    fails: bool = False
 
     def __str__(self) -> str:
         return f"{self.block.page.relative_to(ROOT)}:{self.line}: $ {self.text}"
@@ -87,4 +89,5 @@ def commands(page: Path) -> list[Command]:
                 found.append(Command(block=block, line=block.line + offset, text=line[2:]))
             else:
                 found[-1].expected += line + "\n"
+        found[-1].fails = "fails" in block.notes
     return found

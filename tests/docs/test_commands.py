@@ -64,7 +64,9 @@ class Reader:
 
     def follow(self, command: Command) -> None:
         text = command.text
-        if text.startswith("cd "):
+        if command.fails:
+            self._ask(command, status=2)
+        elif text.startswith("cd "):
             self._change_folder(text.removeprefix("cd "))
         elif text.startswith("cartwheel run") and "--for" not in text:
             self._start(command)
@@ -142,7 +144,7 @@ class Reader:
         os.close(master)
         assert driver.returncode in (0, 130), f"{command}: status {driver.returncode}"
 
-    def _ask(self, command: Command) -> None:
+    def _ask(self, command: Command, *, status: int = 0) -> None:
         deadline = time.monotonic() + PATIENCE
         while True:
             done = subprocess.run(
@@ -156,12 +158,12 @@ class Reader:
                 check=False,
             )
             output = done.stdout + done.stderr
-            fits = done.returncode == 0 and matches(command.expected, output)
+            fits = done.returncode == status and matches(command.expected, output)
             again = command.text.startswith(ASKS) and time.monotonic() < deadline
             if fits or not again:
                 break
             time.sleep(0.2)
-        assert done.returncode == 0, f"{command}\nended with {done.returncode}:\n{output}"
+        assert done.returncode == status, f"{command}\nended with {done.returncode}:\n{output}"
         assert fits, f"{command}\nshown:\n{command.expected}\ngiven:\n{output}"
 
 
