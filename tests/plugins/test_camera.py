@@ -215,7 +215,7 @@ def test_jpeg_shows_the_same(make):
 def count_renders(world):
     """A list that grows with each image drawn."""
     drawn = []
-    renderer = world.session.simulation.renderer
+    renderer = world.session.simulation.engine.renderer
     render = renderer.render
     renderer.render = lambda *a: drawn.append(1) or render(*a)
     return drawn

@@ -1,0 +1,81 @@
+"""When what is due: exact over hours, for rates that no step divides."""
+
+import math
+from fractions import Fraction
+
+import pytest
+
+from cartwheel.simulation.clock import NANOSECONDS, Schedule, Task, to_ns
+
+STEP = 5_000_000
+
+
+def task(rate, *, step_ns=STEP, order=0):
+    return Task(
+        rate=rate, before=None, after=None, active=lambda: True, step_ns=step_ns, order=order
+    )
+
+
+def due_steps(rate, steps, *, step_ns=STEP):
+    """The steps on which a task alone is due."""
+    schedule, step, found = Schedule([task(rate, step_ns=step_ns)]), 0, []
+    while step < steps:
+        tasks, upcoming = schedule.at(step)
+        if tasks:
+            found.append(step)
+        step = upcoming
+    return found
+
+
+@pytest.mark.parametrize("rate", [30, 29.97, 7, 60, 100, 50, 0.3])
+def test_due_times_do_not_drift_in_a_thousand_seconds(rate):
+    """The k-th is the first step at or after k / rate."""
+    steps = 1000 * NANOSECONDS // STEP
+    found = due_steps(rate, steps)
+    exact = Fraction(rate).limit_denominator(1_000_000)
+    expected = []
+    k = 0
+    while (step := math.ceil(Fraction(k) / exact * NANOSECONDS / STEP)) < steps:
+        expected.append(step)
+        k += 1
+    assert found == expected
+    assert len(found) == math.ceil(1000 * exact)
+
+
+@pytest.mark.parametrize("rate", [0, 200, 1000, 1e6])
+def test_a_rate_beyond_the_step_is_every_step(rate):
+    assert due_steps(rate, 50) == list(range(50))
+
+
+def test_a_step_that_is_no_round_number():
+    """At 1/3 ms (rounded to ns) 100 Hz stays 100 Hz."""
+    step = to_ns(1 / 3000)
+    count = len(due_steps(100, 10 * NANOSECONDS // step, step_ns=step))
+    assert abs(count - 1000) <= 1
+
+
+def test_a_schedule_looked_at_late_goes_on_with_the_next():
+    """Steps that were missed, as after a spawn far into a run, are not made up for."""
+    schedule = Schedule([task(50)])
+    tasks, upcoming = schedule.at(1002)
+    assert (list(tasks), upcoming) == ([], 1004)
+
+
+def test_tasks_due_together_come_in_their_order():
+    late, early, other = task(50, order=2), task(100, order=1), task(30, order=0)
+    schedule = Schedule([late, early, other])
+    assert schedule.at(0)[0] == (other, early, late)
+    assert schedule.at(2)[0] == (early,)
+    assert schedule.at(4)[0] == (early, late)
+
+
+def test_restart_begins_at_zero():
+    schedule = Schedule([task(50)])
+    schedule.at(100)
+    schedule.restart()
+    assert len(schedule.at(0)[0]) == 1
+
+
+@pytest.mark.parametrize(("seconds", "ns"), [(0.005, 5_000_000), (0.1, 100_000_000), (1e-9, 1)])
+def test_to_ns_rounds(seconds, ns):
+    assert to_ns(seconds) == ns
