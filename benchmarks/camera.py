@@ -126,7 +126,7 @@ def _ours(world: cw.World, size: tuple[int, int]) -> Callable[[], object]:
     lens = dataclasses.replace(camera, width=size[0], height=size[1])
     handle = CameraHandle("cart_0", "camera1", lens)
     handle.bind(simulation.model, simulation.data)
-    return lambda: simulation.renderer.render(simulation.data, handle)
+    return lambda: simulation.engine.renderer.render(simulation.data, handle)
 
 
 class _Theirs:

@@ -1,10 +1,10 @@
 """Cartwheel simulates the robot you described.
 
-    >>> import cartwheel as cw
-    >>> world = cw.World("empty")
-    >>> cart = world.spawn("rosbots.xacro")
-    >>> cart.publish("/part2_cmr/cmd_vel", linear_x=0.5)
-    >>> world.run(seconds=5)
+>>> import cartwheel as cw
+>>> world = cw.World("empty")
+>>> cart = world.spawn("rosbots.xacro")
+>>> cart.publish("/part2_cmr/cmd_vel", linear_x=0.5)
+>>> world.run(seconds=5)
 """
 
 from __future__ import annotations

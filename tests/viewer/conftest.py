@@ -142,6 +142,10 @@ def open_page(browser, arena):
     page.locator("[data-key='i']").wait_for()
     page.get_by_role("button", name=CART, exact=True).wait_for()
     eventually(lambda: arena.viewer._page.clients, what="the browser")
+    # The stage between the panels is narrow here: step back until cart and post stand in it.
+    for client in arena.viewer._page.server.get_clients().values():
+        client.camera.position = (-4.4, -5.2, 3.4)
+        client.camera.look_at = (1.3, 0.0, 0.3)
     return page
 
 
@@ -198,10 +202,10 @@ def project(camera, point, box):
 
 
 def picture_of(page):
-    """The camera panel's image as the browser decoded it, shape (height, width, 3); None without."""
+    """The camera panel's image as the browser decoded it, shape (height, width, 3)."""
     found = page.evaluate(
         """() => {
-          const image = [...document.querySelectorAll("img")].find(i => i.naturalWidth >= 64);
+          const image = [...document.querySelectorAll("img")].find(i => i.src.startsWith("blob:"));
           if (!image || !image.complete) return null;
           const canvas = document.createElement("canvas");
           canvas.width = image.naturalWidth; canvas.height = image.naturalHeight;

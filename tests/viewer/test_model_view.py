@@ -44,11 +44,11 @@ def robot(*links):
     return RobotDescription(name="r", links=links, canonical_link="base", origin=ORIGIN)
 
 
-def link(name, *, at=Pose(), size=None):
+def link(name, *, at=None, size=None):
     collisions = ()
     if size:
         collisions = (Collision(name=f"{name}_c", shape=Box(size=size), origin=ORIGIN),)
-    return Link(name=name, pose=at, collisions=collisions, origin=ORIGIN)
+    return Link(name=name, pose=at or Pose(), collisions=collisions, origin=ORIGIN)
 
 
 @pytest.fixture

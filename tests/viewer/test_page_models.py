@@ -40,7 +40,8 @@ def test_twice_the_same_gets_two_names(page, arena):
 
 
 BALL = """<robot name="ball"><link name="ball">
-  <inertial><mass value="1"/><inertia ixx=".01" iyy=".01" izz=".01" ixy="0" ixz="0" iyz="0"/></inertial>
+  <inertial><mass value="1"/>
+    <inertia ixx=".01" iyy=".01" izz=".01" ixy="0" ixz="0" iyz="0"/></inertial>
   <collision><geometry><sphere radius="0.1"/></geometry></collision>
 </link></robot>"""
 
@@ -62,19 +63,29 @@ def test_a_broken_file_is_explained_and_disturbs_nothing(page, arena, tmp_path):
     before = arena.ask(lambda: arena.simulation.time_ns)
     text = BALL.replace('radius="0.1"', 'radius="big"')
     upload(page, write(tmp_path, "broken.urdf", text))
-    note = page.locator(".mantine-Notification-root", has_text="broken.urdf")
+    note = page.locator(".mantine-Notification-root", has_text="That did not work")
     note.first.wait_for()
-    assert "broken.urdf:3" in note.first.inner_text()
+    assert "broken.urdf:4" in note.first.inner_text()
     assert "big" in note.first.inner_text()
     assert "/tmp" not in note.first.inner_text()
     assert set(arena.models()) == {"ground_plane", "post", CART}
     eventually(lambda: arena.ask(lambda: arena.simulation.time_ns) > before + 10**8, what="time")
 
 
+def point_at(page, place):
+    """Moves the mouse, and gives the page two pictures to see what is under it."""
+    page.mouse.move(*place)
+    page.evaluate(
+        "() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))"
+    )
+
+
 def test_a_click_in_the_scene_selects(page, arena):
     box = page.locator("canvas[data-engine]").bounding_box()
     post = arena.pose("post")
-    page.mouse.click(*project(arena.camera(), (post.x, post.y, 0.6), box))
+    point_at(page, project(arena.camera(), (post.x, post.y, 0.6), box))
+    page.mouse.down()
+    page.mouse.up()
     page.locator("[data-model='post']").wait_for()
     assert "10 kg" in page.locator("[data-model='post']").inner_text()
     row(page, "post").click()
@@ -89,10 +100,10 @@ def test_the_gizmo_lifts_the_post_and_holds_it_until_let_go(page, arena):
     post = arena.pose("post")
     at = lambda z: project(arena.camera(), (post.x, post.y, post.z + z), box)  # noqa: E731
     tip = 0.93 * gizmo.scale
-    page.mouse.move(*at(tip))
+    point_at(page, at(tip))
     page.mouse.down()
     for i in range(1, 9):
-        page.mouse.move(*at(tip + 0.05 * i))
+        point_at(page, at(tip + 0.05 * i))
     eventually(lambda: arena.pose("post").z > 0.3, what="the post in the air")
     # 0.4 m would be fallen through in 0.29 s.
     start = arena.ask(lambda: arena.simulation.time_ns)

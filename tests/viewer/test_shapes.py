@@ -101,11 +101,11 @@ def test_a_heightmap_has_its_image_as_heights(tmp_path):
     np.testing.assert_allclose(vertices[vertices[:, 2].argmax()], (-5, 5, 2), atol=1e-5)
 
 
-def visual(shape, *, rgba=None, pose=Pose(), transparency=0.0):
+def visual(shape, *, rgba=None, pose=None, transparency=0.0):
     return Visual(
         name="v",
         shape=shape,
-        pose=pose,
+        pose=pose or Pose(),
         material=Material(diffuse=rgba),
         transparency=transparency,
         origin=ORIGIN,

@@ -40,7 +40,8 @@ class Plugin(Generic[C]):
             part.report(diagnostic)
         ros = tag.element.find("ros/namespace")
         plain = tag.element.find("robotNamespace")
-        self.namespace = (ros or plain).text.strip() if (ros or plain) else ""
+        found = ros or plain
+        self.namespace = found.text.strip() if found is not None else ""
         self._remappings = _remappings(tag)
         self._open: list[Publisher | Subscription | Service] = []
         self.configure()

@@ -1,7 +1,8 @@
 """The one thread that owns the physics."""
 
 from cartwheel.simulation.handles import CameraHandle, JointHandle, LinkHandle, MotorHandle
-from cartwheel.simulation.simulation import Part, Simulation
+from cartwheel.simulation.part import Part
+from cartwheel.simulation.simulation import Simulation
 from cartwheel.simulation.snapshot import Contact, PlacedModel, RunState, Scene, Snapshot
 
 __all__ = [

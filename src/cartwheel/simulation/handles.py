@@ -90,7 +90,8 @@ class LinkHandle:
         if self._model.body_treeid[self.id] < 0:
             # The engine works out nothing for what cannot move: it bears its weight.
             turn: Array = self._data.xmat[self.id].reshape(3, 3)
-            return -turn.T @ self._model.opt.gravity
+            weight: Array = -turn.T @ self._model.opt.gravity
+            return weight
         six = np.zeros(6)
         # Fills the accelerations of all bodies, which stepping alone does not need.
         mujoco.mj_rnePostConstraint(self._model, self._data)

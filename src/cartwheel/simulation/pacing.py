@@ -6,6 +6,7 @@ import queue
 import time
 from collections import deque
 from collections.abc import Callable
+from dataclasses import dataclass
 
 from cartwheel.simulation.clock import NANOSECONDS
 from cartwheel.simulation.simulation import Simulation
@@ -18,6 +19,9 @@ _SLICE = 0.01
 _WINDOW = 1.0
 """s of wall time over which the real-time factor is measured."""
 
+_LONGEST_TURN_NS = 50_000_000
+"""Simulation time of one turn at most while it is paced."""
+
 Listener = Callable[[Snapshot], None]
 
 
@@ -28,6 +32,23 @@ class _Frames:
         self.listener = listener
         self.period = 1.0 / rate
         self.due = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class _Anchor:
+    """The wall time and simulation time from which a speed is counted."""
+
+    wall: float
+    time_ns: int
+    speed: float
+
+    def time_at(self, wall: float) -> int:
+        """Where simulation time should be."""
+        return self.time_ns + int((wall - self.wall) * self.speed * NANOSECONDS)
+
+    def wall_at(self, time_ns: int) -> float:
+        """When simulation time should be there."""
+        return self.wall + (time_ns - self.time_ns) / NANOSECONDS / self.speed
 
 
 class Pacer:
@@ -45,8 +66,7 @@ class Pacer:
         self._until_ns = until_ns
         self._frames: tuple[_Frames, ...] = ()
         self._history: deque[tuple[float, int]] = deque()
-        self._anchored: float | None = None
-        """The speed from whose setting on time is counted; None when it must be counted anew."""
+        self._anchor: _Anchor | None = None
         simulation.on_reset.append(self._restart)
 
     def add_listener(self, listener: Listener, *, rate: float = 30.0) -> None:
@@ -56,10 +76,6 @@ class Pacer:
         """
         self._frames += (_Frames(listener, rate),)
 
-    def _restart(self) -> None:
-        self._history.clear()
-        self._anchored = None
-
     def run(self) -> None:
         """Runs until the time is reached or the simulation is stopped.
 
@@ -67,52 +83,69 @@ class Pacer:
             SimulationError: The simulation diverged.
         """
         simulation = self._simulation
-        anchor_wall, anchor_ns, self._anchored = time.perf_counter(), simulation.time_ns, None
-        while simulation.run_state is not RunState.STOPPED:
-            if self._until_ns is not None and simulation.time_ns >= self._until_ns:
-                break
+        turns = {RunState.RUNNING: self._run_on, RunState.PAUSED: self._hold}
+        while True:
             simulation.drain()
-            now = time.perf_counter()
-            speed = simulation.speed
-            if simulation.run_state is RunState.PAUSED:
-                if simulation.steps_allowed:
-                    simulation.advance(
-                        simulation.time_ns + simulation.steps_allowed * simulation.step_ns
-                    )
-                self._history.clear()
-                simulation.real_time_factor = 0.0
-                self._show(now)
-                self._wait(self._next_frame(now + 0.1) - time.perf_counter())
-                self._anchored = None
-                continue
-            if simulation.run_state is RunState.STOPPED:
-                break
-            goal_ns = now_ns = simulation.time_ns
-            if speed is None:
-                # As many steps as fit into a slice at the speed of late; then look again.
-                goal_ns += max(
-                    simulation.step_ns,
-                    int(_SLICE * NANOSECONDS * max(simulation.real_time_factor, 1.0)),
-                )
-            else:
-                wanted = anchor_ns + int((now - anchor_wall) * speed * NANOSECONDS)
-                lag = (wanted - now_ns) / NANOSECONDS / speed
-                if speed != self._anchored or lag > _PATIENCE or lag < -_PATIENCE:
-                    anchor_wall, anchor_ns, self._anchored = now, now_ns, speed
-                    wanted = now_ns + simulation.step_ns
-                goal_ns = wanted
-            if self._until_ns is not None:
-                goal_ns = min(goal_ns, self._until_ns)
-            if goal_ns > now_ns:
-                # A slow simulation still looks at the clock, the commands and the listeners.
-                limit = max(simulation.step_ns, int(0.05 * NANOSECONDS))
-                simulation.advance(min(goal_ns, now_ns + limit if speed is not None else goal_ns))
-            now = time.perf_counter()
-            self._measure(now)
-            self._show(now)
-            if speed is not None:
-                ahead = (simulation.time_ns + simulation.step_ns - anchor_ns) / NANOSECONDS / speed
-                self._wait(min(anchor_wall + ahead, self._next_frame(now + 0.1)) - now)
+            ended = self._until_ns is not None and simulation.time_ns >= self._until_ns
+            turn = turns.get(simulation.run_state)
+            if ended or turn is None:
+                return
+            turn()
+
+    def _run_on(self) -> None:
+        """One turn of a running simulation: steps, listeners, sleep."""
+        simulation = self._simulation
+        now_ns = simulation.time_ns
+        anchor = self._anchored(time.perf_counter())
+        if anchor is None:
+            # As many steps as fit into a slice at the speed of late; then look again.
+            speed = max(simulation.real_time_factor, 1.0)
+            goal_ns = now_ns + max(simulation.step_ns, int(_SLICE * NANOSECONDS * speed))
+        else:
+            # A slow simulation still looks at the clock, the commands and the listeners.
+            goal_ns = min(anchor.time_at(time.perf_counter()), now_ns + _LONGEST_TURN_NS)
+        if self._until_ns is not None:
+            goal_ns = min(goal_ns, self._until_ns)
+        if goal_ns > now_ns:
+            simulation.advance(goal_ns)
+        now = time.perf_counter()
+        self._measure(now)
+        self._show(now)
+        anchor = self._anchor
+        if anchor is not None:
+            next_step = anchor.wall_at(simulation.time_ns + simulation.step_ns)
+            self._wait(min(next_step, self._next_frame(now + 0.1)) - now)
+
+    def _hold(self) -> None:
+        """One turn of a paused simulation: single steps that were asked for, listeners, sleep."""
+        simulation = self._simulation
+        if simulation.steps_allowed:
+            simulation.advance(simulation.time_ns + simulation.steps_allowed * simulation.step_ns)
+        self._restart()
+        simulation.real_time_factor = 0.0
+        now = time.perf_counter()
+        self._show(now)
+        self._wait(self._next_frame(now + 0.1) - time.perf_counter())
+
+    def _anchored(self, now: float) -> _Anchor | None:
+        """What to keep to: counted anew after a change of speed or a lag; None without a speed."""
+        simulation, anchor = self._simulation, self._anchor
+        if simulation.speed is None:
+            self._anchor = None
+        else:
+            # Two steps of a slow motion may take longer than patience lasts.
+            patience = max(_PATIENCE, 2 * simulation.step_ns / NANOSECONDS / simulation.speed)
+            if (
+                anchor is None
+                or anchor.speed != simulation.speed
+                or abs(anchor.wall_at(simulation.time_ns) - now) > patience
+            ):
+                self._anchor = _Anchor(now, simulation.time_ns, simulation.speed)
+        return self._anchor
+
+    def _restart(self) -> None:
+        self._history.clear()
+        self._anchor = None
 
     def _measure(self, now: float) -> None:
         history = self._history

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import zlib
 from collections.abc import Callable, Collection
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,6 +12,7 @@ from cartwheel.errors import Diagnostic, Origin, UnknownNameError
 from cartwheel.geometry import Pose
 from cartwheel.simulation.clock import NANOSECONDS, Task, always
 from cartwheel.simulation.contacts import read_contacts
+from cartwheel.simulation.engine import Engine
 from cartwheel.simulation.handles import (
     CameraHandle,
     Handle,
@@ -23,15 +23,12 @@ from cartwheel.simulation.handles import (
 from cartwheel.simulation.snapshot import Contact
 from cartwheel.world.entry import CameraMount, ModelEntry, Motor, scoped
 
-if TYPE_CHECKING:
-    from cartwheel.simulation.simulation import Simulation
-
 
 class Part:
     """What a plugin gets of the simulation; for the simulation's thread alone."""
 
-    def __init__(self, simulation: Simulation, entry: ModelEntry) -> None:
-        self._simulation = simulation
+    def __init__(self, engine: Engine, entry: ModelEntry) -> None:
+        self._engine = engine
         self._entry = entry
         self.handles: list[Handle] = []
         self.tasks: list[Task] = []
@@ -50,17 +47,17 @@ class Part:
     @property
     def world_gravity(self) -> tuple[float, float, float]:
         """m/s², in the world."""
-        return self._simulation.world.gravity
+        return self._engine.world.gravity
 
     @property
     def time_ns(self) -> int:
         """Simulation time of the state that is being read or controlled."""
-        return self._simulation.time_ns
+        return self._engine.time_ns
 
     @property
     def seconds(self) -> float:
         """The same in s."""
-        return self._simulation.time_ns / NANOSECONDS
+        return self._engine.time_ns / NANOSECONDS
 
     def link(self, name: str, *, origin: Origin | None = None) -> LinkHandle:
         """A link of this model.
@@ -140,8 +137,8 @@ class Part:
                 before=before,
                 after=after,
                 active=active,
-                step_ns=self._simulation.step_ns,
-                order=self._simulation.next_task_order(),
+                step_ns=self._engine.step_ns,
+                order=self._engine.next_task_order(),
             )
         )
 
@@ -152,17 +149,17 @@ class Part:
         and since when change nothing. Take a new one for each measurement.
         """
         words = [
-            self._simulation.seed,
+            self._engine.seed,
             zlib.crc32(self.name.encode()),
             zlib.crc32(name.encode()),
-            self._simulation.time_ns,
+            self._engine.time_ns,
         ]
         return np.random.default_rng(words)
 
     def contacts(self, collisions: Collection[str]) -> list[Contact]:
         """Contacts of these collisions (``link::collision``), each the `first` of its contact."""
         names = {scoped(self.name, collision) for collision in collisions}
-        return read_contacts(self._simulation.model, self._simulation.data, names)
+        return read_contacts(self._engine.model, self._engine.data, names)
 
     def render(self, camera: CameraHandle) -> np.ndarray[tuple[int, int, int], np.dtype[np.uint8]]:
         """An image through a camera, shape (height, width, 3), RGB.
@@ -170,11 +167,11 @@ class Part:
         Raises:
             SimulationError: No OpenGL; says what to install.
         """
-        return self._simulation.renderer.render(self._simulation.data, camera)
+        return self._engine.renderer.render(self._engine.data, camera)
 
     def report(self, diagnostic: Diagnostic) -> None:
         """Tells the user something about this model; also while it runs."""
         if self.spawned:
-            self._simulation.report(diagnostic)
+            self._engine.report(diagnostic)
         else:
             self.diagnostics.append(diagnostic)

@@ -30,8 +30,13 @@ class Separation:
         return bool(self._roots)
 
     def forget(self) -> None:
-        """Ends it: time went back, or the model was compiled anew."""
+        """Ends it: time went back."""
         self._roots.clear()
+
+    def resume(self, model: Any, data: Any) -> None:
+        """Goes on in a model that was compiled anew, with whatever overlaps there."""
+        if self._roots:
+            self._roots = {root for one, two, _ in _deep(model, data) for root in (one, two)}
 
     def begin(self, model: Any, data: Any, placed: set[int]) -> list[tuple[str, float]]:
         """Looks for overlaps of a model that was just put somewhere.

@@ -8,24 +8,21 @@ from collections.abc import Callable
 from concurrent.futures import Future
 from typing import Any, Protocol, TypeVar
 
-import mujoco
-
 from cartwheel.description.model import RobotDescription, WorldDescription
 from cartwheel.errors import Diagnostic, UnknownNameError, WorldError
-from cartwheel.geometry import Pose, from_wxyz, to_wxyz
-from cartwheel.simulation.clock import Schedule, Task, always, to_ns
+from cartwheel.geometry import Pose
+from cartwheel.simulation.clock import Schedule, Task, always
+from cartwheel.simulation.engine import Engine
 from cartwheel.simulation.guard import Guard
+from cartwheel.simulation.observing import Observer
 from cartwheel.simulation.part import Part
-from cartwheel.simulation.rendering import Renderer
 from cartwheel.simulation.separation import Separation
-from cartwheel.simulation.snapshot import PlacedModel, RunState, Scene, Snapshot
+from cartwheel.simulation.snapshot import RunState, Scene, Snapshot
 from cartwheel.world import build
-from cartwheel.world.build import step_of
-from cartwheel.world.entry import ModelEntry, scoped
+from cartwheel.world.entry import ModelEntry
 
 T = TypeVar("T")
 _GUARD_INTERVAL_NS = 50_000_000
-_OBJ = mujoco.mjtObj
 
 
 class Behaviour(Protocol):
@@ -70,80 +67,95 @@ class Simulation:
     def __init__(
         self, world: WorldDescription, *, attach: Attach = lambda _: [], seed: int = 0
     ) -> None:
-        self.world = world
-        self.seed = seed
-        self.step_ns = to_ns(step_of(world))
+        self.engine = Engine(world, seed)
         self.run_state = RunState.RUNNING
         self.speed: float | None = 1.0
         self.real_time_factor = 0.0
         self.steps_allowed: int | None = None
         """Steps until a paused simulation pauses again; None while it is not stepping singly."""
-        self.diagnostics: list[Diagnostic] = list(world.diagnostics)
-        self.renderer = Renderer()
         self.commands: queue.SimpleQueue[Callable[[], None]] = queue.SimpleQueue()
         self.on_reset: list[Callable[[], None]] = []
         """Called after time went back to zero."""
-        self.on_diagnostic: list[Callable[[Diagnostic], None]] = []
         self._attach = attach
         self._residents: dict[str, _Resident] = {}
         self._schedule = Schedule()
         self._world_tasks: list[Task] = []
-        self._orders = itertools.count()
-        self._step = 0
         self._guard = Guard()
-        self._separation = Separation()
         self._guard_due = 0
+        self._separation = Separation()
         self._version = 0
         self._compile({})
         for description in world.models:
             self.spawn(description, pose=description.pose)
+
+    @property
+    def world(self) -> WorldDescription:
+        return self.engine.world
+
+    @property
+    def model(self) -> Any:
+        """MuJoCo's; replaced at each spawn and delete."""
+        return self.engine.model
+
+    @property
+    def data(self) -> Any:
+        """MuJoCo's; replaced at each spawn and delete."""
+        return self.engine.data
+
+    @property
+    def diagnostics(self) -> list[Diagnostic]:
+        """All that was reported so far."""
+        return self.engine.diagnostics
+
+    @property
+    def scene(self) -> Scene:
+        """What stands in the world."""
+        return self._observer.scene
 
     # -- time
 
     @property
     def time_ns(self) -> int:
         """Simulation time."""
-        return self._step * self.step_ns
+        return self.engine.time_ns
 
     @property
     def current_step(self) -> int:
-        return self._step
+        """Steps made since time zero."""
+        return self.engine.step
 
     @property
-    def step_seconds(self) -> float:
-        return float(self.model.opt.timestep)
+    def step_ns(self) -> int:
+        """Length of a step."""
+        return self.engine.step_ns
 
     def advance(self, target_ns: int) -> None:
         """Runs to a time: posted commands, then what is due, then the physics, in turns.
 
-        Ends early when a command pauses or stops the run. What is due at the target itself
-        is done by the next call, after the commands that come before it.
+        Ends early when a command pauses, stops or resets the run. What is due at the target
+        itself is done by the next call, after the commands that come before it.
 
         Raises:
             SimulationError: The state is no longer finite.
         """
-        target = -(-target_ns // self.step_ns)
-        while self._step < target:
+        engine = self.engine
+        target = -(-target_ns // engine.step_ns)
+        while engine.step < target:
+            step = engine.step
             self.drain()
+            if engine.step != step:
+                return
             if self.run_state is not RunState.RUNNING and not self.steps_allowed:
                 return
-            due, read = self._serve()
-            count = min(target, due) - self._step
-            if self._separation.active:
-                count = 1
+            due, forwarded = self._serve()
+            count = 1 if self._separation.active else min(target, due) - step
             if self.steps_allowed is not None:
                 count = min(count, self.steps_allowed)
                 self.steps_allowed -= count
-            self._step += count
-            if read:
-                # The forward pass of this state is done: only its integration is missing.
-                mujoco.mj_Euler(self.model, self.data)
-                count -= 1
-            if count:
-                mujoco.mj_step(self.model, self.data, count)
+            engine.advance(count, forwarded=forwarded)
             if self._separation.active:
-                self._separation.limit(self.model, self.data)
-            if self._step >= self._guard_due:
+                self._separation.limit(engine.model, engine.data)
+            if engine.step >= self._guard_due:
                 self._watch()
 
     def drain(self) -> None:
@@ -158,7 +170,7 @@ class Simulation:
             The step at which something is due next, and whether a forward pass was made for
             tasks that read: their state is what the physics would compute next anyway.
         """
-        tasks, upcoming = self._schedule.at(self._step)
+        tasks, upcoming = self._schedule.at(self.engine.step)
         afters = []
         for task in tasks:
             if task.active is always or task.active():
@@ -167,20 +179,20 @@ class Simulation:
                 if task.after is not None:
                     afters.append(task.after)
         if afters:
-            mujoco.mj_forward(self.model, self.data)
+            self.engine.forward()
             for after in afters:
                 after()
         return upcoming, bool(afters)
 
     def _watch(self) -> None:
-        self._guard_due = self._step + max(1, _GUARD_INTERVAL_NS // self.step_ns)
+        self._guard_due = self.engine.step + max(1, _GUARD_INTERVAL_NS // self.step_ns)
         for message in self._guard.check(self.model, self.data):
-            self.report(Diagnostic(severity="warning", message=message))
+            self.engine.report(Diagnostic(severity="warning", message=message))
         self._guard.keep(self.data)
 
     def refresh(self) -> None:
         """Makes poses and contacts those of the present state, for reading between steps."""
-        mujoco.mj_forward(self.model, self.data)
+        self.engine.forward()
 
     def pause(self) -> None:
         """Holds time."""
@@ -209,8 +221,7 @@ class Simulation:
 
     def reset(self) -> None:
         """Takes time back to zero and every model to where it was spawned."""
-        mujoco.mj_resetData(self.model, self.data)
-        self._step = 0
+        self.engine.rewind()
         self._guard_due = 0
         self._guard.forget()
         self._separation.forget()
@@ -218,7 +229,6 @@ class Simulation:
             for behaviour in resident.behaviours:
                 behaviour.reset()
         self._schedule.restart()
-        self.refresh()
         for callback in self.on_reset:
             callback()
 
@@ -275,7 +285,7 @@ class Simulation:
                 hint=f'Give it another with --model, such as "{self._free_name(name)}".',
             )
         entry = ModelEntry(name=name, description=description, pose=pose or description.pose)
-        resident = _Resident(entry, Part(self, entry))
+        resident = _Resident(entry, Part(self.engine, entry))
         try:
             resident.behaviours = self._attach(resident.part)
             self._compile({**self._residents, name: resident})
@@ -284,7 +294,7 @@ class Simulation:
             raise
         resident.part.spawned = True
         for diagnostic in (*description.diagnostics, *resident.part.diagnostics):
-            self.report(diagnostic)
+            self.engine.report(diagnostic)
         self._separate(name)
         return name
 
@@ -301,9 +311,7 @@ class Simulation:
     def pose(self, name: str) -> Pose:
         """Where a model's frame is, which goes with its canonical link: a URDF's root."""
         description = self._resident(name).entry.description
-        body = self._body_id(name, description.canonical_link)
-        x, y, z = self.data.xpos[body].tolist()
-        link = Pose((x, y, z), from_wxyz(self.data.xquat[body].tolist()))
+        link = self.engine.link_pose(name, description.canonical_link)
         return link @ _canonical_pose(description).inverse()
 
     def set_pose(self, name: str, pose: Pose) -> None:
@@ -313,20 +321,13 @@ class Simulation:
             UnknownNameError: There is no such model.
         """
         entry = self._resident(name).entry
-        joint = mujoco.mj_name2id(
-            self.model, _OBJ.mjOBJ_JOINT, scoped(name, entry.description.canonical_link)
-        )
+        joint = self.engine.joint_id(name, entry.description.canonical_link)
         if joint < 0:
+            # It stands fixed in the world, so the world is made anew.
             entry.pose = pose
             self._compile(self._residents)
-            self._separate(name)
-            return
-        position, velocity = self.model.jnt_qposadr[joint], self.model.jnt_dofadr[joint]
-        pose = pose @ _canonical_pose(entry.description)
-        self.data.qpos[position : position + 3] = pose.position
-        self.data.qpos[position + 3 : position + 7] = to_wxyz(pose.orientation)
-        self.data.qvel[velocity : velocity + 6] = 0
-        self.refresh()
+        else:
+            self.engine.place(joint, pose @ _canonical_pose(entry.description))
         self._separate(name)
 
     def joint_position(self, name: str, joint: str) -> float:
@@ -339,8 +340,7 @@ class Simulation:
         if (name, joint) not in self.scene.joints:
             known = [other for model, other in self.scene.joints if model == name]
             raise UnknownNameError("joint", joint, known)
-        row = self.scene.joints.index((name, joint))
-        return float(self.data.qpos[self._row_joints[row]])
+        return self.engine.joint_position(self.engine.joint_id(name, joint))
 
     def schedule(
         self,
@@ -358,7 +358,7 @@ class Simulation:
                 after=after,
                 active=active,
                 step_ns=self.step_ns,
-                order=self.next_task_order(),
+                order=self.engine.next_task_order(),
             )
         )
         self._gather_tasks()
@@ -367,27 +367,17 @@ class Simulation:
         tasks = [task for resident in self._residents.values() for task in resident.part.tasks]
         self._schedule = Schedule([*self._world_tasks, *tasks])
 
-    def report(self, diagnostic: Diagnostic) -> None:
-        """Keeps something that the user should know, and tells those who listen."""
-        self.diagnostics.append(diagnostic)
-        for callback in self.on_diagnostic:
-            callback(diagnostic)
-
-    def next_task_order(self) -> int:
-        """A number that rises with each task."""
-        return next(self._orders)
-
     def _separate(self, name: str) -> None:
         """Sees to it that a model that was put into another one comes out gently."""
         description = self._resident(name).entry.description
         roots = {
-            int(self.model.body_rootid[self._body_id(name, link.name)])
+            int(self.model.body_rootid[self.engine.body_id(name, link.name)])
             for link in description.links
         }
         overlaps = self._separation.begin(self.model, self.data, roots)
         if overlaps:
             others = ", ".join(f"{other} by {depth * 100:.0f} cm" for other, depth in overlaps)
-            self.report(
+            self.engine.report(
                 Diagnostic(
                     severity="warning",
                     message=f'model "{name}" was put into {others}: they are pushed apart',
@@ -405,76 +395,27 @@ class Simulation:
             f"{name}_{i}" for i in itertools.count(1) if f"{name}_{i}" not in self._residents
         )
 
-    def _body_id(self, name: str, link: str) -> int:
-        return int(mujoco.mj_name2id(self.model, _OBJ.mjOBJ_BODY, scoped(name, link)))
-
     def _compile(self, residents: dict[str, _Resident]) -> None:
         """Compiles a new set of models and carries over the state of those that stay."""
-        model = build(self.world, [resident.entry for resident in residents.values()]).model
-        model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_AUTORESET
-        data = mujoco.MjData(model)
-        if self._version:
-            _carry_over(self.model, self.data, model, data)
-        self.model, self.data = model, data
+        entries = [resident.entry for resident in residents.values()]
+        self.engine.replace(build(self.world, entries).model)
         self._residents = residents
         self._version += 1
         self._guard.forget()
-        self._separation.forget()
-        self.renderer.bind(model)
         for resident in residents.values():
             for handle in resident.part.handles:
-                handle.bind(model, data)
+                handle.bind(self.model, self.data)
         self._gather_tasks()
-        self.refresh()
-        self.scene = self._describe()
-
-    # -- what others see
-
-    def _describe(self) -> Scene:
-        bodies = [(resident.entry.name, link.name)
-                  for resident in self._residents.values()
-                  for link in resident.entry.description.links]  # fmt: skip
-        joints = [(resident.entry.name, joint.name)
-                  for resident in self._residents.values() if not resident.entry.description.static
-                  for joint in resident.entry.description.joints
-                  if joint.type in ("revolute", "continuous", "prismatic")]  # fmt: skip
-        self._row_bodies = [self._body_id(*names) for names in bodies]
-        self._row_joints = [
-            int(
-                self.model.jnt_qposadr[
-                    mujoco.mj_name2id(self.model, _OBJ.mjOBJ_JOINT, scoped(*names))
-                ]
-            )
-            for names in joints
-        ]
-        placed = tuple(
-            PlacedModel(
-                name=resident.entry.name,
-                description=resident.entry.description,
-                pose=resident.entry.pose,
-            )
-            for resident in self._residents.values()
-        )
-        return Scene(
-            version=self._version,
-            world=self.world,
-            models=placed,
-            links=tuple(bodies),
-            joints=tuple(joints),
-        )
+        self.engine.forward()
+        self._separation.resume(self.model, self.data)
+        self._observer = Observer(self.engine, entries, self._version)
 
     def snapshot(self) -> Snapshot:
         """An immutable copy of the present state."""
-        mujoco.mj_kinematics(self.model, self.data)
-        return Snapshot(
-            scene=self.scene,
-            time_ns=self.time_ns,
+        return self._observer.snapshot(
             run_state=self.run_state,
             speed=self.speed,
             real_time_factor=self.real_time_factor,
-            positions=self.data.xpos[self._row_bodies],
-            quaternions=self.data.xquat[self._row_bodies],
-            joint_positions=self.data.qpos[self._row_joints],
         )
 
     def close(self) -> None:
@@ -482,27 +423,9 @@ class Simulation:
         self.stop()
         for resident in self._residents.values():
             resident.close()
-        self.renderer.close()
+        self.engine.renderer.close()
 
 
 def _canonical_pose(description: RobotDescription) -> Pose:
     link = description.link(description.canonical_link)
     return link.pose if link is not None else Pose()
-
-
-def _carry_over(old_model: Any, old: Any, model: Any, data: Any) -> None:
-    """Copies the state of every joint that both models have, by name."""
-    data.time = old.time
-    for index in range(model.njnt):
-        name = mujoco.mj_id2name(model, _OBJ.mjOBJ_JOINT, index)
-        before = mujoco.mj_name2id(old_model, _OBJ.mjOBJ_JOINT, name)
-        if before < 0:
-            continue
-        kind = model.jnt_type[index]
-        sizes = {mujoco.mjtJoint.mjJNT_FREE: (7, 6), mujoco.mjtJoint.mjJNT_BALL: (4, 3)}
-        positions, velocities = sizes.get(kind, (1, 1))
-        a, b = model.jnt_qposadr[index], old_model.jnt_qposadr[before]
-        data.qpos[a : a + positions] = old.qpos[b : b + positions]
-        a, b = model.jnt_dofadr[index], old_model.jnt_dofadr[before]
-        for name in ("qvel", "qacc_warmstart"):
-            getattr(data, name)[a : a + velocities] = getattr(old, name)[b : b + velocities]

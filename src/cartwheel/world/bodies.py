@@ -91,9 +91,9 @@ class BodyBuilder:
         for link in description.links:
             if link.name in inbound and inbound[link.name].parent != "world":
                 continue
-            joint = inbound.get(link.name)
-            free = joint is None and not description.static and not link.kinematic
-            grow(link, self._spec.worldbody, entry.pose @ link.pose, joint, free)
+            anchor = inbound.get(link.name)
+            free = anchor is None and not description.static and not link.kinematic
+            grow(link, self._spec.worldbody, entry.pose @ link.pose, anchor, free)
             if free:
                 bodies[link.name].add_freejoint(name=scoped(entry.name, link.name))
         lost = [link for link in description.links if link.name not in bodies]

@@ -39,7 +39,7 @@ class Assets:
         self._materials: dict[object, str] = {}
 
     def mesh(
-        self, key: object, vertices: Array, faces: Any, *, normals: Any = None, uv: Any = None
+        self, key: object, vertices: Any, faces: Any, *, normals: Any = None, uv: Any = None
     ) -> str:
         """The name of a mesh asset; made from the arrays when `key` is new."""
         if key not in self._meshes:

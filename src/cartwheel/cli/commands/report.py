@@ -55,7 +55,7 @@ class Report:
                 self._line("robot", f"{name}, {description.mass:.4g} kg, {parts}")
         for diagnostic in session.diagnostics:
             self.diagnostic(diagnostic)
-        simulation.on_diagnostic.append(self.diagnostic)
+        simulation.engine.on_diagnostic.append(self.diagnostic)
         self._topics(session)
 
     def address(self, url: str) -> None:

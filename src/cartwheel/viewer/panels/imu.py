@@ -36,9 +36,9 @@ class ImuPanel(Panel):
         self._due = Every(_RATE)
         self._note = self.gui.add_html(_note("No IMU publishes."))
         self._plots = [
-            self._plot("angular velocity, rad/s", ("x", "y", "z")),
-            self._plot("linear acceleration, m/s²", ("x", "y", "z")),
-            self._plot("orientation, degrees", ("roll", "pitch", "yaw")),
+            self._plot("angular velocity, rad/s", ("x", "y", "z"), least=0.2),
+            self._plot("linear acceleration, m/s²", ("x", "y", "z"), least=1.0),
+            self._plot("orientation, degrees", ("roll", "pitch", "yaw"), least=5.0),
         ]
 
     def watch(self) -> None:
@@ -81,7 +81,8 @@ class ImuPanel(Panel):
             columns = table[:, 1 + 3 * i : 4 + 3 * i]
             plot.data = (table[:, 0].copy(), *(columns[:, k].copy() for k in range(3)))
 
-    def _plot(self, title: str, names: tuple[str, str, str]) -> Any:
+    def _plot(self, title: str, names: tuple[str, str, str], *, least: float) -> Any:
+        # At rest the scale stays at `least`, or a shiver of a millionth would fill the plot.
         start = np.zeros(2)
         key = "".join(
             f'<span style="color:{color};margin-left:0.5rem">{name}</span>'
@@ -97,7 +98,15 @@ class ImuPanel(Panel):
                     for name, color in zip(names, _COLORS, strict=True)
                 ),
             ),
-            scales={"x": {"time": False}},
+            scales={
+                "x": {"time": False},
+                "y": {
+                    "range": {
+                        "min": {"soft": -least, "mode": 1, "pad": 0.1},
+                        "max": {"soft": least, "mode": 1, "pad": 0.1},
+                    }
+                },
+            },
             legend={"show": False},
             height=118,
             padding=(6, 8, 0, 0),

@@ -1,0 +1,134 @@
+"""The compiled model, its state and its time: what the simulation's thread owns."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable
+from typing import Any
+
+import mujoco
+
+from cartwheel.description.model import WorldDescription
+from cartwheel.errors import Diagnostic
+from cartwheel.geometry import Pose, from_wxyz, to_wxyz
+from cartwheel.simulation.clock import to_ns
+from cartwheel.simulation.rendering import Renderer
+from cartwheel.world.build import step_of
+from cartwheel.world.entry import scoped
+
+_OBJ = mujoco.mjtObj
+# By number: numpy's integers equal the enumeration's, yet do not find them in a mapping.
+_STATE_SIZES = {mujoco.mjtJoint.mjJNT_FREE.value: (7, 6), mujoco.mjtJoint.mjJNT_BALL.value: (4, 3)}
+
+
+class Engine:
+    """MuJoCo's model and data with integer time.
+
+    Args:
+        world: Its step length counts.
+        seed: Of all noise.
+    """
+
+    def __init__(self, world: WorldDescription, seed: int) -> None:
+        self.world = world
+        self.seed = seed
+        self.step_ns = to_ns(step_of(world))
+        self.step = 0
+        """Steps made since time zero."""
+        self.model: Any = None
+        self.data: Any = None
+        self.renderer = Renderer()
+        self.diagnostics: list[Diagnostic] = list(world.diagnostics)
+        self.on_diagnostic: list[Callable[[Diagnostic], None]] = []
+        self._orders = itertools.count()
+
+    @property
+    def time_ns(self) -> int:
+        """Simulation time."""
+        return self.step * self.step_ns
+
+    def next_task_order(self) -> int:
+        """A number that rises with each task."""
+        return next(self._orders)
+
+    def report(self, diagnostic: Diagnostic) -> None:
+        """Keeps something that the user should know, and tells those who listen."""
+        self.diagnostics.append(diagnostic)
+        for callback in self.on_diagnostic:
+            callback(diagnostic)
+
+    def replace(self, model: Any) -> None:
+        """Goes on with another model, with the state of every joint that both have."""
+        model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_AUTORESET
+        data = mujoco.MjData(model)
+        if self.model is not None:
+            _carry_over(self.model, self.data, model, data)
+        self.model, self.data = model, data
+        self.renderer.bind(model)
+
+    def forward(self) -> None:
+        """Makes poses, contacts and forces those of the present state; changes no state."""
+        mujoco.mj_forward(self.model, self.data)
+
+    def advance(self, count: int, *, forwarded: bool) -> None:
+        """Makes steps.
+
+        Args:
+            count: At least 1.
+            forwarded: The forward pass of the present state is done: of the first step only
+                the integration is missing. Both ways give the same bits.
+        """
+        self.step += count
+        if forwarded:
+            mujoco.mj_Euler(self.model, self.data)
+            count -= 1
+        if count:
+            mujoco.mj_step(self.model, self.data, count)
+
+    def rewind(self) -> None:
+        """Time zero, and everything where it was placed."""
+        mujoco.mj_resetData(self.model, self.data)
+        self.step = 0
+        self.forward()
+
+    def body_id(self, model: str, link: str) -> int:
+        """The index of a link."""
+        return int(mujoco.mj_name2id(self.model, _OBJ.mjOBJ_BODY, scoped(model, link)))
+
+    def joint_id(self, model: str, joint: str) -> int:
+        """The index of a joint, or -1; a free model's root has one of its link's name."""
+        return int(mujoco.mj_name2id(self.model, _OBJ.mjOBJ_JOINT, scoped(model, joint)))
+
+    def link_pose(self, model: str, link: str) -> Pose:
+        """A link's frame in the world, as of the last forward pass."""
+        body = self.body_id(model, link)
+        x, y, z = self.data.xpos[body].tolist()
+        return Pose((x, y, z), from_wxyz(self.data.xquat[body].tolist()))
+
+    def place(self, joint: int, pose: Pose) -> None:
+        """Moves the body of a free joint, at rest."""
+        position, velocity = self.model.jnt_qposadr[joint], self.model.jnt_dofadr[joint]
+        self.data.qpos[position : position + 3] = pose.position
+        self.data.qpos[position + 3 : position + 7] = to_wxyz(pose.orientation)
+        self.data.qvel[velocity : velocity + 6] = 0
+        self.forward()
+
+    def joint_position(self, joint: int) -> float:
+        """Of a joint of one degree of freedom, rad or m."""
+        return float(self.data.qpos[self.model.jnt_qposadr[joint]])
+
+
+def _carry_over(old_model: Any, old: Any, model: Any, data: Any) -> None:
+    """Copies the state of every joint that both models have, by name."""
+    data.time = old.time
+    for index in range(model.njnt):
+        name = mujoco.mj_id2name(model, _OBJ.mjOBJ_JOINT, index)
+        before = mujoco.mj_name2id(old_model, _OBJ.mjOBJ_JOINT, name)
+        if before < 0 or model.jnt_type[index] != old_model.jnt_type[before]:
+            continue
+        positions, velocities = _STATE_SIZES.get(int(model.jnt_type[index]), (1, 1))
+        a, b = model.jnt_qposadr[index], old_model.jnt_qposadr[before]
+        data.qpos[a : a + positions] = old.qpos[b : b + positions]
+        a, b = model.jnt_dofadr[index], old_model.jnt_dofadr[before]
+        for field in ("qvel", "qacc_warmstart"):
+            getattr(data, field)[a : a + velocities] = getattr(old, field)[b : b + velocities]

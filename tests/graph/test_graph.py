@@ -1,0 +1,244 @@
+"""Topics and services: types, who reads, what a late reader gets, what a slow one loses."""
+
+import threading
+import time
+
+import pytest
+
+from cartwheel.errors import GraphError, UnknownNameError
+from cartwheel.graph import Graph, Mailbox, resolve_name
+
+TWIST, TEXT = "geometry_msgs/msg/Twist", "std_msgs/msg/String"
+
+
+@pytest.mark.parametrize(
+    ("name", "namespace", "expected"),
+    [
+        ("odom", "", "/odom"),
+        ("odom", "robot1", "/robot1/odom"),
+        ("odom", "/robot1/", "/robot1/odom"),
+        ("/odom", "robot1", "/odom"),
+        ("camera//image", "", "/camera/image"),
+        ("a/b", "c/d", "/c/d/a/b"),
+    ],
+)
+def test_names_resolve_as_in_ros(name, namespace, expected):
+    assert resolve_name(name, namespace) == expected
+
+
+@pytest.mark.parametrize("name", ["", "/", "a b", "3d", "a/4b", "a-b", "é", "a\n"])
+def test_names_that_ros_refuses(name):
+    with pytest.raises(GraphError, match="no valid name"):
+        resolve_name(name)
+
+
+def test_messages_come_in_order_and_only_while_subscribed():
+    graph, got = Graph(), []
+    publisher = graph.advertise("a", TWIST)
+    publisher.publish(1)
+    subscription = graph.subscribe("/a", got.append)
+    publisher.publish(2)
+    publisher.publish(3)
+    subscription.close()
+    publisher.publish(4)
+    assert got == [2, 3]
+
+
+def test_wanted_is_whether_somebody_reads():
+    graph = Graph()
+    publisher = graph.advertise("/a", TWIST)
+    assert not publisher.wanted
+    one, two = graph.subscribe("/a", print), graph.mailbox("/a")
+    assert publisher.wanted
+    one.close()
+    assert publisher.wanted
+    two.close()
+    assert not publisher.wanted
+
+
+def test_a_topic_has_one_type():
+    graph = Graph()
+    publisher = graph.advertise("/a", TWIST)
+    with pytest.raises(GraphError, match=f"has type {TWIST}, not {TEXT}"):
+        graph.advertise("/a", TEXT)
+    with pytest.raises(GraphError, match="has type"):
+        graph.subscribe("/a", print, type_name=TEXT)
+    with pytest.raises(GraphError, match="has type"):
+        graph.publish("/a", TEXT, None)
+    # One that nobody has any more is free for another type.
+    publisher.close()
+    assert graph.advertise("/a", TEXT).type == TEXT
+
+
+def test_a_reader_may_come_first_if_it_says_the_type():
+    graph, got = Graph(), []
+    with pytest.raises(UnknownNameError, match='topic "/b" does not exist'):
+        graph.subscribe("/b", got.append)
+    graph.subscribe("/b", got.append, type_name=TWIST)
+    graph.advertise("/b", TWIST).publish("x")
+    assert got == ["x"]
+
+
+def test_an_unknown_topic_names_the_likely_one():
+    graph = Graph()
+    graph.advertise("/imu/data", TWIST)
+    with pytest.raises(UnknownNameError) as caught:
+        graph.subscribe("/imu/dta", print)
+    assert 'Did you mean "/imu/data"?' in str(caught.value)
+
+
+def test_a_latched_topic_keeps_its_last_message_for_who_comes_late():
+    graph, got = Graph(), []
+    publisher = graph.advertise("/map", TEXT, qos="latched")
+    assert publisher.wanted
+    publisher.publish("old")
+    publisher.publish("new")
+    graph.subscribe("/map", got.append)
+    assert got == ["new"]
+    publisher.publish("newer")
+    assert got == ["new", "newer"]
+    # Another kind of topic keeps nothing.
+    other, late = graph.advertise("/odom", TEXT), []
+    other.publish("gone")
+    graph.subscribe("/odom", late.append)
+    assert late == []
+
+
+def test_a_latched_message_is_handed_over_on_the_owners_thread():
+    posted = []
+    graph, got = Graph(post=posted.append), []
+    graph.advertise("/map", TEXT, qos="latched").publish("kept")
+    graph.subscribe("/map", got.append)
+    assert got == []
+    for function in posted:
+        function()
+    assert got == ["kept"]
+
+
+def test_publishing_from_outside_goes_through_the_owner():
+    posted = []
+    graph, got = Graph(post=posted.append), []
+    graph.subscribe("/a", got.append, type_name=TWIST)
+    graph.publish("/a", TWIST, "x")
+    assert got == []
+    posted.pop()()
+    assert got == ["x"]
+
+
+def test_listing():
+    graph = Graph()
+    graph.advertise("/b", TWIST, node="robot/drive", rate=100.0)
+    graph.advertise("/a", TEXT, qos="latched")
+    graph.subscribe("/b", print, node="viewer")
+    one, two = graph.topics()
+    assert (one.name, one.type, one.qos, one.rate) == ("/a", TEXT, "latched", None)
+    assert (two.name, two.rate, two.qos) == ("/b", 100.0, "default")
+    assert (two.publishers, two.subscribers) == (("robot/drive",), ("viewer",))
+    assert graph.topic("/b") == two
+    with pytest.raises(UnknownNameError):
+        graph.topic("/c")
+
+
+def test_changes_are_counted():
+    graph = Graph()
+    counts = [graph.changed]
+    publisher = graph.advertise("/a", TWIST)
+    counts.append(graph.changed)
+    subscription = graph.subscribe("/a", print)
+    counts.append(graph.changed)
+    subscription.close()
+    counts.append(graph.changed)
+    publisher.close()
+    counts.append(graph.changed)
+    publisher_only = sorted(set(counts))
+    assert counts == publisher_only
+
+
+def test_services():
+    graph = Graph()
+    service = graph.serve("/reset", "std_srvs/srv/Empty", lambda request: request * 2, node="sim")
+    assert graph.service("/reset").handler(21) == 42
+    with pytest.raises(GraphError, match="is offered already by sim"):
+        graph.serve("/reset", "std_srvs/srv/Empty", print)
+    assert [s.name for s in graph.services()] == ["/reset"]
+    with pytest.raises(UnknownNameError, match="service"):
+        graph.service("/rest")
+    graph.withdraw(service)
+    assert graph.services() == []
+
+
+def test_a_service_is_one_by_any_spelling_of_its_name():
+    graph = Graph()
+    graph.serve("reset", "std_srvs/srv/Empty", print)
+    with pytest.raises(GraphError, match="is offered already"):
+        graph.serve("/reset", "std_srvs/srv/Empty", print)
+
+
+def test_a_subscriber_may_leave_from_within_its_callback():
+    graph, got = Graph(), []
+    publisher = graph.advertise("/a", TWIST)
+
+    def once(message):
+        got.append(message)
+        subscription.close()
+
+    subscription = graph.subscribe("/a", once)
+    graph.subscribe("/a", got.append)
+    publisher.publish(1)
+    publisher.publish(2)
+    assert got == [1, 1, 2]
+
+
+def test_a_full_mailbox_drops_its_oldest_and_counts():
+    box = Mailbox(3)
+    for number in range(8):
+        box.put(number)
+    assert box.dropped == 5
+    assert box.drain() == [5, 6, 7]
+    assert box.drain() == []
+    box.put(8)
+    assert (box.get(), box.dropped) == (8, 5)
+
+
+def test_a_mailbox_waits_and_gives_up():
+    box = Mailbox(3)
+    start = time.perf_counter()
+    assert box.get(timeout=0.05) is None
+    assert time.perf_counter() - start >= 0.045
+    thread = threading.Timer(0.05, box.put, ["x"])
+    thread.start()
+    assert box.get(timeout=10) == "x"
+    thread.join()
+
+
+def test_closing_a_mailbox_wakes_its_reader():
+    graph = Graph()
+    graph.advertise("/a", TWIST)
+    box = graph.mailbox("/a")
+    got = []
+    reader = threading.Thread(target=lambda: got.append(box.get()))
+    reader.start()
+    box.close()
+    reader.join(10)
+    assert got == [None]
+    assert box.closed
+    assert graph.topic("/a").subscribers == ()
+
+
+def test_no_message_is_lost_or_doubled_between_threads():
+    box, count = Mailbox(100_000), 20_000
+    got = []
+
+    def read():
+        while len(got) < count:
+            message = box.get(timeout=10)
+            assert message is not None
+            got.append(message)
+
+    reader = threading.Thread(target=read)
+    reader.start()
+    for number in range(count):
+        box.put(number)
+    reader.join(30)
+    assert got == list(range(count))
+    assert box.dropped == 0
