@@ -118,9 +118,7 @@ def test_poses_compose_and_invert(a, b, point):
 def test_yaw_is_where_x_points(q):
     x, y, _ = g.rotate(q, (1, 0, 0))
     assume(math.hypot(x, y) > 1e-3)
-    assert math.remainder(g.yaw_of(q) - math.atan2(y, x), 2 * math.pi) == pytest.approx(
-        0, abs=1e-9
-    )
+    assert math.remainder(g.yaw_of(q) - math.atan2(y, x), 2 * math.pi) == pytest.approx(0, abs=1e-9)
     assert g.Pose((0, 0, 0), q).yaw == g.yaw_of(q)
 
 

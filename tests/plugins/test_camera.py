@@ -6,6 +6,7 @@ import math
 import os
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -62,7 +63,7 @@ def reds(pixels):
     return (pixels[..., 0] > 60) & (pixels[..., 0] > 3 * pixels[..., 1])
 
 
-def silhouette(eye, box_pose, size, width, height, fov):
+def silhouette(eye, box_pose, size, *, width, height, fov):
     """Left, right, top and bottom of a box in pixels from the image's corner."""
     focal = width / (2 * math.tan(fov / 2))
     columns, rows = [], []
@@ -95,7 +96,7 @@ def test_a_post_is_where_the_pinhole_puts_it(make, width, height, eye, post):
     found_columns, found_rows = np.nonzero(red.any(axis=0))[0], np.nonzero(red.any(axis=1))[0]
     numbers = [float(word) for word in eye.split()]
     left, right, top, bottom = silhouette(
-        Pose.from_xyz_rpy(numbers[:3], numbers[3:]), post, size, width, height, fov
+        Pose.from_xyz_rpy(numbers[:3], numbers[3:]), post, size, width=width, height=height, fov=fov
     )
     # A pixel is drawn where its middle is covered: within half of one, and a corner's tip
     # may fall between two middles.
@@ -295,8 +296,8 @@ def test_a_spawned_box_appears_and_a_deleted_one_goes(make):
 
 
 def resident_bytes():
-    with open("/proc/self/statm") as file:
-        return int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+    pages = Path("/proc/self/statm").read_text().split()[1]
+    return int(pages) * os.sysconf("SC_PAGE_SIZE")
 
 
 def test_memory_does_not_grow_with_images(make):
@@ -357,7 +358,12 @@ def test_no_display_is_needed(gl):
     if gl is not None:
         environment["MUJOCO_GL"] = gl
     done = subprocess.run(
-        [sys.executable, "-c", SCRIPT], env=environment, capture_output=True, text=True, timeout=60
+        [sys.executable, "-c", SCRIPT],
+        env=environment,
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
     )
     assert done.stdout.split() == ["230400", "True", "0"], done.stderr
 
