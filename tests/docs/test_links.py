@@ -10,6 +10,7 @@ from .pages import PAGES, ROOT
 
 _LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
 _CODE = re.compile(r"```.*?```|`[^`\n]*`", re.DOTALL)
+_FILE = re.compile(r"`((?:src|tests|tools|examples|docs)/[\w./]+|(?:\w+/)+\w+\.(?:py|js|css))`")
 _HEADING = re.compile(r"^#+ (.+)$", re.MULTILINE)
 
 
@@ -36,6 +37,14 @@ def test_the_links_of_a_page_lead_somewhere(page: Path) -> None:
         assert target.exists(), f"{page.relative_to(ROOT)}: {link} does not exist"
         if anchor:
             assert anchor in anchors(target), f"{page.relative_to(ROOT)}: {link}: no such heading"
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+def test_the_files_that_a_page_names_exist(page: Path) -> None:
+    """Code moves; what is told of it must move along."""
+    for name in _FILE.findall(re.sub(r"```.*?```", "", page.read_text(), flags=re.DOTALL)):
+        places = (ROOT / name, ROOT / "src" / "cartwheel" / name)
+        assert any(place.exists() for place in places), f"{page.relative_to(ROOT)} names {name}"
 
 
 def test_every_page_is_reached_from_the_index() -> None:
