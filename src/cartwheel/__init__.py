@@ -12,20 +12,24 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from cartwheel.errors import CartwheelError
-from cartwheel.geometry import Pose
 
 if TYPE_CHECKING:
     from cartwheel.api import Model, World
+    from cartwheel.geometry import Pose
 
 __all__ = ["CartwheelError", "Model", "Pose", "World"]
 __version__ = "0.1.0"
 
 
 def __getattr__(name: str) -> Any:
-    # The physics engine takes a tenth of a second to import: the command line imports it
-    # while it reads files, not before it has looked at its arguments.
+    # numpy and the physics engine take a tenth of a second to import: the command line first
+    # looks at its arguments, and at Ctrl-C.
     if name in ("Model", "World"):
         from cartwheel import api
 
         return getattr(api, name)
+    if name == "Pose":
+        from cartwheel.geometry import Pose
+
+        return Pose
     raise AttributeError(name)

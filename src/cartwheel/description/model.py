@@ -135,6 +135,8 @@ Shape = Box | Cylinder | Sphere | Capsule | Cone | Ellipsoid | Plane | Mesh | He
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Material:
+    """How a surface looks; `colour_of` says which colour wins on a mesh."""
+
     name: str = ""
     """URDF material or Gazebo script name, as written."""
     diffuse: Rgba | None = None
@@ -144,6 +146,12 @@ class Material:
     specular: float = 0.1
     emissive: Rgba = (0.0, 0.0, 0.0, 1.0)
     texture: Path | None = None
+
+    def colour_of(self, own: Rgba | None) -> Rgba | None:
+        """The colour of a part that brings `own`, such as a mesh's; None where nobody says."""
+        if own is not None and (self.diffuse is None or self.yields_to_mesh):
+            return own
+        return self.diffuse
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -381,6 +389,12 @@ class RobotDescription:
     def joint(self, name: str) -> Joint | None:
         """The joint of that name."""
         return next((joint for joint in self.joints if joint.name == name), None)
+
+    @property
+    def canonical_pose(self) -> Pose:
+        """Of the canonical link's frame in the model's; identity for a URDF."""
+        link = self.link(self.canonical_link)
+        return link.pose if link is not None else Pose()
 
     @property
     def mass(self) -> float:

@@ -312,7 +312,7 @@ class Simulation:
         """Where a model's frame is, which goes with its canonical link: a URDF's root."""
         description = self._resident(name).entry.description
         link = self.engine.link_pose(name, description.canonical_link)
-        return link @ _canonical_pose(description).inverse()
+        return link @ description.canonical_pose.inverse()
 
     def set_pose(self, name: str, pose: Pose) -> None:
         """Moves a model's frame, and with it the model, at rest.
@@ -327,7 +327,7 @@ class Simulation:
             entry.pose = pose
             self._compile(self._residents)
         else:
-            self.engine.place(joint, pose @ _canonical_pose(entry.description))
+            self.engine.place(joint, pose @ entry.description.canonical_pose)
         self._separate(name)
 
     def joint_position(self, name: str, joint: str) -> float:
@@ -424,8 +424,3 @@ class Simulation:
         for resident in self._residents.values():
             resident.close()
         self.engine.renderer.close()
-
-
-def _canonical_pose(description: RobotDescription) -> Pose:
-    link = description.link(description.canonical_link)
-    return link.pose if link is not None else Pose()

@@ -262,7 +262,7 @@ def inertia_box(inertial: Inertial) -> tuple[Pose, tuple[float, float, float]]:
 
 
 def footprint(description: RobotDescription) -> tuple[float, float]:
-    """How far it reaches from its canonical link's origin in the plane, and how far below it, m."""
+    """How far it reaches from its frame's origin in the plane, and how far below it, m."""
     bounds = _bounds(description)
     if bounds is None:
         return 0.1, 0.0
@@ -277,11 +277,8 @@ def _size_of(description: RobotDescription) -> float:
 
 
 def _bounds(description: RobotDescription) -> tuple[Any, Any] | None:
-    canonical = description.link(description.canonical_link)
-    inverse = canonical.pose.inverse() if canonical else Pose()
     corners: list[Surface] = []
     for link in description.links:
-        in_root = inverse @ link.pose
         for collision in link.collisions:
             if isinstance(collision.shape, Plane):
                 continue
@@ -289,10 +286,10 @@ def _bounds(description: RobotDescription) -> tuple[Any, Any] | None:
                 found = surfaces_of_collision(collision, COLLISION)
             except CartwheelError:
                 continue  # said already by the view that draws it
-            turn = matrix_from_quat(in_root.orientation).T
+            turn = matrix_from_quat(link.pose.orientation).T
             corners += [
                 Surface(
-                    (s.vertices @ turn + np.asarray(in_root.position)).astype(np.float32),
+                    (s.vertices @ turn + np.asarray(link.pose.position)).astype(np.float32),
                     s.faces,
                     s.rgba,
                 )

@@ -55,7 +55,7 @@ class SceneView:
                 model.show(self.display)
 
     def pose(self, name: str) -> Pose | None:
-        """Where a model's canonical link is; None where there is no such model."""
+        """Where a model's frame is; None where there is no such model."""
         if self.snapshot is None or name not in self._rows:
             return None
         return pose_in(self.snapshot, name)
@@ -90,11 +90,12 @@ class SceneView:
 
 
 def pose_in(snapshot: Snapshot, name: str) -> Pose:
-    """Where a model's canonical link is in a snapshot."""
+    """Where a model's frame is in a snapshot."""
     placed = next(model for model in snapshot.scene.models if model.name == name)
     row = snapshot.scene.links.index((name, placed.description.canonical_link))
     x, y, z = snapshot.positions[row].tolist()
-    return Pose((x, y, z), from_wxyz(snapshot.quaternions[row].tolist()))
+    link = Pose((x, y, z), from_wxyz(snapshot.quaternions[row].tolist()))
+    return link @ placed.description.canonical_pose.inverse()
 
 
 def set_stage(page: Page) -> None:

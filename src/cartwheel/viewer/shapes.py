@@ -20,6 +20,7 @@ from cartwheel.description.model import (
     Cylinder,
     Ellipsoid,
     Heightmap,
+    Material,
     Mesh,
     Plane,
     Polyline,
@@ -56,8 +57,7 @@ def surfaces_of_visual(visual: Visual) -> list[Surface]:
     Raises:
         MeshError: Its file cannot be used.
     """
-    rgba = visual.material.diffuse
-    surfaces = _coloured(visual.shape, rgba)
+    surfaces = _coloured(visual.shape, visual.material)
     opacity = 1.0 - visual.transparency
     return [
         Surface(
@@ -77,7 +77,7 @@ def surfaces_of_collision(collision: Collision, rgba: Rgba) -> list[Surface]:
     """
     return [
         Surface(place(collision.pose, surface.vertices), surface.faces, rgba)
-        for surface in _coloured(collision.shape, rgba)
+        for surface in _coloured(collision.shape, Material(diffuse=rgba))
     ]
 
 
@@ -120,16 +120,15 @@ def place(pose: Pose, vertices: Floats) -> Floats:
     return np.asarray(turned + np.asarray(pose.position, dtype=np.float32), dtype=np.float32)
 
 
-def _coloured(shape: Shape, rgba: Rgba | None) -> list[Surface]:
+def _coloured(shape: Shape, material: Material) -> list[Surface]:
     if not isinstance(shape, Mesh):
         vertices, faces = triangles_of(shape)
-        return [Surface(vertices, faces, rgba or DEFAULT)]
+        return [Surface(vertices, faces, material.diffuse or DEFAULT)]
     surfaces = []
     for part in load_mesh(shape):
-        colour = rgba or part.rgba
-        if rgba is None and part.texture is not None:
-            # The mean of the picture: from afar the same, and one mesh for all that share it.
-            colour = _mean_colour(part.texture) or colour
+        # The mean of the picture: from afar the same, and one mesh for all that share it.
+        own = _mean_colour(part.texture) if part.texture is not None else None
+        colour = material.colour_of(own or part.rgba)
         surfaces.append(Surface(part.vertices, part.faces, colour or DEFAULT))
     return surfaces
 

@@ -177,8 +177,10 @@ class BodyBuilder:
                 mesh = self._assets.mesh(
                     ("visual", shape, index), part.vertices, part.faces, normals=None, uv=part.uv
                 )
-                texture = material.texture or (part.texture if material.diffuse is None else None)
-                rgba = material.diffuse or part.rgba or _GREY
+                texture = material.texture or (
+                    part.texture if material.diffuse is None or material.yields_to_mesh else None
+                )
+                rgba = material.colour_of(part.rgba) or _GREY
                 look: dict[str, Any] = {"rgba": [*rgba[:3], rgba[3] * opacity]}
                 if texture is not None and part.uv is not None:
                     look = {"material": self._assets.texture_material(texture)}

@@ -30,8 +30,8 @@ SOFTEST_TIME_CONSTANT = 0.1
 """s; beyond it a body would visibly sink."""
 IMPEDANCE = (0.95, 0.99, 0.0005, 0.5, 2.0)
 """MuJoCo's solimp: how much of the constraint is kept at and beyond 0.5 mm of depth."""
-FRICTION_TIME_CONSTANT = 0.1
-"""s; in which a slip that the friction can hold dies out."""
+FRICTION_TIME_CONSTANT = 0.03
+"""s; in which a slip that the friction can hold dies out. Below mu g T/2 friction is viscous."""
 FRICTION_IMPEDANCE_RATIO = 100.0
 """How much harder friction holds than the normal direction: less creep under a steady load."""
 
