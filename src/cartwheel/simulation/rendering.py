@@ -36,7 +36,6 @@ class Renderer:
         self._context: Any = None
         self._scene: Any = None
         self._size = (0, 0)
-        self._read: tuple[Image, Any] | None = None
         self._option = mujoco.MjvOption()
         self._option.geomgroup[:] = 0
         self._option.geomgroup[VISUAL_GROUP] = 1
@@ -84,20 +83,12 @@ class Renderer:
             view.frustum_center = 0.0
         viewport = mujoco.MjrRect(0, 0, lens.width, lens.height)
         mujoco.mjr_render(viewport, self._scene, self._context)
-        pixels, depths = self._buffers(lens.height, lens.width)
+        pixels = np.empty((lens.height, lens.width, 3), dtype=np.uint8)
+        depths = np.empty((lens.height, lens.width), dtype=np.float32)
         mujoco.mjr_readPixels(pixels, depths, viewport, self._context)
         # The background, where nothing was drawn.
         pixels.reshape(-1).view(_PIXEL)[(depths == 1.0).ravel()] = self._background
         return np.ascontiguousarray(pixels[::-1])
-
-    def _buffers(self, height: int, width: int) -> tuple[Image, Any]:
-        """Pixels and depths to read into: kept, as new memory costs more than it takes to fill."""
-        if self._read is None or self._read[1].shape != (height, width):
-            self._read = (
-                np.empty((height, width, 3), dtype=np.uint8),
-                np.empty((height, width), dtype=np.float32),
-            )
-        return self._read
 
     def _prepare(self, width: int, height: int) -> None:
         if self._gl is None:
