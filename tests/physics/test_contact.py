@@ -126,6 +126,24 @@ def test_a_sliding_body_is_hardly_lifted(make):
     assert velocity(world, "box")[0] == pytest.approx(0.0, abs=1e-3)
 
 
+def test_friction_is_full_from_a_creep_on(make):
+    """Pulled along at v, a box drags with mu m g from v = mu g T/2 on, below it with 2 m v/T."""
+    mass, mu = 2.0, 0.5
+    box = make.box("box", (0.3, 0.3, 0.1), mass=mass, mu=mu, pose=Pose((0, 0, 0.05)))
+    world = make.world(box)
+    world.run(0.2)
+    simulation = world.session.simulation
+    creep = mu * G * contact.FRICTION_TIME_CONSTANT / 2
+    for force, speed in ((0.5 * mu * mass * G, 0.5 * creep), (0.9 * mu * mass * G, 0.9 * creep)):
+        simulation.data.body("box::link").xfrc_applied[0] = force
+        world.run(1.0)
+        assert velocity(world, "box")[0] <= speed * 1.05
+    simulation.data.body("box::link").xfrc_applied[0] = 1.2 * mu * mass * G
+    before = velocity(world, "box")[0]
+    world.run(1.0)
+    assert velocity(world, "box")[0] - before == pytest.approx(0.2 * mu * G, rel=0.1)
+
+
 def test_only_moving_geoms_of_other_models_get_a_pair_of_their_own(make):
     """And friction of such a pair is the smaller of the two, as for all others."""
     world = make.world(
