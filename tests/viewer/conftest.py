@@ -165,6 +165,14 @@ def page(shared_page, arena):
     yield shared_page
 
 
+def close_notes(page):
+    """Uncovers the scene."""
+    notes = page.locator(".mantine-Notification-root button")
+    while notes.count():
+        notes.first.evaluate("button => button.click()")
+        page.wait_for_timeout(100)
+
+
 def screenshot(page):
     """What the page shows, shape (height, width, 3)."""
     from PIL import Image

@@ -2,7 +2,7 @@
 
 import pytest
 
-from .conftest import CART, eventually, project, write
+from .conftest import CART, close_notes, eventually, project, write
 
 
 @pytest.fixture(autouse=True)
@@ -81,6 +81,7 @@ def point_at(page, place):
 
 
 def test_a_click_in_the_scene_selects(page, arena):
+    close_notes(page)
     box = page.locator("canvas[data-engine]").bounding_box()
     post = arena.pose("post")
     point_at(page, project(arena.camera(), (post.x, post.y, 0.6), box))
@@ -93,6 +94,7 @@ def test_a_click_in_the_scene_selects(page, arena):
 
 
 def test_the_gizmo_lifts_the_post_and_holds_it_until_let_go(page, arena):
+    close_notes(page)
     row(page, "post").click()
     page.locator("[data-model='post']").wait_for()
     gizmo = arena.viewer._desk._world._gizmo

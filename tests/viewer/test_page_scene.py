@@ -6,7 +6,18 @@ import pytest
 
 from cartwheel.geometry import Pose
 
-from .conftest import CART, LEFT, RIGHT, count, eventually, open_page, project, screenshot, stage
+from .conftest import (
+    CART,
+    LEFT,
+    RIGHT,
+    close_notes,
+    count,
+    eventually,
+    open_page,
+    project,
+    screenshot,
+    stage,
+)
 
 RED, BLUE = 0, 2
 
@@ -22,11 +33,6 @@ def no_pyramid(shared_page, arena):
 def colours(page):
     picture = stage(screenshot(page))
     return count(picture, RED), count(picture, BLUE)
-
-
-def close_notes(page):
-    for button in page.locator(".mantine-Notification-root button").all():
-        button.click()
 
 
 def test_the_cart_is_blue_and_the_post_red(page):
