@@ -44,9 +44,12 @@ has_library libEGL.so.1 || wanted="$wanted libegl1"
 has_library libGL.so.1 || wanted="$wanted libgl1"
 has_driver || wanted="$wanted libgl1-mesa-dri"
 [ -z "$wanted" ] || loss="Going on without: cameras will show nothing."
-if [ "$purpose" = test ] && ! command -v chromium >/dev/null 2>&1; then
-    wanted="$wanted chromium"
-    loss="Going on without: tests of the browser and of cameras that cannot run are skipped."
+if [ "$purpose" = test ]; then
+    before=$wanted
+    command -v chromium >/dev/null 2>&1 || wanted="$wanted chromium"
+    # The program that drives the browser needs it, and slim images lack it.
+    has_library libatomic.so.1 || wanted="$wanted libatomic1"
+    [ "$wanted" = "$before" ] || loss="Going on without: tests of cameras or the browser may fail or be skipped."
 fi
 
 # Asked for together, so that nobody has to ask twice.
