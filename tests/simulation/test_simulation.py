@@ -1,5 +1,6 @@
 """Models in and out, time held and let go, other threads, and runs that fail."""
 
+import tempfile
 import threading
 import time
 
@@ -18,6 +19,12 @@ COMMAND = "/part2_cmr/cmd_vel"
 def state(world, model, link="link"):
     joint = world.session.simulation.data.joint(f"{model}::{link}")
     return np.concatenate([joint.qpos, joint.qvel])
+
+
+@pytest.fixture(autouse=True)
+def dumps(tmp_path, monkeypatch):
+    """Where the last states of a diverged run go."""
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
 
 
 @pytest.fixture
