@@ -101,7 +101,7 @@ def test_the_gizmo_lifts_the_post_and_holds_it_until_let_go(page, arena):
     box = page.locator("canvas[data-engine]").bounding_box()
     post = arena.pose("post")
     at = lambda z: project(arena.camera(), (post.x, post.y, post.z + z), box)  # noqa: E731
-    tip = 0.93 * gizmo.scale
+    tip = 0.85 * gizmo.scale  # where the head of the arrow is thickest
     point_at(page, at(tip))
     page.mouse.down()
     for i in range(1, 9):

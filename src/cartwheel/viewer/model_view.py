@@ -71,6 +71,8 @@ class ModelView:
         self._shown = np.full((len(self._frames), 7), np.nan)
         self._layers: dict[str, list[tuple[Any, float]]] = {}
         self._grounds: list[Any] = []
+        self._solids: list[Any] = []
+        self._clickable = True
         self._size = _size_of(description)
 
     @property
@@ -113,6 +115,17 @@ class ModelView:
             for frame in self._frames:
                 if frame.show_axes != display.axes:
                     frame.show_axes = display.axes
+
+    def set_clickable(self, clickable: bool) -> None:
+        """Lets clicks through while a gizmo stands inside: the nearest surface would take them."""
+        if self._clicked is None or clickable == self._clickable:
+            return
+        self._clickable = clickable
+        for handle in self._solids:
+            if clickable:
+                handle.on_click(self._clicked)
+            else:
+                handle.remove_click_callback(self._clicked)
 
     def remove(self) -> None:
         """Takes everything out of the scene."""
@@ -225,7 +238,9 @@ class ModelView:
         if ground:
             self._grounds.append(handle)
         elif self._clicked is not None:
-            handle.on_click(self._clicked)
+            self._solids.append(handle)
+            if self._clickable:
+                handle.on_click(self._clicked)
         return handle, alpha
 
     def _frame(self, link: Link) -> Any:

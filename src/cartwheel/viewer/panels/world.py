@@ -43,6 +43,8 @@ class WorldPanel(Panel):
         """Selects a model, or none; selecting the selected one lets go of it."""
         if name == self.selected:
             name = None
+        self._let_clicks_through(self.selected, False)
+        self._let_clicks_through(name, True)
         self.selected = name
         if self._gizmo is not None:
             self._gizmo.remove()
@@ -69,6 +71,11 @@ class WorldPanel(Panel):
         self._gizmo.on_update(self.page.on(self._drag))
         self._shown = pose
         self._describe(snapshot)
+
+    def _let_clicks_through(self, name: str | None, through: bool) -> None:
+        view = self.desk.scene.models.get(name) if name is not None else None
+        if view is not None:
+            view.set_clickable(not through)
 
     def delete(self) -> None:
         """Takes the selected model out of the world."""
