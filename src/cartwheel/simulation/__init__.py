@@ -1,5 +1,6 @@
 """The one thread that owns the physics."""
 
+import cartwheel.world  # noqa: F401 - imports MuJoCo as it must be
 from cartwheel.simulation.handles import CameraHandle, JointHandle, LinkHandle, MotorHandle
 from cartwheel.simulation.part import Part
 from cartwheel.simulation.simulation import Simulation

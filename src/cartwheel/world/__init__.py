@@ -1,5 +1,6 @@
 """Descriptions to a compiled MuJoCo model."""
 
+from cartwheel.world import mujoco_import  # noqa: F401 - before all others
 from cartwheel.world.build import Build, build
 from cartwheel.world.entry import CameraMount, ModelEntry, Motor
 
