@@ -353,7 +353,9 @@ print(len(image.data), int(image.data.max()) > int(image.data.min()), len(world.
 @pytest.mark.parametrize("gl", [None, "egl", ""])
 def test_no_display_is_needed(gl):
     environment = {
-        name: value for name, value in os.environ.items() if name not in ("DISPLAY", "MUJOCO_GL")
+        name: value
+        for name, value in os.environ.items()
+        if name not in ("DISPLAY", "MUJOCO_GL", "PYOPENGL_PLATFORM")
     }
     if gl is not None:
         environment["MUJOCO_GL"] = gl
@@ -366,6 +368,39 @@ def test_no_display_is_needed(gl):
         check=False,
     )
     assert done.stdout.split() == ["230400", "True", "0"], done.stderr
+
+
+BLIND = """
+import cartwheel as cw
+world = cw.World("post")
+cart = world.spawn("rosbots.xacro", z=0.05)
+box = world.mailbox("/rosbots/camera1/image_raw")
+cart.publish("/part2_cmr/cmd_vel", linear_x=0.5)
+world.run(2.0)
+print(len(box.drain()), cart.pose.x > 0.5, len(world.diagnostics))
+print(world.diagnostics[0])
+"""
+
+
+def test_opengl_that_is_named_and_missing_is_told_and_no_more(tmp_path):
+    """MuJoCo's own package loads what MUJOCO_GL names while it is imported, or fails."""
+    (tmp_path / "OpenGL").mkdir()
+    (tmp_path / "OpenGL" / "__init__.py").write_text('raise ImportError("no OpenGL here")')
+    environment = {**os.environ, "MUJOCO_GL": "osmesa", "PYTHONPATH": str(tmp_path)}
+    # Left by pictures of tests before.
+    environment.pop("PYOPENGL_PLATFORM", None)
+    done = subprocess.run(
+        [sys.executable, "-c", BLIND],
+        env=environment,
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    counts, *told = done.stdout.splitlines()
+    assert counts.split() == ["0", "True", "1"], done.stderr
+    assert "cameras need OpenGL" in told[0]
+    assert "no OpenGL here" in told[0]
 
 
 def test_a_format_that_is_none_is_an_error(make):
