@@ -14,7 +14,7 @@ from cartwheel.errors import SimulationError
 from cartwheel.simulation.handles import CameraHandle
 from cartwheel.world.bodies import VISUAL_GROUP
 
-_PACKAGES = "libegl1 libegl-mesa0 libgl1-mesa-dri"
+_PACKAGES = "libegl1 libgl1 libgl1-mesa-dri"
 _BACKENDS = {"egl": "mujoco.egl", "osmesa": "mujoco.osmesa"}
 
 _PIXEL = np.dtype((np.void, 3))

@@ -18,7 +18,7 @@ from cartwheel.simulation.observing import Observer
 from cartwheel.simulation.part import Part
 from cartwheel.simulation.separation import Separation
 from cartwheel.simulation.snapshot import RunState, Scene, Snapshot
-from cartwheel.world import build
+from cartwheel.world import build, unused
 from cartwheel.world.entry import ModelEntry
 
 T = TypeVar("T")
@@ -293,7 +293,8 @@ class Simulation:
             resident.close()
             raise
         resident.part.spawned = True
-        for diagnostic in (*description.diagnostics, *resident.part.diagnostics):
+        notes = (*description.diagnostics, *resident.part.diagnostics, *unused(description))
+        for diagnostic in notes:
             self.engine.report(diagnostic)
         self._separate(name)
         return name

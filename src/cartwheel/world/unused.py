@@ -1,0 +1,56 @@
+"""What a description states and the physics does not do: told, never passed over."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from cartwheel.description.model import RobotDescription
+from cartwheel.errors import Diagnostic, Origin
+
+_SURFACE = {
+    "fdir1": "friction is the same in all directions",
+    "slip1": "friction is Coulomb's",
+    "slip2": "friction is Coulomb's",
+    "torsional": "a standing turn meets no friction of its own",
+    "min_depth": "contacts are as hard as the step allows",
+    "max_vel": "contacts part as fast as they must",
+    "max_contacts": "all contacts count",
+    "restitution": "nothing bounces",
+    "collide_bitmask": "all collide with all",
+}
+
+
+def unused(description: RobotDescription) -> Iterator[Diagnostic]:
+    """One note for each kind of thing that has no effect, at the first place that states it."""
+    found: dict[str, tuple[Origin, int, str]] = {}
+
+    def note(what: str, origin: Origin, why: str) -> None:
+        first, count, reason = found.get(what, (origin, 0, why))
+        found[what] = (first, count + 1, reason)
+
+    for link in description.links:
+        for collision in link.collisions:
+            surface = collision.surface
+            for field, why in _SURFACE.items():
+                if getattr(surface, field) is not None:
+                    note(field, collision.origin, why)
+            if None not in (surface.mu1, surface.mu2) and surface.mu1 != surface.mu2:
+                note("mu2 unlike mu1", collision.origin, "their mean counts in all directions")
+        if link.linear_damping or link.angular_damping:
+            note("velocity decay", link.origin, "the air does not brake")
+        for light in link.lights:
+            note("a light on a link", light.origin, "only the world's lights shine")
+    for joint in description.joints:
+        if joint.axis.velocity is not None and joint.type in (
+            "revolute",
+            "continuous",
+            "prismatic",
+        ):
+            note("a joint's velocity limit", joint.origin, "only its effort is limited")
+        if joint.stop_cfm is not None or joint.stop_erp is not None:
+            note("a joint's stop_cfm or stop_erp", joint.origin, "stops are as hard as can be")
+    for what, (origin, count, why) in found.items():
+        times = f" ({count} times)" if count > 1 else ""
+        yield Diagnostic(
+            severity="info", message=f"{what} has no effect{times}: {why}", origin=origin
+        )

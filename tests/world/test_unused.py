@@ -1,0 +1,47 @@
+"""What the physics leaves out is told with its place, once for each kind."""
+
+import pytest
+
+import cartwheel as cw
+from cartwheel.description import load_text
+
+URDF = """<robot name="r">
+  <link name="base">
+    <inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
+    <collision><geometry><box size="1 1 1"/></geometry></collision>
+    <collision><geometry><sphere radius="1"/></geometry></collision>
+  </link>
+  <link name="arm">
+    <inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
+  </link>
+  <joint name="j" type="revolute">
+    <parent link="base"/><child link="arm"/><axis xyz="0 0 1"/>
+    <limit lower="-1" upper="1" effort="5" velocity="2"/>
+  </joint>
+  <gazebo reference="base">{tags}</gazebo>
+</robot>"""
+
+
+def notes(tags: str) -> list[str]:
+    with cw.World("empty") as world:
+        world.spawn(load_text(URDF.format(tags=tags), file="r.urdf"))
+        return [str(d) for d in world.diagnostics if "has no effect" in d.message]
+
+
+@pytest.mark.parametrize(
+    ("tags", "said"),
+    [
+        ("<minDepth>0.001</minDepth>", "r.urdf:4: info: min_depth has no effect (2 times)"),
+        ("<maxVel>1</maxVel>", "r.urdf:4: info: max_vel has no effect (2 times)"),
+        ("<fdir1>1 0 0</fdir1>", "r.urdf:4: info: fdir1 has no effect (2 times)"),
+        ("<mu1>1</mu1><mu2>0.5</mu2>", "r.urdf:4: info: mu2 unlike mu1 has no effect (2 times)"),
+        ("<dampingFactor>0.1</dampingFactor>", "r.urdf:2: info: velocity decay has no effect"),
+    ],
+)
+def test_a_tag_that_does_nothing_is_told_at_its_first_place(tags: str, said: str) -> None:
+    assert any(note.startswith(said) for note in notes(tags)), notes(tags)
+
+
+def test_a_velocity_limit_is_told_and_nothing_else_is() -> None:
+    (only,) = notes("<mu1>1</mu1><mu2>1</mu2><kp>1e6</kp><kd>100</kd>")
+    assert only.startswith("r.urdf:10: info: a joint's velocity limit has no effect: ")
