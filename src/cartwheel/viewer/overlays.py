@@ -123,7 +123,7 @@ class Overlays:
         points[:, 2] = 0.012  # on the ground, where the robot has been and not what it hides
         segments = np.stack([points[:-1], points[1:]], axis=1)
         self._line = self._page.scene.add_line_segments(
-            "/trail", segments, (240, 140, 0), thickness=3.0
+            "/trail", segments, (240, 140, 0), thickness=0.015
         )
 
     def _follow(self, place: Array) -> None:

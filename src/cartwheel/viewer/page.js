@@ -46,6 +46,7 @@
       if (!ours(event)) return;
       event.stopPropagation();
       event.preventDefault();
+      if (document.activeElement) document.activeElement.blur(); // no frame around a stale button
       const key = event.key.toLowerCase();
       if (known.has(key)) press(key);
       else if (known.has("k")) press("k");

@@ -104,8 +104,8 @@ def set_stage(page: Page) -> None:
     page.scene.configure_default_lights(enabled=True, cast_shadow=True)
     page.scene.configure_environment_map("park", environment_intensity=0.35)
     camera = page.server.initial_camera
-    camera.position = (-1.9, -2.3, 1.5)
-    camera.look_at = (0.7, 0.1, 0.1)
+    camera.position = (-2.1, -2.5, 1.75)
+    camera.look_at = (0.75, 0.0, 0.4)
     camera.fov = np.deg2rad(45.0)
 
 

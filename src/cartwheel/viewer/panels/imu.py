@@ -107,8 +107,9 @@ class ImuPanel(Panel):
                     }
                 },
             },
+            axes=({"size": 22, "space": 60}, {"size": 42, "space": 18}),
             legend={"show": False},
-            height=118,
+            height=96,
             padding=(6, 8, 0, 0),
             visible=False,
         )
