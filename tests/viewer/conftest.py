@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import io
 import shutil
 import threading
@@ -30,6 +31,7 @@ FLAGS = [
     "--disable-sync",
 ]
 SIZE = {"width": 1000, "height": 720}
+"""CSS pixels; half as many are drawn, as no GPU helps here."""
 LEFT, RIGHT = 306, 674
 """Columns between which the scene lies."""
 CART = "rosbots"
@@ -134,7 +136,7 @@ def arena():
 
 def open_page(browser, arena):
     """A page that shows the scene."""
-    page = browser.new_page(viewport=SIZE)
+    page = browser.new_page(viewport=SIZE, device_scale_factor=0.5)
     page.set_default_timeout(40_000)
     page.faults = []
     page.on("pageerror", lambda error: page.faults.append(error.stack))
@@ -160,24 +162,36 @@ def shared_page(browser, arena):
 @pytest.fixture
 def page(shared_page, arena):
     """The module's page, at the start of a new run."""
+    arena.twists.clear()
     shared_page.keyboard.press("k")
+    eventually(lambda: arena.twists, what="the stop")
     arena.start_over()
     yield shared_page
 
 
 def close_notes(page):
     """Uncovers the scene."""
-    notes = page.locator(".mantine-Notification-root button")
-    while notes.count():
-        notes.first.evaluate("button => button.click()")
-        page.wait_for_timeout(100)
+
+    def gone():
+        # All at once and in the page: one that goes by itself meanwhile is no error.
+        return page.evaluate(
+            """() => {
+              const buttons = document.querySelectorAll(".mantine-Notification-root button");
+              buttons.forEach(button => button.click());
+              return buttons.length === 0;
+            }"""
+        )
+
+    eventually(gone, what="the scene uncovered")
 
 
 def screenshot(page):
     """What the page shows, shape (height, width, 3)."""
     from PIL import Image
 
-    return np.asarray(Image.open(io.BytesIO(page.screenshot())).convert("RGB")).astype(int)
+    return np.asarray(Image.open(io.BytesIO(page.screenshot(scale="css"))).convert("RGB")).astype(
+        int
+    )
 
 
 def stage(picture):
@@ -211,22 +225,22 @@ def project(camera, point, box):
 
 def picture_of(page):
     """The camera panel's image as the browser decoded it, shape (height, width, 3)."""
+    from PIL import Image
+
     found = page.evaluate(
         """() => {
           const image = [...document.querySelectorAll("img")].find(i => i.src.startsWith("blob:"));
-          if (!image || !image.complete) return null;
+          if (!image || !image.complete || !image.naturalWidth) return null;
           const canvas = document.createElement("canvas");
           canvas.width = image.naturalWidth; canvas.height = image.naturalHeight;
-          const context = canvas.getContext("2d");
-          context.drawImage(image, 0, 0);
-          const data = context.getImageData(0, 0, canvas.width, canvas.height).data;
-          return [canvas.width, canvas.height, Array.from(data)];
+          canvas.getContext("2d").drawImage(image, 0, 0);
+          return canvas.toDataURL("image/png");
         }"""
     )
     if found is None:
         return None
-    width, height, data = found
-    return np.array(data).reshape(height, width, 4)[:, :, :3]
+    data = base64.b64decode(found.partition(",")[2])
+    return np.asarray(Image.open(io.BytesIO(data)).convert("RGB")).astype(int)
 
 
 def write(folder: Path, name: str, text: str) -> Path:

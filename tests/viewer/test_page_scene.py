@@ -8,7 +8,6 @@ from cartwheel.geometry import Pose
 
 from .conftest import (
     CART,
-    LEFT,
     RIGHT,
     close_notes,
     count,
@@ -62,7 +61,8 @@ def test_the_post_is_drawn_where_it_stands(page, arena):
     ]
     red = picture[:, :, RED]
     is_red = (red > 90) & (red > 2.2 * picture[:, :, 1:].max(axis=2))
-    is_red[:, :LEFT] = is_red[:, RIGHT:] = False
+    # The cart's lights are red as well, further to the left.
+    is_red[:, : int(min(x for x, _ in corners)) - 30] = is_red[:, RIGHT:] = False
     rows, columns = is_red.nonzero()
     assert abs(columns.min() - min(x for x, _ in corners)) < 6
     assert abs(columns.max() - max(x for x, _ in corners)) < 6
@@ -72,7 +72,7 @@ def test_the_post_is_drawn_where_it_stands(page, arena):
 def test_links_follow_the_simulation(page, arena):
     before = colours(page)[0]
     arena.ask(lambda: arena.simulation.set_pose("post", Pose((0.0, 60.0, 0.0))))
-    eventually(lambda: colours(page)[0] < 0.05 * before, what="the post to leave the picture")
+    eventually(lambda: colours(page)[0] < 0.1 * before, what="the post to leave the picture")
 
 
 def test_two_browsers_see_the_same(browser, arena, page):
@@ -83,13 +83,18 @@ def test_two_browsers_see_the_same(browser, arena, page):
     arena.ask(lambda: arena.simulation.set_pose("post", Pose((1.6, 0.4, 0.0))))
     for one in (page, second):
         one.locator(".cw-paused").wait_for()
-    red = eventually(lambda: colours(page)[0], what="the post")
-    eventually(lambda: math.isclose(colours(second)[0], red, rel_tol=0.03), what="the same post")
+
+    def same():
+        # The edges differ: each browser draws at the resolution that it is fast enough for.
+        red, other = colours(page)[0], colours(second)[0]
+        return red > 400 and math.isclose(red, other, rel_tol=0.08) and red
+
+    red = eventually(same, what="the same post in both")
     # What one does, the other sees.
     second.get_by_role("button", name="post", exact=True).click()
     second.get_by_role("button", name="Delete post").click()
     for one in (page, second):
         one.get_by_role("button", name="post", exact=True).wait_for(state="detached")
-        eventually(lambda one=one: colours(one)[0] < 20, what="the post to go")
+        eventually(lambda one=one: colours(one)[0] < 0.1 * red, what="the post to go")
     second.close()
     assert set(arena.models()) == {"ground_plane", CART}
