@@ -22,6 +22,13 @@ WINDOW = 10.0
 """s of simulated time."""
 _RATE = 6.0
 _POINTS = 160
+_AXIS = {
+    "stroke": "#5c6670",
+    "font": "11px sans-serif",
+    "gap": 4,
+    "ticks": {"show": False},
+    "grid": {"stroke": "#e6e9ed", "width": 1},
+}
 _COLORS = ("#d9480f", "#2b8a3e", "#1864ab")
 
 
@@ -107,7 +114,7 @@ class ImuPanel(Panel):
                     }
                 },
             },
-            axes=({"size": 22, "space": 60}, {"size": 42, "space": 18}),
+            axes=({**_AXIS, "size": 24, "space": 60}, {**_AXIS, "size": 38, "space": 18}),
             legend={"show": False},
             height=96,
             padding=(6, 8, 0, 0),
