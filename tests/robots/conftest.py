@@ -39,6 +39,7 @@ def make_meshes() -> ModuleType:
     )
     assert spec is not None and spec.loader is not None
     module = importlib.util.module_from_spec(spec)
+    sys.path.insert(0, str(REPOSITORY / "tools"))
     sys.modules[spec.name] = module
     spec.loader.exec_module(module)
     return module

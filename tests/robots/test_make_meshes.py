@@ -65,9 +65,11 @@ def test_units_and_axes_are_stated(meshes: Path) -> None:
 
 
 def test_normals_are_unit_and_faces_turned_outward(make_meshes: ModuleType) -> None:
+    from mesh_collada import corner_normals
+
     for mesh in make_meshes.all_meshes():
         for _, solid in mesh.parts:
-            normals = make_meshes.corner_normals(solid)
+            normals = corner_normals(solid)
             assert np.linalg.norm(normals, axis=2) == pytest.approx(1)
             corners = solid.vertices[solid.faces]
             face = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
