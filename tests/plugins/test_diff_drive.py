@@ -262,8 +262,13 @@ def test_torque_is_read_under_its_older_name(make, rosbots):
     old = dataclasses.replace(tag, element=dataclasses.replace(tag.element, children=kept))
     plugins = tuple(old if other is tag else other for other in rosbots.plugins)
     world = place(make, dataclasses.replace(rosbots, plugins=plugins))
-    motors = world.session.simulation.model.actuator_forcerange
-    assert motors.tolist() == [[-20, 20], [-20, 20]]
+    model = world.session.simulation.model
+    # Standing, the wheels brake with it; driving, their motors give it.
+    assert sorted(model.dof_frictionloss.tolist())[-2:] == [20, 20]
+    world.publish(COMMAND, linear_x=0.1)
+    world.run(0.1)
+    assert model.actuator_forcerange.tolist() == [[-20, 20], [-20, 20]]
+    assert max(model.dof_frictionloss.tolist()) == 0
     assert any("<torque>" in d.message and d.severity == "info" for d in world.diagnostics)
 
 

@@ -168,29 +168,46 @@ class JointHandle:
 
 
 class MotorHandle:
-    """A driven joint: a velocity servo with limited effort, or an effort."""
+    """A driven joint: a velocity servo with limited effort, or an effort.
+
+    A servo that is told to stand brakes: dry friction of the same limit takes its place. It
+    holds a load without the small speed that a servo needs to feel one.
+    """
 
     def __init__(self, model: str, motor: Motor) -> None:
         self.model_name = model
         self.motor = motor
         self.target = 0.0
+        self._braked = False
 
     def bind(self, model: Any, data: Any) -> None:
         """Resolves the name in a compiled model."""
         name = scoped(self.model_name, self.motor.joint)
         self.id = mujoco.mj_name2id(model, _OBJ.mjOBJ_ACTUATOR, name)
-        self._ctrl, self._force = data.ctrl, data.actuator_force
-        self._ctrl[self.id] = self.target
+        joint = mujoco.mj_name2id(model, _OBJ.mjOBJ_JOINT, name)
+        self._ctrl = data.ctrl
+        self._range = model.actuator_forcerange[self.id]
+        self._friction, self._dof = model.dof_frictionloss, int(model.jnt_dofadr[joint])
+        self._limit = tuple(self._range.tolist())
+        self._own_friction = float(self._friction[self._dof])
+        most = self.motor.max_effort
+        self._brake = None
+        if self.motor.mode == "velocity" and most is not None:
+            if model.jnt_actfrclimited[joint]:
+                most = min(most, float(model.jnt_actfrcrange[joint, 1]))
+            self._brake = most + self._own_friction
+        self._braked = False
+        self.command(self.target)
 
     def command(self, target: float) -> None:
         """Sets the target: rad/s or m/s of a velocity motor, N m or N of an effort motor."""
         self.target = target
         self._ctrl[self.id] = target
-
-    @property
-    def effort(self) -> float:
-        """N m or N that the motor gives."""
-        return float(self._force[self.id])
+        stands = target == 0.0 and self._brake is not None
+        if stands != self._braked:
+            self._braked = stands
+            self._range[:] = (0.0, 0.0) if stands else self._limit
+            self._friction[self._dof] = self._brake if stands else self._own_friction
 
 
 class CameraHandle:

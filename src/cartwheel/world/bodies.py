@@ -37,6 +37,8 @@ COLLISION_GROUP = 4
 _GREY = (0.7, 0.7, 0.7, 1.0)
 _CAMERA_AXES = np.array([[0.0, 0, -1], [-1, 0, 0], [0, 1, 0]])
 """Columns: MuJoCo's camera axes (right, up, back) in a sensor frame that looks along x."""
+_BRAKE_REFERENCE = (0.01, 1.0)
+_BRAKE_IMPEDANCE = (0.9999, 0.9999, 0.001, 0.5, 2.0)
 _VELOCITY_ERROR = 0.05
 """rad/s or m/s at which a velocity servo gives all of its effort."""
 
@@ -319,6 +321,10 @@ class BodyBuilder:
             # integrator a stiff servo is stable at any step.
             gain = (motor.max_effort or 1000.0) / _VELOCITY_ERROR
             actuator.set_to_velocity(kv=gain)
+            # As a brake it lets a load slip by nothing that could be seen.
+            joint = self._spec.joint(name)
+            joint.solref_friction = list(_BRAKE_REFERENCE)
+            joint.solimp_friction = list(_BRAKE_IMPEDANCE)
         else:
             actuator.set_to_motor()
 
