@@ -144,7 +144,7 @@ def on_slope(make, rosbots, degrees):
 
 @pytest.mark.parametrize("degrees", [8, 12, 18])
 def test_it_holds_on_a_ramp(make, rosbots, degrees):
-    """Wheels that are told to stand brake: the slope's pull r m g sin α / 2 is within the torque."""
+    """Wheels told to stand brake: the pull of the slope, r m g sin α / 2, is within the torque."""
     torque = RADIUS * rosbots.mass * 9.8 * math.sin(math.radians(degrees)) / 2
     assert torque < TORQUE
     world, before = on_slope(make, rosbots, degrees)
