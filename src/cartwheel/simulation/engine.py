@@ -11,7 +11,7 @@ import mujoco
 from cartwheel.description.model import WorldDescription
 from cartwheel.errors import Diagnostic
 from cartwheel.geometry import Pose, from_wxyz, to_wxyz
-from cartwheel.simulation.clock import to_ns
+from cartwheel.simulation.clock import Task, to_ns
 from cartwheel.simulation.rendering import Renderer
 from cartwheel.world.build import step_of
 from cartwheel.world.entry import scoped
@@ -47,9 +47,23 @@ class Engine:
         """Simulation time."""
         return self.step * self.step_ns
 
-    def next_task_order(self) -> int:
-        """A number that rises with each task."""
-        return next(self._orders)
+    def task(
+        self,
+        rate: float,
+        *,
+        before: Callable[[], None] | None,
+        after: Callable[[], None] | None,
+        active: Callable[[], bool],
+    ) -> Task:
+        """A task that runs after all that were made before it; see `Task`."""
+        return Task(
+            rate=rate,
+            before=before,
+            after=after,
+            active=active,
+            step_ns=self.step_ns,
+            order=next(self._orders),
+        )
 
     def report(self, diagnostic: Diagnostic) -> None:
         """Keeps something that the user should know, and tells those who listen."""

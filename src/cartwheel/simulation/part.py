@@ -45,11 +45,6 @@ class Part:
         return self._entry.description
 
     @property
-    def world_gravity(self) -> tuple[float, float, float]:
-        """m/s², in the world."""
-        return self._engine.world.gravity
-
-    @property
     def time_ns(self) -> int:
         """Simulation time of the state that is being read or controlled."""
         return self._engine.time_ns
@@ -131,16 +126,7 @@ class Part:
         active: Callable[[], bool] = always,
     ) -> None:
         """Does something at a rate in Hz; 0 is every step. See `Task`."""
-        self.tasks.append(
-            Task(
-                rate=rate,
-                before=before,
-                after=after,
-                active=active,
-                step_ns=self._engine.step_ns,
-                order=self._engine.next_task_order(),
-            )
-        )
+        self.tasks.append(self._engine.task(rate, before=before, after=after, active=active))
 
     def random(self, name: str) -> np.random.Generator:
         """The noise of this moment, a sequence of its own for each named user.

@@ -352,16 +352,7 @@ class Simulation:
         active: Callable[[], bool] = always,
     ) -> None:
         """Does something of the world's at a rate in Hz, whatever models there are; see `Task`."""
-        self._world_tasks.append(
-            Task(
-                rate=rate,
-                before=before,
-                after=after,
-                active=active,
-                step_ns=self.step_ns,
-                order=self.engine.next_task_order(),
-            )
-        )
+        self._world_tasks.append(self.engine.task(rate, before=before, after=after, active=active))
         self._gather_tasks()
 
     def _gather_tasks(self) -> None:

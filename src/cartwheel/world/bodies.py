@@ -9,7 +9,6 @@ import numpy as np
 
 from cartwheel.description import meshes
 from cartwheel.description.model import (
-    Cone,
     Inertial,
     Joint,
     Link,
@@ -24,13 +23,14 @@ from cartwheel.geometry import (
     Array,
     Pose,
     matrix_from_quat,
+    quat_between,
     quat_from_matrix,
     rotate,
     to_wxyz,
 )
 from cartwheel.world import contact
 from cartwheel.world.entry import CameraMount, ModelEntry, Motor, scoped
-from cartwheel.world.shapes import Assets, cone, hull, place, pose_arguments
+from cartwheel.world.shapes import Assets, place, pose_arguments
 
 VISUAL_GROUP = 1
 COLLISION_GROUP = 4
@@ -131,14 +131,7 @@ class BodyBuilder:
                     origin=collision.origin,
                     hint="Use a flat box instead, or <static>true</static>.",
                 )
-            if isinstance(shape, Mesh | Cone):
-                arguments: dict[str, Any] = {
-                    "type": mujoco.mjtGeom.mjGEOM_MESH,
-                    "meshname": hull(shape, self._assets),
-                }
-                pose = collision.pose
-            else:
-                arguments, pose = place(shape, collision.pose, collision.origin)
+            arguments, pose = place(shape, collision.pose, collision.origin, self._assets)
             friction = contact.friction(collision.surface)
             reference = contact.reference(collision.surface, entry.description.mass, self._step)
             geom = body.add_geom(
@@ -177,7 +170,7 @@ class BodyBuilder:
         if isinstance(shape, Mesh):
             for index, part in enumerate(meshes.load_mesh(shape)):
                 mesh = self._assets.mesh(
-                    ("visual", shape, index), part.vertices, part.faces, normals=None, uv=part.uv
+                    ("visual", shape, index), part.vertices, part.faces, uv=part.uv
                 )
                 texture = material.texture or (
                     part.texture if material.diffuse is None or material.yields_to_mesh else None
@@ -198,15 +191,7 @@ class BodyBuilder:
         look = {"rgba": [*rgba[:3], rgba[3] * opacity]}
         if material.texture is not None:
             look = {"material": self._assets.texture_material(material.texture)}
-        if isinstance(shape, Cone):
-            vertices, faces = cone(shape)
-            arguments: dict[str, Any] = {
-                "type": mujoco.mjtGeom.mjGEOM_MESH,
-                "meshname": self._assets.mesh(("cone", shape), vertices, faces),
-            }
-            pose = visual.pose
-        else:
-            arguments, pose = place(shape, visual.pose, visual.origin)
+        arguments, pose = place(shape, visual.pose, visual.origin, self._assets)
         body.add_geom(**arguments, **look, **common, **pose_arguments(pose))
 
     def _add_joint(self, entry: ModelEntry, body: Any, joint: Joint) -> None:
@@ -240,18 +225,9 @@ class BodyBuilder:
                 )
                 _set_axis(made, joint, first=False)
             case "planar":
-                normal = np.array(axis)
-                turn = matrix_from_quat(
-                    quat_from_matrix(matrix_from_quat(IDENTITY))
-                )  # axes of the child frame
-                for index in range(3):
-                    column = turn[:, index]
-                    if abs(float(column @ normal)) < 0.5:
-                        body.add_joint(
-                            name=f"{name}::{'xyz'[index]}",
-                            type=kind.mjJNT_SLIDE,
-                            axis=column.tolist(),
-                        )
+                across = matrix_from_quat(quat_between((0.0, 0.0, 1.0), axis))
+                for index in range(2):
+                    self._slide(body, f"{name}::{'xy'[index]}", across[:, index])
                 body.add_joint(name=name, type=kind.mjJNT_HINGE, axis=axis, pos=pos)
             case "floating":
                 for index in range(3):

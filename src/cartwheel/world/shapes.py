@@ -38,9 +38,7 @@ class Assets:
         self._meshes: dict[object, str] = {}
         self._materials: dict[object, str] = {}
 
-    def mesh(
-        self, key: object, vertices: Any, faces: Any, *, normals: Any = None, uv: Any = None
-    ) -> str:
+    def mesh(self, key: object, vertices: Any, faces: Any, *, uv: Any = None) -> str:
         """The name of a mesh asset; made from the arrays when `key` is new."""
         if key not in self._meshes:
             name = f"mesh_{len(self._meshes)}"
@@ -50,8 +48,6 @@ class Assets:
             )
             mesh.uservert = np.asarray(vertices, dtype=np.float64).ravel()
             mesh.userface = np.asarray(faces, dtype=np.int32).ravel()
-            if normals is not None:
-                mesh.usernormal = np.asarray(normals, dtype=np.float64).ravel()
             if uv is not None:
                 mesh.usertexcoord = np.asarray(uv, dtype=np.float64).ravel()
             self._meshes[key] = name
@@ -84,8 +80,10 @@ class Assets:
         return self._materials[image]
 
 
-def place(shape: Shape, pose: Pose, origin: Origin) -> tuple[dict[str, Any], Pose]:
-    """Geom arguments of a primitive, and its pose: a plane's normal may turn it.
+def place(shape: Shape, pose: Pose, origin: Origin, assets: Assets) -> tuple[dict[str, Any], Pose]:
+    """Geom arguments of a shape, and its pose: a plane's normal may turn it.
+
+    A mesh is one geom whose convex hull collides, whatever parts and colours it has.
 
     Raises:
         WorldError: The shape is not built yet.
@@ -108,11 +106,12 @@ def place(shape: Shape, pose: Pose, origin: Origin) -> tuple[dict[str, Any], Pos
             # renderer pays for each.
             size = [_PLANE_HALF_SIZE, _PLANE_HALF_SIZE, _PLANE_HALF_SIZE]
             return {"type": geom.mjGEOM_PLANE, "size": size}, turned
+        case Mesh() | Cone():
+            return {"type": geom.mjGEOM_MESH, "meshname": _hull(shape, assets)}, pose
         case Heightmap():
             raise WorldError("a heightmap is not supported yet", origin=origin)
         case Polyline():
             raise WorldError("a polyline is not supported yet", origin=origin)
-    raise WorldError(f"a {type(shape).__name__.lower()} is no primitive", origin=origin)
 
 
 def pose_arguments(pose: Pose) -> dict[str, Any]:
@@ -120,19 +119,14 @@ def pose_arguments(pose: Pose) -> dict[str, Any]:
     return {"pos": list(pose.position), "quat": list(to_wxyz(pose.orientation))}
 
 
-def hull(shape: Mesh | Cone, assets: Assets) -> str:
+def _hull(shape: Mesh | Cone, assets: Assets) -> str:
     """The mesh asset whose convex hull collides."""
     if isinstance(shape, Cone):
-        vertices, faces = cone(shape)
-        return assets.mesh(("cone", shape), vertices, faces)
-    parts = meshes.load_mesh(shape)
-    vertices = np.concatenate([part.vertices for part in parts])
-    offsets = np.cumsum([0] + [len(part.vertices) for part in parts[:-1]])
-    faces = np.concatenate([part.faces + o for part, o in zip(parts, offsets, strict=True)])
-    return assets.mesh(("hull", shape), vertices, faces)
+        return assets.mesh(shape, *_cone(shape))
+    return assets.mesh(("hull", shape), *meshes.convex_hull_input(meshes.load_mesh(shape)))
 
 
-def cone(shape: Cone) -> tuple[Array, Any]:
+def _cone(shape: Cone) -> tuple[Array, Any]:
     """Vertices and faces of a cone, centred, tip up."""
     angles = [2 * math.pi * i / _CONE_SIDES for i in range(_CONE_SIDES)]
     rim = [

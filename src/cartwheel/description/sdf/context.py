@@ -8,7 +8,6 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from cartwheel.description import numbers
 from cartwheel.errors import DescriptionError, Diagnostic, Origin, Severity
 from cartwheel.geometry import Pose, Quat, quat_normalize
 
@@ -122,8 +121,3 @@ def check_unique(kind: str, names: list[tuple[str, Origin]]) -> None:
                 hint=f"The first is at {seen[name]}.",
             )
         seen[name] = origin
-
-
-def number_in(text: str, node: Node) -> float:
-    """A number written in an attribute or list of that element."""
-    return numbers.number(text, node.tag, node.origin)
