@@ -1,0 +1,1 @@
+"""Programs for the controller manager of a robot."""

@@ -1,0 +1,122 @@
+"""The services of a controller manager, as the programs call them."""
+
+from __future__ import annotations
+
+import sys
+import time
+from typing import Any
+
+STRICT = 2
+NAMES = ("load_controller", "unload_controller", "switch_controller", "list_controllers")
+
+
+class ManagerError(Exception):
+    """What a controller manager refuses, or that it is not there."""
+
+
+class Manager:
+    """Calls the services of one controller manager.
+
+    Args:
+        namespace: Of the robot; "" is that of the node.
+    """
+
+    def __init__(self, namespace: str = "") -> None:
+        prefix = f"{namespace.rstrip('/')}/" if namespace else ""
+        self._prefix = f"{prefix}controller_manager/"
+
+    def wait(self, timeout: float | None) -> None:
+        """Waits until the services are there, in s of the wall clock; None is endless.
+
+        Raises:
+            ManagerError: They are not there in time.
+        """
+        import rospy
+
+        end = None if timeout is None else time.monotonic() + timeout
+        for name in NAMES:
+            service = rospy.resolve_name(self._prefix + name)
+            while True:
+                left = 1.0 if end is None else min(1.0, end - time.monotonic())
+                try:
+                    rospy.wait_for_service(service, timeout=max(left, 0.01))
+                    break
+                except rospy.ROSException:
+                    if rospy.is_shutdown():
+                        raise ManagerError("interrupted") from None
+                    if end is not None and time.monotonic() >= end:
+                        raise ManagerError(
+                            f"there is no service {service} after {timeout:g} s: the robot has "
+                            "no controller manager in this namespace, or is not spawned yet"
+                        ) from None
+
+    def load(self, name: str) -> bool:
+        """Whether it is loaded now and was not before."""
+        from controller_manager_msgs.srv import LoadController
+
+        return bool(self._call("load_controller", LoadController, name=name).ok)
+
+    def unload(self, name: str) -> bool:
+        """Whether it is gone now."""
+        from controller_manager_msgs.srv import UnloadController
+
+        return bool(self._call("unload_controller", UnloadController, name=name).ok)
+
+    def switch(self, start: list[str], stop: list[str]) -> bool:
+        """Whether all of these were started and stopped."""
+        from controller_manager_msgs.srv import SwitchController
+
+        return bool(
+            self._call(
+                "switch_controller",
+                SwitchController,
+                start_controllers=start,
+                stop_controllers=stop,
+                strictness=STRICT,
+                start_asap=False,
+                timeout=0.0,
+            ).ok
+        )
+
+    def controllers(self) -> list[Any]:
+        """``ControllerState`` of each that is loaded."""
+        from controller_manager_msgs.srv import ListControllers
+
+        return list(self._call("list_controllers", ListControllers).controller)
+
+    def types(self) -> list[tuple[str, str]]:
+        """Each type that can be loaded, with its base class."""
+        from controller_manager_msgs.srv import ListControllerTypes
+
+        found = self._call("list_controller_types", ListControllerTypes)
+        return list(zip(found.types, found.base_classes, strict=True))
+
+    def reload(self, *, force: bool) -> bool:
+        """Unloads all controllers; whether it did."""
+        from controller_manager_msgs.srv import ReloadControllerLibraries
+
+        answer = self._call(
+            "reload_controller_libraries", ReloadControllerLibraries, force_kill=force
+        )
+        return bool(answer.ok)
+
+    def _call(self, service: str, kind: Any, /, **request: Any) -> Any:
+        import rospy
+
+        try:
+            return rospy.ServiceProxy(self._prefix + service, kind)(**request)
+        except rospy.ServiceException as error:
+            raise ManagerError(str(error)) from None
+        except rospy.ROSException as error:
+            raise ManagerError(str(error)) from None
+
+
+def join_ros(name: str) -> list[str]:
+    """Makes this program a node; returns its arguments without those of ROS."""
+    import rospy
+
+    words: list[str] = rospy.myargv()[1:]
+    sys.stdout.reconfigure(line_buffering=True)  # type: ignore[union-attr]
+    # Its times are those of the wall: it must not wait for a clock that stands still.
+    rospy.init_node(name, anonymous=True, disable_rostime=True)
+    return words

@@ -1,0 +1,54 @@
+"""The program unspawner: stops running controllers, and starts them again when it ends."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+
+from controller_manager.services import Manager, ManagerError, join_ros
+
+
+def main() -> int:
+    """Runs the program; returns its exit status."""
+    arguments = parse([word for word in sys.argv[1:] if ":=" not in word])
+    import rospy
+
+    join_ros("unspawner")
+    manager = Manager(arguments.namespace or "")
+    try:
+        manager.wait(None if arguments.timeout <= 0 else arguments.timeout)
+        running = [each.name for each in manager.controllers() if each.state == "running"]
+        stopped = [name for name in arguments.controllers if name in running]
+        if not manager.switch([], stopped):
+            rospy.logerr(f"Failed to stop controllers: {', '.join(stopped)}")
+            return 1
+        rospy.loginfo(f"Stopped controllers: {', '.join(stopped)}")
+    except ManagerError as error:
+        if not rospy.is_shutdown():
+            rospy.logerr(str(error))
+        return 1
+    # Services can still be called then, and no longer when `spin` has returned.
+    rospy.on_shutdown(lambda: go_on(manager, stopped))
+    rospy.spin()
+    return 0
+
+
+def go_on(manager: Manager, names: list[str]) -> None:
+    """Starts controllers again, where the simulation is still there."""
+    try:
+        manager.switch(names, [])
+    except ManagerError:
+        return
+
+
+def parse(words: list[str]) -> argparse.Namespace:
+    """The arguments; exits with 2 where they make no sense."""
+    parser = argparse.ArgumentParser(
+        prog="unspawner", description="Stops controllers until it is interrupted."
+    )
+    parser.add_argument("--namespace", metavar="NS", help="namespace of the controller manager")
+    parser.add_argument(
+        "--timeout", metavar="SECONDS", type=float, default=30.0, help="of waiting; 0 is endless"
+    )
+    parser.add_argument("controllers", metavar="CONTROLLER", nargs="+")
+    return parser.parse_args(words)

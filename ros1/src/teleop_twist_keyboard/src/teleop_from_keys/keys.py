@@ -1,0 +1,1 @@
+../../../../../src/cartwheel/cli/teleop_keys.py
