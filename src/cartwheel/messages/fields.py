@@ -45,18 +45,19 @@ def fields(name: str) -> tuple[Field, ...]:
     """
     full = message_class(name).__msgtype__
     return tuple(
-        _field(field, description)
+        field_of(field, description)
         for field, description in store().fielddefs[full][1]
         if field != FILLER
     )
 
 
-def _field(name: str, description: Any) -> Field:
+def field_of(name: str, description: Any) -> Field:
+    """A field as rosbags describes it."""
     from rosbags.interfaces import Nodetype
 
     node, value = description
     if node in (Nodetype.ARRAY, Nodetype.SEQUENCE):
-        inner = _field(name, value[0])
+        inner = field_of(name, value[0])
         length = value[1] if node == Nodetype.ARRAY else None
         return Field(name=name, kind=inner.kind, type=inner.type, array=True, length=length)
     if node == Nodetype.NAME:

@@ -1,7 +1,8 @@
 """ROS 2 message classes, rosbags' own and those made from our definitions.
 
 A definition is the text of ROS 1 and ROS 2 alike: the ROS 1 bridge reads the same files
-into its own store, where they have the md5 sums that ROS 1 nodes expect.
+into its own store, where they have the md5 sums that ROS 1 nodes expect. Types that only
+ROS 2 has are in a folder of their own, which ROS 1's store does not see.
 """
 
 from __future__ import annotations
@@ -15,6 +16,8 @@ from cartwheel.errors import UnknownNameError
 
 DEFINITIONS = Path(__file__).parent / "definitions"
 """Holds ``<package>/msg/<Name>.msg`` and ``<package>/srv/<Name>.srv``."""
+ROS2_DEFINITIONS = Path(__file__).parent / "definitions_ros2"
+"""The same, of types that ROS 1 does not have."""
 
 SEPARATOR = "---\n"
 """Between the request and the response of a service."""
@@ -25,30 +28,44 @@ def store() -> Any:
     """The typestore: Jazzy's types and those of `DEFINITIONS`."""
     # rosbags takes as long to import as the rest of a command does to run, and many
     # commands see no message.
-    from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+    from rosbags.typesys import Stores, get_typestore
 
     made = get_typestore(Stores.ROS2_JAZZY)
-    ours: dict[str, Any] = {}
-    for name, text in definitions():
-        if name not in made.fielddefs:
-            # The parser has names of its own for a service's parts: ours count.
-            (ours[name],) = get_types_from_msg(text, name).values()
-    made.register(ours)
+    ours = parsed_definitions() | parsed_definitions(ROS2_DEFINITIONS)
+    made.register({name: ours[name] for name in ours if name not in made.fielddefs})
     return made
 
 
-def definitions() -> Iterator[tuple[str, str]]:
+@functools.cache
+def parsed_definitions(folder: Path = DEFINITIONS) -> dict[str, Any]:
+    """Our types and their fields, as rosbags describes them."""
+    from rosbags.typesys import get_types_from_msg
+
+    ours: dict[str, Any] = {}
+    for name, text in definitions(folder):
+        # The parser has names of its own for a service's parts: ours count.
+        (ours[name],) = get_types_from_msg(text, name).values()
+    return ours
+
+
+def definitions(folder: Path = DEFINITIONS) -> Iterator[tuple[str, str]]:
     """Our types with their texts: messages, and each service's two parts.
 
     A service ``pkg/srv/Name`` has the parts ``pkg/srv/Name_Request`` and ``…_Response``.
     """
-    for path in sorted(DEFINITIONS.glob("*/msg/*.msg")):
+    for path in sorted(folder.glob("*/msg/*.msg")):
         yield f"{path.parent.parent.name}/msg/{path.stem}", path.read_text()
-    for path in sorted(DEFINITIONS.glob("*/srv/*.srv")):
+    for path in sorted(folder.glob("*/srv/*.srv")):
         request, _, response = path.read_text().partition(SEPARATOR)
         service = f"{path.parent.parent.name}/srv/{path.stem}"
         yield f"{service}_Request", request
         yield f"{service}_Response", response
+
+
+def is_ros2_only(name: str) -> bool:
+    """Whether a message or service type is one of those that ROS 1 cannot know."""
+    ours = parsed_definitions(ROS2_DEFINITIONS)
+    return name in ours or f"{name}_Request" in ours
 
 
 def type_name(name: str) -> str:

@@ -1,0 +1,132 @@
+"""Messages from ROS 1 bytes, which may come from anyone and hold anything."""
+
+from __future__ import annotations
+
+import functools
+import struct
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from cartwheel.errors import GraphError
+from cartwheel.messages.convert import zero
+from cartwheel.messages.fields import FILLER, Field
+from cartwheel.messages.ros1_fields import CODES, Pair, pairs
+from cartwheel.messages.store import message_class, store, type_name
+
+_COUNT = struct.Struct("<I")
+_EMPTIES = 1 << 16
+"""Messages without any bytes that an array may hold."""
+
+_Reader = Callable[["_Source"], Any]
+
+
+class _Source:
+    """Bytes and how far they are read."""
+
+    __slots__ = ("data", "offset")
+
+    def __init__(self, data: bytes | memoryview) -> None:
+        self.data = memoryview(data)
+        self.offset = 0
+
+    def take(self, size: int) -> memoryview:
+        end = self.offset + size
+        if end > len(self.data):
+            raise ValueError(f"{size} bytes wanted where {len(self.data) - self.offset} are left")
+        taken = self.data[self.offset : end]
+        self.offset = end
+        return taken
+
+    def count(self) -> int:
+        (count,) = _COUNT.unpack(self.take(4))
+        return int(count)
+
+
+def decode_ros1(data: bytes | memoryview, type_name: str) -> Any:
+    """The graph's message of ROS 1 bytes; its arrays are views of them.
+
+    Raises:
+        UnknownNameError: There is no such type.
+        GraphError: The bytes are none of that type.
+    """
+    read = _reader(message_class(type_name).__msgtype__)
+    source = _Source(data)
+    try:
+        message = read(source)
+    except (ValueError, struct.error) as error:
+        raise GraphError(f"{len(data)} bytes are no {type_name}: {error}") from error
+    if source.offset != len(source.data):
+        left = len(source.data) - source.offset
+        raise GraphError(f"{len(data)} bytes are no {type_name}: {left} are too many")
+    return message
+
+
+@functools.cache
+def _reader(name: str) -> _Reader:
+    full = type_name(name)
+    made = message_class(full)
+    readers = [(pair.name, _field_reader(pair)) for pair in pairs(full)]
+    read_names = {ours for ours, _ in readers}
+    rest = {
+        field: getattr(zero(full), field)
+        for field, _ in store().fielddefs[full][1]
+        if field not in read_names and field != FILLER
+    }
+    if any(field == FILLER for field, _ in store().fielddefs[full][1]):
+        rest[FILLER] = 0
+
+    def read(source: _Source) -> Any:
+        values = dict(rest)
+        for ours, read_field in readers:
+            value = read_field(source)
+            if ours is not None:
+                values[ours] = value
+        return made(**values)
+
+    return read
+
+
+def _field_reader(pair: Pair) -> _Reader:
+    field = pair.field
+    if pair.form == "list":
+        return _list_reader(field, _single_reader(field))
+    return _array_reader(field) if field.array else _single_reader(field)
+
+
+def _single_reader(field: Field) -> _Reader:
+    if field.kind == "message":
+        return _reader(field.type)
+    if field.kind == "string":
+        return _read_text
+    unpack = struct.Struct(f"<{CODES[field.type]}")
+    return lambda source: unpack.unpack(source.take(unpack.size))[0]
+
+
+def _read_text(source: _Source) -> str:
+    return bytes(source.take(source.count())).decode(errors="replace")
+
+
+def _list_reader(field: Field, read: _Reader) -> _Reader:
+    def read_list(source: _Source) -> list[Any]:
+        count = source.count() if field.length is None else field.length
+        found = []
+        for i in range(count):
+            before = source.offset
+            found.append(read(source))
+            if source.offset == before and i >= _EMPTIES:
+                raise ValueError(f"{count} empty messages")
+        return found
+
+    return read_list
+
+
+def _array_reader(field: Field) -> _Reader:
+    dtype = np.dtype(field.type).newbyteorder("<")
+
+    def read_array(source: _Source) -> Any:
+        count = source.count() if field.length is None else field.length
+        return np.frombuffer(source.take(count * dtype.itemsize), dtype=dtype)
+
+    return read_array

@@ -1,0 +1,200 @@
+"""Messages as ROS 1 bytes: a plan for each type, made once, then packed in a few calls."""
+
+from __future__ import annotations
+
+import functools
+import struct
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from operator import attrgetter
+from typing import Any
+
+import numpy as np
+
+from cartwheel.errors import GraphError
+from cartwheel.messages.fields import Field
+from cartwheel.messages.ros1_fields import CODES, HEADER, pairs
+
+_COUNT = struct.Struct("<I")
+_SHARED = 4096
+"""Bytes from which an array is handed on instead of copied."""
+
+Parts = list[Any]
+"""Bytes and views of arrays, to be joined."""
+_Writer = Callable[[Any, Parts], None]
+
+
+def write_ros1(message: Any, *, seq: int = 0) -> Parts:
+    """A message's ROS 1 encoding in parts, so that large arrays are copied once by whoever joins.
+
+    Args:
+        message: Of the graph.
+        seq: The header's, if the message begins with one.
+
+    Raises:
+        UnknownNameError: ROS 1 has no such type.
+        GraphError: A value does not fit its field.
+    """
+    parts: Parts = []
+    try:
+        _plan(message.__msgtype__)(message, parts, seq)
+    except (struct.error, TypeError, AttributeError, ValueError) as error:
+        raise GraphError(f"a {message.__msgtype__} that ROS 1 cannot hold: {error}") from error
+    return parts
+
+
+def encode_ros1(message: Any, *, seq: int = 0) -> bytes:
+    """A message's ROS 1 encoding; see `write_ros1`."""
+    return b"".join(write_ros1(message, seq=seq))
+
+
+@dataclass(frozen=True, slots=True)
+class _Fixed:
+    """A part of fixed size: a number's letter, or so many zero bytes."""
+
+    code: str
+    path: str | None
+
+
+@dataclass(frozen=True, slots=True)
+class _Counted:
+    """A part whose size depends on its value."""
+
+    field: Field
+    path: str
+
+
+class _Plan:
+    """How messages of one type are written."""
+
+    def __init__(self, name: str) -> None:
+        self._seq = False
+        found = list(_flat(name, ""))
+        pending: list[_Fixed] = []
+        writers: list[_Writer] = []
+        header = pairs(name)[:1]
+        if header and header[0].field.type == HEADER and not header[0].field.array:
+            # Its first field is seq, which no message of the graph has.
+            self._seq = True
+            found = found[1:]
+        for step in found:
+            if isinstance(step, _Fixed):
+                pending.append(step)
+                continue
+            if pending:
+                writers.append(_Run(pending))
+                pending = []
+            writers.append(_counted(step))
+        if pending:
+            writers.append(_Run(pending))
+        self._writers = tuple(writers)
+
+    def __call__(self, message: Any, parts: Parts, seq: int = 0) -> None:
+        if self._seq:
+            parts.append(_COUNT.pack(seq & 0xFFFFFFFF))
+        for write in self._writers:
+            write(message, parts)
+
+
+@functools.cache
+def _plan(name: str) -> _Plan:
+    return _Plan(name)
+
+
+def _flat(name: str, prefix: str) -> Iterator[_Fixed | _Counted]:
+    """The fields of a type at any depth, in the order of their bytes."""
+    for pair in pairs(name):
+        if pair.name is None:
+            yield _Fixed(f"{_zero_size(pair.field)}x", None)
+            continue
+        path = prefix + pair.name
+        if pair.form == "number" and pair.field.kind == "message":
+            yield from _flat(pair.field.type, f"{path}.")
+        elif pair.form == "number":
+            yield _Fixed(CODES[pair.field.type], path)
+        else:
+            yield _Counted(pair.field, path)
+
+
+def _zero_size(field: Field) -> int:
+    """Bytes of a field that is zero or empty; they are all zero."""
+    if field.array and field.length is None:
+        return 4
+    if field.kind == "message":
+        one = sum(_zero_size(pair.field) for pair in pairs(field.type))
+    elif field.kind == "string":
+        one = 4
+    else:
+        one = struct.calcsize(f"<{CODES[field.type]}")
+    return one * (field.length if field.array and field.length else 1)
+
+
+class _Run:
+    """Numbers in a row, packed in one call."""
+
+    def __init__(self, fixed: list[_Fixed]) -> None:
+        self._pack = struct.Struct("<" + "".join(step.code for step in fixed)).pack
+        paths = [step.path for step in fixed if step.path is not None]
+        self._get = attrgetter(*paths) if paths else None
+        self._single = len(paths) == 1
+
+    def __call__(self, message: Any, parts: Parts) -> None:
+        if self._get is None:
+            parts.append(self._pack())
+        elif self._single:
+            parts.append(self._pack(self._get(message)))
+        else:
+            parts.append(self._pack(*self._get(message)))
+
+
+def _counted(step: _Counted) -> _Writer:
+    get = attrgetter(step.path)
+    field = step.field
+    if not field.array:
+        return lambda message, parts: _write_text(get(message), parts)
+    if field.kind == "string":
+        return _list_writer(field, get, _write_text)
+    if field.kind == "message":
+        return _list_writer(field, get, _plan(field.type))
+    return _array_writer(field, get)
+
+
+def _write_text(text: str, parts: Parts) -> None:
+    data = text.encode(errors="surrogateescape")
+    parts.append(_COUNT.pack(len(data)))
+    parts.append(data)
+
+
+def _list_writer(
+    field: Field, get: Callable[[Any], Any], write: Callable[[Any, Parts], None]
+) -> _Writer:
+    def write_list(message: Any, parts: Parts) -> None:
+        values = get(message)
+        _count(field, len(values), parts)
+        for value in values:
+            write(value, parts)
+
+    return write_list
+
+
+def _array_writer(field: Field, get: Callable[[Any], Any]) -> _Writer:
+    dtype = np.dtype(field.type).newbyteorder("<")
+
+    def write_array(message: Any, parts: Parts) -> None:
+        values = get(message)
+        if type(values) is not np.ndarray or values.dtype != dtype:
+            values = np.asarray(values, dtype=dtype)
+        _count(field, values.size, parts)
+        if values.nbytes >= _SHARED and values.flags.c_contiguous:
+            parts.append(values.data)
+        else:
+            parts.append(values.tobytes())
+
+    return write_array
+
+
+def _count(field: Field, count: int, parts: Parts) -> None:
+    if field.length is None:
+        parts.append(_COUNT.pack(count))
+    elif count != field.length:
+        raise ValueError(f"{field.name} holds {count} values, not {field.length}")
