@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from cartwheel.geometry import Vec3
 
 TOLERANCE = 1e-3
 """Relative: files state three or four digits, and thin plates lie on the edge exactly."""
+_THINNEST = 1e-6
+"""Relative: the moment of a rod about itself, which is stated as 0."""
 
 
 def principal_moments(diagonal: Vec3, products: Vec3) -> Vec3:
@@ -26,7 +30,8 @@ def principal_moments(diagonal: Vec3, products: Vec3) -> Vec3:
         a, b, c = sorted((ixx, iyy, izz))
         return (a, b, c)
     mean = (ixx + iyy + izz) / 3
-    spread = (ixx - mean) ** 2 + (iyy - mean) ** 2 + (izz - mean) ** 2 + 2 * off
+    # Products, for a power of a float raises where it overflows.
+    spread = sum((each - mean) * (each - mean) for each in (ixx, iyy, izz)) + 2 * off
     p = math.sqrt(spread / 6)
     if p == 0.0 or not math.isfinite(p):
         a, b, c = sorted((ixx, iyy, izz))
@@ -56,3 +61,29 @@ def impossibility(moments: Vec3) -> tuple[str, str] | None:
             "A solid box has ixx = mass / 12 (y² + z²), and so on round the axes.",
         )
     return None
+
+
+def made_possible(diagonal: Vec3, products: Vec3) -> tuple[Vec3, Vec3]:
+    """The inertia with its two smaller moments so far raised that a body can have it.
+
+    The largest moment, which is what most often was meant, and the axes stay.
+
+    Args:
+        diagonal: ixx, iyy, izz.
+        products: ixy, ixz, iyz. None of the matrix's principal moments is below 0.
+
+    Returns:
+        As the arguments.
+    """
+    ixx, iyy, izz = diagonal
+    ixy, ixz, iyz = products
+    tensor = np.array([[ixx, ixy, ixz], [ixy, iyy, iyz], [ixz, iyz, izz]])
+    moments, axes = np.linalg.eigh(tensor)
+    moments = np.maximum(moments, _THINNEST * moments[2])
+    missing = moments[2] - moments[0] - moments[1]
+    if missing > 0:
+        # Half to each: a plate's two smaller moments become more alike, as those of most are.
+        moments = moments + np.array([missing / 2, missing / 2, 0.0])
+    tensor = (axes * moments) @ axes.T
+    t = tensor.tolist()
+    return (t[0][0], t[1][1], t[2][2]), (t[0][1], t[0][2], t[1][2])

@@ -97,3 +97,21 @@ def _position(joint: Joint, joints: Mapping[str, Joint], positions: Mapping[str,
         joint = joints[joint.mimic.joint]
     value = scale * positions.get(joint.name, 0.0) + offset
     return value if math.isfinite(value) else 0.0
+
+
+def fixed_chain(description: RobotDescription, link: str) -> list[Joint]:
+    """The fixed joints that hold a link to the root, from the root down.
+
+    Empty where the link is the root, or where something between them moves.
+    """
+    inbound: dict[str, Joint] = {}
+    for joint in description.joints:
+        inbound.setdefault(joint.child, joint)
+    chain: list[Joint] = []
+    while link in inbound:
+        joint = inbound[link]
+        if joint.type != "fixed" or joint in chain:
+            return []
+        chain.insert(0, joint)
+        link = joint.parent
+    return chain

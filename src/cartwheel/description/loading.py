@@ -33,6 +33,8 @@ class Opened:
     packages: Packages
     text: str
     diagnostics: tuple[Diagnostic, ...]
+    files: tuple[str, ...]
+    """The xacro files that made it; but for these, the one file itself."""
 
 
 def load(
@@ -53,7 +55,7 @@ def load(
     Raises:
         DescriptionError: it cannot be used; says what is wrong, where, and the likely fix.
     """
-    return _understand(open_description(path, arguments or {}, package_path), meshes)
+    return understand(open_description(path, arguments or {}, package_path), meshes)
 
 
 def load_robot(
@@ -112,7 +114,7 @@ def load_text(
         raise DescriptionError("the description is empty", origin=Origin(file=file))
     near = None if file.startswith("<") else Path(file)
     opened = _expand(text, file, Packages(near, package_path), arguments or {})
-    return _understand(opened, meshes)
+    return understand(opened, meshes)
 
 
 def open_description(
@@ -138,6 +140,7 @@ def _expand(
             packages=packages,
             text=write_xml(expansion.root),
             diagnostics=expansion.diagnostics,
+            files=expansion.files,
         )
     text = content if isinstance(content, str) else content.decode("utf-8", "replace")
     told = tuple(
@@ -148,10 +151,15 @@ def _expand(
         )
         for name in arguments
     )
-    return Opened(root=root, packages=packages, text=text, diagnostics=told)
+    return Opened(root=root, packages=packages, text=text, diagnostics=told, files=(file,))
 
 
-def _understand(opened: Opened, meshes: Meshes) -> RobotDescription | WorldDescription:
+def understand(opened: Opened, meshes: Meshes) -> RobotDescription | WorldDescription:
+    """What an opened description says.
+
+    Raises:
+        DescriptionError: it is no description, or something in it is wrong.
+    """
     root = opened.root
     if root.tag == "robot":
         from cartwheel.description.urdf import read_urdf

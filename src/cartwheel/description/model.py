@@ -120,6 +120,7 @@ class Mesh:
 class Heightmap:
     path: Path
     size: Vec3
+    """m; the brightest pixel is the third above black."""
     position: Vec3 = (0.0, 0.0, 0.0)
     texture: Path | None = None
 
@@ -128,6 +129,9 @@ class Heightmap:
 class Polyline:
     points: tuple[tuple[float, float], ...]
     height: float
+    """Along z, from 0."""
+    holes: tuple[tuple[tuple[float, float], ...], ...] = ()
+    """Further outlines: what an odd number of outlines surrounds is filled."""
 
 
 Shape = Box | Cylinder | Sphere | Capsule | Cone | Ellipsoid | Plane | Mesh | Heightmap | Polyline

@@ -17,8 +17,15 @@ class Node:
     """
 
     __slots__ = (
-        "_asked_attributes", "_asked_children", "_attributes", "_read", "children", "origin",
-        "tag", "text",
+        "_asked_attributes",
+        "_asked_children",
+        "_attributes",
+        "_read",
+        "children",
+        "notes",
+        "origin",
+        "tag",
+        "text",
     )  # fmt: skip
 
     def __init__(
@@ -38,6 +45,8 @@ class Node:
         self._read = False
         self._asked_attributes: set[str] = set()
         self._asked_children: set[str] = set()
+        self.notes: tuple[str, ...] = ()
+        """What its reader took otherwise than it is written; `unread` warns of them."""
 
     def __repr__(self) -> str:
         return f"<{self.tag}> at {self.origin}"
@@ -249,19 +258,52 @@ def to_element(node: Node) -> Element:
     )
 
 
-def unread(node: Node) -> Iterator[Diagnostic]:
-    """A warning for each part below `node` that no parser asked for."""
+def unread(
+    node: Node, harmless: Mapping[tuple[str, str], str] | None = None
+) -> Iterator[Diagnostic]:
+    """A warning for each part below `node` that no parser asked for.
+
+    Args:
+        node: A root.
+        harmless: Why it is none that a part is ignored, by the element's tag and the child's
+            tag, or the attribute's name after an ``@``: these are told for information only.
+    """
+    known = harmless or {}
+    for note in node.notes:
+        yield Diagnostic(severity="warning", message=note, origin=node.origin)
     for name in node.attributes:
-        if name not in node._asked_attributes and not name.startswith("xmlns"):
+        if name in node._asked_attributes or name.startswith("xmlns"):
+            continue
+        if ":" in name:
+            yield _foreign(name, node.origin)
+            continue
+        what = f'the attribute "{name}" of <{node.tag}>'
+        reason = known.get((node.tag, f"@{name}"))
+        if reason is not None:
             yield Diagnostic(
-                severity="warning",
-                message=f'the attribute "{name}" of <{node.tag}> is not understood and is ignored'
-                + _meant(name, node._asked_attributes, '"{}"'),
-                origin=node.origin,
+                severity="info", message=f"{what} has no effect: {reason}", origin=node.origin
             )
+            continue
+        yield Diagnostic(
+            severity="warning",
+            message=f"{what} is not understood and is ignored"
+            + _meant(name, node._asked_attributes, '"{}"'),
+            origin=node.origin,
+        )
     for child in node.children:
         if child._read:
-            yield from unread(child)
+            yield from unread(child, harmless)
+            continue
+        if ":" in child.tag:
+            yield _foreign(child.tag, child.origin)
+            continue
+        reason = known.get((node.tag, child.tag))
+        if reason is not None:
+            yield Diagnostic(
+                severity="info",
+                message=f"<{child.tag}> in <{node.tag}> has no effect: {reason}",
+                origin=child.origin,
+            )
             continue
         if child.tag in node._asked_children:
             message = f"a further <{child.tag}> in <{node.tag}> is ignored: only the first counts"
@@ -271,20 +313,31 @@ def unread(node: Node) -> Iterator[Diagnostic]:
         yield Diagnostic(severity="warning", message=message, origin=child.origin)
 
 
+def _foreign(name: str, origin: Origin) -> Diagnostic:
+    """Names with a prefix are left to whichever program knows them, as SDF says."""
+    return Diagnostic(severity="info", message=f"{name} is for other programs", origin=origin)
+
+
 def _meant(name: str, known: Iterable[str], form: str) -> str:
     near = numbers.likely(name, known)
     return f". Did you mean {form.format(near)}?" if near else ""
 
 
 def needs_xacro(root: Node) -> bool:
-    """Whether a tree has xacro's elements, or expressions where it declares xacro's namespace."""
+    """Whether a tree has xacro's elements, or expressions where it declares xacro's namespace.
+
+    ``$(find …)`` means something to xacro alone, so launch files run it on such a URDF too.
+    """
     declared = "xmlns:xacro" in root.attributes
     stack = [root]
     while stack:
         node = stack.pop()
         if node.tag.startswith("xacro:"):
             return True
-        if declared and any("${" in v or "$(" in v for v in (*node.attributes.values(), node.text)):
+        words = (*node.attributes.values(), node.text)
+        if declared and any("${" in word or "$(" in word for word in words):
+            return True
+        if any("$(find " in word for word in words):
             return True
         stack.extend(node.children)
     return False

@@ -13,11 +13,15 @@ from functools import lru_cache
 from pathlib import Path
 from urllib.parse import unquote
 
-from cartwheel.description import numbers
+from cartwheel.description import fuel, numbers
+from cartwheel.description.installed import source_of
+from cartwheel.description.missing import advice, also_missing
 from cartwheel.errors import DescriptionError, Origin
 
 MAX_ENTRIES = 500
 """A folder with more entries is no workspace; only these are looked at."""
+MAX_CRAWLED = 20_000
+"""Folders that are looked at below one root, at most."""
 MAX_LEVELS_UP = 5
 """How far above the file, or above its package, a workspace may begin."""
 
@@ -75,9 +79,7 @@ class Packages:
         Raises:
             DescriptionError: Where there is none; says where it was looked for.
         """
-        if name not in self._found:
-            self._found[name] = self._search(name)
-        found = self._found[name]
+        found = self._known(name)
         if found is None:
             raise DescriptionError(
                 f'the package "{name}" was not found', origin=origin, hint=self._missing(name)
@@ -94,9 +96,7 @@ class Packages:
             for folder in self.model_folders():
                 if _is_dir(folder / name):
                     return folder / name
-            if name not in self._found:
-                self._found[name] = self._search(name)
-            if (found := self._found[name]) is not None:
+            if (found := self._known(name)) is not None:
                 return found
         names = {entry.name for folder in self.model_folders() for entry in _folders(folder)}
         near = numbers.likely(name, names)
@@ -120,7 +120,7 @@ class Packages:
         Raises:
             DescriptionError: Where there is no such file; says where it was looked for.
         """
-        candidates = list(self._candidates(uri.strip(), origin))
+        candidates = list(dict.fromkeys(self._candidates(uri.strip(), origin)))
         for path in candidates:
             if _is_file(path) or (folder and _is_dir(path)):
                 return path
@@ -148,6 +148,10 @@ class Packages:
             yield from self._relative(uri, origin)
             return
         if scheme in ("http", "https"):
+            downloaded = fuel.cached(uri, self._environment)
+            if downloaded is not None:
+                yield downloaded
+                return
             raise DescriptionError(
                 f'"{uri}" is on the network; nothing is downloaded',
                 origin=origin,
@@ -165,9 +169,10 @@ class Packages:
             )
         if not name:
             raise DescriptionError(f'"{uri}" names no {scheme}', origin=origin)
-        yield (
-            self.find(name, origin) if scheme == "package" else self.find_model(name, origin)
-        ) / path
+        found = self.find(name, origin) if scheme == "package" else self.find_model(name, origin)
+        yield found / path
+        if path:
+            yield source_of(found / path)
 
     def _relative(self, path: str, origin: Origin | None) -> Iterator[Path]:
         if not path:
@@ -197,6 +202,10 @@ class Packages:
                 found = _package_in(root, name)
                 if found is not None:
                     return found
+        for root in self._crawled():
+            found = _package_below(root, name)
+            if found is not None:
+                return found
         # A folder with the right name but without package.xml is what remains when somebody
         # copied a description out of its workspace: second choice, but better than failing.
         for roots in searches:
@@ -205,6 +214,16 @@ class Packages:
                     if bare.name == name and _is_dir(bare):
                         return bare
         return None
+
+    def _crawled(self) -> Iterator[Path]:
+        """The folders in which packages may lie deeper: ROS crawls these to the ground."""
+        yield from self.package_path
+        for parent in self._ancestors():
+            if parent.name == "src" or (parent / ".git").exists():
+                yield parent
+            elif (parent / "src").is_dir():
+                yield parent / "src"
+        yield from self._paths(_ROS1)
 
     def _environment_roots(self) -> Iterator[Path]:
         yield from self._paths(_ROS1)
@@ -242,15 +261,40 @@ class Packages:
         known = {found for root in (*roots, share() / "robots") for found in _names_in(root)}
         near = numbers.likely(name, known, 0.85)
         hint = f'Did you mean "{near}"? ' if near else ""
+        others = () if near else also_missing([self.file] if self.file else [], name, self._known)
         return (
             f"{hint}Searched: {_listed([*roots, share() / 'robots'])}. "
             f"Source its workspace, or add its folder to the package path."
+            f" {advice(name, others, self._environment)}"
         )
+
+    def _known(self, name: str) -> Path | None:
+        if name not in self._found:
+            self._found[name] = self._search(name)
+        return self._found[name]
 
 
 def _package_in(root: Path, name: str) -> Path | None:
     """The package of that name that `root` is or holds, at most one folder between."""
     return next((f for f in (root, *_nested(root)) if _package_name(f) == name), None)
+
+
+def _package_below(root: Path, name: str) -> Path | None:
+    """The package of that name at any depth; packages hold no others."""
+    level = [root]
+    looked = 0
+    while level and looked < MAX_CRAWLED:
+        below = []
+        for folder in level:
+            for each in _folders(folder):
+                looked += 1
+                declared = _package_name(each)
+                if declared == name:
+                    return each
+                if declared is None:
+                    below.append(each)
+        level = below
+    return None
 
 
 def _nested(root: Path) -> Iterator[Path]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
@@ -16,8 +17,9 @@ def find_description(path: Path | str, package_path: Sequence[Path] = ()) -> Pat
     """The description file that a path, a URI or the name of a shipped thing means.
 
     Args:
-        path: A file; a folder with a model in it; ``package://`` or ``model://``; or, where no
-            such file is there, a name such as ``empty``, ``rosbots.xacro`` or ``traffic_cone``.
+        path: A file; a folder with a model in it; ``package://`` or ``model://``; where no such
+            file is there, one below GAZEBO_RESOURCE_PATH, such as ``worlds/mud.world``, which is
+            also shipped; or a name such as ``empty``, ``rosbots.xacro`` or ``traffic_cone``.
         package_path: Further folders in which packages and models are looked for.
 
     Raises:
@@ -41,6 +43,9 @@ def find_description(path: Path | str, package_path: Sequence[Path] = ()) -> Pat
         return _in_folder(given)
     if exists:
         return given
+    for resources in _resource_folders():
+        if _is_file(resources / given):
+            return resources / given
     if len(given.parts) == 1:
         found_shipped = _shipped(given.name)
         if found_shipped is not None:
@@ -55,6 +60,20 @@ def shipped_descriptions() -> Iterator[Path]:
         for path in sorted(root.glob(pattern)):
             if path.is_file() and path.name.endswith(SUFFIXES):
                 yield path
+
+
+def _resource_folders() -> list[Path]:
+    """Where Gazebo looks for ``worlds/mud.world``; what is shipped lies there as well."""
+    named = os.environ.get("GAZEBO_RESOURCE_PATH", "").split(os.pathsep)
+    folders = [Path(part).expanduser() for part in named if part]
+    return [*folders, *(folder / "worlds" for folder in folders), share(), share() / "worlds"]
+
+
+def _is_file(path: Path) -> bool:
+    try:
+        return path.is_file()
+    except (OSError, ValueError):  # a name too long, or with a zero byte in it
+        return False
 
 
 def _shipped(name: str) -> Path | None:

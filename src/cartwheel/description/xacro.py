@@ -9,7 +9,9 @@ that made them; its look-up of packages; its messages, which become diagnostics.
 
 from __future__ import annotations
 
+import glob
 import importlib.util
+import sys
 import threading
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
@@ -21,15 +23,24 @@ from typing import Any
 from xml.dom import minidom
 
 from cartwheel.description import xml
+from cartwheel.description.installed import source_of
 from cartwheel.description.packages import Packages
 from cartwheel.description.xacro_errors import Failure, explain
 from cartwheel.description.xml import Node
-from cartwheel.errors import CartwheelError, DescriptionError, Diagnostic, Origin, suggestion
+from cartwheel.errors import (
+    CartwheelError,
+    DescriptionError,
+    Diagnostic,
+    Origin,
+    Severity,
+    suggestion,
+)
 
 MAX_ELEMENTS = 100_000
 """Elements that macros may make: some fifty times what the largest robots have."""
 
 PREFIX = "xacro:"
+_NAME = "_cartwheel_xacro"
 
 _lock = threading.RLock()
 
@@ -42,6 +53,8 @@ class Expansion:
     diagnostics: tuple[Diagnostic, ...]
     declared: tuple[str, ...]
     """The arguments that it, or a file it includes, declares or uses."""
+    files: tuple[str, ...]
+    """It and the files that it includes, each once."""
 
 
 def expand(
@@ -69,6 +82,7 @@ def expand(
         root=root,
         diagnostics=(*run.diagnostics, *_unknown_arguments(run, arguments)),
         declared=tuple(sorted(run.declared)),
+        files=tuple(dict.fromkeys(run.files)),
     )
 
 
@@ -112,6 +126,7 @@ class _Run:
     arguments: dict[str, str]
     diagnostics: list[Diagnostic] = field(default_factory=list)
     declared: set[str] = field(default_factory=set)
+    files: list[str] = field(default_factory=list)
     place: _Element | None = None
     """The element that was looked at last."""
     calls: list[_Element] = field(default_factory=list)
@@ -143,7 +158,9 @@ class _Run:
 
     def warn(self, message: str) -> None:
         """Takes a message of xacro's, once for each place."""
-        diagnostic = Diagnostic(severity="warning", message=message, origin=self.origin())
+        # What is deprecated works; nobody is to write it anew, and few can change it.
+        severity: Severity = "info" if "deprecated" in message else "warning"
+        diagnostic = Diagnostic(severity=severity, message=message, origin=self.origin())
         if diagnostic not in self.diagnostics:
             self.diagnostics.append(diagnostic)
 
@@ -207,6 +224,7 @@ def _names(table: Any) -> Iterator[str]:
 
 def _parse(content: bytes | str, file: str, run: _Run) -> _Document:
     """The tree that xacro works on; comments are left out."""
+    run.files.append(file)
     builder = _DomBuilder(file, run)
     xml.run_expat(content, file, builder)
     root: Any = builder.document.documentElement
@@ -316,16 +334,39 @@ def _private_xacro() -> ModuleType:
     """The copy of xacro's module; made at the first use, since importing it takes a while."""
     global _module
     if _module is None:
-        _module = _copy_of("xacro")
-        _module.substitution = _copy_of("xacro.substitution_args")  # type: ignore[attr-defined]
+        folder = _folder()
+        _module = _copy_of(_NAME, folder / "__init__.py")
+        _module.substitution = _copy_of(  # type: ignore[attr-defined]
+            f"{_NAME}.substitution_args", folder / "substitution_args.py"
+        )
     return _module
 
 
-def _copy_of(name: str) -> ModuleType:
-    spec = importlib.util.find_spec(name)
+def _folder() -> Path:
+    """Where the xacro lies that Cartwheel needs.
+
+    A sourced ROS workspace puts modules of its own before it, an older xacro among them.
+    """
+    for entry in sys.path:
+        folder = Path(entry, "xacro")
+        if (folder / "substitution_args.py").is_file():
+            return folder
+    raise DescriptionError(
+        "the Python package xacro 2 is missing",
+        hint="pip install 'xacro>=2.1', or install Cartwheel again.",
+    )
+
+
+def _copy_of(name: str, file: Path) -> ModuleType:
+    is_package = file.name == "__init__.py"
+    spec = importlib.util.spec_from_file_location(
+        name, file, submodule_search_locations=[str(file.parent)] if is_package else None
+    )
     assert spec is not None
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
+    # Its own modules find each other by this name, whatever else is called xacro.
+    sys.modules[name] = module
     spec.loader.exec_module(module)
     return module
 
@@ -361,6 +402,10 @@ def _bind(module: ModuleType, run: _Run) -> None:
             missing = FileNotFoundError(2, "no such file", filename)
             raise space.XacroException("included file", exc=missing)
         return _parse(xml.read_bytes(path), xml.shown_path(path), run)
+
+    def abs_filename_spec(given: str) -> str:
+        path = original.abs_filename_spec(given)
+        return str(path) if glob.has_magic(path) else str(source_of(Path(path)))
 
     def eval_extension(text: str) -> str:
         text = text.replace("$(find-pkg-share ", "$(find ")
@@ -424,7 +469,7 @@ def _bind(module: ModuleType, run: _Run) -> None:
     # Names count: xacro offers the messages to expressions by their function's own name.
     functions: tuple[Callable[..., object], ...] = (
         parse, eval_extension, eval_text, eval_all, check_attrs, handle_macro_call,
-        message, warning, error, print_location, remove_previous_comments,
+        message, warning, error, print_location, remove_previous_comments, abs_filename_spec,
     )  # fmt: skip
     vars(module).update({function.__name__: function for function in functions})
     vars(module).update(replace_node=_replace)

@@ -66,10 +66,11 @@ def explain(failure: Failure) -> DescriptionError:
         if match[1] in failure.arguments:
             hint = f"It is an argument: write $(arg {match[1]})."
     elif match := _ARGUMENT.search(text):
-        message = f'the argument "{match[1]}" is not declared'
-        hint = (
-            _meant(match[1], failure.arguments)
-            or f'Declare it: <xacro:arg name="{match[1]}" default="…"/>.'
+        hint = _meant(match[1], failure.arguments)
+        message = f'the argument "{match[1]}" {"is not declared" if hint else "has no value"}'
+        hint = hint or (
+            f"Give it one on the command line, {match[1]}:=…, or in the file: "
+            f'<xacro:arg name="{match[1]}" default="…"/>.'
         )
     elif match := _BLOCK.search(text):
         message = f'the block "{match[1]}" is not defined'

@@ -7,6 +7,7 @@ their prefixes as written, as Gazebo's own reader does.
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Protocol
 from xml.parsers import expat
@@ -22,6 +23,10 @@ __all__ = [
 
 MAX_BYTES = 64 * 1024 * 1024
 """Larger than any description; a mesh or a bag given by mistake stops here."""
+_LATE_DECLARATION = re.compile(r"\A\s+<\?xml.*?\?>", re.DOTALL)
+_LATE_DECLARATION_BYTES = re.compile(_LATE_DECLARATION.pattern.encode(), re.DOTALL)
+_COMMENT = re.compile(r"(?s)<!--(.*?)-->|<!\[CDATA\[.*?\]\]>")
+_COMMENT_BYTES = re.compile(_COMMENT.pattern.encode())
 MAX_DEPTH = 100
 """Deeper nesting is damage, and would end in Python's own recursion limit."""
 
@@ -168,7 +173,7 @@ def run_expat(text: str | bytes, file: str, handler: Handler) -> None:
     parser.CharacterDataHandler = handler.data
     parser.EntityDeclHandler = entity
     try:
-        parser.Parse(text, True)
+        parser.Parse(_plain_comments(_declared_first(text)), True)
     except expat.ExpatError as error:
         reason, hint = _explain(error, still_open)
         raise DescriptionError(
@@ -178,6 +183,35 @@ def run_expat(text: str | bytes, file: str, handler: Handler) -> None:
         raise DescriptionError(
             f"the text cannot be decoded: {error}", origin=Origin(file=file, line=1)
         ) from error
+
+
+def _declared_first(text: str | bytes) -> str | bytes:
+    """The text without a declaration that stands after blank lines.
+
+    Gazebo's reader takes it there, and published worlds begin so; expat does not.
+    """
+    if isinstance(text, bytes):
+        return _LATE_DECLARATION_BYTES.sub(lambda found: b"\n" * found[0].count(b"\n"), text)
+    return _LATE_DECLARATION.sub(lambda found: "\n" * found[0].count("\n"), text)
+
+
+def _plain_comments(text: str | bytes) -> str | bytes:
+    """The text without dashes in its comments.
+
+    XML forbids two in a row there. Gazebo's reader takes them, and published worlds tell in
+    comments how ``gz topic --pub`` is called; expat does not.
+    """
+    if isinstance(text, bytes):
+        return _COMMENT_BYTES.sub(
+            lambda found: (
+                found[0] if found[1] is None else b"<!--" + found[1].replace(b"-", b" ") + b"-->"
+            ),
+            text,
+        )
+    return _COMMENT.sub(
+        lambda found: found[0] if found[1] is None else "<!--" + found[1].replace("-", " ") + "-->",
+        text,
+    )
 
 
 def _explain(error: expat.ExpatError, still_open: list[tuple[str, int]]) -> tuple[str, str | None]:

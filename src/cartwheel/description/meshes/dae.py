@@ -139,7 +139,7 @@ class _Scene:
         key = geometry.get("id", str(id(geometry)))
         if key not in self._geometries:
             self._geometries[key] = list(self._primitives(geometry))
-        name = geometry.get("name") or geometry.get("id") or node
+        geometry_name = geometry.get("name") or geometry.get("id") or node
         linear = transform[:3, :3]
         if abs(np.linalg.det(linear)) < 1e-30:
             raise ValueError(f'node "{node}" scales its geometry to nothing')
@@ -148,7 +148,7 @@ class _Scene:
             points, corners = primitive.points
             normals = primitive.normals
             submesh = weld(
-                name,
+                node or geometry_name,
                 primitive.counts,
                 (points @ linear.T + transform[:3, 3], corners),
                 normals=(normals[0] @ np.linalg.inv(linear), normals[1]) if normals else None,
@@ -157,6 +157,7 @@ class _Scene:
                 texture=look.texture if primitive.uv else None,
             )
             if submesh is not None:
+                submesh = replace(submesh, geometry=geometry_name)
                 yield submesh if np.linalg.det(linear) > 0 else _turned(submesh)
 
     def _look(self, material: str) -> MaterialLook:

@@ -21,6 +21,7 @@ from cartwheel.description import model
 from cartwheel.description.meshes.dae import read_dae
 from cartwheel.description.meshes.generic import read_with_trimesh
 from cartwheel.description.meshes.obj import read_obj
+from cartwheel.description.meshes.standing import Standing, standing_pieces
 from cartwheel.description.meshes.stl import read_stl
 from cartwheel.description.meshes.submesh import (
     Floats,
@@ -32,7 +33,7 @@ from cartwheel.description.meshes.submesh import (
 )
 from cartwheel.errors import Origin, suggestion
 
-__all__ = ["MeshError", "Submesh", "convex_hull_input", "load_mesh", "mesh_notes"]
+__all__ = ["MeshError", "Submesh", "convex_hull_input", "load_mesh", "mesh_notes", "standing_parts"]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -87,16 +88,36 @@ def convex_hull_input(submeshes: Sequence[Submesh]) -> tuple[Floats, Ints]:
     return vertices[first], inverse[faces].astype(np.int32)
 
 
+def standing_parts(mesh: model.Mesh) -> Standing:
+    """What a mesh collides with where it stands still; see `standing`.
+
+    Raises:
+        MeshError: as `load_mesh`.
+    """
+    return _standing(mesh, mesh.path.stat().st_mtime_ns)
+
+
+@lru_cache(maxsize=64)
+def _standing(mesh: model.Mesh, _mtime_ns: int) -> Standing:
+    return standing_pieces(*convex_hull_input(load_mesh(mesh)))
+
+
 def _select(
     mesh: model.Mesh, submeshes: tuple[Submesh, ...], origin: Origin | None
 ) -> tuple[Submesh, ...]:
-    chosen = tuple(part for part in submeshes if part.name == mesh.submesh)
+    # Gazebo goes by the node's name.
+    chosen = tuple(part for part in submeshes if part.name == mesh.submesh) or tuple(
+        part for part in submeshes if part.geometry == mesh.submesh
+    )
     if not chosen:
         raise MeshError(
             mesh.path,
             f'has no submesh "{mesh.submesh}"',
             origin=origin,
-            hint=suggestion(mesh.submesh or "", {part.name for part in submeshes}),
+            hint=suggestion(
+                mesh.submesh or "",
+                {name for part in submeshes for name in (part.name, part.geometry)} - {""},
+            ),
         )
     if not mesh.center_submesh:
         return chosen

@@ -41,6 +41,7 @@ class Submesh:
     """Triangles of one material, in the frame of the visual or collision; arrays are read-only."""
 
     name: str
+    """The node's; the geometry's where it has none."""
     vertices: Floats
     """(n, 3), metres."""
     faces: Ints
@@ -53,6 +54,8 @@ class Submesh:
     """Diffuse colour; None where the file states none."""
     texture: Path | bytes | None = None
     """An image file, or one's contents."""
+    geometry: str = ""
+    """What the file calls the geometry, which a ``<submesh>`` may name as well."""
 
 
 def build_submesh(

@@ -19,6 +19,13 @@ if TYPE_CHECKING:
 Version = tuple[int, int]
 OLDEST: Version = (1, 3)
 NEWEST: Version = (1, 12)
+HARMLESS = {
+    ("link", "static"): "it belongs to the model",
+    ("model", "static"): "the first counts",
+    ("ode", "max_vel"): "it belongs to <contact>",
+    ("ode", "min_depth"): "it belongs to <contact>",
+}
+"""What other programs write where Gazebo does not read it either, and why it has no effect."""
 MAX_INCLUDES = 16
 """Deeper includes are a model that includes itself by a detour."""
 
@@ -60,18 +67,28 @@ def read_version(root: Node) -> Version:
 
 def read_pose(node: Node | None) -> Pose:
     """A ``<pose>``: ``x y z roll pitch yaw``, in degrees or as a quaternion where it says so."""
-    if node is None or not node.text.strip():
+    if node is None:
         return Pose()
-    if node.get("rotation_format") == "quat_xyzw":
+    quaternion = node.get("rotation_format") == "quat_xyzw"
+    in_degrees = node.boolean_of("degrees", False)
+    if not node.text.strip():
+        return Pose()
+    if quaternion:
         x, y, z, *q = node.vector(7)
         try:
             orientation: Quat = quat_normalize(q)
         except ValueError as error:
             raise node.fail(f"pose: {error}") from None
         return Pose((x, y, z), orientation)
-    values = node.vector(6)
+    words = node.text.split()
+    if len(words) == 6:
+        values = node.vector(6)
+    else:
+        # Gazebo Classic reads what is there.
+        values = (*node.vector(len(words)), 0.0, 0.0, 0.0, 0.0, 0.0)[:6]
+        node.notes = (f"pose has {len(words)} numbers, not 6: what is missing is 0",)
     angles = values[3:]
-    if node.boolean_of("degrees", False):
+    if in_degrees:
         angles = tuple(math.radians(angle) for angle in angles)
     return Pose.from_xyz_rpy(values[:3], angles)
 

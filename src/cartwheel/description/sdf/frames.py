@@ -120,6 +120,13 @@ class Frames:
                 return name
             name = frame.attached_to
 
+    def has(self, name: str) -> bool:
+        """Whether a name may be asked for; ``nested::__model__`` is a nested model's frame."""
+        outer, inner = self._split(name)
+        if inner is not None:
+            return self._scopes[outer].has(inner)
+        return name in self._frames or name == MODEL
+
     def kind_of(self, name: str) -> str | None:
         """What a name of this scope stands for: link, joint, frame or model."""
         frame = self._frames.get(name)
@@ -133,6 +140,8 @@ class Frames:
     def _pose(self, name: str, origin: Origin, asking: list[str]) -> Pose:
         if name in ("", MODEL) or (name == WORLD and self.kind == WORLD):
             return Pose()
+        if name == self.name and name not in self._frames:
+            return Pose()  # the scope by its own name, which Gazebo puts up with
         outer, inner = self._split(name)
         if inner is not None:
             scope = self._scopes[outer]

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import re
+import contextlib
 from dataclasses import dataclass
 from pathlib import Path
 
+from cartwheel.description import fuel
 from cartwheel.description.model import PluginTag
 from cartwheel.description.sdf.context import MAX_INCLUDES, Context, read_version
-from cartwheel.description.sdf.sensors import read_plugin
+from cartwheel.description.sdf.sensors import read_plugins
 from cartwheel.description.xml import Node, read_file
 from cartwheel.errors import DescriptionError, Origin
-
-_FUEL = re.compile(r"https?://[^/]+/(?:[\d.]+/)?[^/]+/models/([^/]+)", re.IGNORECASE)
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,11 +33,16 @@ class Included:
     merge: bool = False
 
 
+class NotThereError(DescriptionError):
+    """What an ``<include>`` names is not on this machine, or is nothing that is simulated."""
+
+
 def open_include(node: Node, ctx: Context) -> Included:
     """Reads the file that an ``<include>`` names.
 
     Raises:
-        DescriptionError: it is missing, includes itself, or holds nothing to include.
+        NotThereError: it is missing, or an actor.
+        DescriptionError: it includes itself, or holds nothing to include.
     """
     uri = node.require_child("uri")
     path = _file(uri, ctx).resolve()
@@ -56,7 +60,9 @@ def open_include(node: Node, ctx: Context) -> Included:
     if chosen is None:
         if (actor := root.child("actor")) is not None:
             actor.mark()
-            raise node.fail(f'"{uri.text}" is an actor, which is not simulated')
+            raise NotThereError(
+                f'"{uri.text}" is an actor, which is not simulated', origin=node.origin
+            )
         raise root.fail("there is neither a <model> nor a <light> to include")
     name = node.child("name")
     static = node.child("static")
@@ -72,7 +78,7 @@ def open_include(node: Node, ctx: Context) -> Included:
         pose=node.child("pose"),
         static=static.boolean() if static is not None else None,
         placement_frame=node.text_at("placement_frame").strip(),
-        plugins=tuple(read_plugin(plugin) for plugin in node.all("plugin")),
+        plugins=tuple(read_plugins(node)),
         merge=node.boolean_of("merge", False),
     )
 
@@ -82,33 +88,51 @@ def _file(uri: Node, ctx: Context) -> Path:
     text = uri.text.strip()
     if not text:
         raise uri.fail("<uri> is empty", "Write <uri>model://sun</uri>, for example.")
-    fuel = _FUEL.match(text)
-    if fuel is not None:
-        # Nothing is downloaded; a local model of the same name is what the user means.
-        found = _fuel_model(fuel[1].replace("%20", " "), uri, ctx)
+    name = fuel.model_name(text)
+    if name is not None:
+        found = _fuel_model(name, uri, ctx)
     else:
-        found = ctx.packages.resolve(text, uri.origin, what="model", folder=True)
-    return _in_folder(found, uri) if found.is_dir() else found
+        try:
+            found = ctx.packages.resolve(text, uri.origin, what="model", folder=True)
+        except DescriptionError as error:
+            plain = text.removeprefix("file://")
+            try:
+                # Gazebo looks for a bare name in its model folders too.
+                found = ctx.packages.find_model(plain, uri.origin)
+            except DescriptionError:
+                raise NotThereError(error.message, origin=uri.origin, hint=error.hint) from error
+    return _in_folder(found, uri, ctx) if found.is_dir() else found
 
 
 def _fuel_model(name: str, uri: Node, ctx: Context) -> Path:
+    """What Gazebo downloaded before; else a model of the same name is what the user means."""
+    with contextlib.suppress(DescriptionError):
+        return ctx.packages.resolve(uri.text, uri.origin, what="model", folder=True)
     for spelling in dict.fromkeys((name, name.lower(), name.lower().replace(" ", "_"))):
         try:
             return ctx.packages.find_model(spelling, uri.origin)
         except DescriptionError:
             continue
-    raise uri.fail(
+    raise NotThereError(
         f'"{uri.text}" is on the network; nothing is downloaded',
-        f'Download the model and put the folder "{name}" where GAZEBO_MODEL_PATH points.',
+        origin=uri.origin,
+        hint='"gz fuel download -u" with its URL puts it into ~/.gz/fuel, where it is found; or '
+        f'put the model\'s folder "{name}" where GZ_SIM_RESOURCE_PATH points.',
     )
 
 
-def _in_folder(folder: Path, uri: Node) -> Path:
+def _in_folder(folder: Path, uri: Node, ctx: Context) -> Path:
     """The file that ``model.config`` names for the newest version that is understood."""
     config = folder / "model.config"
     if config.is_file():
         best: tuple[float, str] | None = None
-        for each in read_file(config).all("sdf"):
+        try:
+            versions = read_file(config).all("sdf")
+        except DescriptionError as error:
+            # What it says is of no use but for the file's name, which has a default.
+            ctx.tell("info", f"the model.config is not read: {error.message}", error.origin)
+            versions = []
+        for each in versions:
             version = each.get("version") or "0"
             try:
                 rank = float(version.partition(".")[2] or 0)

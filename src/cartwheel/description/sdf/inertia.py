@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,9 +18,11 @@ from cartwheel.description.model import (
     Ellipsoid,
     Inertial,
     Mesh,
+    Polyline,
     Shape,
     Sphere,
 )
+from cartwheel.description.outline import solid
 from cartwheel.errors import Origin
 from cartwheel.geometry import Pose, matrix_from_quat
 
@@ -106,15 +109,16 @@ def _solid(shape: Shape) -> tuple[float, Array, Array]:
             moments = [side / volume, side / volume]
             moments.append((cylinder * r * r / 2 + ball * 0.4 * r * r) / volume)
         case Mesh():
-            return _mesh(shape)
+            return _mesh(*convex_hull_input(load_mesh(shape)))
+        case Polyline():
+            return _mesh(*solid(shape))
         case _:
             return 0.0, centre, np.zeros((3, 3))
     return volume, centre, np.diag(moments) * volume
 
 
-def _mesh(shape: Mesh) -> tuple[float, Array, Array]:
+def _mesh(vertices: NDArray[Any], faces: NDArray[Any]) -> tuple[float, Array, Array]:
     """By the signed tetrahedra between the origin and each triangle of a closed surface."""
-    vertices, faces = convex_hull_input(load_mesh(shape))
     corners = vertices.astype(np.float64)[faces]
     volumes = np.einsum("ij,ij->i", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])) / 6
     volume = float(volumes.sum())

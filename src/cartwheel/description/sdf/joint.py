@@ -24,6 +24,7 @@ _TYPES: dict[str, JointType] = {
     "revolute2": "universal",
     "screw": "screw",
 }
+GEARBOX = "gearbox"
 _UNLIMITED = 1e15
 """SDF's own default limits are ±1e16."""
 _WITHOUT_AXIS = ("fixed", "ball")
@@ -39,21 +40,22 @@ def read_joint(node: Node, ctx: Context, frames: Frames, frame: str) -> Joint | 
         frame: What the joint's own frame is called among them.
 
     Returns:
-        None for a type that is not simulated.
+        None for a gearbox, which gears other joints and is none itself.
     """
     name = require_name(node)
     written = node.require("type").strip()
     kind = _TYPES.get(written)
-    if written == "gearbox":
-        node.mark()
-        ctx.tell("warning", f'gearbox joint "{name}" is not simulated', node.origin)
+    if written == GEARBOX:
         return None
     if kind is None:
         raise node.fail(
-            f'joint "{name}": type "{written}" is not known', suggestion(written, _TYPES)
+            f'joint "{name}": type "{written}" is not known',
+            suggestion(written, [*_TYPES, GEARBOX]),
         )
     parent = _end(node, "parent", name, frames)
     child = _end(node, "child", name, frames)
+    if child == WORLD and kind == "fixed":
+        parent, child = WORLD, parent  # it holds either way round
     if child == WORLD:
         raise node.fail(f'joint "{name}": the child cannot be the world', "Swap parent and child.")
     if parent == child:
@@ -62,7 +64,9 @@ def read_joint(node: Node, ctx: Context, frames: Frames, frame: str) -> Joint | 
     axis, axis2 = node.child("axis"), node.child("axis2")
     first = Axis()
     if kind not in _WITHOUT_AXIS and axis is None:
-        raise node.fail(f'joint "{name}" of type {written} has no <axis>')
+        ctx.tell(
+            "warning", f'joint "{name}" has no <axis>: z is taken, SDF\'s default', node.origin
+        )
     if axis is not None:
         first = _axis(axis, name, ctx, frames, in_model)
         if kind in _WITHOUT_AXIS:
@@ -79,14 +83,15 @@ def read_joint(node: Node, ctx: Context, frames: Frames, frame: str) -> Joint | 
         cfm = ode.optional_number_at("limit/cfm")
         erp = ode.optional_number_at("limit/erp")
         feedback = ode.boolean_at("provide_feedback", False)
-        damper = ode.boolean_at("implicit_spring_damper", False) or ode.boolean_at(
-            "cfm_damping", False
-        )
+        older = ode.boolean_at("cfm_damping", False)
+        damper = ode.boolean_at("implicit_spring_damper", older)
         for path in ("fudge_factor", "cfm", "erp", "bounce", "max_force", "velocity"):
             ode.find(path)
         suspension = ode.child("suspension")
         if suspension is not None:
             suspension.mark()
+            if suspension.children and written == "revolute2":
+                ctx.tell("warning", f'joint "{name}": <suspension> is rigid', suspension.origin)
     provide = node.find("physics/provide_feedback")
     if provide is not None:
         feedback = provide.boolean()
@@ -143,7 +148,7 @@ def _end(node: Node, tag: str, joint: str, frames: Frames) -> str:
     try:
         return frames.link_of(name, part.origin)
     except DescriptionError as error:
-        if name in frames.names():
+        if frames.has(name):
             raise
         raise part.fail(
             f'joint "{joint}": {tag} link "{name}" does not exist',

@@ -101,11 +101,21 @@ def _inertial(link: Node, ctx: Context, place: Place, collisions: list[Collision
             part.mark()
             ctx.tell("warning", f"<{ignored}> is not simulated", part.origin)
     tensor = node.child("inertia")
+    if tensor is not None and any("nan" in each.text.lower() for each in tensor.children):
+        # What a model editor wrote for a mesh whose volume it could not tell.
+        tensor.mark()
+        ctx.tell(
+            "warning",
+            f'the inertia of link "{link.attributes.get("name")}" is not a number: '
+            "SDF's default counts, 1 kg m²",
+            tensor.origin,
+        )
+        tensor = None
 
     def entry(tag: str, default: float) -> float:
         return tensor.number_at(tag, default) if tensor is not None else default
 
-    inertial = Inertial(
+    return Inertial(
         mass=node.number_at("mass", 1.0),
         pose=place(node),
         ixx=entry("ixx", 1.0),
@@ -116,12 +126,6 @@ def _inertial(link: Node, ctx: Context, place: Place, collisions: list[Collision
         iyz=entry("iyz", 0.0),
         origin=node.origin,
     )
-    if inertial.mass <= 0:
-        raise node.fail(
-            f'the mass of link "{link.attributes.get("name")}" must be above 0, '
-            f"but is {inertial.mass:g}"
-        )
-    return inertial
 
 
 def _auto_inertial(link: Node, node: Node, ctx: Context, collisions: list[Collision]) -> Inertial:
@@ -219,6 +223,9 @@ def _surface(node: Node | None, max_contacts: int | None, ctx: Context) -> Surfa
     fdir1: Vec3 | None = direction.vec3() if direction is not None else None
     if fdir1 is not None and not any(fdir1):
         fdir1 = None  # what Gazebo writes where no direction is asked for
+    if direction is not None:
+        for prefix in ("gz", "ignition"):
+            direction.get(f"{prefix}:expressed_in")
     torsional = node.find("friction/torsional")
     coefficient: float | None = None
     if torsional is not None:

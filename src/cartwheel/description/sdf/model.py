@@ -2,21 +2,34 @@
 
 from __future__ import annotations
 
+import itertools
+from collections.abc import Collection
 from dataclasses import dataclass, field, replace
 
-from cartwheel.description.inertia import impossibility, principal_moments
-from cartwheel.description.model import Joint, Link, PluginTag, RobotDescription, Sensor
-from cartwheel.description.sdf.context import Context, read_pose, reference_of, require_name
+from cartwheel.description.inertia import impossibility, made_possible, principal_moments
+from cartwheel.description.model import Element, Joint, Link, PluginTag, RobotDescription, Sensor
+from cartwheel.description.sdf.context import (
+    HARMLESS,
+    Context,
+    read_pose,
+    reference_of,
+    require_name,
+)
 from cartwheel.description.sdf.frames import MODEL, WORLD, Frames
-from cartwheel.description.sdf.include import Included, open_include
-from cartwheel.description.sdf.joint import child_frame_of, read_joint, read_joint_sensors
+from cartwheel.description.sdf.gearbox import mesh_gears
+from cartwheel.description.sdf.include import Included, NotThereError, open_include
+from cartwheel.description.sdf.joint import GEARBOX, child_frame_of, read_joint, read_joint_sensors
 from cartwheel.description.sdf.link import read_link
-from cartwheel.description.sdf.sensors import read_plugin
+from cartwheel.description.sdf.sensors import read_plugins
 from cartwheel.description.xml import Node, unread
 from cartwheel.errors import DescriptionError, Origin, suggestion
 from cartwheel.geometry import Pose
 
 MAX_NESTING = 32
+
+
+class NoLinksError(DescriptionError):
+    """A model in which nothing stands."""
 
 
 @dataclass(slots=True)
@@ -37,14 +50,20 @@ class Model:
     merge: bool = False
     nested: list[Model] = field(default_factory=list)
 
-    def describe(self, pose: Pose, text: str = "") -> RobotDescription:
+    def describe(self, pose: Pose, ctx: Context, text: str = "") -> RobotDescription:
         """The model as one robot, placed in the world.
 
         Raises:
             DescriptionError: a link that moves has an inertia that no body has.
         """
-        if not self.static:
-            self._judge_inertia()
+        if self.static:
+            # It has no use for a mass, and many a file states a wrong one.
+            self.links = [
+                replace(link, inertial=None) if link.inertial and link.inertial.mass <= 0 else link
+                for link in self.links
+            ]
+        else:
+            self._judge_inertia(ctx)
         return RobotDescription(
             name=self.name,
             links=tuple(self.links),
@@ -53,36 +72,63 @@ class Model:
             static=self.static,
             self_collide=self.self_collide,
             pose=pose,
-            canonical_link=self.frames.link_of("", self.origin),
+            canonical_link=self.frames.link_of("", self.origin) if self.links else "",
             text=text,
             origin=self.origin,
         )
 
-    def _judge_inertia(self) -> None:
+    def _judge_inertia(self, ctx: Context) -> None:
         fixed = {
             end
             for joint in self.joints
             if joint.type == "fixed"
             for end in (joint.parent, joint.child)
         }
-        for link in self.links:
+        for index, link in enumerate(self.links):
             i = link.inertial
             if i is None:
                 continue
+            if i.mass <= 0:
+                raise DescriptionError(
+                    f'the mass of link "{link.name}" must be above 0, but is {i.mass:g}',
+                    origin=i.origin,
+                )
             diagonal, products = (i.ixx, i.iyy, i.izz), (i.ixy, i.ixz, i.iyz)
             if link.name in fixed and not any((*diagonal, *products)):
                 continue  # a point mass: what it is fixed to has the inertia
-            wrong = impossibility(principal_moments(diagonal, products))
-            if wrong is not None:
-                raise DescriptionError(
-                    f'link "{link.name}": {wrong[0]}', origin=i.origin, hint=wrong[1]
-                )
+            moments = principal_moments(diagonal, products)
+            wrong = impossibility(moments)
+            if wrong is None:
+                continue
+            message, hint = f'link "{link.name}": {wrong[0]}', wrong[1]
+            if moments[0] <= 0:
+                raise DescriptionError(message, origin=i.origin, hint=hint)
+            (ixx, iyy, izz), (ixy, ixz, iyz) = made_possible(diagonal, products)
+            made = replace(i, ixx=ixx, iyy=iyy, izz=izz, ixy=ixy, ixz=ixz, iyz=iyz)
+            self.links[index] = replace(link, inertial=made)
+            a, b, _ = principal_moments((ixx, iyy, izz), (ixy, ixz, iyz))
+            ctx.tell(
+                "warning", f"{message}; here the smaller are {a:.4g} and {b:.4g}. {hint}", i.origin
+            )
+
+
+def name_apart(model: Model, taken: list[str], ctx: Context) -> None:
+    """Gives a model another name where its own is taken, as Gazebo Classic does."""
+    if model.name not in taken:
+        return
+    free = next(name for i in itertools.count(1) if (name := f"{model.name}_{i}") not in taken)
+    ctx.tell(
+        "warning",
+        f'model "{model.name}" has the name of another model: it is called "{free}" here',
+        model.origin,
+    )
+    model.name = free
 
 
 def read_included(included: Included) -> Model:
     """The model that an ``<include>`` brings in, and what its file holds that nobody reads."""
     model = read_model(included.node, included.ctx, included)
-    included.ctx.diagnostics.extend(unread(included.root))
+    included.ctx.diagnostics.extend(unread(included.root, HARMLESS))
     return model
 
 
@@ -109,16 +155,25 @@ def read_model(node: Node, ctx: Context, included: Included | None = None, depth
         _add(frames, "link", link)
     nested = [read_model(each, ctx, depth=depth + 1) for each in node.all("model")]
     for each in node.all("include"):
-        found = open_include(each, ctx)
+        try:
+            found = open_include(each, ctx)
+        except NotThereError as missing:
+            each.mark()
+            hint = f" {missing.hint}" if missing.hint else ""
+            ctx.tell("error", f"{missing.message}; it is left out.{hint}", missing.origin)
+            continue
         if found.node.tag == "light":
             raise each.fail("a light cannot be included in a model", "Include it in the world.")
         nested.append(read_included(found))
     for inner in nested:
+        if not inner.merge:
+            name_apart(inner, [each.name for each in nested if each is not inner], ctx)
         _add_nested(frames, inner)
     _set_canonical(node, frames, link_nodes, nested)
     for each in node.all("frame"):
         _add(frames, "frame", each)
-    joint_nodes = [(each, _add_joint(frames, each, ctx)) for each in node.all("joint")]
+    later = [each.attributes.get("name", "") for each in node.all("joint")]
+    joint_nodes = [(each, _add_joint(frames, each, ctx, later)) for each in node.all("joint")]
     for known in frames.names():
         frames.pose(known, node.origin)  # a circle is told even where nobody needs the pose
     links = [read_link(each, ctx, frames) for each in link_nodes]
@@ -129,6 +184,8 @@ def read_model(node: Node, ctx: Context, included: Included | None = None, depth
         if joint is not None:
             joints.append(joint)
             sensors += read_joint_sensors(each, joint, frames)
+    gears = [(each, frame) for each, frame in joint_nodes if each.get("type") == GEARBOX]
+    joints = mesh_gears(gears, joints, ctx, frames)
     stated = included.pose if included is not None and included.pose else node.child("pose")
     placement = (node.get("placement_frame") or "").strip()
     if included is not None and included.pose:
@@ -142,7 +199,7 @@ def read_model(node: Node, ctx: Context, included: Included | None = None, depth
         frames=frames,
         links=links,
         joints=joints,
-        plugins=[read_plugin(each) for each in node.all("plugin")],
+        plugins=read_plugins(node),
         static=included.static if included is not None and included.static is not None else static,
         self_collide=node.boolean_at("self_collide", False),
         pose=read_pose(stated) @ frames.pose(placement, node.origin).inverse(),
@@ -152,11 +209,15 @@ def read_model(node: Node, ctx: Context, included: Included | None = None, depth
     )
     if included is not None:
         model.plugins.extend(included.plugins)
+    if nested and not links and all(inner.static for inner in nested):
+        model.static = True
     for inner in nested:
         _flatten(model, inner)
+        if inner.static and not model.static:
+            _hold(model, inner)
     _attach(model, sensors)
-    if not model.links:
-        raise node.fail(f'model "{name}" has no links')
+    if not model.links and not model.static:
+        raise NoLinksError(f'model "{name}" has no links', origin=node.origin)
     _check_mimics(model)
     return model
 
@@ -173,8 +234,15 @@ def _add(frames: Frames, kind: str, node: Node) -> None:
     )
 
 
-def _add_joint(frames: Frames, node: Node, ctx: Context) -> str:
-    """Adds a joint's frame; returns what it is called there."""
+def _add_joint(frames: Frames, node: Node, ctx: Context, joints: list[str]) -> str:
+    """Adds a joint's frame; returns what it is called there.
+
+    Args:
+        frames: Of the model, complete but for joints.
+        node: The ``<joint>``.
+        ctx: The document's.
+        joints: The names of all joints: one may stand on the frame of another.
+    """
     name = require_name(node)
     pose = node.child("pose")
     frame = name
@@ -184,9 +252,11 @@ def _add_joint(frames: Frames, node: Node, ctx: Context) -> str:
         if ctx.version >= (1, 7):
             ctx.tell("warning", f'joint "{name}" has the name of a link or frame too', node.origin)
     child = child_frame_of(node)
+    if child == WORLD and node.attributes.get("type") == "fixed":
+        child = node.text_at("parent").strip()
     if child == WORLD:
         raise node.fail(f'joint "{name}": the child cannot be the world', "Swap parent and child.")
-    if child not in frames.names():
+    if not frames.has(child) and child not in joints:
         raise node.fail(
             f'joint "{name}": child link "{child}" does not exist',
             suggestion(child, frames.names()),
@@ -208,7 +278,7 @@ def _add_nested(frames: Frames, inner: Model) -> None:
         return
     # Its frames become ours, all held by one that stands for the model itself.
     proxy = f"_merged__{inner.name}__model__"
-    inner_link = inner.frames.link_of("", inner.origin)
+    inner_link = inner.frames.link_of("", inner.origin) if inner.links else ""
     frames.add(
         "frame",
         proxy,
@@ -239,7 +309,7 @@ def _set_canonical(node: Node, frames: Frames, link_nodes: list[Node], nested: l
         frames.default_link = frames.link_of(stated, node.origin)
     elif link_nodes:
         frames.default_link = require_name(link_nodes[0])
-    elif nested:
+    elif nested := [inner for inner in nested if inner.links]:
         inner = nested[0]
         first = inner.frames.link_of("", inner.origin)
         frames.default_link = first if inner.merge else f"{inner.name}::{first}"
@@ -279,7 +349,39 @@ def _flatten(model: Model, inner: Model) -> None:
         )
         for joint in inner.joints
     ]
-    model.plugins += inner.plugins
+    names = {link.name for link in inner.links} | {joint.name for joint in inner.joints}
+    model.plugins += [
+        replace(plugin, element=_renamed(plugin.element, names, prefix)) if prefix else plugin
+        for plugin in inner.plugins
+    ]
+
+
+def _hold(model: Model, inner: Model) -> None:
+    """A static model in one that moves stands where it was put: each link is fixed to the world."""
+    prefix = "" if inner.merge else f"{inner.name}::"
+    model.joints += [
+        Joint(
+            name=f"{prefix}{link.name}_static",
+            type="fixed",
+            parent=WORLD,
+            child=prefix + link.name,
+            origin=link.origin,
+        )
+        for link in inner.links
+    ]
+
+
+def _renamed(element: Element, names: Collection[str], prefix: str) -> Element:
+    """A nested model's plugin with links and joints as the outer model calls them.
+
+    Frames of messages keep their names.
+    """
+    own = element.text in names and "frame" not in element.tag.lower()
+    return replace(
+        element,
+        text=prefix + element.text if own else element.text,
+        children=tuple(_renamed(child, names, prefix) for child in element.children),
+    )
 
 
 def _attach(model: Model, sensors: list[Sensor]) -> None:

@@ -13,11 +13,11 @@ from pathlib import Path
 
 from cartwheel.description.model import RobotDescription, WorldDescription
 from cartwheel.description.packages import Packages
-from cartwheel.description.sdf.context import NEWEST, Context, read_version
-from cartwheel.description.sdf.model import read_model
+from cartwheel.description.sdf.context import HARMLESS, NEWEST, Context, read_version
+from cartwheel.description.sdf.model import Model, read_model
 from cartwheel.description.sdf.world import read_world
 from cartwheel.description.xml import Node, unread
-from cartwheel.errors import Diagnostic
+from cartwheel.errors import DescriptionError, Diagnostic
 
 __all__ = ["read_sdf"]
 
@@ -50,14 +50,19 @@ def read_sdf(
     worlds, models = root.all("world"), root.all("model")
     described: RobotDescription | WorldDescription
     if worlds:
-        if len(worlds) > 1:
-            raise worlds[1].fail("one file describes one world", "Split the file.")
+        for further in worlds[1:]:
+            further.mark()
+            ctx.tell(
+                "warning",
+                f'one world is run at a time: "{further.attributes.get("name", "")}" is left out',
+                further.origin,
+            )
         if models:
             raise models[0].fail("a model beside a world", "Put it into the <world>.")
         described = read_world(worlds[0], ctx)
     elif len(models) == 1:
-        model = read_model(models[0], ctx)
-        described = model.describe(model.frames.placed(model.pose, "", model.origin), text)
+        model = _whole(models[0], ctx)
+        described = model.describe(model.frames.placed(model.pose, "", model.origin), ctx, text)
         if model.relative_to:
             ctx.tell(
                 "warning",
@@ -71,10 +76,32 @@ def read_sdf(
         )
     else:
         raise root.fail("there is neither a <model> nor a <world> in it")
-    diagnostics = tuple(_distinct([*ctx.diagnostics, *unread(root)]))
+    diagnostics = tuple(_distinct([*ctx.diagnostics, *unread(root, HARMLESS)]))
     return replace(described, diagnostics=diagnostics)
 
 
+def _whole(node: Node, ctx: Context) -> Model:
+    """A model that stands alone; where it lacks a file, that is its error."""
+    try:
+        return read_model(node, ctx)
+    except DescriptionError as error:
+        lacking = next((told for told in ctx.diagnostics if told.severity == "error"), None)
+        if lacking is None:
+            raise
+        raise DescriptionError(
+            lacking.message, origin=lacking.origin, hint=f"Without it: {error.message}."
+        ) from error
+
+
 def _distinct(diagnostics: Iterable[Diagnostic]) -> Iterable[Diagnostic]:
-    """Each once: a file included ten times has the same to say ten times."""
-    return dict.fromkeys(diagnostics)
+    """Each once: a file included ten times has the same to say ten times.
+
+    An info is told once, wherever it applies.
+    """
+    infos: set[str] = set()
+    for told in dict.fromkeys(diagnostics):
+        if told.severity == "info":
+            if told.message in infos:
+                continue
+            infos.add(told.message)
+        yield told

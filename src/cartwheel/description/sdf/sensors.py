@@ -17,6 +17,12 @@ def read_plugin(node: Node) -> PluginTag:
     return PluginTag(name=name, filename=filename, element=to_element(node), origin=node.origin)
 
 
+def read_plugins(owner: Node) -> list[PluginTag]:
+    """The plugins that an element names; ``__default__`` is SDF's word for none."""
+    nodes = [node.mark() for node in owner.all("plugin")]
+    return [read_plugin(node) for node in nodes if node.get("filename") != "__default__"]
+
+
 def read_sensor(node: Node, link: str, pose: Pose | None = None, name: str = "") -> Sensor:
     """A sensor.
 
@@ -51,7 +57,7 @@ def read_sensor(node: Node, link: str, pose: Pose | None = None, name: str = "")
         topic=topic or None,
         cameras=tuple(cameras),
         collisions=tuple(name for name in collisions if name and name != "__default__"),
-        plugins=tuple(read_plugin(plugin) for plugin in node.all("plugin")),
+        plugins=tuple(read_plugins(node)),
         element=to_element(node),
         origin=node.origin,
     )

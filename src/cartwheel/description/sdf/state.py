@@ -36,7 +36,7 @@ def apply_state(
     if insertions is not None:
         for each in insertions.all("model"):
             model = read_model(each, ctx)
-            models.append(model.describe(model.pose))
+            models.append(model.describe(model.pose, ctx))
     saved_models = {each.get("name") or "": each for each in node.all("model")}
     saved_lights = {each.get("name") or "": each for each in node.all("light")}
     for name in saved_models.keys() - {model.name for model in models}:
@@ -49,6 +49,7 @@ def apply_state(
     for name, saved in saved_lights.items():
         require_name(saved)
         pose = read_pose(saved.child("pose"))
+        saved.mark()
         lights = [replace(each, pose=pose) if each.name == name else each for each in lights]
     return models, lights
 

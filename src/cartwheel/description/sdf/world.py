@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
+from collections.abc import Iterator
 from dataclasses import replace
 
 from cartwheel.description.model import Light, Physics, WorldDescription
 from cartwheel.description.sdf.context import (
+    HARMLESS,
     Context,
     read_pose,
     read_rgba,
@@ -13,16 +16,24 @@ from cartwheel.description.sdf.context import (
     require_name,
 )
 from cartwheel.description.sdf.frames import WORLD, Frames
-from cartwheel.description.sdf.include import Included, open_include
+from cartwheel.description.sdf.include import Included, NotThereError, open_include
 from cartwheel.description.sdf.light import read_light
-from cartwheel.description.sdf.model import Model, read_included, read_model
-from cartwheel.description.sdf.sensors import read_plugin
+from cartwheel.description.sdf.model import (
+    Model,
+    NoLinksError,
+    name_apart,
+    read_included,
+    read_model,
+)
+from cartwheel.description.sdf.sensors import read_plugins
 from cartwheel.description.sdf.state import apply_state
 from cartwheel.description.xml import Node, to_element, unread
+from cartwheel.errors import DescriptionError
 from cartwheel.geometry import Vec3
 
 _WITHOUT_COUNTERPART = ("gui", "audio")
 """Read and left out: they belong to Gazebo's own window."""
+_NOT_SIMULATED = ("actor", "population", "road")
 
 
 def read_world(node: Node, ctx: Context) -> WorldDescription:
@@ -40,6 +51,7 @@ def read_world(node: Node, ctx: Context) -> WorldDescription:
     frames = Frames(WORLD, name)
     models, light_nodes = _contents(node, ctx)
     for model in models:
+        name_apart(model, [other.name for other in models if other is not model], ctx)
         frames.add_scope(model.name, model.frames, model.pose, model.relative_to, model.origin)
     for each in node.all("frame"):
         stated = each.child("pose")
@@ -51,13 +63,22 @@ def read_world(node: Node, ctx: Context) -> WorldDescription:
             attached_to=(each.get("attached_to") or "").strip(),
             origin=each.origin,
         )
-    placed = [model.describe(frames.pose(model.name, model.origin)) for model in models]
+    placed = []
+    for model in models:
+        with _tolerant(ctx, model.name):
+            placed.append(model.describe(frames.pose(model.name, model.origin), ctx))
     lights = [_light(each, included, frames) for each, included in light_nodes]
     for state in node.all("state"):
         placed, lights = apply_state(state, placed, lights, ctx)
     for tag in _WITHOUT_COUNTERPART:
         for each in node.all(tag):
             each.mark()
+    for tag in _NOT_SIMULATED:
+        for each in node.all(tag):
+            each.mark()
+            name_of = each.attributes.get("name", "")
+            what = f'<{tag}> "{name_of}"' if name_of else f"<{tag}>"
+            ctx.tell("warning", f"{what} is not simulated: it is left out", each.origin)
     for tag in ("wind", "atmosphere"):
         for each in node.all(tag):
             each.mark()
@@ -77,7 +98,7 @@ def read_world(node: Node, ctx: Context) -> WorldDescription:
         background=_scene_colour(scene, "background", default.background),
         shadows=scene.boolean_at("shadows", True) if scene is not None else True,
         physics=_physics(physics, ctx) if physics is not None else Physics(),
-        plugins=tuple(read_plugin(each) for each in node.all("plugin")),
+        plugins=tuple(read_plugins(node)),
         spherical_coordinates=to_element(coordinates) if coordinates is not None else None,
         origin=node.origin,
     )
@@ -89,18 +110,47 @@ def _contents(node: Node, ctx: Context) -> tuple[list[Model], list[tuple[Node, I
     lights: list[tuple[Node, Included | None]] = []
     for each in node.children:
         if each.tag == "model":
-            models.append(read_model(each, ctx))
+            with _tolerant(ctx, each.attributes.get("name", ""), each):
+                models.append(read_model(each, ctx))
         elif each.tag == "light":
             lights.append((each, None))
         elif each.tag == "include":
-            included = open_include(each, ctx)
+            try:
+                included = open_include(each, ctx)
+            except NotThereError as missing:
+                # It costs the one model, not the whole world; an error that others may stop at.
+                each.mark()
+                hint = f" {missing.hint}" if missing.hint else ""
+                ctx.tell("error", f"{missing.message}; it is left out.{hint}", missing.origin)
+                continue
             if included.node.tag == "light":
                 lights.append((included.node, included))
             else:
-                models.append(read_included(included))
+                with _tolerant(ctx, included.name or included.node.attributes.get("name", "")):
+                    models.append(read_included(included))
     for tag in ("model", "light", "include"):
         node.all(tag)  # counts them as read
     return models, lights
+
+
+@contextlib.contextmanager
+def _tolerant(ctx: Context, name: str, node: Node | None = None) -> Iterator[None]:
+    """Leaves a model out that has no links, or lacks what could not be found.
+
+    Its file may be in order, and the rest of the world is worth having.
+    """
+    try:
+        yield
+    except DescriptionError as error:
+        lacking = any(told.severity == "error" for told in ctx.diagnostics)
+        if not lacking and not isinstance(error, NoLinksError):
+            raise
+        if node is not None:
+            node.mark()
+        if lacking and isinstance(error, NoLinksError):
+            return  # all that it is was told to be left out
+        told = error.message if f'"{name}"' in error.message else f'model "{name}": {error.message}'
+        ctx.tell("error" if lacking else "warning", f"{told}; it is left out", error.origin)
 
 
 def _light(node: Node, included: Included | None, frames: Frames) -> Light:
@@ -110,7 +160,7 @@ def _light(node: Node, included: Included | None, frames: Frames) -> Light:
     light = read_light(node, frames.placed(read_pose(stated), reference_of(stated), node.origin))
     if included is None:
         return light
-    included.ctx.diagnostics.extend(unread(included.root))
+    included.ctx.diagnostics.extend(unread(included.root, HARMLESS))
     return replace(light, name=included.name or light.name)
 
 

@@ -89,10 +89,17 @@ def read_gazebo_tags(
             _read_robot_tags(node, tags, ctx)
             continue
         if reference not in links and reference not in joints:
-            raise node.fail(
-                f'<gazebo> refers to "{reference}", which is neither a link nor a joint',
-                suggestion(reference, sorted({*links, *joints})),
+            # Gazebo passes over it without a word, and robots are published with such tags.
+            ctx.tell(
+                "warning",
+                f'<gazebo> refers to "{reference}", which is neither a link nor a joint: '
+                "all in it is left out. "
+                f"{suggestion(reference, sorted({*links, *joints})) or ''}".rstrip(),
+                node.origin,
             )
+            # Told as a whole, not part by part.
+            node.children.clear()
+            continue
         if reference in links:
             of_link = tags.links.setdefault(reference, LinkTags())
             read_link_tags(node, reference, of_link, ctx)
@@ -180,7 +187,9 @@ def _read_joint_tags(node: Node, joint: Joint, tags: GazeboTags, ctx: UrdfContex
         if found is not None:
             # Two tags keep a fixed joint; one that says no takes nothing from the other.
             fields[name] = found.boolean() or fields.get(name, False)
-    _tell_idle(node, {"fudgeFactor": "limits here do not overshoot"}, ctx)
+    for fudge in node.all("fudgeFactor"):
+        fudge.mark()
+        ctx.tell("info", "<fudgeFactor> is not needed: limits here do not overshoot", fudge.origin)
     child_tags = tags.links.setdefault(joint.child, LinkTags())
     for sensor in node.all("sensor"):
         child_tags.sensors.append(replace(read_sensor(sensor, joint.child), joint=joint.name))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
-from cartwheel.description.inertia import impossibility, principal_moments
+from cartwheel.description.inertia import TOLERANCE, impossibility, made_possible, principal_moments
 from cartwheel.description.model import (
     Box,
     Capsule,
@@ -29,6 +29,10 @@ Meshes = Literal["error", "warn"]
 SHAPES = ("box", "cylinder", "sphere", "capsule", "mesh")
 
 
+_SMALL_PART = 0.05
+"""Of a robot's mass."""
+
+
 @dataclass(kw_only=True, slots=True)
 class UrdfContext:
     """What the readers of one URDF share."""
@@ -39,6 +43,8 @@ class UrdfContext:
     materials: dict[str, Material] = field(default_factory=dict)
     """Those defined for the whole robot."""
     diagnostics: list[Diagnostic] = field(default_factory=list)
+    mass: float = 0.0
+    """kg, of all links; known when their inertias are judged."""
 
     def tell(self, severity: Severity, message: str, origin: Origin) -> None:
         """Adds a diagnostic."""
@@ -239,7 +245,8 @@ def _primitive(node: Node, kind: str, link: str, ctx: UrdfContext) -> Shape | No
         )
     if min(sizes) == 0:
         ctx.tell(
-            "warning",
+            # The old way to write a link that is but a frame.
+            "warning" if any(sizes) else "info",
             f'a {node.tag} of link "{link}" has the size {_listed(sizes)}: the {kind} is left out',
             node.origin,
         )
@@ -274,28 +281,47 @@ def _inertial(node: Node) -> Inertial:
     return Inertial(mass=mass, pose=read_origin(node), origin=node.origin, **values)
 
 
-def check_inertia(inertial: Inertial, link: str, *, rigid: bool, ctx: UrdfContext) -> None:
-    """Judges the inertia matrix of a link with mass.
+def judged_inertia(inertial: Inertial, link: str, *, rigid: bool, ctx: UrdfContext) -> Inertial:
+    """A link's inertia, or the nearest to it that a body can have.
+
+    Small parts of published robots have inertias that no body has, and it hardly matters: they
+    are mended. That of a main part decides how the robot moves, so it has to be right.
 
     Args:
         inertial: With a mass above 0.
         link: Its link's name.
-        rigid: Whether the link is fixed to another: then its inertia is but a part of a sum,
-            and a point mass is as good as any.
+        rigid: Whether the link is fixed to another: then its inertia is but a part of a sum.
         ctx: Takes the diagnostics.
 
     Raises:
-        DescriptionError: no body can have it.
+        DescriptionError: No body has this inertia, and the link moves by itself and is more than
+            a small part of the robot; or a moment is below 0.
     """
     i = inertial
-    found = impossibility(principal_moments((i.ixx, i.iyy, i.izz), (i.ixy, i.ixz, i.iyz)))
+    diagonal, products = (i.ixx, i.iyy, i.izz), (i.ixy, i.ixz, i.iyz)
+    moments = principal_moments(diagonal, products)
+    found = impossibility(moments)
     if found is None:
-        return
+        return inertial
     message, hint = found
-    if rigid and not any((i.ixx, i.iyy, i.izz, i.ixy, i.ixz, i.iyz)):
-        ctx.tell("info", f'link "{link}" is a point mass: its inertia is 0', i.origin)
-        return
-    raise DescriptionError(f'link "{link}": {message}', origin=i.origin, hint=hint)
+    if not rigid and i.mass > _SMALL_PART * ctx.mass:
+        raise DescriptionError(f'link "{link}": {message}', origin=i.origin, hint=hint)
+    if not any((*diagonal, *products)):
+        if rigid:
+            ctx.tell("info", f'link "{link}" is a point mass: its inertia is 0', i.origin)
+        return inertial  # a part that turns without any inertia is given one as a whole
+    if moments[0] < -TOLERANCE * moments[2]:
+        raise DescriptionError(f'link "{link}": {message}', origin=i.origin, hint=hint)
+    (ixx, iyy, izz), (ixy, ixz, iyz) = made_possible(diagonal, products)
+    made = replace(i, ixx=ixx, iyy=iyy, izz=izz, ixy=ixy, ixz=ixz, iyz=iyz)
+    smaller = principal_moments((ixx, iyy, izz), (ixy, ixz, iyz))
+    ctx.tell(
+        "info" if rigid else "warning",
+        f'link "{link}": {message}; here the smaller are {smaller[0]:.4g} and {smaller[1]:.4g}. '
+        f"{hint}",
+        i.origin,
+    )
+    return made
 
 
 def _listed(values: tuple[float, ...]) -> str:

@@ -6,19 +6,22 @@ the tree that the joints make. This file puts them together; each has a file of 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
 from cartwheel.description.model import Inertial, Link, RobotDescription
 from cartwheel.description.packages import Packages
 from cartwheel.description.urdf.collision_names import check_contact_sensors, name_collisions
+from cartwheel.description.urdf.estimate import with_masses
 from cartwheel.description.urdf.gazebo_tags import GazeboTags, read_gazebo_tags
+from cartwheel.description.urdf.harmless import HARMLESS
 from cartwheel.description.urdf.joint import check_mimics, read_joint
 from cartwheel.description.urdf.link import (
     Meshes,
     ReadLink,
     UrdfContext,
-    check_inertia,
+    judged_inertia,
     read_link,
     read_materials,
 )
@@ -74,17 +77,22 @@ def read_urdf(
     poses = tree.poses({joint.name: frame for joint, frame in read})
 
     tags = read_gazebo_tags(root, known, {joint.name: joint for joint in joints}, ctx)
+    weights = [part.inertial.mass for part in parts if part.inertial is not None]
+    # What never moves needs no inertia.
+    ctx.mass = math.inf if tags.static else sum(mass for mass in weights if mass > 0)
     links = [_complete(part, tree, poses[part.link.name], tags, ctx) for part in parts]
     joints = [tags.apply_to_joint(joint) for joint in joints]
     links = name_collisions(links, tree, [joint.name for joint in joints if joint.preserve_fixed])
     ctx.diagnostics.extend(check_contact_sensors(links))
     links = _without_world(links, tree, ctx)
-    _tell_massless(links, tree, ctx)
+    links = list(with_masses(links, tree, ctx, static=tags.static))
+    if not tags.static and tree.root != WORLD:
+        _tell_untouchable(links, ctx)
 
     transmissions = tuple(to_element(node) for node in root.all("transmission"))
     ros2_control = tuple(to_element(node) for node in root.all("ros2_control"))
     _tell_unprefixed(root, ctx)
-    ctx.diagnostics.extend(unread(root))
+    ctx.diagnostics.extend(unread(root, HARMLESS))
     return RobotDescription(
         name=name,
         links=tuple(links),
@@ -147,25 +155,15 @@ def _judged(part: ReadLink, tree: Tree, ctx: UrdfContext) -> Inertial | None:
         return None
     holder = tree.inbound.get(name)
     fixed = holder is not None and holder.type == "fixed"
-    carries = [joint for joint in tree.children[name] if joint.type != "fixed"]
     if inertial.mass <= 0:
-        if not fixed and holder is not None and carries:
-            raise DescriptionError(
-                f'link "{name}" has the mass {inertial.mass:g}, but it moves on the joint '
-                f'"{holder.name}" and carries the joint "{carries[0].name}"',
-                origin=inertial.origin,
-                hint="Between two joints that move, a body needs mass: a force on none would "
-                "accelerate it without bound. Gazebo drops the link and all that it carries.",
-            )
         ctx.tell(
-            "warning",
+            "info" if fixed and inertial.mass == 0 else "warning",
             f'link "{name}" has the mass {inertial.mass:g}: it counts as a frame without mass',
             inertial.origin,
         )
         return None
     rigid = fixed or any(joint.type == "fixed" for joint in tree.children[name])
-    check_inertia(inertial, name, rigid=rigid, ctx=ctx)
-    return inertial
+    return judged_inertia(inertial, name, rigid=rigid, ctx=ctx)
 
 
 def _without_world(links: list[Link], tree: Tree, ctx: UrdfContext) -> list[Link]:
@@ -187,24 +185,14 @@ def _without_world(links: list[Link], tree: Tree, ctx: UrdfContext) -> list[Link
     return [link for name in tree.order for link in kept if link.name == name]
 
 
-def _tell_massless(links: Sequence[Link], tree: Tree, ctx: UrdfContext) -> None:
-    """Warns of what moves without any mass: Gazebo drops such links together with their joints."""
-    heavy = {tree.rigid_root(link.name) for link in links if link.inertial is not None}
-    for link in links:
-        holder = tree.inbound.get(link.name)
-        moves = holder is not None and holder.type != "fixed"
-        if moves and link.name not in heavy:
-            assert holder is not None
-            ctx.tell(
-                "warning",
-                f'link "{link.name}" moves on the joint "{holder.name}" but has no <inertial>: '
-                "it is kept as a frame, while Gazebo drops it with its joint",
-                link.origin,
-            )
-        elif holder is None and link.name not in heavy and not moves:
-            ctx.tell(
-                "warning",
-                f'the root link "{link.name}", with all that is fixed to it, has no <inertial>: '
-                "Gazebo does not load such a robot",
-                link.origin,
-            )
+def _tell_untouchable(links: Sequence[Link], ctx: UrdfContext) -> None:
+    """Warns of a robot made for rviz alone, which nothing holds."""
+    seen = next((link for link in links if link.visuals), None)
+    if seen is not None and not any(link.collisions for link in links):
+        ctx.tell(
+            "warning",
+            "none of its links has a <collision>: the robot falls through the ground. Write one "
+            f"beside the <visual> of each, with the same <origin> and <geometry>; "
+            f'"{seen.name}" is the first',
+            seen.visuals[0].origin,
+        )

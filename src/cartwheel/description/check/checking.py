@@ -1,0 +1,208 @@
+"""Checks a description: reads it in spite of its errors, and applies all rules."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from cartwheel.description.check import (
+    drive,
+    frames,
+    gazebo,
+    inertia,
+    joints,
+    meshes,
+    nodes,
+    plugins,
+    sensors,
+    stance,
+    structure,
+    tags,
+    units,
+    xacro_use,
+)
+from cartwheel.description.check.finding import Finding, Remark, Rule
+from cartwheel.description.check.mending import mend
+from cartwheel.description.check.subject import PluginKnowledge, Robot, Subject
+from cartwheel.description.loading import Opened, open_description, understand
+from cartwheel.description.model import RobotDescription, WorldDescription
+from cartwheel.description.node import Node
+from cartwheel.errors import DescriptionError, UnknownNameError
+
+RULES: tuple[Rule, ...] = (
+    *structure.RULES,
+    *joints.RULES,
+    *inertia.RULES,
+    *drive.RULES,
+    *stance.RULES,
+    *sensors.RULES,
+    *gazebo.RULES,
+    *frames.RULES,
+    *plugins.RULES,
+    *meshes.RULES,
+    *units.RULES,
+    *tags.RULES,
+    *xacro_use.RULES,
+)
+"""All rules, by subject."""
+_PARTICULARS = re.compile(r'"[^"]*"|[-+]?\d[\d.e+-]*')
+"""Names and numbers, in which findings of one line may differ."""
+MAX_FAILURES = 30
+"""After so many things that cannot be read the rest is hardly worth a look."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Report:
+    """What a check found."""
+
+    file: str
+    name: str
+    """The robot's or world's; empty where it could not be read."""
+    findings: tuple[Finding, ...]
+    """In the order of their places."""
+    ignored: int
+    """Findings of rules that were not to be told."""
+    complete: bool
+    """False where it could not be read in spite of all: rules that need it were left out."""
+
+    def count(self, severity: str) -> int:
+        """How many findings of that severity there are."""
+        return sum(finding.severity == severity for finding in self.findings)
+
+
+def check(
+    path: Path | str,
+    *,
+    arguments: Mapping[str, str] | None = None,
+    package_path: Sequence[Path] = (),
+    known: PluginKnowledge | None = None,
+    ignore: Collection[str] = (),
+) -> Report:
+    """Looks for what breaks or misleads in a description.
+
+    Args:
+        path: As for `load`.
+        arguments: The values of ``name:=value``.
+        package_path: As for `load`.
+        known: What is known of plugins; without it their parameters are not looked at.
+        ignore: Rules that are not to be told.
+
+    Raises:
+        DescriptionError: it is no description, or its XML or xacro cannot be read.
+        UnknownNameError: a rule to ignore that does not exist.
+    """
+    names = [each.name for each in RULES]
+    for name in ignore:
+        if name not in names:
+            raise UnknownNameError("the rule", name, names)
+    opened = open_description(path, arguments or {}, package_path)
+    if nodes.children(opened.root, "light") and _is_empty(opened.root):
+        # A lamp, which worlds include: there is nothing to say of it.
+        name = nodes.name_of(nodes.children(opened.root, "light")[0])
+        return Report(file=opened.files[0], name=name, findings=(), ignored=0, complete=True)
+    if opened.root.tag not in ("robot", "sdf", "gazebo") or _is_empty(opened.root):
+        understand(opened, "warn")  # says what it is instead
+    subject = _subject(opened, known)
+    # Numbers near the largest overflow; no finding comes of what is not a number.
+    with np.errstate(all="ignore"):
+        found = _distinct(finding for each in RULES for finding in each.apply(subject))
+    told = [finding for finding in found if finding.rule not in ignore]
+    order = {file: index for index, file in enumerate(subject.files)}
+    told.sort(key=lambda finding: _place(finding, order))
+    return Report(
+        file=subject.files[0],
+        name=subject.read.name if subject.read is not None else "",
+        findings=tuple(told),
+        ignored=len(found) - len(told),
+        complete=subject.read is not None,
+    )
+
+
+def _subject(opened: Opened, known: PluginKnowledge | None) -> Subject:
+    tree = nodes.copy(opened.root)
+    mended: set[str] = set()
+    if tree.tag == "robot":
+        mended |= mend(tree)
+    read, failures = _read(opened, tree, mended)
+    described: tuple[RobotDescription, ...] = ()
+    if isinstance(read, WorldDescription):
+        described = read.models
+    elif read is not None:
+        described = (read,)
+    root = opened.root if opened.root.tag == "robot" else None
+    return Subject(
+        root=opened.root,
+        files=opened.files,
+        packages=opened.packages,
+        read=read,
+        robots=tuple(Robot(each, root, mended) for each in described),
+        failures=tuple(failures),
+        plugins=known,
+    )
+
+
+def _read(
+    opened: Opened, tree: Node, mended: set[str]
+) -> tuple[RobotDescription | WorldDescription | None, list[Remark]]:
+    """Reads a tree, without what keeps it from being read."""
+    failures: list[Remark] = []
+    cut: set[int] = set()
+    while True:
+        attempt = replace(opened, root=nodes.copy(tree))
+        try:
+            return understand(attempt, "warn"), failures
+        except DescriptionError as error:
+            node = nodes.at(tree, error.origin) if error.origin is not None else None
+            # What lacks a part that was cut out before has nothing new to say.
+            if node is None or id(node) not in cut:
+                failures.append(
+                    Remark(message=error.message, origin=error.origin, hint=error.hint or "")
+                )
+            parent = nodes.parent_of(tree, node) if node is not None else None
+            if node is None or parent is None or len(cut) >= MAX_FAILURES:
+                return None, failures
+            mended |= _links_around(tree, node)
+            parent.drop(node)
+            cut.add(id(parent))
+            if tree.tag == "robot":
+                mended |= mend(tree)
+
+
+def _links_around(tree: Node, wanted: Node) -> set[str]:
+    return {
+        nodes.name_of(link)
+        for link in nodes.walk(tree)
+        if link.tag == "link" and any(node is wanted for node in nodes.walk(link))
+    }
+
+
+def _is_empty(root: Node) -> bool:
+    """Whether there is nothing to check: a file of macros, or a document without a model."""
+    if root.tag == "robot":
+        return not nodes.children(root, "link")
+    return not nodes.children(root, "model") and not nodes.children(root, "world")
+
+
+def _distinct(findings: Iterable[Finding]) -> list[Finding]:
+    """Each once, and those that one line of a macro makes again and again as one."""
+    found: dict[tuple[str, str, str], Finding] = {}
+    for finding in findings:
+        message = finding.message
+        if finding.origin is not None and finding.origin.stack:
+            message = _PARTICULARS.sub("", message)
+        key = (finding.rule, str(finding.origin), message)
+        first = found.setdefault(key, finding)
+        if first.message != finding.message and finding.message not in first.also:
+            found[key] = replace(first, also=(*first.also, finding.message))
+    return list(found.values())
+
+
+def _place(finding: Finding, order: Mapping[str, int]) -> tuple[int, str, int]:
+    if finding.origin is None:
+        return (-1, "", 0)
+    file = finding.origin.file
+    return (order.get(file, len(order)), file, finding.origin.line)

@@ -1,0 +1,137 @@
+"""Frames and topics that plugins name."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from cartwheel.description import numbers
+from cartwheel.description.check import nodes
+from cartwheel.description.check.finding import Remark, rule
+from cartwheel.description.check.subject import Robot, Subject
+from cartwheel.description.model import Element, PluginTag, Sensor
+from cartwheel.errors import suggestion
+
+_BODIES = ("bodyName", "body_name")
+_FRAMES = ("robotBaseFrame", "robot_base_frame", "frameName", "frame_name")
+_OUTER = frozenset({"world", "map", "odom", "earth", ""})
+"""Frames that are no links by their nature (REP 105)."""
+
+_TOPICS: dict[str, tuple[tuple[str, ...], ...]] = {
+    # Of each plugin the tags, in both spellings, whose topics it publishes.
+    "diff_drive": (("odometryTopic", "odometry_topic"),),
+    "skid_steer_drive": (("odometryTopic", "odometry_topic"),),
+    "planar_move": (("odometryTopic", "odometry_topic"),),
+    "imu": (("topicName",),),
+    "imu_sensor": (("topicName",),),
+    "laser": (("topicName",),),
+    "gpu_laser": (("topicName",),),
+    "block_laser": (("topicName",),),
+    "range": (("topicName",),),
+    "p3d": (("topicName",),),
+    "bumper": (("bumperTopicName", "bumper_topic_name"),),
+    "camera": (("imageTopicName",),),
+}
+
+
+@rule("body-unknown", "error", "a plugin's bodyName is no link")
+def body_unknown(subject: Subject) -> Iterator[Remark]:
+    for robot, tag, _ in _plugins(subject):
+        for element in tag.element.children:
+            name = element.text.strip().lstrip("/")
+            if element.tag in _BODIES and name and name not in _known(robot):
+                yield _unknown(
+                    robot, element, "the plugin does not find what it shall measure or move"
+                )
+
+
+@rule("frame-unknown", "warning", "a plugin stamps its messages with a frame that is no link")
+def frame_unknown(subject: Subject) -> Iterator[Remark]:
+    if not subject.is_urdf:
+        return
+    for robot, tag, _ in _plugins(subject):
+        for element in tag.element.children:
+            name = element.text.strip().lstrip("/")
+            if element.tag not in _FRAMES or name in _OUTER or name in _known(robot):
+                continue
+            if name.rpartition("/")[2] in _known(robot):
+                continue  # with a prefix of its own
+            yield _unknown(
+                robot, element, "tf does not know that frame, so nobody can use the messages"
+            )
+
+
+@rule("topic-twice", "warning", "two plugins publish on one topic")
+def topic_twice(subject: Subject) -> Iterator[Remark]:
+    for robot in subject.robots:
+        seen: dict[str, tuple[PluginTag, str]] = {}
+        for tag, _ in robot.plugins():
+            kind = short_name(tag)
+            for tags in _TOPICS.get(kind, ()):
+                element = next((e for name in tags if (e := tag.element.find(name))), None)
+                if element is None or not element.text.strip():
+                    continue
+                topic = _resolved(tag, element, kind)
+                if topic not in seen:
+                    seen[topic] = (tag, kind)
+                    continue
+                other = seen[topic][0]
+                new = f"{element.text.strip()}_2"
+                yield Remark(
+                    message=f'the plugins "{other.name}" and "{tag.name}" both publish on '
+                    f'"{topic}": who reads it gets both, mixed',
+                    origin=element.origin,
+                    instead=nodes.written(element.tag, {}, new),
+                    place="element",
+                    mark=element.text.strip(),
+                    hint=f"The other is at {other.origin}.",
+                )
+
+
+def short_name(tag: PluginTag) -> str:
+    """``diff_drive`` of ``libgazebo_ros_diff_drive.so``."""
+    stem = tag.filename.rsplit("/", 1)[-1].removeprefix("lib").removesuffix(".so")
+    return stem.removeprefix("gazebo_ros_")
+
+
+def _resolved(tag: PluginTag, element: Element, kind: str) -> str:
+    space = next(
+        (e.text.strip() for path in ("ros/namespace", "robotNamespace")
+         if (e := tag.element.find(path))),
+        "",
+    )  # fmt: skip
+    name = element.text.strip()
+    if kind == "camera":
+        camera = tag.element.find("cameraName")
+        name = f"{camera.text.strip() if camera is not None else tag.name}/{name}"
+    if name.startswith("/"):
+        return name
+    return "/" + "/".join(part.strip("/") for part in (space, name) if part.strip("/"))
+
+
+def _unknown(robot: Robot, element: Element, consequence: str) -> Remark:
+    name = element.text.strip()
+    near = numbers.likely(name.lstrip("/"), robot.links, cutoff=0.6)
+    return Remark(
+        message=f'<{element.tag}> "{name}" is no link: {consequence}',
+        origin=element.origin,
+        instead=nodes.written(element.tag, {}, near) if near else "",
+        place="element" if near else "",
+        mark=name,
+        hint="" if near else suggestion(name, robot.links),
+    )
+
+
+def _known(robot: Robot) -> set[str]:
+    names = set(robot.links)
+    if robot.root is not None:
+        names |= {nodes.name_of(node) for node in nodes.children(robot.root, "link")}
+    return names | {name.rpartition("::")[2] for name in names}
+
+
+def _plugins(subject: Subject) -> Iterator[tuple[Robot, PluginTag, Sensor | None]]:
+    for robot in subject.robots:
+        for tag, sensor in robot.plugins():
+            yield robot, tag, sensor
+
+
+RULES = (body_unknown, frame_unknown, topic_twice)

@@ -1,0 +1,210 @@
+"""What Gazebo makes of names: links merged over fixed joints, collisions renamed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from cartwheel.description import numbers
+from cartwheel.description.check import nodes
+from cartwheel.description.check.finding import Remark, rule
+from cartwheel.description.check.subject import Robot, Subject
+from cartwheel.description.model import Element, Sensor
+
+_LUMP = "_fixed_joint_lump__"
+_LINK_TAGS = ("bodyName", "body_name", "linkName", "link_name")
+"""Tags of plugins that must name a link of the model."""
+_JOINT_TAGS = ("jointName", "joint_name")
+
+
+@rule("contact-collision-unknown", "error", "a contact sensor names a collision that is not there")
+def contact_collision_unknown(subject: Subject) -> Iterator[Remark]:
+    for robot, sensor, asked in _watched(subject):
+        name = asked.text.strip()
+        if robot.incomplete:
+            continue  # it may be that of a mesh that is missing
+        if name.rpartition("::")[2] in _spellings(robot):
+            continue
+        known = {one for names in _gazebo_names(robot).values() for one in names}
+        own = _gazebo_names(robot).get(sensor.link, [])
+        near = numbers.likely(name, known, cutoff=0.6) or (own[0] if own else None)
+        yield Remark(
+            message=f'the contact sensor "{sensor.name}" watches the collision "{name}", '
+            "which does not exist: it never reports anything",
+            origin=asked.origin,
+            instead=nodes.written("collision", {}, near) if near else "",
+            place="element" if near else "",
+            mark=name,
+            hint=_all_spellings(robot, sensor.link),
+        )
+
+
+@rule("contact-never-fires", "warning", "a collision's spelling that fails silently in Gazebo 11")
+def contact_never_fires(subject: Subject) -> Iterator[Remark]:
+    if not subject.is_urdf:
+        return
+    for robot, sensor, asked in _watched(subject):
+        name = asked.text.strip().rpartition("::")[2]
+        if _LUMP in name or any(name in names for names in _gazebo_names(robot).values()):
+            continue
+        target = _spellings(robot).get(name)
+        if target is None:
+            continue
+        link, index = target
+        root = _lump_root(robot, link)
+        if root == link:
+            continue  # its own name in some spelling: Gazebo's is not certain
+        right = _gazebo_names(robot)[link][index]
+        yield Remark(
+            message=f'Gazebo 11 merges "{link}" into "{root}" and knows no collision "{name}" '
+            f'any more: there the sensor "{sensor.name}" loads and never reports anything',
+            origin=asked.origin,
+            instead=nodes.written("collision", {}, right),
+            place="element",
+            mark=name,
+        )
+
+
+@rule("lumped-joint", "warning", "a plugin measures a fixed joint that Gazebo merges away")
+def lumped_joint(subject: Subject) -> Iterator[Remark]:
+    for robot, element in _named(subject, _JOINT_TAGS):
+        joint = robot.joints.get(element.text.strip())
+        if joint is None or joint.type != "fixed" or joint.preserve_fixed or not subject.is_urdf:
+            continue
+        if joint.parent not in robot.links:
+            continue
+        yield Remark(
+            message=f'<{element.tag}> names the fixed joint "{joint.name}", which Gazebo merges '
+            "away together with its link: the plugin does not find it there",
+            origin=element.origin,
+            instead=f'<gazebo reference="{joint.name}"><preserveFixedJoint>true'
+            "</preserveFixedJoint></gazebo>",
+            mark=joint.name,
+            hint="Add it to the robot.",
+        )
+
+
+@rule("lumped-link", "info", "a plugin names a link that Gazebo merges into another")
+def lumped_link(subject: Subject) -> Iterator[Remark]:
+    if not subject.is_urdf:
+        return
+    for robot, element in _named(subject, _LINK_TAGS):
+        name = element.text.strip().lstrip("/")
+        root = _lump_root(robot, name) if name in robot.links else name
+        holder = robot.inbound.get(name)
+        if root == name or holder is None:
+            continue
+        keep = (
+            f'<gazebo reference="{holder.name}"><preserveFixedJoint>true'
+            "</preserveFixedJoint></gazebo>"
+        )
+        if element.tag in ("body_name", "link_name"):
+            yield Remark(
+                severity="warning",
+                message=f'Gazebo merges the link "{name}" into "{root}", and replaces its name '
+                f"in <bodyName> only: with <{element.tag}> the plugin does not find it there",
+                origin=element.origin,
+                instead=keep,
+                mark=name,
+                hint="Add it to the robot.",
+            )
+        elif not _same_frame(robot, name, root):
+            yield Remark(
+                message=f'Gazebo merges the link "{name}" into "{root}" and writes that, '
+                "with the offset between the two, into the plugin: its messages name that link",
+                origin=element.origin,
+                instead=keep,
+                mark=name,
+                hint="Add it to the robot to keep the link.",
+            )
+
+
+def _watched(subject: Subject) -> Iterator[tuple[Robot, Sensor, Element]]:
+    for robot in subject.robots:
+        for _, sensor in robot.sensors():
+            contact = sensor.element.find("contact")
+            for asked in contact.find_all("collision") if contact is not None else ():
+                if asked.text.strip() not in ("", "__default__"):
+                    yield robot, sensor, asked
+
+
+def _named(subject: Subject, tags: tuple[str, ...]) -> Iterator[tuple[Robot, Element]]:
+    for robot in subject.robots:
+        for tag, _ in robot.plugins():
+            for element in tag.element.children:
+                if element.tag in tags and element.text.strip():
+                    yield robot, element
+
+
+def _spellings(robot: Robot) -> dict[str, tuple[str, int]]:
+    """The link and the number of the collision that each accepted spelling means."""
+    return {
+        name: (link.name, index)
+        for link in robot.description.links
+        for index, collision in enumerate(link.collisions)
+        for name in (*collision.aliases, collision.name)
+    }
+
+
+def _gazebo_names(robot: Robot) -> dict[str, list[str]]:
+    """The names of each link's collisions in Gazebo 11, by link."""
+    if robot.root is None:
+        return {
+            link.name: [collision.name for collision in link.collisions]
+            for link in robot.description.links
+        }
+    names: dict[str, list[str]] = {}
+    counts: dict[str, int] = {}
+    for link in _parents_first(robot):
+        root = _lump_root(robot, link)
+        for collision in robot.links[link].collisions:
+            count = counts.get(root, 0)
+            counts[root] = count + 1
+            number = f"_{count}" if count else ""
+            name = collision.name if root == link else f"{root}{_LUMP}{link}_collision{number}"
+            names.setdefault(link, []).append(name)
+    return names
+
+
+def _parents_first(robot: Robot) -> list[str]:
+    order = [name for name in robot.links if name not in robot.inbound]
+    order += [
+        n for n, j in robot.inbound.items() if j.parent not in robot.links and n in robot.links
+    ]
+    for name in order:
+        order.extend(
+            joint.child
+            for joint in robot.description.joints
+            if joint.parent == name and joint.child in robot.links and joint.child not in order
+        )
+    return order
+
+
+def _lump_root(robot: Robot, link: str) -> str:
+    seen = {link}
+    while link in robot.inbound:
+        joint = robot.inbound[link]
+        if joint.type != "fixed" or joint.preserve_fixed or joint.parent not in robot.links:
+            break
+        if joint.parent in seen:
+            break
+        link = joint.parent
+        seen.add(link)
+    return link
+
+
+def _all_spellings(robot: Robot, link: str) -> str:
+    found = robot.links[link].collisions if link in robot.links else ()
+    if not found:
+        return f'The link "{link}" has no collision.'
+    right = _gazebo_names(robot).get(link, [])
+    others = [name for c in found for name in (c.name, *c.aliases) if name not in right][:4]
+    text = f'In Gazebo 11 that of "{link}" is {", ".join(right[:4])}'
+    return text + (f"; also accepted here: {', '.join(others)}." if others else ".")
+
+
+def _same_frame(robot: Robot, a: str, b: str) -> bool:
+    between = robot.links[a].pose.inverse() @ robot.links[b].pose
+    return max(map(abs, (*between.position, *between.orientation[:3]))) < 1e-6
+
+
+RULES = (contact_collision_unknown, contact_never_fires, lumped_joint, lumped_link)

@@ -1,0 +1,373 @@
+"""Masses and inertias: whether a body can have them, and whether this one would."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from cartwheel.description.check import nodes
+from cartwheel.description.check.finding import Remark, rule
+from cartwheel.description.check.solids import as_collision, bounds
+from cartwheel.description.check.structure import ends, inbound, link_names
+from cartwheel.description.check.subject import IMPOSSIBLE, Robot, Subject
+from cartwheel.description.inertia import impossibility, principal_moments
+from cartwheel.description.model import Box, Collision, Inertial, Link, Visual
+from cartwheel.description.node import Node
+from cartwheel.description.sdf.inertia import inertial_of
+from cartwheel.errors import Origin
+from cartwheel.geometry import Pose, Vec3
+
+TOO_LARGE = 1.5
+"""Times the inertia of the same mass in the farthest corners of the geometry's box."""
+TOO_SMALL = 20.0
+"""Times less than that of a solid of the geometry's shape."""
+OUTSIDE = 0.25
+"""Of the box's diagonal: how far outside of it a centre of mass is a finding."""
+DENSEST = 30_000.0
+"""kg/m³; osmium has 22 600."""
+_KEYS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
+
+
+@rule("inertia-impossible", "error", "an inertia that no body can have")
+def inertia_impossible(subject: Subject) -> Iterator[Remark]:
+    yield from (each for each in subject.failures if IMPOSSIBLE.search(each.message))
+    held = _held(subject)
+    for link, inertial in _inertials(subject):
+        tensor = nodes.child(inertial, "inertia")
+        moments = moments_of(inertial)
+        mass = nodes.number(nodes.text_of(nodes.child(inertial, "mass"), "value"))
+        if moments is None or mass is None or mass <= 0:
+            continue
+        wrong = impossibility(moments)
+        if wrong is None or (not any(moments) and nodes.name_of(link) in held):
+            continue
+        place = tensor or inertial
+        yield Remark(
+            message=f'link "{nodes.name_of(link)}": {wrong[0]}',
+            origin=place.origin,
+            instead=_inertia_text(_sketch(subject, nodes.name_of(link)), mass),
+            place="element" if tensor is not None else "inside",
+        )
+
+
+@rule("mass-not-positive", "error", "a link that moves has no mass, or less than none")
+def mass_not_positive(subject: Subject) -> Iterator[Remark]:
+    held = _held(subject)
+    for link, inertial in _inertials(subject):
+        place = nodes.child(inertial, "mass")
+        mass = nodes.number(nodes.text_of(place, "value"))
+        if place is None or mass is None or mass > 0:
+            continue
+        if mass == 0 and nodes.name_of(link) in held:
+            continue  # a mere frame; Gazebo adds it to what it is fixed to
+        yield Remark(
+            message=f'link "{nodes.name_of(link)}" has the mass {mass:g}: '
+            "Gazebo drops such a link, and all that it carries",
+            origin=place.origin,
+            instead=f'value="{nodes.short(-mass) if mass < 0 else "0.1"}"',
+            place="attribute",
+            mark="value",
+            hint="" if mass < 0 else "Write the mass that it has, in kg.",
+        )
+
+
+@rule("inertia-missing", "warning", "a link that moves has no <inertial>: Gazebo drops it")
+def inertia_missing(subject: Subject) -> Iterator[Remark]:
+    if not subject.is_urdf:
+        return
+    for robot in subject.robots:
+        for root, group in robot.rigid_groups.items():
+            if root == "world" or root in robot.mended or robot.description.static:
+                continue
+            if any(_stated(robot.links[name]) for name in group):
+                continue
+            holder = robot.inbound.get(root)
+            if holder is not None and holder.type == "fixed":
+                continue  # it is fixed to the world
+            shaped = next((name for name in group if robot.solids(name)), None)
+            link = robot.links[shaped or root]
+            what = (
+                f'link "{root}" moves on the joint "{holder.name}"'
+                if holder is not None
+                else f'the root link "{root}", with all that is fixed to it,'
+            )
+            consequence = (
+                "drops it, its joint and all that it carries"
+                if holder is not None
+                else "does not load such a robot"
+            )
+            yield Remark(
+                message=f"{what} {'but ' if holder else ''}has no <inertial>: Gazebo {consequence}",
+                origin=link.origin,
+                instead=_inertial_text(_shape_inertia(robot, link), 1.0),
+                place="inside",
+                mark=f'name="{link.name}"',
+                hint="This is for 1 kg: scale mass and inertia together.",
+            )
+
+
+@rule("inertia-unlike-geometry", "warning", "an inertia far from that of the link's geometry")
+def inertia_unlike_geometry(subject: Subject) -> Iterator[Remark]:
+    for robot, link, inertial in _judged(subject):
+        solids = [solid.vertices for solid in robot.solids(link.name)]
+        box = bounds(robot.rigid_cloud(link.name))
+        if box is None or not robot.whole(link.name):
+            continue
+        centre = np.array(inertial.pose.position)
+        corner = np.maximum(np.abs(box[0] - centre), np.abs(box[1] - centre))
+        stated = (inertial.ixx + inertial.iyy + inertial.izz) / 2
+        largest = inertial.mass * float(corner @ corner)
+        like = _shape_inertia(robot, link)
+        advice = _inertia_text(like, inertial.mass, sdf=not subject.is_urdf)
+        if stated > TOO_LARGE * largest:
+            yield Remark(
+                severity=None if _matters(robot, link, stated) else "info",
+                message=f'link "{link.name}" resists turning {stated / largest:.3g} times as much '
+                f"as {inertial.mass:g} kg could that all lay in the farthest corner of its "
+                f"geometry ({_gyration(stated, inertial.mass)} away on average)",
+                origin=_inertia_origin(robot, inertial),
+                instead=advice,
+                place="element" if subject.is_urdf else "",
+            )
+            continue
+        if not solids or like is None:
+            continue
+        solid = (like.ixx + like.iyy + like.izz) / 2 * inertial.mass / like.mass
+        if 0 < stated < solid / TOO_SMALL and stated > 0:
+            yield Remark(
+                message=f'link "{link.name}" resists turning {solid / stated:.3g} times less than '
+                f"a solid of its geometry and its {inertial.mass:g} kg: such a mass would lie "
+                f"within {_gyration(stated, inertial.mass)} of its centre",
+                origin=_inertia_origin(robot, inertial),
+                instead=advice,
+                place="element" if subject.is_urdf else "",
+            )
+
+
+@rule("mass-outside", "warning", "a centre of mass outside the link's geometry")
+def mass_outside(subject: Subject) -> Iterator[Remark]:
+    for robot, link, inertial in _judged(subject):
+        box = bounds(robot.rigid_cloud(link.name))
+        if box is None or not robot.whole(link.name):
+            continue
+        if inertial.mass < 0.01 * robot.description.mass:
+            continue
+        centre = np.array(inertial.pose.position)
+        beyond = np.maximum(np.maximum(box[0] - centre, centre - box[1]), 0.0)
+        away, across = float(np.linalg.norm(beyond)), float(np.linalg.norm(box[1] - box[0]))
+        if away > max(OUTSIDE * across, 0.005):
+            middle = (box[0] + box[1]) / 2
+            xyz = " ".join(nodes.short(round(float(value), 6)) for value in middle)
+            node = robot.node_at(inertial.origin)
+            origin = nodes.child(node, "origin")
+            yield Remark(
+                message=f'the centre of mass of link "{link.name}" lies {away:.3g} m outside its '
+                f"geometry, which is {across:.3g} m across",
+                origin=origin.origin if origin is not None else inertial.origin,
+                instead=f'<origin xyz="{xyz}"/>'
+                if subject.is_urdf
+                else f"<pose>{xyz} 0 0 0</pose>",
+                place="" if not subject.is_urdf else "element" if origin is not None else "inside",
+                hint="That is the middle of its geometry.",
+                mark="xyz",
+            )
+
+
+@rule("mass-grams", "warning", "a link denser than any metal: grams for kilograms?")
+def mass_grams(subject: Subject) -> Iterator[Remark]:
+    for robot, link, inertial in _judged(subject):
+        box = bounds([solid.vertices for solid in robot.solids(link.name)])
+        if box is None or inertial.mass < 1.0:
+            continue
+        density = inertial.mass / max(float(np.prod(box[1] - box[0])), 1e-18)
+        if density < DENSEST:
+            continue
+        node = nodes.child(robot.node_at(inertial.origin), "mass")
+        yield Remark(
+            message=f'link "{link.name}" weighs {inertial.mass:g} kg in a box of '
+            f"{' x '.join(f'{1000 * value:.3g}' for value in box[1] - box[0])} mm: "
+            f"{density / 1000:.3g} kg to the litre, and no metal has more than 22.6",
+            origin=node.origin if node is not None else inertial.origin,
+            instead=_mass_text(inertial.mass / 1000, sdf=node is None),
+            place="attribute" if node is not None else "",
+            mark="value",
+            hint="Is it stated in grams?",
+        )
+
+
+@rule("mass-absurd", "warning", "a robot of more than 100 t")
+def mass_absurd(subject: Subject) -> Iterator[Remark]:
+    for robot, link, inertial in _judged(subject):
+        if inertial.mass > 100_000:
+            node = nodes.child(robot.node_at(inertial.origin), "mass")
+            yield Remark(
+                message=f'link "{link.name}" weighs {inertial.mass:g} kg',
+                origin=node.origin if node is not None else inertial.origin,
+                instead=_mass_text(inertial.mass / 1000, sdf=node is None),
+                place="attribute" if node is not None else "",
+                hint="Is it stated in grams?",
+                mark="value",
+            )
+
+
+def moments_of(inertial: Node) -> Vec3 | None:
+    """The principal moments that an ``<inertial>`` states; None where a number is none."""
+    tensor = nodes.child(inertial, "inertia")
+    values = {
+        key: nodes.number("0" if tensor is None else tensor.attributes.get(key, "0"))
+        for key in _KEYS
+    }
+    found = {key: value for key, value in values.items() if value is not None}
+    if len(found) < len(_KEYS):
+        return None
+    return principal_moments(
+        (found["ixx"], found["iyy"], found["izz"]), (found["ixy"], found["ixz"], found["iyz"])
+    )
+
+
+def _inertials(subject: Subject) -> Iterator[tuple[Node, Node]]:
+    if not subject.is_urdf:
+        return
+    for link in nodes.children(subject.root, "link"):
+        inertial = nodes.child(link, "inertial")
+        if inertial is not None:
+            yield link, inertial
+
+
+def _judged(subject: Subject) -> Iterator[tuple[Robot, Link, Inertial]]:
+    """Links whose mass their author stated, and that can move."""
+    for robot in subject.robots:
+        if robot.description.static:
+            continue
+        for link in robot.description.links:
+            inertial = link.inertial
+            if inertial is None or link.name in robot.mended:
+                continue
+            if _stated(link):
+                yield robot, link, inertial
+
+
+def _stated(link: Link) -> bool:
+    """Whether its mass is its author's: SDF's 1 kg and an estimate stand for one not stated."""
+    return link.inertial is not None and link.inertial.origin is not link.origin
+
+
+def _held(subject: Subject) -> set[str]:
+    """The links that are fixed to another, which then has the inertia of both."""
+    joints, names = nodes.children(subject.root, "joint"), link_names(subject)
+    holders = inbound(joints, names)
+    found = {name for name, joint in holders.items() if nodes.text_of(joint, "type") == "fixed"}
+    return found | {ends(holders[name])[0] for name in found}
+
+
+def _shape_inertia(robot: Robot, link: Link) -> Inertial | None:
+    """That of a solid of the link's collisions, or else visuals, about their common centre."""
+    for parts in (link.collisions, link.visuals):
+        found = _solid(parts, link.origin)
+        if found is not None:
+            return found
+    box = bounds(robot.rigid_cloud(link.name))
+    return None if box is None else _box_inertia(box, link.origin)
+
+
+def _sketch(subject: Subject, link: str) -> Inertial | None:
+    for robot in subject.robots:
+        if link in robot.links:
+            return _shape_inertia(robot, robot.links[link])
+    return None
+
+
+def _solid(parts: tuple[Collision, ...] | tuple[Visual, ...], origin: Origin) -> Inertial | None:
+    try:
+        found = inertial_of([as_collision(part) for part in parts], [1.0] * len(parts), origin)
+    except Exception:  # noqa: BLE001 - a mesh that cannot be read is another rule's finding
+        return None
+    if found is None:
+        return None
+    diagonal, products = (found.ixx, found.iyy, found.izz), (found.ixy, found.ixz, found.iyz)
+    # A surface that is not closed has a volume of any size.
+    return None if impossibility(principal_moments(diagonal, products)) else found
+
+
+def _box_inertia(box: tuple[np.ndarray, np.ndarray], origin: Origin) -> Inertial | None:
+    low, high = box
+    size = np.maximum(high - low, 1e-6)
+    middle = (low + high) / 2
+    part = Collision(
+        name="box",
+        pose=Pose((float(middle[0]), float(middle[1]), float(middle[2]))),
+        shape=Box(size=(float(size[0]), float(size[1]), float(size[2]))),
+        origin=origin,
+    )
+    return inertial_of([part], [1.0], origin)
+
+
+def _mass_text(mass: float, *, sdf: bool) -> str:
+    return f"<mass>{nodes.short(mass)}</mass>" if sdf else f'value="{nodes.short(mass)}"'
+
+
+def _inertia_text(like: Inertial | None, mass: float, *, sdf: bool = False) -> str:
+    if like is None:
+        # A ball of water, for want of any shape.
+        moment = 0.4 * mass * (3 * mass / 4000 / math.pi) ** (2 / 3)
+        values = dict.fromkeys(("ixx", "iyy", "izz"), moment)
+    else:
+        values = {key: getattr(like, key) * mass / like.mass for key in _KEYS}
+    largest = max(values["ixx"], values["iyy"], values["izz"])
+    shown = {
+        key: nodes.short(value) if abs(value) > 1e-3 * largest else "0"
+        for key in _KEYS
+        for value in (values.get(key, 0.0),)
+    }
+    if sdf:
+        return nodes.written("inertia", {}, "".join(f"<{k}>{v}</{k}>" for k, v in shown.items()))
+    return nodes.written("inertia", shown)
+
+
+def _inertial_text(like: Inertial | None, mass: float) -> str:
+    centre = like.pose.position if like is not None else (0.0, 0.0, 0.0)
+    xyz = " ".join(nodes.short(round(value, 6) + 0.0) for value in centre)
+    return (
+        f'<inertial><origin xyz="{xyz}"/><mass value="{mass:g}"/>'
+        f"{_inertia_text(like, mass)}</inertial>"
+    )
+
+
+def _inertia_origin(robot: Robot, inertial: Inertial) -> Origin:
+    tensor = nodes.child(robot.node_at(inertial.origin), "inertia")
+    return tensor.origin if tensor is not None else inertial.origin
+
+
+def _matters(robot: Robot, link: Link, moment: float) -> bool:
+    """Whether an inertia is more than a twentieth of what the whole rigid part has without it."""
+    group = robot.rigid_groups[robot.rigid_root(link.name)]
+    others = [
+        (other.pose @ other.inertial.pose, other.inertial)
+        for name in group
+        if (other := robot.links[name]) is not link and other.inertial is not None
+    ]
+    if not others:
+        return True
+    mass = sum(inertial.mass for _, inertial in others)
+    places = np.array([pose.position for pose, _ in others])
+    weights = np.array([inertial.mass for _, inertial in others])
+    centre = weights @ places / mass
+    own = sum((inertial.ixx + inertial.iyy + inertial.izz) / 2 for _, inertial in others)
+    return moment > 0.05 * (own + float(weights @ ((places - centre) ** 2).sum(axis=1)))
+
+
+def _gyration(moment: float, mass: float) -> str:
+    return f"{math.sqrt(moment / mass):.3g} m"
+
+
+RULES = (
+    inertia_missing,
+    inertia_impossible,
+    inertia_unlike_geometry,
+    mass_not_positive,
+    mass_outside,
+    mass_grams,
+    mass_absurd,
+)

@@ -1,0 +1,199 @@
+"""Limits and axes of joints."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+from cartwheel.description.check import nodes
+from cartwheel.description.check.finding import Remark, rule
+from cartwheel.description.check.subject import Subject
+from cartwheel.description.node import Node
+
+_LIMITED = ("revolute", "prismatic")
+_DEGREES = frozenset(
+    {30.0, 45.0, 60.0, 90.0, 120.0, 135.0, 150.0, 160.0, 170.0, 180.0, 270.0, 360.0}
+)
+
+
+@rule("limit-missing", "error", "a revolute or prismatic joint has no <limit>: ROS refuses it")
+def limit_missing(subject: Subject) -> Iterator[Remark]:
+    for joint, kind in _joints(subject):
+        if kind in _LIMITED and nodes.child(joint, "limit") is None:
+            span = "1.5708" if kind == "revolute" else "0.1"
+            yield Remark(
+                message=f'the {kind} joint "{nodes.name_of(joint)}" has no <limit>: '
+                "ROS refuses the whole robot",
+                origin=joint.origin,
+                instead=f'<limit lower="-{span}" upper="{span}" effort="10" velocity="3"/>',
+                place="inside",
+                hint='Write its own range, or, where it turns without end, type="continuous".'
+                if kind == "revolute"
+                else "Write its own range.",
+            )
+
+
+@rule("limit-reversed", "error", "a joint's lower limit is above its upper one")
+def limit_reversed(subject: Subject) -> Iterator[Remark]:
+    for joint, limit, lower, upper in _ranges(subject):
+        if lower > upper:
+            yield Remark(
+                message=f'the lower limit {lower:g} of the joint "{nodes.name_of(joint)}" '
+                f"is above the upper one, {upper:g}",
+                origin=limit.origin,
+                instead=nodes.changed(limit, lower=nodes.short(upper), upper=nodes.short(lower)),
+                place="element",
+                mark="lower",
+            )
+
+
+@rule("limit-zero", "warning", "a joint's range is zero: it cannot move")
+def limit_zero(subject: Subject) -> Iterator[Remark]:
+    for joint, limit, lower, upper in _ranges(subject):
+        if lower == upper:
+            stated = "lower" in limit.attributes or "upper" in limit.attributes
+            yield Remark(
+                message=f'the joint "{nodes.name_of(joint)}" cannot move: both limits are '
+                f"{lower:g}" + ("" if stated else ", which is what counts where none is stated"),
+                origin=limit.origin,
+                instead='type="continuous"' if not stated and _turns(joint) else "",
+                hint='Where it shall not move, write type="fixed" in its <joint>.'
+                if stated
+                else "State lower and upper.",
+                mark="lower" if stated else "",
+            )
+
+
+@rule("effort-zero", "warning", "a driven joint's effort or velocity limit is zero")
+def effort_zero(subject: Subject) -> Iterator[Remark]:
+    driven = {name for robot in subject.robots for name in robot.driven}
+    for joint, kind in _joints(subject):
+        limit = nodes.child(joint, "limit")
+        if limit is None or kind in ("fixed", "floating"):
+            continue
+        name = nodes.name_of(joint)
+        if name not in driven:
+            continue
+        for what, unit, usual in (("effort", "N m", "10"), ("velocity", "rad/s", "10")):
+            if nodes.number(limit.attributes.get(what)) == 0.0:
+                yield Remark(
+                    message=f'the joint "{name}" is driven, but its {what} limit is 0 {unit}: '
+                    + ("no force can move it" if what == "effort" else "it may not turn"),
+                    origin=limit.origin,
+                    instead=f'{what}="{usual}"',
+                    place="attribute",
+                    mark=what,
+                )
+
+
+@rule("limit-incomplete", "error", "a <limit> lacks effort or velocity: ROS refuses the robot")
+def limit_incomplete(subject: Subject) -> Iterator[Remark]:
+    for joint, _ in _joints(subject):
+        limit = nodes.child(joint, "limit")
+        if limit is None:
+            continue
+        for what in ("effort", "velocity"):
+            if what not in limit.attributes:
+                yield Remark(
+                    message=f'the <limit> of the joint "{nodes.name_of(joint)}" has no {what}: '
+                    "ROS refuses the whole robot",
+                    origin=limit.origin,
+                    instead=f'{what}="10"',
+                    place="attribute",
+                )
+
+
+@rule("axis-zero", "error", "a joint's axis has length 0")
+def axis_zero(subject: Subject) -> Iterator[Remark]:
+    for joint, axis, xyz in _axes(subject):
+        if math.hypot(*xyz) < 1e-6:
+            yield Remark(
+                message=f'the axis of the joint "{nodes.name_of(joint)}" has length 0',
+                origin=axis.origin,
+                instead='xyz="0 0 1"',
+                place="attribute",
+                mark="xyz",
+            )
+
+
+@rule("axis-not-unit", "warning", "a joint's axis is no unit vector")
+def axis_not_unit(subject: Subject) -> Iterator[Remark]:
+    for joint, axis, xyz in _axes(subject):
+        length = math.hypot(*xyz)
+        # Three digits, as in 0.577, are as good as a unit vector.
+        if length >= 1e-6 and abs(length - 1) > 0.01:
+            unit = " ".join(nodes.short(value / length) for value in xyz)
+            yield Remark(
+                message=f'the axis of the joint "{nodes.name_of(joint)}" has length {length:.3g}: '
+                "URDF asks for length 1, and not every reader scales it",
+                origin=axis.origin,
+                instead=f'xyz="{unit}"',
+                place="attribute",
+                mark="xyz",
+            )
+
+
+@rule("limit-degrees", "warning", "a joint's limit seems to be in degrees")
+def limit_degrees(subject: Subject) -> Iterator[Remark]:
+    for joint, kind in _joints(subject):
+        limit = nodes.child(joint, "limit")
+        if limit is None or kind != "revolute":
+            continue
+        values = {what: nodes.number(limit.attributes.get(what)) for what in ("lower", "upper")}
+        stated = [abs(value) for value in values.values() if value]
+        if stated and all(value in _DEGREES for value in stated):
+            radians = {
+                what: nodes.short(math.radians(value)) for what, value in values.items() if value
+            }
+            yield Remark(
+                message=f'the limits of the joint "{nodes.name_of(joint)}" are radians, '
+                f"and {max(stated):g} rad are {max(stated) / 2 / math.pi:.3g} turns: "
+                "degrees were meant?",
+                origin=limit.origin,
+                instead=nodes.changed(limit, **radians),
+                place="element",
+                mark="lower" if values["lower"] else "upper",
+            )
+
+
+def _turns(joint: Node) -> bool:
+    return joint.attributes.get("type") == "revolute"
+
+
+def _joints(subject: Subject) -> Iterator[tuple[Node, str]]:
+    if subject.is_urdf:
+        for node in nodes.children(subject.root, "joint"):
+            yield node, nodes.text_of(node, "type")
+
+
+def _ranges(subject: Subject) -> Iterator[tuple[Node, Node, float, float]]:
+    for joint, kind in _joints(subject):
+        limit = nodes.child(joint, "limit")
+        if limit is None or kind not in _LIMITED:
+            continue
+        lower = nodes.number(limit.attributes.get("lower", "0"))
+        upper = nodes.number(limit.attributes.get("upper", "0"))
+        if lower is not None and upper is not None:
+            yield joint, limit, lower, upper
+
+
+def _axes(subject: Subject) -> Iterator[tuple[Node, Node, tuple[float, ...]]]:
+    for joint, kind in _joints(subject):
+        axis = nodes.child(joint, "axis")
+        if axis is None or kind in ("fixed", "floating"):
+            continue
+        xyz = nodes.numbers(axis.attributes.get("xyz"), 3)
+        if xyz is not None:
+            yield joint, axis, xyz
+
+
+RULES = (
+    limit_missing,
+    limit_incomplete,
+    limit_reversed,
+    limit_zero,
+    limit_degrees,
+    effort_zero,
+    axis_zero,
+    axis_not_unit,
+)

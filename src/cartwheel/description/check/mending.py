@@ -1,0 +1,128 @@
+"""Takes out of a URDF's tree what keeps it from being read, so that the rest is checked too.
+
+Each thing that is mended here is a finding of a rule: a compiler goes on after an error.
+"""
+
+from __future__ import annotations
+
+import math
+
+from cartwheel.description.check import nodes
+from cartwheel.description.check.inertia import moments_of
+from cartwheel.description.check.structure import ends, inbound, main_root, mimic_chain
+from cartwheel.description.inertia import impossibility
+from cartwheel.description.node import Node
+
+_PLAIN = {"ixx": "1", "iyy": "1", "izz": "1"}
+
+
+def mend(root: Node) -> set[str]:
+    """Mends a tree in place; returns the links whose mass is not the author's any more."""
+    _drop_second(root, "link")
+    _drop_second(root, "joint")
+    links = {nodes.name_of(node) for node in nodes.children(root, "link")}
+    _mend_joints(root, links)
+    _mend_tree(root, links)
+    joints = {nodes.name_of(node): node for node in nodes.children(root, "joint")}
+    for name, joint in joints.items():
+        mimic = nodes.child(joint, "mimic")
+        if mimic is None:
+            continue
+        leader = nodes.text_of(mimic, "joint")
+        if leader not in joints or name in mimic_chain(joints, leader):
+            joint.drop(mimic)
+    for node in nodes.children(root, "gazebo"):
+        reference = nodes.text_of(node, "reference")
+        if reference and reference not in links and reference not in joints:
+            root.drop(node)
+    return {name for node in nodes.children(root, "link") if (name := _mend_inertia(node))}
+
+
+def _drop_second(root: Node, tag: str) -> None:
+    seen: set[str] = set()
+    for node in nodes.children(root, tag):
+        name = nodes.name_of(node)
+        if name in seen or not name:
+            root.drop(node)
+        seen.add(name)
+
+
+def _mend_joints(root: Node, links: set[str]) -> None:
+    for joint in nodes.children(root, "joint"):
+        parent, child = ends(joint)
+        if child not in links or child in {parent, "world"}:
+            root.drop(joint)
+            continue
+        if parent not in links:
+            if parent != "world":
+                root.drop(joint)
+                continue
+            root.children.insert(0, Node("link", {"name": "world"}, joint.origin))
+            links.add("world")
+        axis, limit = nodes.child(joint, "axis"), nodes.child(joint, "limit")
+        if axis is not None:
+            xyz = nodes.numbers(axis.attributes.get("xyz"), 3)
+            if xyz is not None and math.hypot(*xyz) < 1e-6:
+                joint.drop(axis)
+        if limit is not None:
+            lower = nodes.number(limit.attributes.get("lower", "0"))
+            upper = nodes.number(limit.attributes.get("upper", "0"))
+            if lower is not None and upper is not None and lower > upper:
+                joint.drop(limit)
+
+
+def _mend_tree(root: Node, links: set[str]) -> None:
+    seen: set[str] = set()
+    for joint in nodes.children(root, "joint"):
+        _, child = ends(joint)
+        if child in seen:
+            root.drop(joint)
+        seen.add(child)
+    holders = inbound(nodes.children(root, "joint"), links)
+    for start in list(holders):
+        path = [start]
+        while path[-1] in holders:
+            parent = ends(holders[path[-1]])[0]
+            if parent in path:
+                root.drop(holders.pop(parent))
+                break
+            path.append(parent)
+    free = [n for n in nodes.children(root, "link") if nodes.name_of(n) not in holders]
+    main = main_root(free, nodes.children(root, "joint"))
+    for node in free:
+        if main is None or node is main:
+            continue
+        parent, child = nodes.name_of(main), nodes.name_of(node)
+        if child == "world":
+            parent, child = child, parent
+        root.children.append(
+            Node(
+                "joint",
+                {"name": f"{child}__joined", "type": "fixed"},
+                node.origin,
+                [
+                    Node("parent", {"link": parent}, node.origin),
+                    Node("child", {"link": child}, node.origin),
+                ],
+            )
+        )
+
+
+def _mend_inertia(link: Node) -> str:
+    """Its name where something had to be mended."""
+    inertial = nodes.child(link, "inertial")
+    if inertial is None:
+        return ""
+    mass = nodes.child(inertial, "mass")
+    weight = nodes.number(nodes.text_of(mass, "value"))
+    moments = moments_of(inertial)
+    wrong = moments is not None and impossibility(moments) is not None
+    if mass is None or weight is None or moments is None or (weight > 0 and not wrong):
+        return ""
+    tensor = nodes.child(inertial, "inertia")
+    if tensor is not None:
+        inertial.drop(tensor)
+    inertial.drop(mass)
+    inertial.children.append(Node("mass", {"value": "1"}, mass.origin))
+    inertial.children.append(Node("inertia", _PLAIN, inertial.origin))
+    return nodes.name_of(link)

@@ -1,0 +1,113 @@
+"""Plugins and their parameters, against what the plugins themselves read."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from cartwheel.description.check import frames, nodes
+from cartwheel.description.check.finding import Remark, rule
+from cartwheel.description.check.subject import Subject
+from cartwheel.description.model import Element, PluginTag
+from cartwheel.errors import Diagnostic, likely
+
+_GAZEBO = frozenset({
+    "diff_drive", "skid_steer_drive", "tricycle_drive", "planar_move", "ackermann_drive",
+    "camera", "multicamera", "triggered_camera", "triggered_multicamera", "depth_camera",
+    "openni_kinect", "prosilica", "laser", "gpu_laser", "block_laser", "ray_sensor", "range",
+    "imu", "imu_sensor", "gps_sensor", "p3d", "bumper", "f3d", "ft_sensor", "force", "control",
+    "joint_state_publisher", "joint_pose_trajectory", "hand_of_god", "vacuum_gripper",
+    "elevator", "harness", "wheel_slip", "projector", "video", "template",
+})  # fmt: skip
+"""What ``libgazebo_ros_<name>.so`` can be; some resemble each other."""
+
+
+@rule("plugin-unknown", "info", "a plugin that is not simulated here, or a misspelt one")
+def plugin_unknown(subject: Subject) -> Iterator[Remark]:
+    knowledge = subject.plugins
+    if knowledge is None:
+        return
+    for robot in subject.robots:
+        for tag, sensor in robot.plugins():
+            if knowledge.judge(tag, sensor) is not None:
+                continue
+            # Only a spelling error has a likely meant name: other plugins share most of theirs.
+            sentence = likely(tag.filename, knowledge.filenames, cutoff=0.92)
+            near = sentence.partition('"')[2].rpartition('"')[0]
+            if frames.short_name(tag) in _GAZEBO:
+                near = ""
+            yield Remark(
+                severity="warning" if near else "info",
+                message=f'the plugin "{tag.filename}" is not known: what it does is missing'
+                if near
+                else f'the plugin "{tag.filename}" is not simulated by Cartwheel',
+                origin=tag.origin,
+                instead=f'filename="{near}"' if near else "",
+                place="attribute" if near else "",
+                mark=tag.filename,
+            )
+
+
+@rule("plugin-parameter", "warning", "a plugin's parameter that it does not know, or cannot read")
+def plugin_parameter(subject: Subject) -> Iterator[Remark]:
+    if subject.plugins is None:
+        return
+    for robot in subject.robots:
+        for tag, sensor in robot.plugins():
+            for diagnostic in subject.plugins.judge(tag, sensor) or ():
+                yield _remark(tag, diagnostic)
+
+
+@rule("plugin-obsolete", "warning", "a parameter that Gazebo 11's plugin does not read")
+def plugin_obsolete(subject: Subject) -> Iterator[Remark]:
+    for robot in subject.robots:
+        for drive in robot.drives:
+            element = drive.tag.element
+            torque, legacy = element.find("torque"), element.find("legacyMode")
+            known = any(element.find(name) for name in ("wheelTorque", "max_wheel_torque"))
+            if torque is not None and not known:
+                yield Remark(
+                    message="Gazebo 11 does not read <torque>: its wheels get 5 N m, not "
+                    f"{torque.text.strip()}",
+                    origin=torque.origin,
+                    instead=nodes.written("wheelTorque", {}, torque.text.strip()),
+                    place="element",
+                )
+            if legacy is not None and legacy.text.strip().lower() in ("true", "1"):
+                yield Remark(
+                    message="Gazebo 11 does not read <legacyMode>, which older ones swapped the "
+                    "wheels for: there the robot turns the other way",
+                    origin=legacy.origin,
+                    instead="<legacyMode>false</legacyMode>",
+                    place="element",
+                    hint="Swap the names of the two joints.",
+                )
+
+
+def _remark(tag: PluginTag, diagnostic: Diagnostic) -> Remark:
+    message, _, meant = diagnostic.message.partition(' Did you mean "')
+    near = meant.partition('"')[0]
+    if near and tag.element.find(near) is not None:
+        near = ""  # it is written already, so it cannot be what was meant here
+    element = next((e for e in _all(tag.element) if e.origin is diagnostic.origin), None)
+    instead, place = f"<{near}>" if near else "", False
+    if near and element is not None and not element.children:
+        instead = nodes.written(near, dict(element.attributes), element.text.strip())
+        place = True
+    return Remark(
+        # Gazebo's own plugin may know a tag that ours has no use for; a misspelt one is a fault.
+        severity=diagnostic.severity if near or diagnostic.severity == "error" else "info",
+        message=message.strip(),
+        origin=diagnostic.origin,
+        instead=instead,
+        place="element" if place else "",
+        mark=element.tag if element is not None and element is not tag.element else "",
+    )
+
+
+def _all(element: Element) -> Iterator[Element]:
+    yield element
+    for child in element.children:
+        yield from _all(child)
+
+
+RULES = (plugin_unknown, plugin_parameter, plugin_obsolete)

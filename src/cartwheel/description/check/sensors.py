@@ -1,0 +1,179 @@
+"""Sensors: what they see of the robot that carries them, and how often they look."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from cartwheel.description.check import nodes
+from cartwheel.description.check.finding import Remark, rule
+from cartwheel.description.check.solids import Floats, Solid, first_hits, moved
+from cartwheel.description.check.subject import Robot, Subject
+from cartwheel.description.model import CameraIntrinsics, Element, Sensor
+from cartwheel.geometry import Pose, matrix_from_quat
+
+CAMERAS = ("camera", "depth", "depth_camera", "rgbd_camera", "multicamera", "wideanglecamera")
+LASERS = ("ray", "gpu_ray", "lidar", "gpu_lidar")
+BLOCKED = 0.6
+"""Of the rays: a robot may see its own bumper or mast, but not nothing else."""
+_GRID = 9
+
+
+@rule("view-blocked", "warning", "a camera or lidar looks into the robot's own housing")
+def view_blocked(subject: Subject) -> Iterator[Remark]:
+    for robot in subject.robots:
+        for link, sensor in robot.sensors():
+            for view in _views(sensor):
+                what = view.kind
+                share, culprit, distance = _blocked(robot, link.name, view)
+                if culprit is None or share < BLOCKED:
+                    continue
+                part = "collision" if what == "lidar" else "visual"
+                yield Remark(
+                    message=f'{share:.0%} of what the {what} "{sensor.name}" looks at is the '
+                    f'{part} of link "{culprit}", {distance:.3g} m before it: it sees its own '
+                    "housing",
+                    origin=sensor.origin,
+                    hint=f"Move the sensor out of it, by <pose> or the link's joint, or make the "
+                    f"near distance larger than {distance:.3g} m."
+                    if what != "lidar"
+                    else f"Move the sensor out of it, or make <min> larger than {distance:.3g} m.",
+                    mark=f'name="{sensor.name}"',
+                )
+
+
+@rule("rate-above-physics", "warning", "an update rate higher than the physics makes steps")
+def rate_above_physics(subject: Subject) -> Iterator[Remark]:
+    highest = 1.0 / subject.step
+    for robot in subject.robots:
+        for element in _rates(robot):
+            rate = nodes.number(element.text)
+            if rate is not None and rate > highest * 1.001:
+                yield Remark(
+                    message=f"{rate:g} Hz are more than the {highest:g} steps that the physics "
+                    "makes in a second",
+                    origin=element.origin,
+                    instead=nodes.written(element.tag, {}, nodes.short(highest)),
+                    place="element",
+                    mark=element.text.strip(),
+                )
+
+
+def _rates(robot: Robot) -> Iterator[Element]:
+    for tag, _ in robot.plugins():
+        for name in ("updateRate", "update_rate"):
+            yield from tag.element.find_all(name)
+    for _, sensor in robot.sensors():
+        yield from sensor.element.find_all("update_rate")
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class _View:
+    kind: Literal["camera", "lidar"]
+    pose: Pose
+    """In the link."""
+    rays: Floats
+    """(n, 3), of unit length, in that pose."""
+    near: float
+    far: float
+    """m."""
+
+
+def _views(sensor: Sensor) -> Iterator[_View]:
+    if sensor.type in CAMERAS:
+        for camera in sensor.cameras:
+            yield _View(
+                kind="camera",
+                pose=sensor.pose @ camera.pose,
+                rays=_camera_rays(camera),
+                near=camera.near,
+                far=camera.far,
+            )
+    elif sensor.type in LASERS:
+        scan = sensor.element.find("ray") or sensor.element.find("lidar")
+        if scan is not None:
+            yield _View(
+                kind="lidar",
+                pose=sensor.pose,
+                rays=_scan_rays(scan),
+                near=_of(scan, "range/min", 0.0),
+                far=_of(scan, "range/max", 10.0),
+            )
+
+
+def _camera_rays(camera: CameraIntrinsics) -> Floats:
+    half = math.tan(min(camera.horizontal_fov, 3.0) / 2)
+    across = np.linspace(-half, half, _GRID)
+    up = across * camera.height / camera.width
+    y, z = np.meshgrid(across, up)
+    rays = np.stack([np.ones(y.size), y.ravel(), z.ravel()], axis=1)
+    return np.asarray(rays / np.linalg.norm(rays, axis=1, keepdims=True), dtype=np.float64)
+
+
+def _scan_rays(scan: Element) -> Floats:
+    yaw = np.linspace(
+        _of(scan, "scan/horizontal/min_angle", 0.0), _of(scan, "scan/horizontal/max_angle", 0.0), 61
+    )
+    low = _of(scan, "scan/vertical/min_angle", 0.0)
+    high = _of(scan, "scan/vertical/max_angle", 0.0)
+    pitch = np.linspace(low, high, 3 if high > low else 1)
+    a, b = np.meshgrid(yaw, pitch)
+    across, up = a.ravel(), b.ravel()
+    level = np.cos(up)
+    rays = np.stack([level * np.cos(across), level * np.sin(across), np.sin(up)], axis=1)
+    return np.asarray(rays, dtype=np.float64)
+
+
+def _of(element: Element, path: str, default: float) -> float:
+    found = element.find(path)
+    value = nodes.number(found.text) if found is not None else None
+    return default if value is None else value
+
+
+def _blocked(robot: Robot, link: str, view: _View) -> tuple[float, str | None, float]:
+    """The share of the rays that end at the robot itself, at which link mostly, and how far."""
+    frame = robot.links[link].pose @ view.pose
+    directions = np.asarray(view.rays @ matrix_from_quat(frame.orientation).T, dtype=np.float64)
+    origin = np.array(frame.position) + 0.0
+    # What is farther is the robot's deck or arm, which a sensor may well look down on.
+    reach = min(view.far, max(2 * view.near, 0.3, 0.3 * robot.size))
+    nearest = np.full(len(view.rays), np.inf)
+    hit_by = np.full(len(view.rays), -1)
+    solids = _obstacles(robot, view.kind)
+    for index, (name, solid) in enumerate(solids):
+        placed = moved(solid.vertices, robot.links[name].pose)
+        if _beyond(placed, origin, reach):
+            continue
+        world = Solid(part=solid.part, link=name, vertices=placed, faces=solid.faces)
+        # A surface nearer than the near plane is cut away; what lies behind it is seen.
+        # Drawn surfaces have one side; the rays of the physics end at either.
+        distances = first_hits(
+            origin, directions, world, beyond=view.near, front_only=view.kind == "camera"
+        )
+        closer = distances < nearest
+        nearest[closer], hit_by[closer] = distances[closer], index
+    seen = nearest < reach
+    if not seen.any():
+        return 0.0, None, 0.0
+    index = int(np.bincount(hit_by[seen]).argmax())
+    of_it = seen & (hit_by == index)
+    return float(seen.mean()), solids[index][0], float(np.median(nearest[of_it]))
+
+
+def _beyond(points: Floats, origin: Floats, reach: float) -> bool:
+    low, high = points.min(axis=0), points.max(axis=0)
+    away = np.maximum(np.maximum(low - origin, origin - high), 0.0)
+    return float(np.linalg.norm(away)) > reach
+
+
+def _obstacles(robot: Robot, what: str) -> list[tuple[str, Solid]]:
+    # A camera sees visuals, a ray of the physics collisions.
+    kind = robot.collisions if what == "lidar" else robot.visuals
+    return [(name, solid) for name, solids in kind.items() for solid in solids]
+
+
+RULES = (view_blocked, rate_above_physics)

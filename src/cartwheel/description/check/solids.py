@@ -1,0 +1,218 @@
+"""The geometry of a robot as triangles, for what a check measures on it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import combinations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cartwheel.description.meshes import MeshError, convex_hull_input, load_mesh
+from cartwheel.description.model import (
+    Box,
+    Capsule,
+    Collision,
+    Cone,
+    Cylinder,
+    Ellipsoid,
+    Mesh,
+    Shape,
+    Sphere,
+    Visual,
+)
+from cartwheel.geometry import Pose, matrix_from_quat
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Solid:
+    """A visual or collision as triangles in its link's frame."""
+
+    part: Visual | Collision
+    link: str
+    vertices: Floats
+    """(n, 3), m."""
+    faces: Ints
+    """(m, 3)."""
+
+    @cached_property
+    def extent(self) -> float:
+        """The longest edge of its box along the link's axes, m."""
+        return float(np.ptp(self.vertices, axis=0).max())
+
+    def placed(self, pose: Pose) -> Floats:
+        """The vertices in another frame, of which `pose` is the link's."""
+        return moved(self.vertices, pose)
+
+
+def moved(points: Floats, pose: Pose) -> Floats:
+    """Points (n, 3) of a frame in the outer one."""
+    R = matrix_from_quat(pose.orientation)
+    return np.asarray(points @ R.T + np.array(pose.position), dtype=np.float64)
+
+
+def solid_of(part: Visual | Collision, link: str) -> Solid | None:
+    """The part's triangles; None for planes and terrain, and for a mesh that cannot be read."""
+    found = _triangles(part.shape)
+    if found is None:
+        return None
+    vertices, faces = found
+    return Solid(part=part, link=link, vertices=moved(vertices, part.pose), faces=faces)
+
+
+def bounds(clouds: list[Floats]) -> tuple[Floats, Floats] | None:
+    """The lowest and the highest corner of the box around points; None where there are none."""
+    if not clouds:
+        return None
+    points = np.concatenate(clouds)
+    return points.min(axis=0), points.max(axis=0)
+
+
+def as_collision(part: Visual | Collision) -> Collision:
+    """A visual as if it were a collision."""
+    if isinstance(part, Collision):
+        return part
+    return Collision(name=part.name, pose=part.pose, shape=part.shape, origin=part.origin)
+
+
+def hull(solid: Solid) -> Solid:
+    """Its vertices without those that share a place, which is all that a convex test needs."""
+    return replace(solid, vertices=np.unique(np.round(solid.vertices, 9), axis=0))
+
+
+def _triangles(shape: Shape) -> tuple[Floats, Ints] | None:
+    # Imported here: it costs a tenth of a second.
+    import trimesh.creation
+
+    make = trimesh.creation
+    match shape:
+        case Mesh():
+            try:
+                vertices, faces = convex_hull_input(load_mesh(shape))
+            except MeshError:
+                return None
+            return vertices.astype(np.float64), faces.astype(np.int64)
+        case Box(size=size):
+            found = make.box(extents=size)
+        case Sphere(radius=r):
+            found = make.uv_sphere(radius=r, count=[24, 24])
+        case Ellipsoid(radii=radii):
+            found = make.uv_sphere(radius=1.0, count=[24, 24])
+            found.vertices *= np.array(radii)
+        case Cylinder(radius=r, length=h):
+            found = make.cylinder(radius=r, height=h, sections=32)
+        case Capsule(radius=r, length=h):
+            found = make.capsule(radius=r, height=h, count=[24, 24])
+            found.vertices -= found.bounds.mean(axis=0)
+        case Cone(radius=r, length=h):
+            found = make.cone(radius=r, height=h, sections=32)
+            found.vertices -= [0.0, 0.0, h / 2]
+        case _:
+            return None
+    return np.asarray(found.vertices, dtype=np.float64), np.asarray(found.faces, dtype=np.int64)
+
+
+def first_hits(
+    origin: Floats,
+    directions: Floats,
+    solid: Solid,
+    *,
+    beyond: float = 0.0,
+    front_only: bool = False,
+) -> Floats:
+    """How far each ray goes until it meets a triangle; inf where it meets none.
+
+    Args:
+        origin: (3,), in the solid's link.
+        directions: (n, 3), of unit length.
+        solid: What they may meet.
+        beyond: Where they begin, m from the origin.
+        front_only: Whether a triangle seen from behind is not there.
+
+    Returns:
+        (n,), m.
+    """
+    result = np.full(len(directions), np.inf)
+    corners = solid.vertices[solid.faces]
+    # Chunks keep the table of rays and triangles within some ten megabytes.
+    for start in range(0, len(corners), 4096):
+        a, b, c = (corners[start : start + 4096, i] for i in range(3))
+        ab, ac, to = b - a, c - a, origin - a
+        # Möller and Trumbore: the ray's parameter and the place in the triangle.
+        normal = np.cross(ab, ac)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            scale = -1.0 / (directions @ normal.T)
+            distance = np.einsum("ij,ij->i", to, normal) * scale
+            sideways = np.cross(to[None, :, :], directions[:, None, :])
+            u = np.einsum("nij,ij->ni", sideways, ac) * scale
+            v = -np.einsum("nij,ij->ni", sideways, ab) * scale
+            inside = (u >= -1e-9) & (v >= -1e-9) & (u + v <= 1 + 1e-9) & (distance > beyond)
+        if front_only:
+            inside &= scale > 0
+        distance = np.where(inside & np.isfinite(distance), distance, np.inf)
+        if distance.size:
+            result = np.minimum(result, distance.min(axis=1))
+    return result
+
+
+def overlap(a: Floats, b: Floats, shrink: float) -> bool:
+    """Whether the convex hulls of two point clouds still overlap when moved apart by `shrink`.
+
+    Looks for the point of the two clouds' difference that is nearest to the origin (Gilbert,
+    Johnson and Keerthi): a direction that separates them ends the search.
+
+    Args:
+        a: (n, 3), m.
+        b: (m, 3), m.
+        shrink: How far they must reach into each other to count, m.
+    """
+    simplex = (a[0] - b[0])[None, :]
+    point = simplex[0]
+    for _ in range(60):
+        length = float(np.linalg.norm(point))
+        if length < 1e-9:
+            # The origin lies within; any direction left is as good as the simplex's own.
+            return not _parted(a, b, simplex, shrink)
+        direction = point / length
+        nearest = a[np.argmin(a @ direction)] - b[np.argmax(b @ direction)]
+        if float(nearest @ direction) > -shrink:
+            return False
+        point, simplex = _nearest_point(np.vstack([simplex, nearest]))
+    return False
+
+
+def _parted(a: Floats, b: Floats, simplex: Floats, shrink: float) -> bool:
+    """Whether one of the obvious directions separates two clouds but for less than `shrink`."""
+    normals = [np.eye(3)]
+    for i, j, k in combinations(simplex, 3):
+        normals.append(np.cross(j - i, k - i)[None, :])
+    for normal in np.vstack(normals):
+        length = float(np.linalg.norm(normal))
+        if length < 1e-12:
+            continue
+        for direction in (normal / length, -normal / length):
+            if float((a @ direction).min() - (b @ direction).max()) > -shrink:
+                return True
+    return False
+
+
+def _nearest_point(simplex: Floats) -> tuple[Floats, Floats]:
+    """The point of up to five points' convex hull nearest to the origin, and who spans it."""
+    best, spanned = min(
+        ((p, p[None, :]) for p in simplex), key=lambda each: float(each[0] @ each[0])
+    )
+    for size in range(2, min(4, len(simplex)) + 1):
+        for chosen in combinations(range(len(simplex)), size):
+            corners = simplex[list(chosen)]
+            edges = (corners[1:] - corners[0]).T
+            weights = np.linalg.lstsq(edges, -corners[0], rcond=None)[0]
+            if weights.min() < -1e-12 or weights.sum() > 1 + 1e-12:
+                continue
+            point = corners[0] + edges @ weights
+            if float(point @ point) < float(best @ best):
+                best, spanned = point, corners
+    return best, spanned

@@ -1,0 +1,243 @@
+"""How the robot stands: friction, collisions of wheels and base, the ground, itself."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import combinations
+
+import numpy as np
+
+from cartwheel.description.check import nodes
+from cartwheel.description.check.drive import lowest, wheel_joints, wheel_links, wheel_radius
+from cartwheel.description.check.finding import Remark, rule
+from cartwheel.description.check.solids import Floats, hull, overlap
+from cartwheel.description.check.subject import Robot, Subject
+from cartwheel.description.model import Link, Mesh
+from cartwheel.description.node import Node
+
+SLIPPERY = 0.01
+PENETRATION = 0.002
+"""m that collisions must reach into each other to count."""
+
+
+@rule("wheel-frictionless", "warning", "a driven wheel without friction")
+def wheel_frictionless(subject: Subject) -> Iterator[Remark]:
+    for robot in subject.robots:
+        for joint in wheel_joints(robot):
+            link = robot.links[joint.child]
+            for collision in link.collisions[:1]:
+                mu = [m for m in (collision.surface.mu1, collision.surface.mu2) if m is not None]
+                if not mu or max(mu) >= SLIPPERY:
+                    continue
+                node = _surface_node(robot, link.name, "mu1")
+                yield Remark(
+                    message=f'the driven wheel "{link.name}" has the friction {max(mu):g}: '
+                    "it slips wherever it stands",
+                    origin=node.origin if node is not None else collision.origin,
+                    instead="<mu1>1.0</mu1>" if node is not None else "",
+                    place="element" if node is not None else "",
+                    hint="Write the same for <mu2>.",
+                )
+
+
+@rule("caster-friction", "info", "a caster that is a fixed ball, and yet grips")
+def caster_friction(subject: Subject) -> Iterator[Remark]:
+    for robot in subject.robots:
+        wheels = {name for joint in wheel_joints(robot) for name in wheel_links(robot, joint)}
+        if not wheels or not subject.is_urdf:
+            continue
+        for link in robot.description.links:
+            holder = robot.inbound.get(link.name)
+            if "caster" not in link.name.lower() or holder is None or holder.type != "fixed":
+                continue
+            if not _touches_ground(robot, link, wheels):
+                continue
+            collision = link.collisions[0]
+            mu = collision.surface.mu1
+            if mu is not None and mu <= 0.3:
+                continue
+            text = f'<gazebo reference="{link.name}"><mu1>0.0</mu1><mu2>0.0</mu2></gazebo>'
+            yield Remark(
+                message=f'the caster "{link.name}" does not roll, and its friction is '
+                f"{'1, the default' if mu is None else f'{mu:g}'}: it is dragged along and holds "
+                "back every turn",
+                origin=collision.origin,
+                instead=text,
+                hint="Add it to the robot, or change the values that are there.",
+            )
+
+
+@rule("wheel-no-collision", "error", "a driven wheel without a collision: it drives nothing")
+def wheel_no_collision(subject: Subject) -> Iterator[Remark]:
+    for robot in subject.robots:
+        for joint in wheel_joints(robot):
+            link = robot.links[joint.child]
+            if any(robot.links[name].collisions for name in wheel_links(robot, joint)):
+                continue
+            if not robot.whole(link.name):
+                continue
+            radius = wheel_radius(robot, joint) or 0.1
+            yield Remark(
+                message=f'the driven wheel "{link.name}" has no <collision>: '
+                "it falls through the ground, and drives nothing",
+                origin=link.origin,
+                instead='<collision><origin rpy="1.5708 0 0"/><geometry>'
+                f'<cylinder radius="{radius:.4g}" length="{radius / 2:.4g}"/>'
+                "</geometry></collision>"
+                if subject.is_urdf
+                else "",
+                place="inside" if subject.is_urdf else "",
+                mark=f'name="{link.name}"',
+            )
+
+
+@rule("base-no-collision", "warning", "a body that is seen, and that nothing can touch")
+def base_no_collision(subject: Subject) -> Iterator[Remark]:
+    for robot in subject.robots:
+        if robot.description.static:
+            continue
+        for root, group in robot.rigid_groups.items():
+            links = [robot.links[name] for name in group]
+            if root in robot.inbound or any(link.collisions for link in links):
+                continue
+            seen = next((link for link in links if link.visuals), None)
+            if seen is None or not robot.whole(root):
+                continue
+            node = next(
+                (n for n in nodes.children(robot.root, "link") if nodes.name_of(n) == seen.name),
+                None,
+            )
+            yield Remark(
+                message=f'the body "{seen.name}" has visuals but no <collision>: '
+                "it goes through all things",
+                origin=seen.origin,
+                instead=_collision_of(robot, seen) if node is not None else "",
+                place="inside" if node is not None else "",
+                mark=f'name="{seen.name}"',
+            )
+
+
+@rule("wheels-off-ground", "warning", "driven wheels higher than the body's lowest point")
+def wheels_off_ground(subject: Subject) -> Iterator[Remark]:
+    for robot in subject.robots:
+        joints = wheel_joints(robot)
+        parts = {name for joint in joints for name in wheel_links(robot, joint)}
+        heights = [lowest(robot, *wheel_links(robot, joint)) for joint in joints]
+        wheels = [height for height in heights if height is not None]
+        if not wheels or robot.description.static:
+            continue
+        bottom = min(wheels)
+        radius = wheel_radius(robot, joints[0]) or 0.1
+        for link in robot.description.links:
+            if link.name in parts or _rolls(robot, link):
+                continue
+            height = lowest(robot, link.name)
+            if height is None or bottom - height <= max(0.1 * radius, 0.005):
+                continue
+            yield Remark(
+                message=f'the collision of link "{link.name}" reaches '
+                f"{1000 * (bottom - height):.3g} mm lower than the driven wheels: "
+                "they turn in the air",
+                origin=link.collisions[0].origin,
+                hint=f'Raise it, or lower the joint of "{joints[0].child}".',
+            )
+
+
+@rule("collisions-overlap", "warning", "links that may collide overlap at zero position")
+def collisions_overlap(subject: Subject) -> Iterator[Remark]:
+    for robot in subject.robots:
+        able = [
+            link
+            for link in robot.description.links
+            if (robot.description.self_collide if link.self_collide is None else link.self_collide)
+            and link.collisions
+        ]
+        if len(able) > 60 or robot.description.static:
+            continue
+        clouds = {
+            link.name: [hull(solid).placed(link.pose) for solid in robot.collisions[link.name]]
+            for link in able
+        }
+        for a, b in combinations(able, 2):
+            if _joined(robot, a.name, b.name):
+                continue
+            if any(
+                _boxes_meet(one, other) and overlap(one, other, PENETRATION)
+                for one in clouds[a.name]
+                for other in clouds[b.name]
+            ):
+                meshes = any(isinstance(c.shape, Mesh) for c in (*a.collisions, *b.collisions))
+                yield Remark(
+                    # Gazebo takes a mesh as it is, not its hull.
+                    severity="info" if meshes else None,
+                    message=f'the collisions of "{a.name}" and "{b.name}" overlap while all joints '
+                    "are at 0, and the two may collide: they push each other apart",
+                    origin=b.collisions[0].origin,
+                    hint="Make one of them smaller, or leave out its <selfCollide>.",
+                )
+
+
+def _collision_of(robot: Robot, link: Link) -> str:
+    points = np.concatenate(
+        [solid.vertices for solid in robot.visuals[link.name]]
+        or [np.zeros((1, 3)), np.ones((1, 3)) * 0.1]
+    )
+    size, middle = np.ptp(points, axis=0), (points.max(axis=0) + points.min(axis=0)) / 2
+    return (
+        f'<collision><origin xyz="{_words(middle)}"/><geometry>'
+        f'<box size="{_words(np.maximum(size, 0.001))}"/></geometry></collision>'
+    )
+
+
+def _words(values: Floats) -> str:
+    return " ".join(nodes.short(round(float(value), 4) + 0.0) for value in values)
+
+
+def _surface_node(robot: Robot, link: str, tag: str) -> Node | None:
+    found = None
+    for node in nodes.children(robot.root, "gazebo"):
+        if nodes.text_of(node, "reference") == link:
+            found = nodes.child(node, tag) or found
+    return found
+
+
+def _touches_ground(robot: Robot, link: Link, wheels: set[str]) -> bool:
+    height = lowest(robot, link.name)
+    bottoms = [h for name in wheels if (h := lowest(robot, name)) is not None]
+    return height is not None and bool(bottoms) and abs(height - min(bottoms)) < 0.006
+
+
+def _rolls(robot: Robot, link: Link) -> bool:
+    """A wheel that nobody drives, or a caster: something that is made to touch the ground."""
+    holder = robot.inbound.get(link.name)
+    moves = holder is not None and holder.type in ("continuous", "ball", "revolute", "prismatic")
+    name = link.name.lower()
+    return moves or any(word in name for word in ("caster", "castor", "wheel", "roller", "ball"))
+
+
+def _joined(robot: Robot, a: str, b: str) -> bool:
+    """Whether one joint, over any number of fixed ones, or none holds the two together."""
+    one, other = robot.rigid_root(a), robot.rigid_root(b)
+    if one == other:
+        return True
+    for child, parent in ((one, other), (other, one)):
+        holder = robot.inbound.get(child)
+        if holder is None or holder.parent not in robot.links:
+            continue
+        if robot.rigid_root(holder.parent) == parent:
+            return True
+    return False
+
+
+def _boxes_meet(a: Floats, b: Floats) -> bool:
+    return bool((a.min(axis=0) <= b.max(axis=0)).all() and (b.min(axis=0) <= a.max(axis=0)).all())
+
+
+RULES = (
+    wheel_frictionless,
+    caster_friction,
+    wheel_no_collision,
+    base_no_collision,
+    wheels_off_ground,
+    collisions_overlap,
+)

@@ -1,0 +1,256 @@
+"""Names and the tree: what refers to what, and whether it is there."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from cartwheel.description import numbers
+from cartwheel.description.check import nodes
+from cartwheel.description.check.finding import Remark, rule
+from cartwheel.description.check.subject import Subject
+from cartwheel.description.node import Node
+from cartwheel.errors import suggestion
+
+WORLD = "world"
+
+
+@rule("name-twice", "error", "two links, or two joints, have one name")
+def name_twice(subject: Subject) -> Iterator[Remark]:
+    for tag in ("link", "joint"):
+        seen: dict[str, Node] = {}
+        taken = {nodes.name_of(node) for node in _parts(subject, tag)}
+        for node in _parts(subject, tag):
+            name = nodes.name_of(node)
+            if not name or name not in seen:
+                seen[name] = node
+                continue
+            new = next(f"{name}_{i}" for i in range(2, 99) if f"{name}_{i}" not in taken)
+            taken.add(new)
+            yield Remark(
+                message=f'the {tag} "{name}" exists twice: the first is at {seen[name].origin}',
+                origin=node.origin,
+                instead=f'name="{new}"',
+                place="attribute",
+                mark=f'name="{node.attributes["name"]}"',
+            )
+
+
+@rule("joint-link-unknown", "error", "a joint's parent or child is no link")
+def joint_link_unknown(subject: Subject) -> Iterator[Remark]:
+    known = link_names(subject)
+    for joint in _parts(subject, "joint"):
+        name = nodes.name_of(joint)
+        for which in ("parent", "child"):
+            end = nodes.child(joint, which)
+            if end is None:
+                yield Remark(
+                    message=f'the joint "{name}" has no <{which}>',
+                    origin=joint.origin,
+                    hint=f'Write <{which} link="…"/> in it.',
+                )
+                continue
+            link = nodes.text_of(end, "link")
+            if link in known:
+                continue
+            if link == WORLD and which == "parent":
+                yield Remark(
+                    message=f'the joint "{name}" hangs on the link "world", which is not there',
+                    origin=end.origin,
+                    instead='<link name="world"/>',
+                    mark=link,
+                    hint="Add it to the robot to fix it to the world.",
+                )
+                continue
+            near = numbers.likely(link, known, cutoff=0.6)
+            yield Remark(
+                message=f'the {which} of the joint "{name}", "{link}", is no link',
+                origin=end.origin,
+                instead=f'link="{near}"' if near else "",
+                place="attribute" if near else "",
+                mark=f'link="{end.attributes.get("link", "")}"',
+                hint="" if near else suggestion(link, sorted(known)),
+            )
+
+
+@rule("two-parents", "error", "a link is the child of two joints")
+def two_parents(subject: Subject) -> Iterator[Remark]:
+    holders: dict[str, Node] = {}
+    known = link_names(subject)
+    for joint in _parts(subject, "joint"):
+        _, child = ends(joint)
+        if child not in known:
+            continue
+        if child in holders:
+            first = holders[child]
+            yield Remark(
+                message=f'the link "{child}" is the child of two joints, '
+                f'"{nodes.name_of(first)}" and "{nodes.name_of(joint)}": a URDF is a tree',
+                origin=joint.origin,
+                mark=f'name="{nodes.name_of(joint)}"',
+                hint=f"Remove one of them, or make a link of its own for each. The joint "
+                f'"{nodes.name_of(first)}" is at {first.origin}.',
+            )
+        holders.setdefault(child, joint)
+
+
+@rule("links-in-a-ring", "error", "joints make a ring of links")
+def links_in_a_ring(subject: Subject) -> Iterator[Remark]:
+    holders = inbound(_parts(subject, "joint"), link_names(subject))
+    told: set[str] = set()
+    for start in holders:
+        path = [start]
+        while path[-1] in holders:
+            parent = ends(holders[path[-1]])[0]
+            if parent in path:
+                ring = path[path.index(parent) :]
+                if not told.intersection(ring):
+                    told.update(ring)
+                    yield Remark(
+                        message="the joints make a ring of links: "
+                        + " -> ".join(reversed([*ring, ring[0]])),
+                        origin=holders[ring[0]].origin,
+                        hint="Turn round or remove one of its joints: a URDF is a tree.",
+                    )
+                break
+            if parent in told:
+                break
+            path.append(parent)
+
+
+@rule("several-roots", "error", "a link is not joined to the others")
+def several_roots(subject: Subject) -> Iterator[Remark]:
+    links = _parts(subject, "link")
+    holders = inbound(_parts(subject, "joint"), link_names(subject), all_of_them=True)
+    roots = [node for node in links if nodes.name_of(node) not in holders]
+    first = main_root(roots, _parts(subject, "joint"))
+    for node in roots:
+        name = nodes.name_of(node)
+        if node is first or first is None or not name or name == nodes.name_of(first):
+            continue
+        root = nodes.name_of(first)
+        yield Remark(
+            message=f'no joint joins the link "{name}" to the others: "{root}" is a root already',
+            origin=node.origin,
+            instead=f'<joint name="{name}_joint" type="fixed"><parent link="{root}"/>'
+            f'<child link="{name}"/></joint>',
+            place="after",
+            mark=f'name="{node.attributes["name"]}"',
+        )
+
+
+@rule("mimic-unknown", "error", "a joint mimics one that does not exist, or itself")
+def mimic_unknown(subject: Subject) -> Iterator[Remark]:
+    joints = {nodes.name_of(node): node for node in _parts(subject, "joint")}
+    for name, joint in joints.items():
+        mimic = nodes.child(joint, "mimic")
+        if mimic is None:
+            continue
+        leader = nodes.text_of(mimic, "joint")
+        if leader not in joints:
+            near = numbers.likely(leader, set(joints) - {name}, cutoff=0.6)
+            yield Remark(
+                message=f'the joint "{name}" mimics "{leader}", which is no joint',
+                origin=mimic.origin,
+                instead=f'joint="{near}"' if near else "",
+                place="attribute" if near else "",
+                mark=f'joint="{mimic.attributes.get("joint", "")}"',
+                hint="" if near else suggestion(leader, sorted(set(joints) - {name})),
+            )
+        elif name in mimic_chain(joints, leader):
+            yield Remark(
+                message=f'the joint "{name}" mimics itself, by way of "{leader}"',
+                origin=mimic.origin,
+                mark=f'joint="{leader}"',
+                hint="One joint of the chain must be free to move.",
+            )
+
+
+@rule("reference-unknown", "error", "a <gazebo reference> names neither a link nor a joint")
+def reference_unknown(subject: Subject) -> Iterator[Remark]:
+    known = link_names(subject) | {nodes.name_of(node) for node in _parts(subject, "joint")}
+    for node in _parts(subject, "gazebo"):
+        reference = nodes.text_of(node, "reference")
+        if not reference or reference in known:
+            continue
+        near = numbers.likely(reference, known, cutoff=0.6)
+        yield Remark(
+            message=f'<gazebo> refers to "{reference}", which is neither a link nor a joint: '
+            "Gazebo drops all that is in it without a word",
+            origin=node.origin,
+            instead=f'reference="{near}"' if near else "",
+            place="attribute" if near else "",
+            mark=f'reference="{node.attributes["reference"]}"',
+            hint="" if near else suggestion(reference, sorted(known)),
+        )
+
+
+def link_names(subject: Subject) -> set[str]:
+    """Of all links of a URDF."""
+    return {nodes.name_of(node) for node in _parts(subject, "link")}
+
+
+def ends(joint: Node) -> tuple[str, str]:
+    """Parent and child link."""
+    return (
+        nodes.text_of(nodes.child(joint, "parent"), "link"),
+        nodes.text_of(nodes.child(joint, "child"), "link"),
+    )
+
+
+def inbound(joints: list[Node], links: set[str], *, all_of_them: bool = False) -> dict[str, Node]:
+    """The joint that holds each link; only between links that exist unless all are asked for."""
+    found: dict[str, Node] = {}
+    for joint in joints:
+        parent, child = ends(joint)
+        if all_of_them or (parent in links and child in links and parent != child):
+            found.setdefault(child, joint)
+    return found
+
+
+def main_root(roots: list[Node], joints: list[Node]) -> Node | None:
+    """The root that carries most: the others are those left over."""
+    if not roots:
+        return None
+    below: dict[str, list[str]] = {}
+    for joint in joints:
+        parent, child = ends(joint)
+        below.setdefault(parent, []).append(child)
+
+    def carried(node: Node) -> int:
+        seen = {nodes.name_of(node)}
+        stack = list(seen)
+        while stack:
+            for child in below.get(stack.pop(), ()):
+                if child not in seen:
+                    seen.add(child)
+                    stack.append(child)
+        return len(seen)
+
+    return max(roots, key=carried)
+
+
+def mimic_chain(joints: dict[str, Node], leader: str) -> list[str]:
+    """The joints that a joint follows, beginning with the one that it names."""
+    chain: list[str] = []
+    while leader in joints and leader not in chain:
+        chain.append(leader)
+        mimic = nodes.child(joints[leader], "mimic")
+        if mimic is None:
+            break
+        leader = nodes.text_of(mimic, "joint")
+    return chain
+
+
+def _parts(subject: Subject, tag: str) -> list[Node]:
+    return nodes.children(subject.root, tag) if subject.is_urdf else []
+
+
+RULES = (
+    name_twice,
+    joint_link_unknown,
+    two_parents,
+    links_in_a_ring,
+    several_roots,
+    mimic_unknown,
+    reference_unknown,
+)

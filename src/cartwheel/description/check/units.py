@@ -1,0 +1,74 @@
+"""Numbers in odd units: degrees for radians, millimetres for metres."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+from cartwheel.description.check import nodes
+from cartwheel.description.check.finding import Remark, rule
+from cartwheel.description.check.subject import Subject
+from cartwheel.description.node import Node
+
+FARTHEST = 100.0
+"""m between a link and its parent."""
+
+
+@rule("angle-degrees", "warning", "an rpy of more than a turn: degrees for radians?")
+def angle_degrees(subject: Subject) -> Iterator[Remark]:
+    for node in nodes.walk(subject.root):
+        text, attribute = _angles(subject, node)
+        values = nodes.numbers(text, 3)
+        if values is None or max(map(abs, values)) <= 2 * math.pi + 0.01:
+            continue
+        radians = " ".join(
+            nodes.short(math.radians(v) if abs(v) > 2 * math.pi + 0.01 or v == int(v) else v)
+            for v in values
+        )
+        instead = f'rpy="{radians}"'
+        if not attribute:
+            xyz = " ".join(node.text.split()[:3])
+            instead = nodes.written("pose", dict(node.attributes), f"{xyz} {radians}")
+        yield Remark(
+            message=f"the angles {text} are radians: {max(values, key=abs):g} rad are "
+            f"{max(map(abs, values)) / 2 / math.pi:.3g} turns. Degrees were meant?",
+            origin=node.origin,
+            instead=instead,
+            place="attribute" if attribute else "element",
+            mark="rpy" if attribute else "",
+        )
+
+
+@rule("place-millimetres", "warning", "a joint far off: millimetres for metres?")
+def place_millimetres(subject: Subject) -> Iterator[Remark]:
+    if not subject.is_urdf:
+        return
+    for holder in nodes.walk(subject.root):
+        if holder.tag not in ("joint", "visual", "collision", "inertial"):
+            continue
+        origin = nodes.child(holder, "origin")
+        xyz = nodes.numbers(nodes.text_of(origin, "xyz"), 3)
+        if origin is None or xyz is None or math.hypot(*xyz) <= FARTHEST:
+            continue
+        metres = " ".join(nodes.short(value / 1000) for value in xyz)
+        yield Remark(
+            message=f"this <{holder.tag}> is {math.hypot(*xyz):.4g} m away: "
+            "millimetres for metres?",
+            origin=origin.origin,
+            instead=f'xyz="{metres}"',
+            place="attribute",
+            mark="xyz",
+        )
+
+
+def _angles(subject: Subject, node: Node) -> tuple[str, bool]:
+    if subject.is_urdf and node.tag == "origin":
+        return nodes.text_of(node, "rpy"), True
+    if node.tag == "pose" and not node.attributes.get("degrees"):
+        words = node.text.split()
+        if len(words) == 6:
+            return " ".join(words[3:]), False
+    return "", True
+
+
+RULES = (angle_degrees, place_millimetres)

@@ -1,0 +1,158 @@
+"""What a xacro defines and nothing uses."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+from cartwheel.description import xml
+from cartwheel.description.check import nodes
+from cartwheel.description.check.finding import Remark, rule
+from cartwheel.description.check.subject import Subject
+from cartwheel.description.node import Node
+from cartwheel.errors import DescriptionError
+
+_WORD = re.compile(r"[A-Za-z_]\w*")
+_EXPRESSION = re.compile(r"\$\{([^}]*)\}|\$\(([^)]*)\)")
+_SUFFIXES = (".xacro", ".urdf")
+MAX_FILES = 200
+
+
+@rule("argument-unused", "warning", "a xacro argument that changes nothing")
+def argument_unused(subject: Subject) -> Iterator[Remark]:
+    used = _words(subject)
+    for tree in _trees(subject):
+        for node in nodes.walk(tree):
+            name = nodes.name_of(node)
+            if node.tag == "xacro:arg" and name and name not in used:
+                yield Remark(
+                    message=f'the argument "{name}" is declared, but nothing uses it: '
+                    f"{name}:=… changes nothing",
+                    origin=node.origin,
+                    mark=f'name="{name}"',
+                    hint=f"Write $(arg {name}) where it shall count, or remove it.",
+                )
+
+
+@rule("property-unused", "info", "a xacro property that nothing uses")
+def property_unused(subject: Subject) -> Iterator[Remark]:
+    used = _words(subject)
+    for tree in _own_trees(subject):
+        for node in nodes.walk(tree):
+            name = nodes.name_of(node)
+            if node.tag == "xacro:property" and name and name not in used:
+                yield Remark(
+                    message=f'the property "{name}" is not used',
+                    origin=node.origin,
+                    mark=f'name="{name}"',
+                    hint="Use it where its value is written again, or remove it.",
+                )
+
+
+@rule("macro-unused", "info", "a xacro macro that is never called")
+def macro_unused(subject: Subject) -> Iterator[Remark]:
+    called = _calls(subject)
+    for tree in _own_trees(subject):
+        for node in nodes.walk(tree):
+            name = nodes.name_of(node).removeprefix("xacro:")
+            if node.tag == "xacro:macro" and name and name not in called:
+                params = node.attributes.get("params", "").split()
+                yield Remark(
+                    message=f'the macro "{name}" is never called: nothing of it is in the robot',
+                    origin=node.origin,
+                    mark=f'name="{nodes.name_of(node)}"',
+                    hint=f"Call it, as in <xacro:{name}{' …' if params else ''}/>, or remove it.",
+                )
+
+
+def _trees(subject: Subject) -> list[Node]:
+    found = []
+    for file in subject.files:
+        tree = _parsed(Path(file))
+        if tree is not None:
+            found.append(tree)
+    return found
+
+
+def _own_trees(subject: Subject) -> list[Node]:
+    """Those that make something of the robot themselves: a library defines more than one needs."""
+    return [
+        tree
+        for tree in _trees(subject)
+        if any(node.tag in ("link", "joint", "gazebo") or _is_call(node) for node in tree.children)
+    ]
+
+
+def _around(subject: Subject) -> list[Node]:
+    """All files of the packages that the robot is made of: one of them may be for another robot."""
+    folders = {_package(Path(file).absolute()) for file in subject.files}
+    paths = dict.fromkeys(Path(file).absolute() for file in subject.files)
+    for folder in sorted(folder for folder in folders if folder is not None):
+        for suffix in _SUFFIXES:
+            for _, path in zip(range(MAX_FILES), sorted(folder.rglob(f"*{suffix}")), strict=False):
+                paths.setdefault(path)
+    trees = [_parsed(path) for path in paths]
+    return [tree for tree in trees if tree is not None]
+
+
+def _package(file: Path) -> Path | None:
+    for folder in list(file.parents)[:4]:
+        if (folder / "package.xml").is_file():
+            return folder
+    return None
+
+
+def _parsed(path: Path) -> Node | None:
+    try:
+        return xml.parse(xml.read_bytes(path), xml.shown_path(path))
+    except DescriptionError:
+        return None
+
+
+def _words(subject: Subject) -> set[str]:
+    """Every word of every expression."""
+    found: set[str] = set()
+    for tree in _around(subject):
+        for node in nodes.walk(tree):
+            for text in (*node.attributes.values(), node.text):
+                if "$" in text:
+                    for match in _EXPRESSION.finditer(text):
+                        found.update(_WORD.findall(match[1] or match[2] or ""))
+            if node.tag in ("xacro:if", "xacro:unless"):
+                found.update(_WORD.findall(node.attributes.get("value", "")))
+            elif node.tag == "xacro:insert_block":
+                found.add(nodes.name_of(node))
+            elif node.tag == "xacro:macro":
+                # A default such as ^ or ^|0 takes the property of the same name.
+                for word in node.attributes.get("params", "").split():
+                    name, separator, default = word.partition(":=")
+                    if separator and default.startswith("^"):
+                        found.add(name.lstrip("*"))
+                    found.update(_WORD.findall(default))
+    return found
+
+
+def _calls(subject: Subject) -> set[str]:
+    found: set[str] = set()
+    for tree in _around(subject):
+        for node in nodes.walk(tree):
+            if node.tag == "xacro:call":
+                found.update(_WORD.findall(node.attributes.get("macro", "")))
+            elif _is_call(node):
+                found.add(node.tag.removeprefix("xacro:").rpartition(".")[2])
+    return found
+
+
+_OWN = frozenset(
+    f"xacro:{name}"
+    for name in ("include", "arg", "property", "macro", "if", "unless", "insert_block", "call",
+                 "element", "attribute")
+)  # fmt: skip
+
+
+def _is_call(node: Node) -> bool:
+    return node.tag.startswith("xacro:") and node.tag not in _OWN
+
+
+RULES = (argument_unused, property_unused, macro_unused)

@@ -1,0 +1,228 @@
+"""What a mesh that stands still collides with: not its hull, but its surface.
+
+A convex part of a mesh is its own hull. Of any other part, each flat patch becomes a thin slab
+behind the surface: a room has an inside, a ring a hole, a terrain its valleys.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cartwheel.description.outline import Edge, fill
+
+Points = NDArray[np.float64]
+Faces = NDArray[np.int64]
+MOST_PIECES = 6000
+"""Of one mesh; a part that needs more is its hull. As many are built in four seconds."""
+_THICKEST, _THINNEST = 0.05, 0.004
+"""m, of a slab."""
+_DENT = 0.01
+"""m by which a part that counts as convex may be dented, and a patch that counts as flat bent."""
+_SAME_WAY = 0.9995
+"""Cosine between the normals of neighbours in one patch."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Standing:
+    """The convex pieces that a mesh collides with where it stands still."""
+
+    pieces: tuple[Points, ...] = ()
+    """Corners of each, (n, 3) in m; none where the hull of the whole mesh is as good."""
+    hulls: int = 0
+    """How many of the mesh's parts are hulls only because their surface has too many pieces."""
+
+
+def standing_pieces(vertices: NDArray[np.floating], faces: NDArray[np.integer]) -> Standing:
+    """Convex pieces that cover a mesh's surface.
+
+    Args:
+        vertices: Shape (n, 3), m; equal ones are one.
+        faces: Shape (m, 3), counter-clockwise from outside.
+    """
+    points = np.asarray(vertices, dtype=np.float64)
+    triangles = _sound(points, np.asarray(faces, dtype=np.int64))
+    if not len(triangles):
+        return Standing()
+    pieces: list[Points] = []
+    parts = list(_parts(triangles, len(points)))
+    hulls = 0
+    for part in parts:
+        slabs = None
+        if not _is_convex(points, part):
+            slabs = _slabs(points, part)
+            if slabs is None or len(pieces) + len(slabs) > MOST_PIECES:
+                slabs = None
+                hulls += 1
+        one_hull = slabs is None and len(parts) == 1
+        pieces += [points[np.unique(part)]] if slabs is None else slabs
+    if one_hull:
+        return Standing(hulls=hulls)
+    return Standing(tuple(piece for piece in pieces if _is_solid(piece)), hulls)
+
+
+def _sound(points: Points, faces: Faces) -> Faces:
+    """The faces that have an area."""
+    a, b, c = (points[faces[:, k]] for k in range(3))
+    return np.asarray(faces[np.linalg.norm(np.cross(b - a, c - a), axis=1) > 1e-10])
+
+
+def _parts(faces: Faces, count: int) -> Iterator[Faces]:
+    """Faces that hang together."""
+    label = np.arange(count)
+    while True:
+        lowest = label[faces].min(axis=1)
+        before = label.copy()
+        for k in range(3):
+            np.minimum.at(label, faces[:, k], lowest)
+        label = label[label]
+        if (label == before).all():
+            break
+    owner = label[faces[:, 0]]
+    for each in np.unique(owner):
+        yield faces[owner == each]
+
+
+def _is_convex(points: Points, faces: Faces) -> bool:
+    """Whether a closed surface has no corner ahead of any face. An open one has no inside."""
+    if not _is_closed(faces):
+        return False
+    corners = points[np.unique(faces)]
+    normals, origins = _planes(points, _outwards(points, faces))
+    for start in range(0, len(normals), 256):
+        block = slice(start, start + 256)
+        ahead = normals[block] @ corners.T
+        ahead -= np.einsum("ij,ij->i", normals[block], origins[block])[:, None]
+        if float(ahead.max()) > _DENT:
+            return False
+    return True
+
+
+def _is_closed(faces: Faces) -> bool:
+    """Whether each edge has two faces."""
+    edges = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
+    return bool((np.unique(edges, axis=0, return_counts=True)[1] == 2).all())
+
+
+def _outwards(points: Points, faces: Faces) -> Faces:
+    """The faces of a closed surface, counter-clockwise from outside."""
+    a, b, c = (points[faces[:, k]] - points[faces[0, 0]] for k in range(3))
+    volume = float(np.einsum("ij,ij->i", a, np.cross(b, c)).sum())
+    return faces[:, ::-1] if volume < 0 else faces
+
+
+def _planes(points: Points, faces: Faces) -> tuple[Points, Points]:
+    """Unit normals and a point of each face."""
+    a, b, c = (points[faces[:, k]] for k in range(3))
+    normals = np.cross(b - a, c - a)
+    return normals / np.linalg.norm(normals, axis=1, keepdims=True), a
+
+
+def _slabs(points: Points, faces: Faces) -> list[Points] | None:
+    """A slab for each convex piece of each flat patch; None where they would be too many."""
+    if _is_closed(faces):
+        faces = _outwards(points, faces)
+    normals, origins = _planes(points, faces)
+    fronts: list[Points] = []
+    facing: list[Points] = []
+    for patch in _patches(faces, normals, points):
+        normal = normals[patch].mean(axis=0)
+        normal /= np.linalg.norm(normal)
+        u = np.cross(normal, np.eye(3)[int(np.argmin(np.abs(normal)))])
+        u /= np.linalg.norm(u)
+        v = np.cross(normal, u)
+        flat = np.column_stack([points @ u, points @ v])
+        height = float((origins[patch] @ normal).mean())
+        for piece in fill(_rim(faces[patch], flat)):
+            if len(fronts) >= MOST_PIECES:
+                return None
+            outline = np.array(piece)
+            fronts.append(outline[:, :1] * u + outline[:, 1:] * v + height * normal)
+            facing.append(normal)
+    if not fronts:
+        return []
+    middles = np.array([front.mean(axis=0) for front in fronts])
+    thicknesses = _thicknesses(middles, np.array(facing), points, faces)
+    slabs = []
+    for front, normal, middle, thick in zip(fronts, facing, middles, thicknesses, strict=True):
+        # The back is smaller, so that it stays behind the neighbouring patches too.
+        arms = front - middle
+        reach = np.linalg.norm(arms, axis=1, keepdims=True)
+        back = middle + arms * np.maximum(0.2, 1 - thick / np.maximum(reach, 1e-9))
+        slabs.append(np.concatenate([front, back - thick * normal]))
+    return slabs
+
+
+def _patches(faces: Faces, normals: Points, points: Points) -> Iterator[NDArray[np.int64]]:
+    """Indices of the faces of each flat patch."""
+    edges = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
+    owners = np.tile(np.arange(len(faces)), 3)
+    order = np.lexsort((edges[:, 1], edges[:, 0]))
+    edges, owners = edges[order], owners[order]
+    shared = (edges[1:] == edges[:-1]).all(axis=1)
+    one, two = owners[:-1][shared], owners[1:][shared]
+    level = np.einsum("ij,ij->i", normals[one], normals[two]) > _SAME_WAY
+    one, two = one[level], two[level]
+    label = np.arange(len(faces))
+    while True:
+        before = label.copy()
+        low = np.minimum(label[one], label[two])
+        np.minimum.at(label, one, low)
+        np.minimum.at(label, two, low)
+        label = label[label]
+        if (label == before).all():
+            break
+    for each in np.unique(label):
+        patch = np.flatnonzero(label == each)
+        corners = points[np.unique(faces[patch])]
+        normal = normals[patch].mean(axis=0)
+        if np.ptp(corners @ normal) <= _DENT:
+            yield patch
+        else:  # a smooth bend, which is made of its facets
+            yield from (np.array([face]) for face in patch)
+
+
+def _rim(faces: Faces, flat: Points) -> list[Edge]:
+    """The edges that only one of the faces has."""
+    edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+    _, first, counts = np.unique(
+        np.sort(edges, axis=1), axis=0, return_index=True, return_counts=True
+    )
+    found = []
+    for a, b in edges[first[counts == 1]].tolist():
+        p, q = flat[a].tolist(), flat[b].tolist()
+        found.append(((p[0], p[1]), (q[0], q[1])))
+    return found
+
+
+def _thicknesses(middles: Points, normals: Points, points: Points, faces: Faces) -> Points:
+    """Half the way to the other side of the wall behind each point, within a slab's bounds."""
+    a, b, c = (points[faces[:, k]] for k in range(3))
+    e1, e2 = b - a, c - a
+    across = np.cross(e1, e2)
+    found = []
+    # Each ray against each triangle: Möller and Trumbore's test with the triple products of
+    # a triangle written out.
+    for start in range(0, len(middles), 64):
+        block = slice(start, start + 64)
+        along = -normals[block][:, None, :]
+        s = middles[block][:, None, :] - a[None]
+        turned = np.cross(s, along)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            area = -(along * across).sum(axis=2)
+            t = (s * across).sum(axis=2) / area
+            u = (e2 * turned).sum(axis=2) / area
+            v = -(e1 * turned).sum(axis=2) / area
+            inside = (u >= 0) & (v >= 0) & (u + v <= 1)
+        hit = (np.abs(area) > 1e-12) & inside & (t > 1e-4)
+        found.append(np.where(hit, t, 2 * _THICKEST).min(axis=1) / 2)
+    return np.asarray(np.clip(np.concatenate(found), _THINNEST, _THICKEST))
+
+
+def _is_solid(piece: Points) -> bool:
+    """Whether it has a volume that the engine's hull can be made of."""
+    spread = np.linalg.svd(piece - piece.mean(axis=0), compute_uv=False)
+    return bool(spread[2] > 1e-4)

@@ -1,0 +1,71 @@
+"""Packages that a description needs and that are not there: all of them at once.
+
+xacro stops at the first. Who then installs it meets the next, and the one after.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
+
+MAX_FILES = 300
+"""Looked at; a description has some dozens."""
+_SHOWN = 8
+_COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
+_NAMED = re.compile(r"(?:\$\(find(?:-pkg-share)?\s+|package://)([A-Za-z]\w*)\)?(/[^\s\"'<>]*)?")
+_INCLUDED = re.compile(r"""filename\s*=\s*["']([^"'$:]+\.xacro)["']""")
+
+
+def also_missing(
+    files: Iterable[Path], missing: str, find: Callable[[str], Path | None]
+) -> tuple[str, ...]:
+    """The other packages that files name, or the xacro files that these include, in vain.
+
+    Args:
+        files: Where to begin.
+        missing: The package whose absence is known.
+        find: The folder of a package, None where there is none.
+    """
+    waiting = list(dict.fromkeys(files))
+    seen = set(waiting)
+    names: dict[str, None] = {}
+    while waiting and len(seen) <= MAX_FILES:
+        file = waiting.pop(0)
+        try:
+            text = _COMMENT.sub("", file.read_text(encoding="utf-8", errors="replace"))
+        except OSError:
+            continue
+        included = [file.parent / path for path in _INCLUDED.findall(text)]
+        for name, path in _NAMED.findall(text):
+            if name == missing or name in names:
+                continue
+            folder = find(name)
+            if folder is None:
+                names[name] = None
+            elif path.endswith((".xacro", ".gazebo", ".urdf")):
+                included.append(folder / path.lstrip("/"))
+        for other in included:
+            if other not in seen and other.is_file():
+                seen.add(other)
+                waiting.append(other)
+    return tuple(names)
+
+
+def advice(
+    package: str, others: Iterable[str] = (), environment: Mapping[str, str] | None = None
+) -> str:
+    """How packages are got, as a sentence or two."""
+    distribution = (os.environ if environment is None else environment).get("ROS_DISTRO")
+    rest = list(others)
+    text = ""
+    if rest:
+        more = f" and {len(rest) - _SHOWN} more" if len(rest) > _SHOWN else ""
+        text = f"Also named and not there: {', '.join(rest[:_SHOWN])}{more}. "
+    names = [package, *rest[: _SHOWN - 1]]
+    if distribution:
+        debian = " ".join(f"ros-{distribution}-{name.replace('_', '-')}" for name in names)
+        return f"{text}Try: sudo apt install {debian}; or clone their sources into the workspace."
+    which = "it" if not rest else "them"
+    return f"{text}Get {which} with apt as ros-<distribution>-<name>, or clone the sources."

@@ -1,0 +1,86 @@
+"""SDF's gearbox joints: two hinges of one reference link whose turning is geared together."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from cartwheel.description.model import Joint, Mimic
+from cartwheel.description.sdf.context import Context
+from cartwheel.description.sdf.frames import WORLD, Frames
+from cartwheel.description.xml import Node
+from cartwheel.geometry import Quat, rotate
+
+
+def mesh_gears(
+    nodes: list[tuple[Node, str]], joints: list[Joint], ctx: Context, frames: Frames
+) -> list[Joint]:
+    """The joints, with those that gearboxes drive following the others.
+
+    A gearbox holds theta2 = -ratio theta1, where theta1 turns the parent and theta2 the child
+    against the reference body, each about the gearbox's own axis. Both hang on it by a hinge;
+    the second hinge comes to mimic the first. Source: SDF, ``<gearbox_ratio>``.
+
+    Args:
+        nodes: The gearbox joints, and what their frames are called.
+        joints: All others of the model.
+        ctx: The document's; told of what cannot be geared.
+        frames: The model's.
+    """
+    for node, frame in nodes:
+        for ignored in ("axis", "axis2", "physics", "pose", "sensor"):
+            for part in node.all(ignored):
+                part.mark()
+        ratio = node.number_at("gearbox_ratio", 1.0)
+        reference = node.text_at("gearbox_reference_body").strip()
+        ends = []
+        for tag in ("parent", "child"):
+            written = node.require_child(tag).text.strip()
+            link = WORLD if written == WORLD else frames.link_of(written, node.origin)
+            ends.append(_hinge(joints, link, reference))
+        name = node.attributes.get("name", "")
+        if ends[0] is None or ends[1] is None:
+            ctx.tell(
+                "warning",
+                f'gearbox joint "{name}" has no effect: its links hang on the '
+                f'gearbox_reference_body "{reference}" by no hinge each',
+                node.origin,
+            )
+            continue
+        first, second = ends[0], ends[1]
+        if second[0].mimic is not None:
+            ctx.tell(
+                "warning",
+                f'gearbox joint "{name}" has no effect: joint "{second[0].name}" follows '
+                "another already",
+                node.origin,
+            )
+            continue
+        in_model = frames.pose(frame, node.origin)
+        senses = [
+            sense * _along(node, tag, joint, frames, in_model.orientation)
+            for (joint, sense), tag in ((first, "axis"), (second, "axis2"))
+        ]
+        multiplier = -ratio * senses[0] * senses[1]
+        geared = replace(second[0], mimic=Mimic(joint=first[0].name, multiplier=multiplier))
+        joints = [geared if joint is second[0] else joint for joint in joints]
+    return joints
+
+
+def _hinge(joints: list[Joint], link: str, reference: str) -> tuple[Joint, float] | None:
+    """The hinge between a link and the reference, and 1 where it turns the link, else -1."""
+    for joint in joints:
+        if joint.type in ("revolute", "continuous"):
+            if (joint.parent, joint.child) == (reference, link):
+                return joint, 1.0
+            if (joint.child, joint.parent) == (reference, link):
+                return joint, -1.0
+    return None
+
+
+def _along(node: Node, tag: str, joint: Joint, frames: Frames, orientation: Quat) -> float:
+    """Whether a hinge turns in the sense of the gearbox's axis: 1 or -1."""
+    stated = node.find(f"{tag}/xyz") or node.find("axis/xyz")
+    own = rotate(orientation, stated.vec3() if stated is not None else (0.0, 0.0, 1.0))
+    child = frames.pose(joint.child, node.origin)
+    axis = rotate((child @ joint.pose).orientation, joint.axis.xyz)
+    return -1.0 if sum(a * b for a, b in zip(own, axis, strict=True)) < 0 else 1.0

@@ -1,0 +1,202 @@
+"""A mass for what moves and states none: without one no law of motion holds for it.
+
+Published robots leave ``<inertial>`` out where only rviz is to show them. Gazebo drops such
+links with their joints; here they weigh what their geometry does at SDF's default density.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from cartwheel.description.inertia import impossibility, principal_moments
+from cartwheel.description.meshes import MeshError, convex_hull_input, load_mesh
+from cartwheel.description.model import Box, Collision, Inertial, Joint, Link, Mesh, Visual
+from cartwheel.description.sdf.inertia import WATER, inertial_of
+from cartwheel.description.urdf.link import UrdfContext
+from cartwheel.description.urdf.tree import WORLD, Tree
+from cartwheel.errors import Origin
+from cartwheel.geometry import Pose
+
+SPECK = 1e-3
+"""kg of a part without any geometry."""
+_SPECK_MOMENT = 1e-6
+"""kg m² of the same: a ball of 5 cm."""
+_FLATTEST = 1e-3
+"""m: a box around a flat mesh is no thinner."""
+
+
+def with_masses(
+    links: Sequence[Link], tree: Tree, ctx: UrdfContext, *, static: bool
+) -> tuple[Link, ...]:
+    """The links, those of rigid parts that move without any mass with an estimated one.
+
+    An estimate's origin is the link's own.
+    """
+    if static:
+        return tuple(links)
+    parts: dict[str, list[Link]] = {}
+    for link in links:
+        parts.setdefault(tree.rigid_root(link.name), []).append(link)
+    found: dict[str, Link] = {}
+    roots = []
+    for root, part in parts.items():
+        if root == WORLD:
+            continue
+        if all(link.inertial is None for link in part):
+            roots.append(root)
+            found.update(_weighed(root, part))
+        elif not any(_turns(link) for link in part):
+            found.update(_spread(part, ctx))
+    if roots:
+        _tell(roots, found, tree, ctx)
+    return tuple(found.get(link.name, link) for link in links)
+
+
+def inertial_text(inertial: Inertial) -> str:
+    """An ``<inertial>`` as it is written in a URDF."""
+    i = inertial
+    xyz = " ".join(f"{round(value, 6) + 0.0:g}" for value in i.pose.position)
+    largest = max(i.ixx, i.iyy, i.izz)
+    moments = " ".join(
+        f'{key}="{value if abs(value) > 1e-4 * largest else 0:.4g}"'
+        for key in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
+        for value in (getattr(i, key),)
+    )
+    return (
+        f'<inertial><origin xyz="{xyz}"/><mass value="{i.mass:.4g}"/><inertia {moments}/>'
+        "</inertial>"
+    )
+
+
+def _weighed(root: str, part: Iterable[Link]) -> Mapping[str, Link]:
+    found = {}
+    for link in part:
+        inertial = _of_shapes(link)
+        if inertial is not None:
+            found[link.name] = replace(link, inertial=inertial)
+    if not found:
+        link = next(link for link in part if link.name == root)
+        found[root] = replace(link, inertial=_speck(link.origin))
+    return found
+
+
+def _spread(part: Sequence[Link], ctx: UrdfContext) -> Mapping[str, Link]:
+    """The heaviest point mass of a part, with the extent of its link's geometry."""
+    link = max(part, key=lambda each: each.inertial.mass if each.inertial else 0.0)
+    stated = link.inertial
+    assert stated is not None
+    like = _of_shapes(link) or _speck(link.origin)
+    share = stated.mass / like.mass
+    values = {key: share * getattr(like, key) for key in ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")}
+    inertial = replace(stated, pose=Pose(stated.pose.position), **values)
+    ctx.tell(
+        "warning",
+        f'link "{link.name}" moves, and all its mass lies in a point, with an inertia '
+        f"of 0. Here it has that of its geometry: {inertial_text(inertial)}",
+        stated.origin,
+    )
+    return {link.name: replace(link, inertial=inertial)}
+
+
+def _turns(link: Link) -> bool:
+    """Whether it has a moment of inertia of its own."""
+    i = link.inertial
+    return i is not None and any((i.ixx, i.iyy, i.izz))
+
+
+def _of_shapes(link: Link) -> Inertial | None:
+    """A solid of a link's collisions, or else of its visuals; None where it has no extent."""
+    for parts in (link.collisions, link.visuals):
+        solids = [solid for part in parts if (solid := _solid(part)) is not None]
+        found = inertial_of(solids, [WATER] * len(solids), link.origin)
+        if found is not None:
+            return found
+    return None
+
+
+def _solid(part: Collision | Visual) -> Collision | None:
+    """A shape with a volume: a mesh that is not closed counts as the box around it."""
+    shape, pose = part.shape, part.pose
+    if isinstance(shape, Mesh):
+        try:
+            vertices, _ = convex_hull_input(load_mesh(shape))
+        except MeshError:
+            return None  # told where the mesh is read to be shown
+        low, high = vertices.min(axis=0).astype(float), vertices.max(axis=0).astype(float)
+        if not _is_solid(shape, low, high):
+            x, y, z = np.maximum(high - low, _FLATTEST).tolist()
+            a, b, c = ((low + high) / 2).tolist()
+            shape, pose = Box(size=(x, y, z)), pose @ Pose((a, b, c))
+    return Collision(name=part.name, pose=pose, shape=shape, origin=part.origin)
+
+
+def _is_solid(mesh: Mesh, low: np.ndarray, high: np.ndarray) -> bool:
+    """Whether the volume that a mesh's triangles enclose can be one."""
+    place = Origin(file=str(mesh.path))
+    found = inertial_of([Collision(name="", shape=mesh, origin=place)], [1.0], place)
+    if found is None or found.mass > float(np.prod(high - low)) * 1.001:
+        return False
+    centre = np.array(found.pose.position)
+    if (centre < low).any() or (centre > high).any():
+        return False
+    moments = principal_moments(
+        (found.ixx, found.iyy, found.izz), (found.ixy, found.ixz, found.iyz)
+    )
+    return impossibility(moments) is None
+
+
+def _speck(origin: Origin) -> Inertial:
+    moment = _SPECK_MOMENT
+    return Inertial(mass=SPECK, ixx=moment, iyy=moment, izz=moment, origin=origin)
+
+
+def _tell(roots: Sequence[str], found: Mapping[str, Link], tree: Tree, ctx: UrdfContext) -> None:
+    holders = [tree.inbound.get(root) for root in roots]
+    parts = [[link for link in found.values() if tree.rigid_root(link.name) == r] for r in roots]
+    weights = [sum(each.inertial.mass for each in part if each.inertial) for part in parts]
+    first = parts[0][0]
+    if len(roots) == 1:
+        assert first.inertial is not None
+        advice = "`cartwheel check` has the <inertial> to write"
+        if len(parts[0]) == 1:
+            advice = f'Write in link "{first.name}": {inertial_text(first.inertial)}'
+        ctx.tell(
+            "warning",
+            f"{_mover(roots[0], holders[0])} has no <inertial>: {_fate(holders[0])}. Here it has "
+            f"{weights[0]:.3g} kg{_reason(first)}. {advice}",
+            first.origin,
+        )
+        return
+    shown = ", ".join(
+        f'"{root}" {mass:.3g} kg' for root, mass in zip(roots[:4], weights, strict=False)
+    )
+    more = f" and {len(roots) - 4} more" if len(roots) > 4 else ""
+    fate = "does not load such a robot" if None in holders else "drops them with their joints"
+    ctx.tell(
+        "warning",
+        f"{len(roots)} links that move have no <inertial>: Gazebo {fate}. Here they weigh what "
+        f"their geometry does at {WATER:g} kg/m³: {shown}{more}. `cartwheel check` has the "
+        "<inertial> of each",
+        first.origin,
+    )
+
+
+def _mover(root: str, holder: Joint | None) -> str:
+    if holder is None:
+        return f'the root link "{root}", with all that is fixed to it,'
+    return f'link "{root}" moves on the joint "{holder.name}" but'
+
+
+def _fate(holder: Joint | None) -> str:
+    return (
+        "Gazebo does not load such a robot" if holder is None else "Gazebo drops it with its joint"
+    )
+
+
+def _reason(link: Link) -> str:
+    if not link.collisions and not link.visuals:
+        return ", as it has no geometry either"
+    return f", that of its geometry at {WATER:g} kg/m³"

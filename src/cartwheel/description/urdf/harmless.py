@@ -1,0 +1,44 @@
+"""What published URDFs say that no reader of URDF ever acted on: worth a note, not a warning."""
+
+_NOBODY = "no reader of URDF knows it"
+_SAFETY = "it belongs to the PR2's safety controller"
+_IDENTIFIED = "it is a value measured on the real arm; URDF has damping and friction"
+_PLANNER = "it is for a planner"
+_SURFACE = "Gazebo's colours and surfaces stand in a <gazebo> tag"
+_OLD = "it is from before URDF was settled"
+
+HARMLESS: dict[tuple[str, str], str] = {
+    ("axis", "@rpy"): "an axis has no orientation",
+    ("collision", "contact_coefficients"): _OLD,
+    ("collision", "material"): _SURFACE,
+    ("collision", "surface"): _SURFACE,
+    ("collision", "verbose"): _OLD,
+    ("dynamics", "@D"): _IDENTIFIED,
+    ("dynamics", "@K"): _IDENTIFIED,
+    ("dynamics", "@mu_coulomb"): _IDENTIFIED,
+    ("dynamics", "@mu_viscous"): _IDENTIFIED,
+    ("gazebo", "stopKd"): _OLD,
+    ("gazebo", "stopKp"): _OLD,
+    ("geometry", "@name"): _NOBODY,
+    ("geometry", "material"): "a material stands beside the geometry",
+    ("inertial", "@name"): _NOBODY,
+    ("joint", "anchor"): _OLD,
+    ("joint", "insert_point"): _OLD,
+    ("joint", "joint_properties"): _OLD,
+    ("joint", "verbose"): _OLD,
+    ("limit", "@acceleration"): _PLANNER,
+    ("limit", "@drop"): _NOBODY,
+    ("limit", "@jerk"): _PLANNER,
+    ("limit", "@k_position"): _SAFETY,
+    ("limit", "@k_velocity"): _SAFETY,
+    ("limit", "@safety_length_max"): _SAFETY,
+    ("limit", "@safety_length_min"): _SAFETY,
+    ("link", "@type"): _NOBODY,
+    ("link", "self_collision_checking"): _OLD,
+    ("link", "verbose"): _OLD,
+    ("robot", "link_group"): _PLANNER,
+    ("robot", "group"): _PLANNER,
+    ("safety_controller", "@safety_length_max"): _SAFETY,
+    ("visual", "verbose"): _OLD,
+}
+"""By an element's tag and its child's, or its attribute's name after an ``@``."""
