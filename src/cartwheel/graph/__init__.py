@@ -8,18 +8,28 @@ from cartwheel.graph.graph import (
     Service,
     Subscription,
     TopicInfo,
-    resolve_name,
 )
 from cartwheel.graph.mailbox import Mailbox
+from cartwheel.graph.names import resolve_frame, resolve_name
+from cartwheel.graph.parameters import Parameters, ParameterServer
+from cartwheel.graph.reconfigure import ReconfigureParameter, ReconfigureServer, choices
+from cartwheel.graph.transforms import StaticTransforms
 
 __all__ = [
     "Callback",
     "Graph",
     "Mailbox",
+    "ParameterServer",
+    "Parameters",
     "Publisher",
     "Qos",
+    "ReconfigureParameter",
+    "ReconfigureServer",
     "Service",
+    "StaticTransforms",
     "Subscription",
     "TopicInfo",
+    "choices",
+    "resolve_frame",
     "resolve_name",
 ]

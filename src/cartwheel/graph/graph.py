@@ -6,36 +6,20 @@ with a `Mailbox`, and hand messages in through `Graph.post`.
 
 from __future__ import annotations
 
-import re
 import threading
 from collections.abc import Callable, Iterator
+from concurrent.futures import Future
 from dataclasses import dataclass
 from typing import Any, Literal
 
 from cartwheel.errors import GraphError, UnknownNameError
 from cartwheel.graph.mailbox import Mailbox
+from cartwheel.graph.names import resolve_name
+from cartwheel.graph.parameters import Parameters
 
 Callback = Callable[[Any], None]
 Handler = Callable[[Any], Any]
 Qos = Literal["default", "sensor", "latched"]
-
-_NAME = re.compile(r"/[A-Za-z_~][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*\Z")
-
-
-def resolve_name(name: str, namespace: str = "") -> str:
-    """A global topic or service name: ``/…`` stays, anything else goes under the namespace.
-
-    Raises:
-        GraphError: The result is not a name that ROS accepts.
-    """
-    full = name if name.startswith("/") else f"/{namespace.strip('/')}/{name}"
-    full = "/" + "/".join(part for part in full.split("/") if part)
-    if not _NAME.match(full):
-        raise GraphError(
-            f'"{name}" is no valid name',
-            hint="Names hold letters, digits, _ and /, and no part begins with a digit.",
-        )
-    return full
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -72,6 +56,7 @@ class Publisher:
 
     Attributes:
         wanted: Whether anybody would read a message published now.
+        sent: How many messages were published.
     """
 
     def __init__(
@@ -83,6 +68,7 @@ class Publisher:
         self.rate = rate
         self.qos = qos
         self.wanted = False
+        self.sent = 0
 
     @property
     def topic(self) -> str:
@@ -94,6 +80,7 @@ class Publisher:
 
     def publish(self, message: Any) -> None:
         """Delivers to all subscribers at once; on the owner's thread."""
+        self.sent += 1
         if self.qos == "latched":
             self._topic.latched = message
         self._topic.deliver(message)
@@ -123,12 +110,17 @@ class Subscription:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Service:
-    """A service: `handler` takes a request, returns the response; on the owner's thread."""
+    """A service: `handler` takes a request and returns the response.
+
+    It runs on the owner's thread; one that is `threaded`, on its caller's: it does what takes
+    long, such as reading files, and leaves the rest to the owner. Use `Graph.call`.
+    """
 
     name: str
     type: str
     handler: Handler
     node: str
+    threaded: bool = False
 
 
 class Graph:
@@ -144,8 +136,13 @@ class Graph:
         self._lock = threading.RLock()
         self._topics: dict[str, Topic] = {}
         self._services: dict[str, Service] = {}
+        self.parameters = Parameters()
+        self.static_transforms: Any = None
+        """See `StaticTransforms`, which puts itself here."""
         self.changed: int = 0
         """Counts every change of who publishes and subscribes, for those who mirror the graph."""
+        self.on_change: list[Callable[[], None]] = []
+        """Called after each such change, on any thread, the graph locked: must return at once."""
 
     def advertise(
         self,
@@ -197,8 +194,8 @@ class Graph:
             subscription = Subscription(self, topic, callback, node=node)
             topic.subscriptions += (subscription,)
             self._changed(topic)
-            if topic.latched is not None:
-                self.post(lambda: callback(topic.latched))
+            if (latched := topic.latched) is not None:
+                self.post(lambda: callback(latched))
             return subscription
 
     def mailbox(
@@ -217,28 +214,37 @@ class Graph:
         self.post(lambda: topic.deliver(message))
 
     def serve(
-        self, name: str, type_name: str, handler: Handler, *, node: str = "cartwheel"
+        self,
+        name: str,
+        type_name: str,
+        handler: Handler,
+        *,
+        node: str = "cartwheel",
+        threaded: bool = False,
     ) -> Service:
-        """Offers a service of type ``pkg/srv/Name``.
+        """Offers a service of type ``pkg/srv/Name``; see `Service` for the thread it runs on.
 
         Raises:
             GraphError: The name is taken.
         """
+        name = resolve_name(name)
         with self._lock:
             if name in self._services:
                 raise GraphError(
                     f'service "{name}" is offered already by {self._services[name].node}'
                 )
-            service = Service(name=resolve_name(name), type=type_name, handler=handler, node=node)
+            service = Service(
+                name=name, type=type_name, handler=handler, node=node, threaded=threaded
+            )
             self._services[service.name] = service
-            self.changed += 1
+            self._tell_change()
             return service
 
     def withdraw(self, service: Service) -> None:
         """Takes a service off the graph."""
         with self._lock:
             self._services.pop(service.name, None)
-            self.changed += 1
+            self._tell_change()
 
     def service(self, name: str) -> Service:
         """The service of that name.
@@ -250,6 +256,40 @@ class Graph:
             if name not in self._services:
                 raise UnknownNameError("service", name, self._services)
             return self._services[name]
+
+    def call(self, name: str, request: Any) -> Future[Any]:
+        """Calls a service, from any thread but the owner's, which would wait for itself.
+
+        Returns:
+            The response, or the error that the handler raised, as soon as it is there.
+
+        Raises:
+            UnknownNameError: There is no such service.
+        """
+        service = self.service(name)
+        future: Future[Any] = Future()
+
+        def run() -> None:
+            if not future.set_running_or_notify_cancel():
+                return
+            try:
+                response = service.handler(request)
+                if response is None:
+                    raise GraphError(f'service "{service.name}" gave no answer')
+                future.set_result(response)
+            except Exception as error:  # noqa: BLE001 - it is the caller's to handle
+                future.set_exception(error)
+
+        if service.threaded:
+            run()
+        else:
+            self.post(run)
+        return future
+
+    def publishers(self) -> list[Publisher]:
+        """All publishers, by topic."""
+        with self._lock:
+            return [p for topic in self._live() for p in topic.publishers]
 
     def services(self) -> list[Service]:
         """All services, by name."""
@@ -303,6 +343,8 @@ class Graph:
     def _remove_publisher(self, topic: Topic, publisher: Publisher) -> None:
         with self._lock:
             topic.publishers = tuple(p for p in topic.publishers if p is not publisher)
+            if not any(p.qos == "latched" for p in topic.publishers):
+                topic.latched = None
             self._changed(topic)
 
     def _remove_subscription(self, topic: Topic, subscription: Subscription) -> None:
@@ -310,8 +352,13 @@ class Graph:
             topic.subscriptions = tuple(s for s in topic.subscriptions if s is not subscription)
             self._changed(topic)
 
-    def _changed(self, topic: Topic) -> None:
+    def _tell_change(self) -> None:
         self.changed += 1
+        for callback in self.on_change:
+            callback()
+
+    def _changed(self, topic: Topic) -> None:
         # Told to the publishers, who look several times for each message.
         for publisher in topic.publishers:
             publisher.wanted = bool(topic.subscriptions) or publisher.qos == "latched"
+        self._tell_change()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable
 from fractions import Fraction
 
@@ -32,11 +33,10 @@ class Task:
         before: Writes controls, before the step that starts at the due time; or None.
         after: Reads the state of the due time and publishes; or None.
         active: Whether there is anything to do; asked when it is due.
-        step_ns: Length of a step.
         order: Tasks of one time run in this order.
     """
 
-    __slots__ = ("active", "after", "before", "order", "period", "rate")
+    __slots__ = ("active", "after", "before", "order", "period_ns", "rate")
 
     def __init__(
         self,
@@ -45,7 +45,6 @@ class Task:
         before: Callable[[], None] | None,
         after: Callable[[], None] | None,
         active: Callable[[], bool],
-        step_ns: int,
         order: int,
     ) -> None:
         self.rate = rate
@@ -53,33 +52,41 @@ class Task:
         self.after = after
         self.active = active
         self.order = order
-        period = Fraction(step_ns)
+        self.period_ns = Fraction(0)
         if rate > 0:
-            period = max(period, NANOSECONDS / Fraction(rate).limit_denominator(1_000_000))
-        self.period = period / step_ns
+            self.period_ns = NANOSECONDS / Fraction(rate).limit_denominator(1_000_000)
+
+    def period(self, step_ns: int) -> Fraction:
         """In steps; a rate faster than the step runs every step."""
+        return max(self.period_ns / step_ns, Fraction(1))
 
 
 class Beat:
-    """The steps at which the tasks of one period are due: ⌈k period⌉ for k = 0, 1, 2 …
+    """The steps at which the tasks of one period are due: ⌈k period - offset⌉ for k = 0, 1, 2 …
 
     Args:
         period: In steps, 1 or more.
+        offset: Steps of this length between time zero and step zero.
     """
 
-    __slots__ = ("_denominator", "_numerator", "due", "period")
+    __slots__ = ("_denominator", "_numerator", "_offset", "due", "period")
 
-    def __init__(self, period: Fraction) -> None:
+    def __init__(self, period: Fraction, offset: Fraction = Fraction(0)) -> None:
         self.period = period
+        if period == 1:
+            offset = Fraction(0)
         # Integers from here on: fractions would cost more than most tasks do.
-        self._numerator, self._denominator = period.numerator, period.denominator
+        self._denominator = math.lcm(period.denominator, offset.denominator)
+        self._numerator = int(period * self._denominator)
+        self._offset = int(offset * self._denominator)
         self.due = 0
         """The next of them."""
+        self.seek(0)
 
     def seek(self, step: int) -> None:
         """Makes the next due step the first one at or after `step`."""
-        count = (step - 1) * self._denominator // self._numerator + 1
-        self.due = -(-count * self._numerator // self._denominator)
+        count = ((step - 1) * self._denominator + self._offset) // self._numerator + 1
+        self.due = -((self._offset - count * self._numerator) // self._denominator)
 
 
 class Schedule:
@@ -87,11 +94,17 @@ class Schedule:
 
     Args:
         tasks: In any order.
+        step_ns: Length of a step.
+        origin_ns: The time of step zero.
     """
 
-    def __init__(self, tasks: Iterable[Task] = ()) -> None:
-        self._tasks = sorted(tasks, key=lambda task: task.order)
-        self._beats = [Beat(period) for period in {task.period: None for task in self._tasks}]
+    def __init__(self, tasks: Iterable[Task] = (), *, step_ns: int = 1, origin_ns: int = 0) -> None:
+        ordered = sorted(tasks, key=lambda task: task.order)
+        self._tasks = [(task, task.period(step_ns)) for task in ordered]
+        offset = Fraction(origin_ns, step_ns)
+        self._beats = [
+            Beat(period, offset) for period in {period: None for _, period in self._tasks}
+        ]
         self._together: dict[int, tuple[Task, ...]] = {}
         """Tasks of the periods that are due together, by the bits of these periods."""
 
@@ -109,11 +122,6 @@ class Schedule:
         tasks = self._together.get(due)
         if tasks is None:
             periods = {beat.period for i, beat in enumerate(self._beats) if due >> i & 1}
-            tasks = tuple(task for task in self._tasks if task.period in periods)
+            tasks = tuple(task for task, period in self._tasks if period in periods)
             self._together[due] = tasks
         return tasks, upcoming
-
-    def restart(self) -> None:
-        """Time is zero again."""
-        for beat in self._beats:
-            beat.seek(0)

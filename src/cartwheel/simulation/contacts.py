@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Collection
 from typing import Any
 
@@ -9,6 +10,7 @@ import mujoco
 import numpy as np
 
 from cartwheel.simulation.snapshot import Contact
+from cartwheel.world.entry import collision_of, part_name
 
 _GEOM = mujoco.mjtObj.mjOBJ_GEOM
 
@@ -20,8 +22,10 @@ def read_contacts(model: Any, data: Any, names: Collection[str]) -> list[Contact
     """
     wanted = {}
     for name in names:
-        index = mujoco.mj_name2id(model, _GEOM, name)
-        if index >= 0:
+        for number in itertools.count():
+            index = mujoco.mj_name2id(model, _GEOM, part_name(name, number))
+            if index < 0:
+                break
             wanted[index] = name
     if not wanted or data.ncon == 0:
         return []
@@ -47,7 +51,7 @@ def read_contacts(model: Any, data: Any, names: Collection[str]) -> list[Contact
                 found.append(
                     Contact(
                         first=wanted[first],
-                        second=mujoco.mj_id2name(model, _GEOM, second) or "",
+                        second=collision_of(mujoco.mj_id2name(model, _GEOM, second) or ""),
                         position=position,
                         normal=sign * normal,
                         depth=depth,

@@ -10,13 +10,14 @@ import mujoco
 
 from cartwheel.description.model import WorldDescription
 from cartwheel.errors import Diagnostic
-from cartwheel.geometry import Pose, from_wxyz, to_wxyz
+from cartwheel.geometry import Pose, Vec3, from_wxyz, quat_conjugate, rotate, to_wxyz
 from cartwheel.simulation.clock import Task, to_ns
 from cartwheel.simulation.rendering import Renderer
 from cartwheel.world.build import step_of
 from cartwheel.world.entry import scoped
 
 _OBJ = mujoco.mjtObj
+_STILL: Vec3 = (0.0, 0.0, 0.0)
 # By number: numpy's integers equal the enumeration's, yet do not find them in a mapping.
 _STATE_SIZES = {mujoco.mjtJoint.mjJNT_FREE.value: (7, 6), mujoco.mjtJoint.mjJNT_BALL.value: (4, 3)}
 
@@ -34,18 +35,32 @@ class Engine:
         self.seed = seed
         self.step_ns = to_ns(step_of(world))
         self.step = 0
-        """Steps made since time zero."""
+        """Steps made since `origin_ns`."""
+        self.origin_ns = 0
+        """When the present length of a step began to count; time zero at first."""
+        self.rewinds = 0
+        """How often time went back to zero."""
         self.model: Any = None
         self.data: Any = None
         self.renderer = Renderer()
         self.diagnostics: list[Diagnostic] = list(world.diagnostics)
         self.on_diagnostic: list[Callable[[Diagnostic], None]] = []
+        self.on_tasks: list[Callable[[], None]] = []
+        """Called after a task was changed for another."""
         self._orders = itertools.count()
 
     @property
     def time_ns(self) -> int:
         """Simulation time."""
-        return self.step * self.step_ns
+        return self.origin_ns + self.step * self.step_ns
+
+    def steps_until(self, time_ns: int) -> int:
+        """Steps that bring time to `time_ns`, or just beyond it."""
+        return -((self.time_ns - time_ns) // self.step_ns)
+
+    def set_step(self, step_ns: int) -> None:
+        """Makes steps of another length from now on; the model must be compiled for it."""
+        self.origin_ns, self.step, self.step_ns = self.time_ns, 0, step_ns
 
     def task(
         self,
@@ -61,7 +76,6 @@ class Engine:
             before=before,
             after=after,
             active=active,
-            step_ns=self.step_ns,
             order=next(self._orders),
         )
 
@@ -99,10 +113,15 @@ class Engine:
         if count:
             mujoco.mj_step(self.model, self.data, count)
 
-    def rewind(self) -> None:
-        """Time zero, and everything where it was placed."""
+    def rewind(self, *, keep_time: bool = False) -> None:
+        """Everything where it was placed, and time zero unless it shall go on."""
+        time = self.data.time
         mujoco.mj_resetData(self.model, self.data)
-        self.step = 0
+        if keep_time:
+            self.data.time = time
+        else:
+            self.step = self.origin_ns = 0
+            self.rewinds += 1
         self.forward()
 
     def body_id(self, model: str, link: str) -> int:
@@ -119,13 +138,44 @@ class Engine:
         x, y, z = self.data.xpos[body].tolist()
         return Pose((x, y, z), from_wxyz(self.data.xquat[body].tolist()))
 
-    def place(self, joint: int, pose: Pose) -> None:
-        """Moves the body of a free joint, at rest."""
+    def free_joint(self, model: str, link: str) -> int:
+        """The index of the joint that leaves a link free in the world, or -1."""
+        joint = self.joint_id(model, link)
+        free = joint >= 0 and self.model.jnt_type[joint] == mujoco.mjtJoint.mjJNT_FREE
+        return joint if free else -1
+
+    def place(self, joint: int, pose: Pose, linear: Vec3 = _STILL, angular: Vec3 = _STILL) -> None:
+        """Moves the body of a free joint, and sets the motion of its frame.
+
+        Args:
+            joint: Index.
+            pose: In the world.
+            linear: m/s, in the world's axes.
+            angular: rad/s, in the world's axes.
+        """
         position, velocity = self.model.jnt_qposadr[joint], self.model.jnt_dofadr[joint]
         self.data.qpos[position : position + 3] = pose.position
         self.data.qpos[position + 3 : position + 7] = to_wxyz(pose.orientation)
-        self.data.qvel[velocity : velocity + 6] = 0
+        self.data.qvel[velocity : velocity + 3] = linear
+        # MuJoCo keeps a free body's turning in the body's own axes.
+        turning = rotate(quat_conjugate(pose.orientation), angular)
+        self.data.qvel[velocity + 3 : velocity + 6] = turning
         self.forward()
+
+    def set_joint(self, joint: int, position: float) -> None:
+        """Turns a joint of one degree of freedom, and stops it."""
+        self.data.qpos[self.model.jnt_qposadr[joint]] = position
+        self.data.qvel[self.model.jnt_dofadr[joint]] = 0.0
+
+    def joint_state(self, model: str, joint: str) -> tuple[list[float], list[float]]:
+        """Positions in rad or m and rates of a joint's axes; none where it turns about no axis."""
+        positions, rates = [], []
+        for name in (joint, f"{joint}::axis2"):
+            index = self.joint_id(model, name)
+            if index >= 0 and int(self.model.jnt_type[index]) not in _STATE_SIZES:
+                positions.append(self.joint_position(index))
+                rates.append(float(self.data.qvel[self.model.jnt_dofadr[index]]))
+        return positions, rates
 
     def joint_position(self, joint: int) -> float:
         """Of a joint of one degree of freedom, rad or m."""

@@ -15,11 +15,14 @@ import numpy as np
 
 from cartwheel.description.model import CameraIntrinsics
 from cartwheel.geometry import Array, Pose, Quat, Vec3, from_wxyz, quat_multiply, rotate
-from cartwheel.world.entry import Motor, scoped
+from cartwheel.simulation.pushing import BodyDriveHandle, WrenchHandle
+from cartwheel.simulation.servo import ServoHandle
+from cartwheel.world.entry import ROTOR, Motor, scoped
 
 _OBJ = mujoco.mjtObj
 _XBODY = _OBJ.mjOBJ_XBODY
 _JOINT = mujoco.mjtJoint
+_MOTOR_ROW = mujoco.mjtConstraint.mjCNSTR_FRICTION_TENDON.value
 
 
 class LinkHandle:
@@ -105,6 +108,24 @@ class LinkHandle:
             )
         return acceleration
 
+    def reaction(self, point: Sequence[float] = (0.0, 0.0, 0.0)) -> tuple[Array, Array]:
+        """What the link exerts on its parent through their joint: force in N, torque in N m.
+
+        Each has shape (3,), in the link's axes; the torque is about `point`, in the link, m.
+        """
+        mujoco.mj_rnePostConstraint(self._model, self._data)
+        # MuJoCo keeps what the parent exerts on the link, about the model's centre of mass.
+        torque, force = self._data.cfrc_int[self.id, :3], self._data.cfrc_int[self.id, 3:]
+        turn: Array = self._data.xmat[self.id].reshape(3, 3)
+        about = self._position + turn @ np.asarray(point, dtype=float)
+        torque = torque - np.cross(about - self._centre, force)
+        return -turn.T @ force, -turn.T @ torque
+
+    @property
+    def moves(self) -> bool:
+        """Whether it can move at all: neither static nor bolted to the world."""
+        return bool(self._model.body_treeid[self.id] >= 0)
+
 
 class JointHandle:
     """A joint of one degree of freedom."""
@@ -116,7 +137,10 @@ class JointHandle:
     def bind(self, model: Any, data: Any) -> None:
         """Resolves the name in a compiled model."""
         self.id = mujoco.mj_name2id(model, _OBJ.mjOBJ_JOINT, scoped(self.model_name, self.name))
+        self._data = data
         self._qpos, self._qvel = data.qpos, data.qvel
+        rotor = scoped(self.model_name, self.name, ROTOR)
+        self._motor = mujoco.mj_name2id(model, _OBJ.mjOBJ_TENDON, rotor)
         self._position_index = int(model.jnt_qposadr[self.id])
         self._velocity_index = int(model.jnt_dofadr[self.id])
         body = int(model.jnt_bodyid[self.id])
@@ -145,6 +169,16 @@ class JointHandle:
     def velocity(self, value: float) -> None:
         self._qvel[self._velocity_index] = value
 
+    @property
+    def effort(self) -> float:
+        """What drives it, N m or N: a motor, a servo or a commanded effort."""
+        data = self._data
+        effort = float(data.qfrc_actuator[self._velocity_index])
+        if self._motor >= 0:
+            rows = (data.efc_type == _MOTOR_ROW) & (data.efc_id == self._motor)
+            effort += float(data.efc_force[rows].sum())
+        return effort
+
     def child_place(self) -> tuple[Vec3, Quat]:
         """Position and orientation of the child link in the parent link, where it is turned to.
 
@@ -168,46 +202,30 @@ class JointHandle:
 
 
 class MotorHandle:
-    """A driven joint: a velocity servo with limited effort, or an effort.
+    """A joint driven at a velocity with limited effort; at zero it brakes.
 
-    A servo that is told to stand brakes: dry friction of the same limit takes its place. It
-    holds a load without the small speed that a servo needs to feel one.
+    Dry friction between the joint and a rotor that turns at the wanted velocity: exact below
+    the limit, and at the limit the joint slips. A servo as strong as most motors are would, on
+    a wheel as light as most are, swing past its target at each step. Gazebo's physics drives
+    joints by the same kind of constraint.
     """
 
     def __init__(self, model: str, motor: Motor) -> None:
         self.model_name = model
         self.motor = motor
         self.target = 0.0
-        self._braked = False
 
     def bind(self, model: Any, data: Any) -> None:
         """Resolves the name in a compiled model."""
-        name = scoped(self.model_name, self.motor.joint)
-        self.id = mujoco.mj_name2id(model, _OBJ.mjOBJ_ACTUATOR, name)
-        joint = mujoco.mj_name2id(model, _OBJ.mjOBJ_JOINT, name)
-        self._ctrl = data.ctrl
-        self._range = model.actuator_forcerange[self.id]
-        self._friction, self._dof = model.dof_frictionloss, int(model.jnt_dofadr[joint])
-        self._limit = tuple(self._range.tolist())
-        self._own_friction = float(self._friction[self._dof])
-        most = self.motor.max_effort
-        self._brake = None
-        if self.motor.mode == "velocity" and most is not None:
-            if model.jnt_actfrclimited[joint]:
-                most = min(most, float(model.jnt_actfrcrange[joint, 1]))
-            self._brake = most + self._own_friction
-        self._braked = False
+        name = scoped(self.model_name, self.motor.joint, ROTOR)
+        self.id = mujoco.mj_name2id(model, _OBJ.mjOBJ_JOINT, name)
+        self._qvel, self._dof = data.qvel, int(model.jnt_dofadr[self.id])
         self.command(self.target)
 
     def command(self, target: float) -> None:
-        """Sets the target: rad/s or m/s of a velocity motor, N m or N of an effort motor."""
+        """Sets the target, rad/s or m/s."""
         self.target = target
-        self._ctrl[self.id] = target
-        stands = target == 0.0 and self._brake is not None
-        if stands != self._braked:
-            self._braked = stands
-            self._range[:] = (0.0, 0.0) if stands else self._limit
-            self._friction[self._dof] = self._brake if stands else self._own_friction
+        self._qvel[self._dof] = target
 
 
 class CameraHandle:
@@ -224,4 +242,12 @@ class CameraHandle:
         self.id = mujoco.mj_name2id(model, _OBJ.mjOBJ_CAMERA, scoped(self.model_name, self.name))
 
 
-Handle = LinkHandle | JointHandle | MotorHandle | CameraHandle
+Handle = (
+    LinkHandle
+    | JointHandle
+    | MotorHandle
+    | ServoHandle
+    | CameraHandle
+    | BodyDriveHandle
+    | WrenchHandle
+)

@@ -2,14 +2,24 @@
 
 from __future__ import annotations
 
+import contextlib
 import zlib
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Iterator
+from typing import Any
 
 import numpy as np
 
-from cartwheel.description.model import CameraIntrinsics, RobotDescription
-from cartwheel.errors import Diagnostic, Origin, UnknownNameError
-from cartwheel.geometry import Pose
+from cartwheel.description.kinematics import link_poses
+from cartwheel.description.model import CameraIntrinsics, Mimic, RobotDescription, WorldDescription
+from cartwheel.errors import (
+    CartwheelError,
+    Diagnostic,
+    Origin,
+    PluginError,
+    StaticModelError,
+    UnknownNameError,
+)
+from cartwheel.geometry import Array, Pose
 from cartwheel.simulation.clock import NANOSECONDS, Task, always
 from cartwheel.simulation.contacts import read_contacts
 from cartwheel.simulation.engine import Engine
@@ -20,17 +30,32 @@ from cartwheel.simulation.handles import (
     LinkHandle,
     MotorHandle,
 )
+from cartwheel.simulation.pushing import BodyDriveHandle, WrenchHandle
+from cartwheel.simulation.rays import RayHandle
+from cartwheel.simulation.rendering import Depth, Image
+from cartwheel.simulation.servo import ServoHandle
 from cartwheel.simulation.snapshot import Contact
-from cartwheel.world.entry import CameraMount, ModelEntry, Motor, scoped
+from cartwheel.world.entry import BodyDrive, CameraMount, ModelEntry, Motor, scoped
+
+_DRIVE_WEIGHTS = 5.0
+"""What a servo of a whole model may push, in its weights: well above any friction."""
+_DRIVE_ARM = 0.1
+"""m; the least arm of that push that its torque corresponds to."""
 
 
 class Part:
     """What a plugin gets of the simulation; for the simulation's thread alone."""
 
-    def __init__(self, engine: Engine, entry: ModelEntry) -> None:
+    def __init__(
+        self, engine: Engine, entry: ModelEntry, *, namespace: str = "", frame_prefix: str = ""
+    ) -> None:
         self._engine = engine
         self._entry = entry
-        self.handles: list[Handle] = []
+        self.namespace = namespace
+        """Of topics and services whose plugin names none; "" is the global one."""
+        self.frame_prefix = frame_prefix
+        """Of all frames: ROS 1's tf_prefix."""
+        self.handles: list[Handle | RayHandle] = []
         self.tasks: list[Task] = []
         self.diagnostics: list[Diagnostic] = []
         self.spawned = False
@@ -43,6 +68,11 @@ class Part:
     @property
     def description(self) -> RobotDescription:
         return self._entry.description
+
+    @property
+    def world(self) -> WorldDescription:
+        """The world that the model stands in, as described."""
+        return self._engine.world
 
     @property
     def time_ns(self) -> int:
@@ -73,12 +103,17 @@ class Part:
 
         Raises:
             UnknownNameError: There is none; placed at `origin`.
+            StaticModelError: The model is static.
         """
         movable = [
             joint.name
             for joint in self.description.joints
             if joint.type in ("revolute", "continuous", "prismatic")
         ]
+        if self.description.static:
+            raise StaticModelError(
+                f'model "{self.name}" is static: its joints do not move', origin=origin
+            )
         if name not in movable:
             raise UnknownNameError("movable joint", name, movable, origin=origin)
         handle = JointHandle(self.name, name)
@@ -100,6 +135,84 @@ class Part:
         self.handles.append(handle)
         return handle
 
+    def servo(
+        self, joint: str, *, max_effort: float | None, origin: Origin | None = None
+    ) -> ServoHandle:
+        """A joint's drive that takes efforts, velocities or positions.
+
+        Raises:
+            PluginError: Another plugin drives the joint by a law of its own.
+        """
+        self.joint(joint, origin=origin)
+        motor = Motor(joint=joint, mode="servo", max_effort=max_effort)
+        if self._entry.motors.setdefault(joint, motor).mode != "servo":
+            raise PluginError(f'joint "{joint}" is driven by two plugins', origin=origin)
+        handle = ServoHandle(self.name, self._entry.motors[joint])
+        self.handles.append(handle)
+        self.schedule(0, before=handle.follow, active=lambda: handle.follows)
+        return handle
+
+    def mimic(self, joint: str, mimic: Mimic, *, origin: Origin | None = None) -> None:
+        """Makes a joint follow another one.
+
+        Raises:
+            UnknownNameError: One of the two does not exist or does not move; placed at `origin`.
+        """
+        for name in (joint, mimic.joint):
+            self.joint(name, origin=origin)
+        self._entry.mimics[joint] = mimic
+
+    def body_drive(self, *, origin: Origin | None = None) -> BodyDriveHandle:
+        """A servo that moves the model as a whole, by its canonical link.
+
+        It pushes at the centre of mass with at most `_DRIVE_WEIGHTS` times the model's weight.
+
+        Raises:
+            PluginError: The model cannot move, or has no mass.
+        """
+        description = self.description
+        link = description.link(description.canonical_link)
+        bolted = any(j.child == description.canonical_link for j in description.joints)
+        if description.static or bolted or link is None or description.mass <= 0:
+            raise PluginError(
+                f'model "{self.name}" cannot be moved: it is fixed or has no mass', origin=origin
+            )
+        poses = link_poses(description, {})
+        to_link = poses[link.name].inverse()
+        centre, reach = np.zeros(3), 0.0
+        places = [
+            (other.inertial.mass, (to_link @ poses[other.name]).apply(other.inertial.pose.position))
+            for other in description.links
+            if other.inertial is not None
+        ]
+        for mass, place in places:
+            centre += mass / description.mass * np.array(place)
+        for mass, place in places:
+            reach += mass / description.mass * float(np.sum((np.array(place) - centre) ** 2))
+        force = _DRIVE_WEIGHTS * 9.8 * description.mass
+        drive = BodyDrive(
+            link=link.name,
+            centre=(float(centre[0]), float(centre[1]), float(centre[2])),
+            max_force=force,
+            max_torque=force * max(_DRIVE_ARM, 2 * reach**0.5),
+        )
+        self._entry.drives.append(drive)
+        handle = BodyDriveHandle(self.name, drive)
+        self.handles.append(handle)
+        self.schedule(0, before=handle.hold)
+        return handle
+
+    def wrench(self, link: str, *, origin: Origin | None = None) -> WrenchHandle:
+        """A push on a link.
+
+        Raises:
+            UnknownNameError: There is no such link; placed at `origin`.
+        """
+        self.link(link, origin=origin)
+        handle = WrenchHandle(self.name, link)
+        self.handles.append(handle)
+        return handle
+
     def camera(
         self, name: str, link: str, pose: Pose, intrinsics: CameraIntrinsics
     ) -> CameraHandle:
@@ -117,6 +230,23 @@ class Part:
         self.handles.append(handle)
         return handle
 
+    def rays(
+        self,
+        link: str,
+        pose: Pose,
+        directions: Array,
+        *,
+        minimum: float,
+        maximum: float,
+        visuals: bool = False,
+    ) -> RayHandle:
+        """Rays from a link into the world; see `RayHandle`."""
+        handle = RayHandle(
+            self.name, link, pose, directions, minimum=minimum, maximum=maximum, visuals=visuals
+        )
+        self.handles.append(handle)
+        return handle
+
     def schedule(
         self,
         rate: float,
@@ -124,9 +254,26 @@ class Part:
         before: Callable[[], None] | None = None,
         after: Callable[[], None] | None = None,
         active: Callable[[], bool] = always,
-    ) -> None:
+    ) -> Task:
         """Does something at a rate in Hz; 0 is every step. See `Task`."""
-        self.tasks.append(self._engine.task(rate, before=before, after=after, active=active))
+        task = self._engine.task(rate, before=before, after=after, active=active)
+        self.tasks.append(task)
+        return task
+
+    def reschedule(self, task: Task, rate: float) -> Task:
+        """The task at another rate from now on; the given one is void."""
+        made = self._engine.task(rate, before=task.before, after=task.after, active=task.active)
+        made.order = task.order
+        self.tasks[self.tasks.index(task)] = made
+        for callback in self._engine.on_tasks:
+            callback()
+        return made
+
+    def period_ns(self, rate: float) -> int:
+        """The mean time between the turns of a task of a rate in Hz; 0 is every step."""
+        if rate <= 0:
+            return self._engine.step_ns
+        return max(self._engine.step_ns, round(NANOSECONDS / rate))
 
     def random(self, name: str) -> np.random.Generator:
         """The noise of this moment, a sequence of its own for each named user.
@@ -147,13 +294,39 @@ class Part:
         names = {scoped(self.name, collision) for collision in collisions}
         return read_contacts(self._engine.model, self._engine.data, names)
 
-    def render(self, camera: CameraHandle) -> np.ndarray[tuple[int, int, int], np.dtype[np.uint8]]:
+    @contextlib.contextmanager
+    def undone_on_error(self) -> Iterator[None]:
+        """Takes back what was asked for in between where that ends in an error of the user's."""
+        entry = self._entry
+        lists: tuple[list[Any], ...] = (self.handles, self.tasks, entry.drives, entry.cameras)
+        tables: tuple[dict[str, Any], ...] = (entry.motors, entry.mimics)
+        lengths = [len(each) for each in lists]
+        copies = [dict(each) for each in tables]
+        try:
+            yield
+        except CartwheelError:
+            for each, length in zip(lists, lengths, strict=True):
+                del each[length:]
+            for table, copy in zip(tables, copies, strict=True):
+                table.clear()
+                table.update(copy)
+            raise
+
+    def render(self, camera: CameraHandle) -> Image:
         """An image through a camera, shape (height, width, 3), RGB.
 
         Raises:
             SimulationError: No OpenGL; says what to install.
         """
         return self._engine.renderer.render(self._engine.data, camera)
+
+    def render_with_depth(self, camera: CameraHandle) -> tuple[Image, Depth]:
+        """The image, and depths along the camera's axis in m, shape (height, width).
+
+        Raises:
+            SimulationError: No OpenGL; says what to install.
+        """
+        return self._engine.renderer.render_with_depth(self._engine.data, camera)
 
     def report(self, diagnostic: Diagnostic) -> None:
         """Tells the user something about this model; also while it runs."""

@@ -21,6 +21,7 @@ _PIXEL = np.dtype((np.void, 3))
 """Three bytes as one value: numpy fills those by a mask many times faster."""
 
 Image = np.ndarray[tuple[int, int, int], np.dtype[np.uint8]]
+Depth = np.ndarray[tuple[int, int], np.dtype[np.float32]]
 
 
 class Renderer:
@@ -62,6 +63,29 @@ class Renderer:
         Raises:
             SimulationError: No OpenGL; says what to install.
         """
+        pixels, _ = self._draw(data, camera)
+        return np.ascontiguousarray(pixels[::-1])
+
+    def render_with_depth(self, data: Any, camera: CameraHandle) -> tuple[Image, Depth]:
+        """The image, and how far ahead what each pixel shows is: m, shape (height, width).
+
+        Along the camera's axis, not along the pixel's ray; inf where nothing is.
+
+        Raises:
+            SimulationError: No OpenGL; says what to install.
+        """
+        pixels, buffer = self._draw(data, camera)
+        lens = camera.intrinsics
+        # The buffer holds near (far - z) / (z (far - near)): 1 at the near plane, 0 at the far.
+        with np.errstate(divide="ignore"):
+            depths = np.float32(lens.near * lens.far) / (
+                np.float32(lens.near) + buffer[::-1] * np.float32(lens.far - lens.near)
+            )
+        depths[buffer[::-1] == 0] = np.inf
+        return np.ascontiguousarray(pixels[::-1]), depths
+
+    def _draw(self, data: Any, camera: CameraHandle) -> tuple[Image, Depth]:
+        """Pixels and the depth buffer, both from the lowest row upwards."""
         lens = camera.intrinsics
         self._prepare(lens.width, lens.height)
         self._camera.fixedcamid = camera.id
@@ -84,11 +108,11 @@ class Renderer:
         viewport = mujoco.MjrRect(0, 0, lens.width, lens.height)
         mujoco.mjr_render(viewport, self._scene, self._context)
         pixels = np.empty((lens.height, lens.width, 3), dtype=np.uint8)
-        depths = np.empty((lens.height, lens.width), dtype=np.float32)
-        mujoco.mjr_readPixels(pixels, depths, viewport, self._context)
+        buffer = np.empty((lens.height, lens.width), dtype=np.float32)
+        mujoco.mjr_readPixels(pixels, buffer, viewport, self._context)
         # The background, where nothing was drawn.
-        pixels.reshape(-1).view(_PIXEL)[(depths == 1.0).ravel()] = self._background
-        return np.ascontiguousarray(pixels[::-1])
+        pixels.reshape(-1).view(_PIXEL)[(buffer == 0).ravel()] = self._background
+        return pixels, buffer
 
     def _prepare(self, width: int, height: int) -> None:
         if self._gl is None:
@@ -102,6 +126,8 @@ class Renderer:
             for flag in ("SHADOW", "REFLECTION", "FOG", "HAZE", "SKYBOX"):
                 flags[getattr(mujoco.mjtRndFlag, f"mjRND_{flag}")] = 0
             self._context = mujoco.MjrContext(self._model, mujoco.mjtFontScale.mjFONTSCALE_50)
+            # Zero is the far end, where few bits count for much.
+            self._context.readDepthMap = mujoco.mjtDepthMap.mjDEPTH_ZEROFAR.value
             self._size = (self._context.offWidth, self._context.offHeight)
             mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN.value, self._context)
         if width > self._size[0] or height > self._size[1]:

@@ -10,9 +10,9 @@ import numpy as np
 DEEP = 0.005
 """m; no contact between models that met in motion gets that deep."""
 _SPEED = 0.5
-"""m/s of each model's root, at most, while it overlaps another."""
+"""m/s of each model's root and of each of its slides, at most, while it overlaps another."""
 _TURN = 2.0
-"""rad/s."""
+"""rad/s, of its root and of each of its hinges."""
 
 
 class Separation:
@@ -75,6 +75,15 @@ class Separation:
                 speed = float(np.linalg.norm(data.qvel[part]))
                 if speed > most:
                     data.qvel[part] *= most / speed
+            # Limbs that are pushed out throw the rest after them.
+            limbs = slice(start + 6, start + int(model.tree_dofnum[model.body_treeid[root]]))
+            most_of_each = np.where(_turns(model, limbs), _TURN, _SPEED)
+            data.qvel[limbs] = np.clip(data.qvel[limbs], -most_of_each, most_of_each)
+
+
+def _turns(model: Any, dofs: slice) -> Any:
+    """Which degrees of freedom turn; all others slide."""
+    return model.jnt_type[model.dof_jntid[dofs]] != mujoco.mjtJoint.mjJNT_SLIDE
 
 
 def _deep(model: Any, data: Any) -> list[tuple[int, int, float]]:

@@ -3,53 +3,34 @@
 from __future__ import annotations
 
 import itertools
+import math
 import queue
-from collections.abc import Callable
+import threading
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future
-from typing import Any, Protocol, TypeVar
+from typing import Any, TypeVar
 
 from cartwheel.description.model import RobotDescription, WorldDescription
 from cartwheel.errors import Diagnostic, UnknownNameError, WorldError
-from cartwheel.geometry import Pose
-from cartwheel.simulation.clock import Schedule, Task, always
+from cartwheel.geometry import Pose, Vec3
+from cartwheel.simulation.adjusting import adjust
+from cartwheel.simulation.clock import Schedule, Task, always, to_ns
 from cartwheel.simulation.engine import Engine
+from cartwheel.simulation.forces import Forces
 from cartwheel.simulation.guard import Guard
 from cartwheel.simulation.observing import Observer
 from cartwheel.simulation.part import Part
+from cartwheel.simulation.placing import place_model, with_mimics
+from cartwheel.simulation.resident import Attach, Resident
 from cartwheel.simulation.separation import Separation
 from cartwheel.simulation.snapshot import RunState, Scene, Snapshot
 from cartwheel.world import build, unused
+from cartwheel.world.build import step_of
 from cartwheel.world.entry import ModelEntry
 
 T = TypeVar("T")
 _GUARD_INTERVAL_NS = 50_000_000
-
-
-class Behaviour(Protocol):
-    """What a plugin is to the simulation."""
-
-    def reset(self) -> None:
-        """Time goes back to zero."""
-
-    def close(self) -> None:
-        """The model leaves the world."""
-
-
-Attach = Callable[[Part], list[Behaviour]]
-"""Makes the plugins of a model that is about to be spawned."""
-
-
-class _Resident:
-    """A model with its part and plugins."""
-
-    def __init__(self, entry: ModelEntry, part: Part) -> None:
-        self.entry = entry
-        self.part = part
-        self.behaviours: list[Behaviour] = []
-
-    def close(self) -> None:
-        for behaviour in self.behaviours:
-            behaviour.close()
+_STILL: Vec3 = (0.0, 0.0, 0.0)
 
 
 class Simulation:
@@ -74,19 +55,22 @@ class Simulation:
         self.steps_allowed: int | None = None
         """Steps until a paused simulation pauses again; None while it is not stepping singly."""
         self.commands: queue.SimpleQueue[Callable[[], None]] = queue.SimpleQueue()
+        self.owner: int | None = None
+        """The thread that ran it last; None while none has."""
         self.on_reset: list[Callable[[], None]] = []
         """Called after time went back to zero."""
+        self.forces = Forces(self.engine)
         self._attach = attach
-        self._residents: dict[str, _Resident] = {}
+        self._residents: dict[str, Resident] = {}
         self._schedule = Schedule()
         self._world_tasks: list[Task] = []
+        self.engine.on_tasks.append(self._gather_tasks)
         self._guard = Guard()
         self._guard_due = 0
         self._separation = Separation()
         self._version = 0
         self._compile({})
-        for description in world.models:
-            self.spawn(description, pose=description.pose)
+        self._populate(world.models)
 
     @property
     def world(self) -> WorldDescription:
@@ -121,7 +105,7 @@ class Simulation:
 
     @property
     def current_step(self) -> int:
-        """Steps made since time zero."""
+        """Steps made since time zero, or since their length was last changed."""
         return self.engine.step
 
     @property
@@ -138,17 +122,20 @@ class Simulation:
         Raises:
             SimulationError: The state is no longer finite.
         """
-        engine = self.engine
-        target = -(-target_ns // engine.step_ns)
-        while engine.step < target:
-            step = engine.step
+        engine, forces = self.engine, self.forces
+        while engine.steps_until(target_ns) > 0:
+            rewinds = engine.rewinds
             self.drain()
-            if engine.step != step:
+            if engine.rewinds != rewinds:
                 return
             if self.run_state is not RunState.RUNNING and not self.steps_allowed:
                 return
+            change = forces.serve() if forces.active else None
             due, forwarded = self._serve()
-            count = 1 if self._separation.active else min(target, due) - step
+            if change is not None:
+                due = min(due, change)
+            left = min(engine.steps_until(target_ns), due - engine.step)
+            count = 1 if self._separation.active else left
             if self.steps_allowed is not None:
                 count = min(count, self.steps_allowed)
                 self.steps_allowed -= count
@@ -160,6 +147,7 @@ class Simulation:
 
     def drain(self) -> None:
         """Runs the commands that other threads posted."""
+        self.owner = threading.get_ident()
         while not self.commands.empty():
             self.commands.get()()
 
@@ -219,16 +207,32 @@ class Simulation:
         """Sets the wanted real-time factor; None is as fast as it can."""
         self.speed = speed
 
-    def reset(self) -> None:
-        """Takes time back to zero and every model to where it was spawned."""
-        self.engine.rewind()
+    def reset(self, *, keep_time: bool = False) -> None:
+        """Takes every model to where it was spawned, and time back to zero.
+
+        Args:
+            keep_time: Time goes on instead, and so does what acts on links and joints.
+        """
+        moved = [each for each in self._residents.values() if each.entry.pose != each.start]
+        for resident in moved:
+            resident.entry.pose = resident.start
+        if moved:
+            self._compile(self._residents)
+        self.engine.rewind(keep_time=keep_time)
         self._guard_due = 0
         self._guard.forget()
         self._separation.forget()
+        if not keep_time:
+            self.forces.forget()
+        self.forces.bind()
         for resident in self._residents.values():
             for behaviour in resident.behaviours:
                 behaviour.reset()
-        self._schedule.restart()
+            for handle in resident.drives.values():
+                handle.command(handle.target)
+        if keep_time:
+            return
+        self._gather_tasks()
         for callback in self.on_reset:
             callback()
 
@@ -243,6 +247,9 @@ class Simulation:
         future: Future[T] = Future()
 
         def run() -> None:
+            # A caller that lost patience has cancelled it.
+            if not future.set_running_or_notify_cancel():
+                return
             try:
                 future.set_result(function())
             except Exception as error:  # noqa: BLE001 - it is the caller's to handle
@@ -259,7 +266,13 @@ class Simulation:
         return tuple(self._residents)
 
     def spawn(
-        self, description: RobotDescription, *, name: str | None = None, pose: Pose | None = None
+        self,
+        description: RobotDescription,
+        *,
+        name: str | None = None,
+        pose: Pose | None = None,
+        namespace: str = "",
+        frame_prefix: str = "",
     ) -> str:
         """Puts a model into the world; everything else keeps its state.
 
@@ -267,6 +280,8 @@ class Simulation:
             description: Of the model.
             name: In this world; the description's own when None.
             pose: Of its root link in the world; the description's own when None.
+            namespace: Of its topics and services, where a plugin names none.
+            frame_prefix: Of its frames.
 
         Returns:
             The name.
@@ -276,27 +291,13 @@ class Simulation:
             PluginError: A plugin's parameters make no sense; nothing has changed.
         """
         name = name or description.name
-        if not name or "::" in name:
-            raise WorldError(f'"{name}" is no name for a model')
-        if name in self._residents:
-            raise WorldError(
-                f'a model named "{name}" stands in the world already',
-                origin=description.origin,
-                hint=f'Give it another with --model, such as "{self._free_name(name)}".',
-            )
-        entry = ModelEntry(name=name, description=description, pose=pose or description.pose)
-        resident = _Resident(entry, Part(self.engine, entry))
+        resident = self._admit(description, name, pose, namespace, frame_prefix)
         try:
-            resident.behaviours = self._attach(resident.part)
             self._compile({**self._residents, name: resident})
         except Exception:
             resident.close()
             raise
-        resident.part.spawned = True
-        notes = (*description.diagnostics, *resident.part.diagnostics, *unused(description))
-        for diagnostic in notes:
-            self.engine.report(diagnostic)
-        self._separate(name)
+        self._welcome(name)
         return name
 
     def delete(self, name: str) -> None:
@@ -307,6 +308,7 @@ class Simulation:
         """
         resident = self._resident(name)
         self._compile({key: value for key, value in self._residents.items() if key != name})
+        self.forces.drop(name)
         resident.close()
 
     def pose(self, name: str) -> Pose:
@@ -331,6 +333,141 @@ class Simulation:
             self.engine.place(joint, pose @ entry.description.canonical_pose)
         self._separate(name)
 
+    def namespace(self, name: str) -> str:
+        """Where a model's topics and services are; empty for the root.
+
+        Raises:
+            UnknownNameError: There is no such model.
+        """
+        return self._resident(name).part.namespace
+
+    def moves(self, name: str) -> bool:
+        """Whether a model is free in the world: neither static nor fixed to it.
+
+        Raises:
+            UnknownNameError: There is no such model.
+        """
+        link = self._resident(name).entry.description.canonical_link
+        return self.engine.free_joint(name, link) >= 0
+
+    def set_state(
+        self, name: str, pose: Pose, *, linear: Vec3 = _STILL, angular: Vec3 = _STILL
+    ) -> None:
+        """Moves a model's frame, and lets the model go on from there as one body.
+
+        Its joints keep their positions and stand. A model that is fixed in the world is moved
+        with what it is fixed to; it has no speed.
+
+        Args:
+            name: Of the model.
+            pose: Of its frame in the world.
+            linear: m/s, of the frame's origin, in the world's axes.
+            angular: rad/s, in the world's axes.
+
+        Raises:
+            UnknownNameError: There is no such model.
+        """
+        entry = self._resident(name).entry
+        if self.moves(name):
+            place_model(self.engine, entry, pose, linear, angular)
+        elif entry.pose != pose:
+            entry.pose = pose
+            self._compile(self._residents)
+        self._separate(name)
+
+    def set_joint_positions(self, name: str, positions: Mapping[str, float]) -> None:
+        """Turns joints of one degree of freedom to rad or m; they stand there.
+
+        Joints that mimic them go along.
+
+        Raises:
+            UnknownNameError: There is no such model or joint.
+        """
+        description = self._resident(name).entry.description
+        known = [other for model, other in self.scene.joints if model == name]
+        for joint in positions:
+            if joint not in known:
+                raise UnknownNameError("joint", joint, known)
+        for joint, position in with_mimics(description, positions).items():
+            self.engine.set_joint(self.engine.joint_id(name, joint), position)
+        self.engine.forward()
+        self._separate(name)
+
+    def drive(
+        self,
+        name: str,
+        joint: str,
+        *,
+        velocity: float | None = None,
+        max_effort: float | None = None,
+    ) -> None:
+        """Drives a joint at a velocity with limited effort, as ODE's joint motors do.
+
+        At velocity 0 it brakes. A joint that a plugin drives gets the plugin's velocity.
+
+        Args:
+            name: Of the model.
+            joint: Of one degree of freedom.
+            velocity: rad/s or m/s; None leaves it as it is, which is 0 at first.
+            max_effort: N m or N; None leaves it as it is; 0 ends it.
+
+        Raises:
+            UnknownNameError: There is no such model or joint.
+            WorldError: A plugin drives the joint by effort or position.
+        """
+        if self._resident(name).motorise(joint, max_effort):
+            self._compile(self._residents)
+        drives = self._resident(name).drives
+        if velocity is not None and joint in drives:
+            drives[joint].command(velocity)
+
+    def driven(self, name: str, joint: str) -> bool:
+        """Whether `drive` drives a joint."""
+        return joint in self._resident(name).drives
+
+    def redescribe(self, name: str, description: RobotDescription) -> None:
+        """Goes on with other properties of a model: of its links, or of its joints.
+
+        The model is compiled anew and keeps its state; what acts on it goes on.
+
+        Raises:
+            UnknownNameError: There is no such model.
+            WorldError: It cannot be built; nothing has changed.
+        """
+        entry = self._resident(name).entry
+        before = entry.description
+        entry.description = description
+        try:
+            self._compile(self._residents)
+        except Exception:
+            entry.description = before
+            raise
+
+    def change_world(self, world: WorldDescription) -> None:
+        """Goes on with other gravity, lights or step length; models are left alone.
+
+        Raises:
+            WorldError: It cannot be built; nothing has changed.
+        """
+        engine = self.engine
+        if adjust(engine, world):
+            self._observe()
+            return
+        before, engine.world = engine.world, world
+        try:
+            self._compile(self._residents)
+        except Exception:
+            engine.world = before
+            raise
+
+    def frame_prefix(self, name: str) -> str:
+        """Of a model's frames, as it was spawned.
+
+        Raises:
+            UnknownNameError: There is no such model.
+        """
+        return self._resident(name).part.frame_prefix
+
     def joint_position(self, name: str, joint: str) -> float:
         """Position of a joint of one degree of freedom, rad or m.
 
@@ -350,34 +487,108 @@ class Simulation:
         before: Callable[[], None] | None = None,
         after: Callable[[], None] | None = None,
         active: Callable[[], bool] = always,
-    ) -> None:
+    ) -> Task:
         """Does something of the world's at a rate in Hz, whatever models there are; see `Task`."""
-        self._world_tasks.append(self.engine.task(rate, before=before, after=after, active=active))
+        task = self.engine.task(rate, before=before, after=after, active=active)
+        self._world_tasks.append(task)
+        self._gather_tasks()
+        return task
+
+    def unschedule(self, task: Task) -> None:
+        """Does it no longer."""
+        self._world_tasks.remove(task)
         self._gather_tasks()
 
     def _gather_tasks(self) -> None:
         tasks = [task for resident in self._residents.values() for task in resident.part.tasks]
-        self._schedule = Schedule([*self._world_tasks, *tasks])
+        self._schedule = Schedule(
+            [*self._world_tasks, *tasks],
+            step_ns=self.step_ns,
+            origin_ns=self.engine.origin_ns,
+        )
 
-    def _separate(self, name: str) -> None:
-        """Sees to it that a model that was put into another one comes out gently."""
+    def _populate(self, models: Sequence[RobotDescription]) -> None:
+        """Puts the world's own models into it, all at once: each compilation costs as much."""
+        for description in models:
+            try:
+                resident = self._admit(description, description.name)
+            except Exception:
+                self.close()
+                raise
+            self._residents[description.name] = resident
+        self._compile(self._residents)
+        for index, description in enumerate(models):
+            self._welcome(description.name, before=models[index + 1 :])
+
+    def _admit(
+        self,
+        description: RobotDescription,
+        name: str,
+        pose: Pose | None = None,
+        namespace: str = "",
+        frame_prefix: str = "",
+    ) -> Resident:
+        """A model with its plugins, before it is compiled."""
+        if not name or "::" in name:
+            raise WorldError(f'"{name}" is no name for a model')
+        if name in self._residents:
+            raise WorldError(
+                f'a model named "{name}" stands in the world already',
+                origin=description.origin,
+                hint=f'Give it another with --model, such as "{self._free_name(name)}".',
+            )
+        entry = ModelEntry(name=name, description=description, pose=pose or description.pose)
+        part = Part(self.engine, entry, namespace=namespace, frame_prefix=frame_prefix)
+        resident = Resident(entry, part)
+        try:
+            resident.behaviours = self._attach(resident.part)
+        except Exception:
+            resident.close()
+            raise
+        return resident
+
+    def _welcome(self, name: str, *, before: Sequence[RobotDescription] = ()) -> None:
+        """Tells what is to be said of a model that was just compiled; see `_separate`."""
+        resident = self._residents[name]
+        resident.part.spawned = True
+        description = resident.entry.description
+        notes = (*description.diagnostics, *resident.part.diagnostics, *unused(description))
+        for diagnostic in notes:
+            self.engine.report(diagnostic)
+        self._separate(name, before=before)
+
+    def _separate(self, name: str, *, before: Sequence[RobotDescription] = ()) -> None:
+        """Sees to it that a model that was put into another one comes out gently.
+
+        Args:
+            name: Of the model.
+            before: Models that came after it: an overlap with them is theirs to tell.
+        """
         description = self._resident(name).entry.description
         roots = {
             int(self.model.body_rootid[self.engine.body_id(name, link.name)])
             for link in description.links
         }
-        overlaps = self._separation.begin(self.model, self.data, roots)
+        later = {other.name for other in before}
+        overlaps = [
+            (other, depth)
+            for other, depth in self._separation.begin(self.model, self.data, roots)
+            if other.partition("::")[0] not in later
+        ]
         if overlaps:
             others = ", ".join(f"{other} by {depth * 100:.0f} cm" for other, depth in overlaps)
+            floor = max((d for other, d in overlaps if other.startswith("ground")), default=0.0)
+            height = self.pose(name).position[2] + floor
+            advice = f". At z = {math.ceil(height * 100) / 100:g} it stands on it" if floor else ""
             self.engine.report(
                 Diagnostic(
                     severity="warning",
-                    message=f'model "{name}" was put into {others}: they are pushed apart',
+                    message=f'model "{name}" was put into {others}: they are pushed apart{advice}',
                     origin=description.origin,
                 )
             )
 
-    def _resident(self, name: str) -> _Resident:
+    def _resident(self, name: str) -> Resident:
         if name not in self._residents:
             raise UnknownNameError("model", name, self._residents)
         return self._residents[name]
@@ -387,19 +598,29 @@ class Simulation:
             f"{name}_{i}" for i in itertools.count(1) if f"{name}_{i}" not in self._residents
         )
 
-    def _compile(self, residents: dict[str, _Resident]) -> None:
+    def _compile(self, residents: dict[str, Resident]) -> None:
         """Compiles a new set of models and carries over the state of those that stay."""
         entries = [resident.entry for resident in residents.values()]
         self.engine.replace(build(self.world, entries).model)
+        step_ns = to_ns(step_of(self.world))
+        if step_ns != self.engine.step_ns:
+            self.engine.set_step(step_ns)
         self._residents = residents
-        self._version += 1
+        self._guard_due = 0
         self._guard.forget()
+        self.forces.bind()
         for resident in residents.values():
             for handle in resident.part.handles:
                 handle.bind(self.model, self.data)
         self._gather_tasks()
         self.engine.forward()
         self._separation.resume(self.model, self.data)
+        self._observe()
+
+    def _observe(self) -> None:
+        """Sees what stands in the world now."""
+        self._version += 1
+        entries = [resident.entry for resident in self._residents.values()]
         self._observer = Observer(self.engine, entries, self._version)
 
     def snapshot(self) -> Snapshot:

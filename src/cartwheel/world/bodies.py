@@ -23,24 +23,38 @@ from cartwheel.geometry import (
     Array,
     Pose,
     matrix_from_quat,
-    quat_between,
     quat_from_matrix,
-    rotate,
     to_wxyz,
 )
-from cartwheel.world import contact
-from cartwheel.world.entry import CameraMount, ModelEntry, Motor, scoped
-from cartwheel.world.shapes import Assets, place, pose_arguments
+from cartwheel.world import contact, joints
+from cartwheel.world.entry import (
+    DRIVE_AXES,
+    ROTOR,
+    BodyDrive,
+    CameraMount,
+    ModelEntry,
+    Motor,
+    part_name,
+    scoped,
+)
+from cartwheel.world.shapes import Assets, place, pose_arguments, solids
 
 VISUAL_GROUP = 1
 COLLISION_GROUP = 4
 _GREY = (0.7, 0.7, 0.7, 1.0)
 _CAMERA_AXES = np.array([[0.0, 0, -1], [-1, 0, 0], [0, 1, 0]])
 """Columns: MuJoCo's camera axes (right, up, back) in a sensor frame that looks along x."""
-_BRAKE_REFERENCE = (0.01, 1.0)
-_BRAKE_IMPEDANCE = (0.9999, 0.9999, 0.001, 0.5, 2.0)
-_VELOCITY_ERROR = 0.05
-"""rad/s or m/s at which a velocity servo gives all of its effort."""
+_MOTOR_REFERENCE = (0.01, 1.0)
+_MOTOR_IMPEDANCE = (0.9999, 0.9999, 0.001, 0.5, 2.0)
+ROTOR_INERTIA = 1e6
+"""kg m², so that no load slows a rotor."""
+_STRONGEST = 1e6
+"""N m or N of a motor without a limit."""
+_THINNEST = 1e-6
+"""The least of a body's three moments, of the largest."""
+_POINT = 1e-6
+"""m², the inertia of a point mass for its mass: the engine wants one above 0."""
+_WORLD_SITE = "world::site"
 
 
 class BodyBuilder:
@@ -79,7 +93,7 @@ class BodyBuilder:
             bodies[link.name] = body
             roots = moves and joint is None
             if joint is not None and not description.static:
-                self._add_joint(entry, body, joint)
+                joints.add_joint(self._spec, entry, body, joint)
                 roots = not moves and joint.type != "fixed"
                 moves = moves or roots
             if roots and senses:
@@ -105,11 +119,13 @@ class BodyBuilder:
                 origin=lost[0].origin,
             )
         for joint in loops:
-            self._close_loop(entry, joint)
+            joints.close_loop(self._spec, entry, joint)
         self._exclude(entry, description)
         self._add_mimics(entry)
         for motor in entry.motors.values():
             self._add_motor(entry, motor)
+        for drive in entry.drives:
+            self._add_drive(entry, bodies[drive.link], drive)
         for camera in entry.cameras:
             self._add_camera(entry, bodies[camera.link], camera)
 
@@ -131,31 +147,35 @@ class BodyBuilder:
                     origin=collision.origin,
                     hint="Use a flat box instead, or <static>true</static>.",
                 )
-            arguments, pose = place(shape, collision.pose, collision.origin, self._assets)
+            # The base of an arm is its hull as its other links are: nothing is put into one.
+            whole = moves or not entry.description.static
+            parts = solids(shape, collision.pose, collision.origin, self._assets, moves=whole)
             friction = contact.friction(collision.surface)
             reference = contact.reference(collision.surface, entry.description.mass, self._step)
-            geom = body.add_geom(
-                name=name,
-                group=COLLISION_GROUP,
-                density=0,
-                condim=3,
-                friction=list(friction),
-                solref=list(reference),
-                solimp=list(contact.IMPEDANCE),
-                **arguments,
-                **pose_arguments(pose),
-            )
-            self.surfaces.append(
-                contact.BuiltSurface(
-                    geom=geom,
-                    name=name,
-                    model=entry.name,
-                    moves=moves,
-                    rolls=joint is not None and joint.type == "continuous",
-                    friction=friction,
-                    reference=reference,
+            for number, (arguments, pose) in enumerate(parts):
+                geom = body.add_geom(
+                    name=part_name(name, number),
+                    group=COLLISION_GROUP,
+                    density=0,
+                    condim=3,
+                    friction=list(friction),
+                    solref=list(reference),
+                    solimp=list(contact.IMPEDANCE),
+                    userdata=[collision.laser_retro or 0.0],
+                    **arguments,
+                    **pose_arguments(pose),
                 )
-            )
+                self.surfaces.append(
+                    contact.BuiltSurface(
+                        geom=geom,
+                        name=part_name(name, number),
+                        model=entry.name,
+                        moves=moves,
+                        rolls=contact.rolls(joint),
+                        friction=friction,
+                        reference=reference,
+                    )
+                )
 
     def _add_visual(self, body: Any, visual: Visual) -> None:
         common: dict[str, Any] = {
@@ -163,6 +183,7 @@ class BodyBuilder:
             "contype": 0,
             "conaffinity": 0,
             "density": 0,
+            "userdata": [visual.laser_retro or 0.0],
         }
         material = visual.material
         opacity = 1.0 - visual.transparency
@@ -194,67 +215,6 @@ class BodyBuilder:
         arguments, pose = place(shape, visual.pose, visual.origin, self._assets)
         body.add_geom(**arguments, **look, **common, **pose_arguments(pose))
 
-    def _add_joint(self, entry: ModelEntry, body: Any, joint: Joint) -> None:
-        name = scoped(entry.name, joint.name)
-        kind = mujoco.mjtJoint
-        axis = list(rotate(joint.pose.orientation, joint.axis.xyz))
-        pos = list(joint.pose.position)
-        match joint.type:
-            case "fixed":
-                return
-            case "revolute" | "continuous" | "prismatic":
-                hinge = joint.type != "prismatic"
-                made = body.add_joint(
-                    name=name,
-                    type=kind.mjJNT_HINGE if hinge else kind.mjJNT_SLIDE,
-                    axis=axis,
-                    pos=pos,
-                )
-                _set_axis(made, joint, first=True)
-            case "ball":
-                body.add_joint(name=name, type=kind.mjJNT_BALL, pos=pos)
-            case "universal":
-                made = body.add_joint(name=name, type=kind.mjJNT_HINGE, axis=axis, pos=pos)
-                _set_axis(made, joint, first=True)
-                second = joint.axis2.xyz if joint.axis2 else (1.0, 0.0, 0.0)
-                made = body.add_joint(
-                    name=f"{name}::axis2",
-                    type=kind.mjJNT_HINGE,
-                    axis=list(rotate(joint.pose.orientation, second)),
-                    pos=pos,
-                )
-                _set_axis(made, joint, first=False)
-            case "planar":
-                across = matrix_from_quat(quat_between((0.0, 0.0, 1.0), axis))
-                for index in range(2):
-                    self._slide(body, f"{name}::{'xy'[index]}", across[:, index])
-                body.add_joint(name=name, type=kind.mjJNT_HINGE, axis=axis, pos=pos)
-            case "floating":
-                for index in range(3):
-                    self._slide(body, f"{name}::{'xyz'[index]}", np.eye(3)[index])
-                body.add_joint(name=name, type=kind.mjJNT_BALL)
-            case _:
-                raise WorldError(
-                    f'joint "{joint.name}": a {joint.type} joint is not supported yet',
-                    origin=joint.origin,
-                )
-
-    @staticmethod
-    def _slide(body: Any, name: str, axis: Array) -> None:
-        body.add_joint(name=name, type=mujoco.mjtJoint.mjJNT_SLIDE, axis=axis.tolist())
-
-    def _close_loop(self, entry: ModelEntry, joint: Joint) -> None:
-        equality = mujoco.mjtEq
-        rigid = joint.type == "fixed"
-        self._spec.add_equality(
-            name=scoped(entry.name, joint.name),
-            type=equality.mjEQ_WELD if rigid else equality.mjEQ_CONNECT,
-            objtype=mujoco.mjtObj.mjOBJ_BODY,
-            name1=scoped(entry.name, joint.child),
-            name2=scoped(entry.name, joint.parent),
-            data=[*joint.pose.position, *([0.0] * 8)],
-        )
-
     def _exclude(self, entry: ModelEntry, description: RobotDescription) -> None:
         """Links of one model collide only where both ask for it, as in Gazebo."""
         if description.static:
@@ -274,35 +234,72 @@ class BodyBuilder:
 
     def _add_mimics(self, entry: ModelEntry) -> None:
         for joint in entry.description.joints:
-            if joint.mimic is not None and joint.type != "fixed" and not entry.description.static:
-                self._spec.add_equality(
-                    name=scoped(entry.name, joint.name, "mimic"),
-                    type=mujoco.mjtEq.mjEQ_JOINT,
-                    objtype=mujoco.mjtObj.mjOBJ_JOINT,
-                    name1=scoped(entry.name, joint.name),
-                    name2=scoped(entry.name, joint.mimic.joint),
-                    data=[joint.mimic.offset, joint.mimic.multiplier, *([0.0] * 9)],
+            mimic = entry.mimics.get(joint.name, joint.mimic)
+            if mimic is not None and joint.type != "fixed" and not entry.description.static:
+                joints.couple(
+                    self._spec,
+                    scoped(entry.name, joint.name, "mimic"),
+                    scoped(entry.name, joint.name),
+                    scoped(entry.name, mimic.joint),
+                    ratio=mimic.multiplier,
+                    offset=mimic.offset,
                 )
 
     def _add_motor(self, entry: ModelEntry, motor: Motor) -> None:
         name = scoped(entry.name, motor.joint)
+        if motor.mode == "velocity":
+            self._add_rotor(entry, motor)
+            return
         arguments: dict[str, Any] = {}
         if motor.max_effort is not None:
             arguments = {"forcelimited": True, "forcerange": [-motor.max_effort, motor.max_effort]}
         actuator = self._spec.add_actuator(
             name=name, target=name, trntype=mujoco.mjtTrn.mjTRN_JOINT, **arguments
         )
-        if motor.mode == "velocity":
-            # The gain only sets how small an error draws the full effort: with the implicit
-            # integrator a stiff servo is stable at any step.
-            gain = (motor.max_effort or 1000.0) / _VELOCITY_ERROR
-            actuator.set_to_velocity(kv=gain)
-            # As a brake it lets a load slip by nothing that could be seen.
-            joint = self._spec.joint(name)
-            joint.solref_friction = list(_BRAKE_REFERENCE)
-            joint.solimp_friction = list(_BRAKE_IMPEDANCE)
-        else:
-            actuator.set_to_motor()
+        actuator.set_to_motor()
+        if motor.mode == "servo":
+            # Its damping is set while it runs.
+            actuator.biastype = mujoco.mjtBias.mjBIAS_AFFINE
+            self._add_rotor(entry, motor)
+
+    def _add_rotor(self, entry: ModelEntry, motor: Motor) -> None:
+        """What turns at a motor's velocity, and drags the joint along by dry friction."""
+        name = scoped(entry.name, motor.joint, ROTOR)
+        joint = entry.description.joint(motor.joint)
+        limits = [] if motor.max_effort is None else [motor.max_effort]
+        if joint is not None and joint.axis.effort is not None and joint.axis.effort > 0:
+            limits.append(joint.axis.effort)
+        body = self._spec.worldbody.add_body(name=name)
+        body.sleep = mujoco.mjtSleepPolicy.mjSLEEP_NEVER
+        body.explicitinertial = True
+        body.mass = 1.0
+        body.inertia = [ROTOR_INERTIA] * 3
+        body.add_joint(name=name, type=mujoco.mjtJoint.mjJNT_HINGE, axis=[0, 0, 1])
+        coupling = self._spec.add_tendon(
+            name=name,
+            frictionloss=min(limits, default=_STRONGEST),
+            solref_friction=list(_MOTOR_REFERENCE),
+            solimp_friction=list(_MOTOR_IMPEDANCE),
+        )
+        coupling.wrap_joint(scoped(entry.name, motor.joint), 1.0)
+        coupling.wrap_joint(name, -1.0)
+
+    def _add_drive(self, entry: ModelEntry, body: Any, drive: BodyDrive) -> None:
+        name = scoped(entry.name, drive.link, "drive")
+        body.add_site(name=name, pos=list(drive.centre))
+        if not any(site.name == _WORLD_SITE for site in self._spec.worldbody.sites):
+            self._spec.worldbody.add_site(name=_WORLD_SITE)
+        for index, axis in enumerate(DRIVE_AXES):
+            gear = [0.0] * 6
+            gear[index] = 1.0
+            # Against the world's site it feels and pushes along and about the world's axes.
+            self._spec.add_actuator(
+                name=scoped(name, axis),
+                target=name,
+                refsite=_WORLD_SITE,
+                trntype=mujoco.mjtTrn.mjTRN_SITE,
+                gear=gear,
+            ).set_to_velocity(kv=0.0)
 
     def _add_camera(self, entry: ModelEntry, body: Any, camera: CameraMount) -> None:
         lens = camera.intrinsics
@@ -315,22 +312,26 @@ class BodyBuilder:
         )
 
 
-def _set_axis(made: Any, joint: Joint, *, first: bool) -> None:
-    axis = joint.axis if first or joint.axis2 is None else joint.axis2
-    made.damping = [axis.damping, 0, 0]
-    made.frictionloss = axis.friction
-    if axis.spring_stiffness:
-        made.stiffness = [axis.spring_stiffness, 0, 0]
-        made.springref = axis.spring_reference
-    if joint.type != "continuous" and (axis.lower is not None or axis.upper is not None):
-        lower = -1e10 if axis.lower is None else axis.lower
-        upper = 1e10 if axis.upper is None else axis.upper
-        if lower < upper:
-            made.limited = mujoco.mjtLimited.mjLIMITED_TRUE
-            made.range = [lower, upper]
-    if axis.effort is not None and axis.effort > 0:
-        made.actfrclimited = mujoco.mjtLimited.mjLIMITED_TRUE
-        made.actfrcrange = [-axis.effort, axis.effort]
+def _equality_data(*values: float) -> list[float]:
+    return [*values, *([0.0] * (mujoco.mjNEQDATA - len(values)))]
+
+
+def _possible(tensor: Array) -> Array:
+    """An inertia matrix whose largest moment is no larger than the sum of the others.
+
+    Thin plates lie on that edge exactly, and written digits put them beyond it; what misses
+    by more has been refused when it was read.
+    """
+    moments, axes = np.linalg.eigh(tensor)
+    lowest = _THINNEST * float(moments[2])
+    if moments[0] < lowest:
+        # A rod without thickness: the engine divides by all three.
+        moments = np.maximum(moments, lowest)
+        tensor = (axes * moments) @ axes.T
+    excess = moments[2] - (moments[0] + moments[1]) * (1 - 1e-9)
+    if excess <= 0:
+        return tensor
+    return np.asarray(tensor - excess * np.outer(axes[:, 2], axes[:, 2]))
 
 
 def _set_inertial(body: Any, inertial: Inertial) -> None:
@@ -342,7 +343,9 @@ def _set_inertial(body: Any, inertial: Inertial) -> None:
             [inertial.ixz, inertial.iyz, inertial.izz],
         ]
     )
-    turned = rotation @ tensor @ rotation.T
+    if not tensor.any():
+        tensor = np.eye(3) * _POINT * inertial.mass
+    turned = rotation @ _possible(tensor) @ rotation.T
     body.explicitinertial = True
     body.mass = inertial.mass
     body.ipos = list(inertial.pose.position)

@@ -8,17 +8,24 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 import mujoco
+import numpy as np
 
 from cartwheel.description.model import Light, WorldDescription
 from cartwheel.errors import Origin, WorldError
 from cartwheel.geometry import rotate
-from cartwheel.world import contact
-from cartwheel.world.bodies import BodyBuilder
+from cartwheel.world import chains, contact
+from cartwheel.world.bodies import ROTOR_INERTIA, BodyBuilder
 from cartwheel.world.entry import ModelEntry, scoped
 from cartwheel.world.shapes import Assets
 
 DEFAULT_STEP = 0.005
 """s; see ``docs/physics.md`` for how it was chosen."""
+
+
+_MOST_AMBIENT = 0.4
+"""SDF's default. New Gazebo's worlds state 1, which its renderer dims; here no shade were left."""
+_SHORTEST = 0.01
+"""m, at which a turning body's speed is judged where it has no shape."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -71,7 +78,24 @@ def build(world: WorldDescription, entries: Iterable[ModelEntry], *, xml: bool =
         model = spec.compile()
     except (ValueError, mujoco.FatalError) as error:
         raise _explain(str(error), entries) from None
+    # What has no extent is as far from rest as its speed says, and not asleep while it spins.
+    model.dof_length[:] = np.maximum(model.dof_length, _SHORTEST)
+    _judge_without_rotors(model)
+    for joint, coefficient in chains.apply(model).items():
+        # For the text alone: the compiled model has it.
+        made = spec.joint(model.joint(joint).name)
+        made.damping = [made.damping[0], made.damping[1], coefficient]
     return Build(model=model, xml=spec.to_xml() if xml else None)
+
+
+def _judge_without_rotors(model: mujoco.MjModel) -> None:
+    """Takes the rotors of motors out of the mean inertia, by which the solver judges its accuracy.
+
+    They are heavy beyond measure, and with them it would be content with forces that are wrong.
+    """
+    masses = model.dof_M0[model.dof_M0 < ROTOR_INERTIA / 2]
+    if len(masses):
+        model.stat.meaninertia = max(float(masses.mean()), 1e-9)
 
 
 def _feels_touch(entry: ModelEntry) -> bool:
@@ -91,17 +115,22 @@ def _empty(world: WorldDescription) -> mujoco.MjSpec:
     # Solves motors and contacts in one system. The other implicit integrators damp a servo only
     # after the contacts were solved without it, and a driven wheel slips by that difference.
     spec.option.integrator = mujoco.mjtIntegrator.mjINT_DISCRETE
+    # That one takes damping into its system; mj_Euler, by which a step ends where something has
+    # read it, would take it a second time.
+    spec.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_EULERDAMP
     spec.option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
     spec.option.impratio = contact.FRICTION_IMPEDANCE_RATIO
     spec.option.enableflags |= mujoco.mjtEnableBit.mjENBL_SLEEP
     # Lengths that MuJoCo scales by the model's extent stay in metres.
     spec.stat.extent = 1.0
+    # A geom's laser_retro.
+    spec.nuser_geom = 1
     spec.visual.global_.offwidth = 16
     spec.visual.global_.offheight = 16
     # Four samples a pixel and shadows are most of what a software renderer would pay for.
     spec.visual.quality.offsamples = 0
     spec.visual.quality.shadowsize = 0
-    ambient = list(world.ambient[:3])
+    ambient = [min(value, _MOST_AMBIENT) for value in world.ambient[:3]]
     spec.visual.headlight.ambient = ambient
     # A little light from the camera itself: a face turned away from the sun keeps its shape.
     spec.visual.headlight.diffuse = [0.25, 0.25, 0.25]
@@ -121,6 +150,18 @@ def _empty(world: WorldDescription) -> mujoco.MjSpec:
     return spec
 
 
+def shine(light: Light) -> dict[str, tuple[float, float, float]]:
+    """What of a light may change in a compiled model: fields of MuJoCo's ``light_…``."""
+    x, y, z = rotate(light.pose.orientation, light.direction)
+    length = math.sqrt(x * x + y * y + z * z)
+    return {
+        "pos": light.pose.position,
+        "dir": (x / length, y / length, z / length),
+        "diffuse": light.diffuse[:3],
+        "attenuation": light.attenuation,
+    }
+
+
 def _add_light(spec: mujoco.MjSpec, light: Light) -> None:
     kinds = {
         "directional": mujoco.mjtLightType.mjLIGHT_DIRECTIONAL,
@@ -130,12 +171,9 @@ def _add_light(spec: mujoco.MjSpec, light: Light) -> None:
     spec.worldbody.add_light(
         name=light.name,
         type=kinds[light.type],
-        pos=list(light.pose.position),
-        dir=list(rotate(light.pose.orientation, light.direction)),
         ambient=[0, 0, 0],
-        diffuse=list(light.diffuse[:3]),
         specular=[0, 0, 0],
-        attenuation=list(light.attenuation),
+        **{name: list(value) for name, value in shine(light).items()},
         cutoff=math.degrees(light.spot_angle) / 2,
         castshadow=False,
     )

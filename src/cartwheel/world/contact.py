@@ -17,6 +17,8 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
+import mujoco
+
 from cartwheel.description.model import Collision, Cylinder, Ellipsoid, Joint, Shape, Surface
 from cartwheel.geometry import rotate
 
@@ -32,6 +34,9 @@ IMPEDANCE = (0.95, 0.99, 0.0005, 0.5, 2.0)
 """MuJoCo's solimp: how much of the constraint is kept at and beyond 0.5 mm of depth."""
 FRICTION_TIME_CONSTANT = 0.03
 """s; in which a slip that the friction can hold dies out. Below mu g T/2 friction is viscous."""
+MOST_PAIRS = 500
+"""Pairs with a friction of their own; each costs 6 ns a step."""
+_MESH_AREA = 1.0
 FRICTION_IMPEDANCE_RATIO = 100.0
 """How much harder friction holds than the normal direction: less creep under a steady load."""
 
@@ -88,7 +93,7 @@ def tyre(collision: Collision, joint: Joint | None) -> Shape:
     tyre, an ellipsoid of the same radius and width, touches in the middle.
     """
     shape = collision.shape
-    if not isinstance(shape, Cylinder) or joint is None or joint.type != "continuous":
+    if not isinstance(shape, Cylinder) or joint is None or not rolls(joint):
         return shape
     axis = rotate(joint.pose.orientation, joint.axis.xyz)
     own = rotate(collision.pose.orientation, (0.0, 0.0, 1.0))
@@ -101,23 +106,51 @@ def tyre(collision: Collision, joint: Joint | None) -> Shape:
     return Ellipsoid(radii=(shape.radius, shape.radius, shape.length / 2))
 
 
+def rolls(joint: Joint | None) -> bool:
+    """Whether a joint turns without end, as a wheel's: in SDF a revolute one without limits."""
+    if joint is None:
+        return False
+    unlimited = joint.axis.lower is None and joint.axis.upper is None
+    return joint.type == "continuous" or (joint.type == "revolute" and unlimited)
+
+
 def standing_pairs(
     surfaces: Iterable[BuiltSurface],
 ) -> Iterator[tuple[BuiltSurface, BuiltSurface, BuiltSurface]]:
-    """Every moving geom with every standing one of other models, and which of both rules.
+    """Moving geoms with standing ones of other models, and which of both rules.
 
     In MuJoCo's convex contact model a sliding body is lifted: one that slides at v hovers at
     mu v b/k, with b the damping of friction and k the stiffness of the normal, and skips. Only
     a pair stated by itself can have a b of its own; what slides, slides on what stands.
     A wheel keeps the hard one: in a turn at rate ω it slips sideways by ω v/b.
+
+    Each pair is looked at in each step, near or far: a world with more than `MOST_PAIRS` states
+    those of its largest floors, and what slides on something smaller is lifted.
     """
     surfaces = list(surfaces)
+    movers = [surface for surface in surfaces if surface.moves and not surface.rolls]
     standing = [surface for surface in surfaces if not surface.moves]
-    for mover in surfaces:
-        for still in standing if mover.moves and not mover.rolls else ():
+    if movers and len(movers) * len(standing) > MOST_PAIRS:
+        standing.sort(key=_floor_area, reverse=True)
+        standing = standing[: max(1, MOST_PAIRS // len(movers))]
+    for mover in movers:
+        for still in standing:
             if still.model != mover.model:
                 rules = still if still.friction[0] < mover.friction[0] else mover
                 yield still, mover, rules
+
+
+def _floor_area(surface: BuiltSurface) -> float:
+    """How much there is to slide on, m²: of a box the largest face that may lie level."""
+    geom, kind = surface.geom, mujoco.mjtGeom
+    if geom.type in (kind.mjGEOM_PLANE, kind.mjGEOM_HFIELD):
+        return math.inf
+    if geom.type == kind.mjGEOM_BOX:
+        return float(4 * geom.size[0] * geom.size[1])
+    if geom.type == kind.mjGEOM_CYLINDER:
+        return float(math.pi * geom.size[0] ** 2)
+    # A mesh's size is known to the compiler alone; it may well be a floor.
+    return _MESH_AREA if geom.type == kind.mjGEOM_MESH else 0.0
 
 
 def priorities(coefficients: Iterable[float]) -> dict[float, int]:

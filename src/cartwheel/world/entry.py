@@ -5,8 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Literal
 
-from cartwheel.description.model import CameraIntrinsics, RobotDescription
-from cartwheel.geometry import Pose
+from cartwheel.description.model import CameraIntrinsics, Mimic, RobotDescription
+from cartwheel.geometry import Pose, Vec3
+
+ROTOR = "rotor"
+"""Of a driven joint: what it is coupled to; a body, a joint and a tendon of that name."""
+DRIVE_AXES = ("x", "y", "z", "roll", "pitch", "yaw")
+"""Of a `BodyDrive`'s servos, in the world's axes."""
 
 
 def scoped(*parts: str) -> str:
@@ -14,14 +19,42 @@ def scoped(*parts: str) -> str:
     return "::".join(parts)
 
 
+_PART = "\x1f"
+"""Between a collision's name and the number of a part; no XML can hold it."""
+
+
+def part_name(collision: str, number: int) -> str:
+    """The name of one of the convex parts of a collision; the first has the collision's own."""
+    return f"{collision}{_PART}{number}" if number else collision
+
+
+def collision_of(part: str) -> str:
+    """The name of the collision that a part belongs to."""
+    return part.partition(_PART)[0]
+
+
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Motor:
     """A driven joint."""
 
     joint: str
-    mode: Literal["velocity", "effort"]
+    mode: Literal["velocity", "effort", "servo"]
+    """A servo's law is set while it runs; see `ServoHandle`."""
     max_effort: float | None = None
     """N m or N; None is unlimited."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class BodyDrive:
+    """A servo that moves a whole model: it holds the velocity of one of its links."""
+
+    link: str
+    centre: Vec3
+    """Where it pushes, in the link: at the model's centre of mass it tips nothing over."""
+    max_force: float
+    """N, along each axis."""
+    max_torque: float
+    """N m, about each axis."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -45,4 +78,7 @@ class ModelEntry:
     """Of the model's frame: where it was spawned and where a reset returns it."""
     motors: dict[str, Motor] = field(default_factory=dict)
     """By joint."""
+    mimics: dict[str, Mimic] = field(default_factory=dict)
+    """By the joint that follows; besides those of the description."""
+    drives: list[BodyDrive] = field(default_factory=list)
     cameras: list[CameraMount] = field(default_factory=list)

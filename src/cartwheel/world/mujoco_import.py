@@ -6,13 +6,20 @@ is missing. Only cameras need it here, and `Renderer` opens it when one is read.
 
 from __future__ import annotations
 
+import contextlib
+import importlib.util
 import os
+from collections.abc import Iterator
+from pathlib import Path
+
+_GLFW = "PYGLFW_LIBRARY"
 
 
 def import_mujoco() -> None:
     """Imports MuJoCo; without its own renderer where that cannot be loaded."""
     try:
-        import mujoco
+        with _known_glfw():
+            import mujoco
     except Exception:
         wanted = os.environ.get("MUJOCO_GL")
         if wanted is None:
@@ -22,6 +29,23 @@ def import_mujoco() -> None:
             import mujoco  # noqa: F401
         finally:
             os.environ["MUJOCO_GL"] = wanted
+
+
+@contextlib.contextmanager
+def _known_glfw() -> Iterator[None]:
+    """Names GLFW's library: it would start a Python process for each that it finds, to ask."""
+    found = importlib.util.find_spec("glfw")
+    folder = Path(found.origin).parent if found is not None and found.origin else Path()
+    library = folder / "x11" / "libglfw.so"
+    chosen = {_GLFW, "PYGLFW_LIBRARY_VARIANT"} & set(os.environ)
+    if chosen or os.environ.get("XDG_SESSION_TYPE") == "wayland" or not library.is_file():
+        yield
+        return
+    os.environ[_GLFW] = str(library)
+    try:
+        yield
+    finally:
+        os.environ.pop(_GLFW, None)
 
 
 import_mujoco()

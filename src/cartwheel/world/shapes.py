@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import io
 import math
+from functools import lru_cache
+from pathlib import Path
 from typing import Any
 
 import mujoco
 import numpy as np
 
-from cartwheel.description import meshes
+from cartwheel.description import meshes, outline
 from cartwheel.description.model import (
     Box,
     Capsule,
@@ -22,12 +25,23 @@ from cartwheel.description.model import (
     Shape,
     Sphere,
 )
-from cartwheel.errors import Origin, WorldError
+from cartwheel.description.terrain import heights_of
+from cartwheel.errors import Origin
 from cartwheel.geometry import Array, Pose, quat_between, to_wxyz
 
 _CONE_SIDES = 32
 _PLANE_HALF_SIZE = 200.0
 """m, drawn half size of an endless plane."""
+_ENDLESS = 50.0
+"""m; a plane of that size is a ground, which is drawn to the horizon."""
+_LARGEST_TEXTURE = 1024
+"""Pixels in each direction: no camera here sees more of a surface."""
+_FLAT = 1e-6
+"""Of a mesh's extent: thinner is flat."""
+_PLATE = 1e-3
+"""m, what a flat mesh that collides is thick."""
+_BELOW = 1.0
+"""m of solid ground below the lowest point of a heightmap."""
 
 
 class Assets:
@@ -37,9 +51,13 @@ class Assets:
         self._spec = spec
         self._meshes: dict[object, str] = {}
         self._materials: dict[object, str] = {}
+        self._heightmaps: dict[Heightmap, tuple[str, float]] = {}
 
     def mesh(self, key: object, vertices: Any, faces: Any, *, uv: Any = None) -> str:
-        """The name of a mesh asset; made from the arrays when `key` is new."""
+        """The name of a mesh asset; made from the arrays when `key` is new.
+
+        Without faces it is the hull of its vertices.
+        """
         if key not in self._meshes:
             name = f"mesh_{len(self._meshes)}"
             # A shell's inertia also exists for surfaces that are not closed; no mass comes from it.
@@ -47,25 +65,37 @@ class Assets:
                 name=name, inertia=mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL
             )
             mesh.uservert = np.asarray(vertices, dtype=np.float64).ravel()
-            mesh.userface = np.asarray(faces, dtype=np.int32).ravel()
+            if faces is not None:
+                mesh.userface = np.asarray(faces, dtype=np.int32).ravel()
             if uv is not None:
                 mesh.usertexcoord = np.asarray(uv, dtype=np.float64).ravel()
             self._meshes[key] = name
         return self._meshes[key]
 
+    def heightmap(self, shape: Heightmap, origin: Origin) -> tuple[str, float]:
+        """The name of a heightmap's asset, and the height in m of its lowest point."""
+        if shape not in self._heightmaps:
+            heights = heights_of(shape, origin=origin)
+            low, high = float(heights.min()), float(heights.max())
+            name = f"heightmap_{len(self._heightmaps)}"
+            x, y = shape.size[0] / 2, shape.size[1] / 2
+            # The engine stretches the data over the third number.
+            self._spec.add_hfield(
+                name=name,
+                nrow=heights.shape[0],
+                ncol=heights.shape[1],
+                size=[x, y, max(high - low, 1e-6), _BELOW],
+                userdata=heights[::-1].ravel().tolist(),
+            )
+            self._heightmaps[shape] = (name, low)
+        return self._heightmaps[shape]
+
     def texture_material(self, image: Any) -> str:
         """The name of a material that shows an image (a path or its encoded bytes)."""
         if image not in self._materials:
-            import io
-
-            from PIL import Image
-
             name = f"texture_{len(self._materials)}"
-            source = io.BytesIO(image) if isinstance(image, bytes) else image
-            with Image.open(source) as opened:
-                pixels = np.asarray(
-                    opened.convert("RGB").transpose(Image.Transpose.FLIP_TOP_BOTTOM)
-                )
+            changed = image.stat().st_mtime_ns if isinstance(image, Path) else 0
+            pixels = _pixels(image, changed)
             texture = self._spec.add_texture(
                 name=name,
                 type=mujoco.mjtTexture.mjTEXTURE_2D,
@@ -73,20 +103,31 @@ class Assets:
                 height=pixels.shape[0],
                 nchannel=3,
             )
-            texture.data = np.ascontiguousarray(pixels).tobytes()
+            texture.data = pixels.tobytes()
             material = self._spec.add_material(name=name)
             material.textures[mujoco.mjtTextureRole.mjTEXROLE_RGB] = name
             self._materials[image] = name
         return self._materials[image]
 
 
-def place(shape: Shape, pose: Pose, origin: Origin, assets: Assets) -> tuple[dict[str, Any], Pose]:
-    """Geom arguments of a shape, and its pose: a plane's normal may turn it.
+@lru_cache(maxsize=256)
+def _pixels(image: Path | bytes, _changed: int) -> Any:
+    """An image as the engine wants it, shape (height, width, 3); kept, since each spawn asks."""
+    from PIL import Image
 
-    A mesh is one geom whose convex hull collides, whatever parts and colours it has.
+    with Image.open(io.BytesIO(image) if isinstance(image, bytes) else image) as opened:
+        opened.thumbnail((_LARGEST_TEXTURE, _LARGEST_TEXTURE))
+        flipped = opened.convert("RGB").transpose(Image.Transpose.FLIP_TOP_BOTTOM)
+        return np.ascontiguousarray(flipped)
+
+
+def place(shape: Shape, pose: Pose, origin: Origin, assets: Assets) -> tuple[dict[str, Any], Pose]:
+    """Geom arguments of a shape that is seen, and its pose: a plane's normal may turn it.
+
+    A mesh is one geom, whatever parts and colours it has.
 
     Raises:
-        WorldError: The shape is not built yet.
+        CartwheelError: The shape's file cannot be used.
     """
     geom = mujoco.mjtGeom
     match shape:
@@ -100,18 +141,53 @@ def place(shape: Shape, pose: Pose, origin: Origin, assets: Assets) -> tuple[dic
             return {"type": geom.mjGEOM_CAPSULE, "size": [radius, length / 2, 0]}, pose
         case Ellipsoid(radii=radii):
             return {"type": geom.mjGEOM_ELLIPSOID, "size": list(radii)}, pose
-        case Plane(normal=normal):
+        case Plane(normal=normal, size=size):
             turned = pose @ Pose((0, 0, 0), quat_between((0, 0, 1), normal))
+            x, y = (side / 2 if side < _ENDLESS else _PLANE_HALF_SIZE for side in size)
             # The third number is the spacing of the drawn grid: one cell, since a software
             # renderer pays for each.
-            size = [_PLANE_HALF_SIZE, _PLANE_HALF_SIZE, _PLANE_HALF_SIZE]
-            return {"type": geom.mjGEOM_PLANE, "size": size}, turned
-        case Mesh() | Cone():
-            return {"type": geom.mjGEOM_MESH, "meshname": _hull(shape, assets)}, pose
-        case Heightmap():
-            raise WorldError("a heightmap is not supported yet", origin=origin)
-        case Polyline():
-            raise WorldError("a polyline is not supported yet", origin=origin)
+            return {"type": geom.mjGEOM_PLANE, "size": [x, y, max(x, y)]}, turned
+        case Mesh() | Cone() | Polyline():
+            return {"type": geom.mjGEOM_MESH, "meshname": _mesh(shape, assets)}, pose
+        case Heightmap(position=position):
+            name, bottom = assets.heightmap(shape, origin)
+            placed = pose @ Pose((position[0], position[1], position[2] + bottom))
+            return {"type": geom.mjGEOM_HFIELD, "hfieldname": name}, placed
+
+
+def solids(
+    shape: Shape, pose: Pose, origin: Origin, assets: Assets, *, moves: bool = True
+) -> list[tuple[dict[str, Any], Pose]]:
+    """Geom arguments and poses of the convex parts of a shape that collides.
+
+    A mesh that moves is its convex hull, one that stands still is its surface.
+
+    Args:
+        shape: The shape.
+        pose: In its link.
+        origin: For errors.
+        assets: Of the spec.
+        moves: Whether its link can move.
+
+    Raises:
+        CartwheelError: The shape's file cannot be used.
+    """
+    parts: list[tuple[object, Any, Any]] = []
+    if isinstance(shape, Polyline):
+        parts = [
+            (("prism", piece, shape.height), *_prism(piece, shape))
+            for piece in outline.convex_pieces(shape)
+        ]
+    elif isinstance(shape, Mesh) and moves:
+        plate = _plate(shape)
+        parts = [] if plate is None else [(("plate", shape), plate, None)]
+    elif isinstance(shape, Mesh):
+        pieces = meshes.standing_parts(shape).pieces
+        parts = [((shape, number), piece, None) for number, piece in enumerate(pieces)]
+    if not parts:
+        return [place(shape, pose, origin, assets)]
+    kind = mujoco.mjtGeom.mjGEOM_MESH
+    return [({"type": kind, "meshname": assets.mesh(*part)}, pose) for part in parts]
 
 
 def pose_arguments(pose: Pose) -> dict[str, Any]:
@@ -119,11 +195,32 @@ def pose_arguments(pose: Pose) -> dict[str, Any]:
     return {"pos": list(pose.position), "quat": list(to_wxyz(pose.orientation))}
 
 
-def _hull(shape: Mesh | Cone, assets: Assets) -> str:
-    """The mesh asset whose convex hull collides."""
-    if isinstance(shape, Cone):
-        return assets.mesh(shape, *_cone(shape))
-    return assets.mesh(("hull", shape), *meshes.convex_hull_input(meshes.load_mesh(shape)))
+def _mesh(shape: Mesh | Cone | Polyline, assets: Assets) -> str:
+    """The mesh asset of a shape; where it collides, its convex hull does."""
+    match shape:
+        case Cone():
+            return assets.mesh(shape, *_cone(shape))
+        case Polyline():
+            return assets.mesh(shape, *outline.solid(shape))
+        case Mesh():
+            return assets.mesh(("hull", shape), *meshes.convex_hull_input(meshes.load_mesh(shape)))
+
+
+def _plate(shape: Mesh) -> Any:
+    """The corners of a mesh without thickness, which has no hull, made a thin plate; else None."""
+    vertices, _ = meshes.convex_hull_input(meshes.load_mesh(shape))
+    centred = np.asarray(vertices, dtype=np.float64)
+    centred = centred - centred.mean(axis=0)
+    _, extents, axes = np.linalg.svd(centred, full_matrices=False)
+    if len(extents) < 3 or extents[2] > _FLAT * max(extents[0], _FLAT):
+        return None
+    half = axes[2] * _PLATE / 2
+    return np.concatenate([vertices + half, vertices - half])
+
+
+def _prism(piece: outline.Loop, shape: Polyline) -> tuple[Any, Any]:
+    """A convex piece of an outline, pulled up."""
+    return outline.solid(Polyline(points=piece, height=shape.height))
 
 
 def _cone(shape: Cone) -> tuple[Array, Any]:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from cartwheel.description.model import RobotDescription
+from cartwheel.description.meshes import standing_parts
+from cartwheel.description.model import Mesh, RobotDescription
 from cartwheel.errors import Diagnostic, Origin
 
 _SURFACE = {
@@ -30,6 +31,10 @@ def unused(description: RobotDescription) -> Iterator[Diagnostic]:
 
     for link in description.links:
         for collision in link.collisions:
+            shape = collision.shape
+            if description.static and isinstance(shape, Mesh) and standing_parts(shape).hulls:
+                why = "a part of it has too many facets, and its hull collides"
+                note("the surface of a mesh", collision.origin, why)
             surface = collision.surface
             for field, why in _SURFACE.items():
                 if getattr(surface, field) is not None:

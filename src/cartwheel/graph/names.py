@@ -1,0 +1,36 @@
+"""Names of topics, services, parameters and frames."""
+
+from __future__ import annotations
+
+import re
+
+from cartwheel.errors import GraphError
+
+_NAME = re.compile(r"/[A-Za-z_~][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*\Z")
+
+
+def resolve_name(name: str, namespace: str = "") -> str:
+    """A global topic or service name: ``/…`` stays, anything else goes under the namespace.
+
+    Raises:
+        GraphError: The result is not a name that ROS accepts.
+    """
+    full = name if name.startswith("/") else f"/{namespace.strip('/')}/{name}"
+    full = "/" + "/".join(part for part in full.split("/") if part)
+    if not _NAME.match(full):
+        raise GraphError(
+            f'"{name}" is no valid name',
+            hint="Names hold letters, digits, _ and /, and no part begins with a digit.",
+        )
+    return full
+
+
+def resolve_frame(frame: str, prefix: str = "") -> str:
+    """A frame's name under a robot's tf_prefix: ``/…`` is global and loses its slash.
+
+    Source: tf, ``tf::resolve``.
+    """
+    if frame.startswith("/"):
+        return frame.lstrip("/")
+    prefix = prefix.strip("/")
+    return f"{prefix}/{frame}" if prefix and frame else frame

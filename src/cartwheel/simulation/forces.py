@@ -1,0 +1,188 @@
+"""Wrenches on links and efforts on joints, for a stated span of simulation time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from cartwheel.geometry import Array, Vec3
+from cartwheel.simulation.engine import Engine
+
+_NEVER = 1 << 40
+"""Steps."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Push:
+    """One wrench or effort."""
+
+    model: str
+    part: str
+    """A link, or a joint."""
+    turns: bool
+    """Whether it is an effort on a joint."""
+    value: Array
+    """Shape (6,), force and torque in the world's axes at the centre of mass; or (1,), effort."""
+    start_ns: int
+    end_ns: int | None
+
+    def weight(self, time_ns: int, step_ns: int) -> float:
+        """The share of the step at `time_ns` during which it acts."""
+        end = time_ns + step_ns
+        if self.end_ns is not None:
+            end = min(end, self.end_ns)
+        return max(0, end - max(time_ns, self.start_ns)) / step_ns
+
+    def steady(self, time_ns: int, step_ns: int) -> int:
+        """Steps from `time_ns` on during which the weight stays what it is there; 1 or more."""
+        if self.start_ns > time_ns:
+            return max(1, (self.start_ns - time_ns) // step_ns)
+        if self.end_ns is None:
+            return _NEVER
+        return max(1, (self.end_ns - time_ns) // step_ns)
+
+
+class Forces:
+    """Applies pushes over exactly their time, and costs nothing while there are none.
+
+    A push that begins or ends within a step acts with the share of the step, so that what a
+    body gains is force times duration, whatever the step. For the simulation's thread alone.
+
+    Args:
+        engine: Whose bodies are pushed.
+    """
+
+    def __init__(self, engine: Engine) -> None:
+        self._engine = engine
+        self._pushes: list[Push] = []
+        self._due = 0
+        """The step at which something changes next."""
+        self._wrenches: dict[int, Array] = {}
+        self._efforts: dict[int, Array] = {}
+        """What is pushed now, by body and by degree of freedom."""
+
+    @property
+    def active(self) -> bool:
+        """Whether `serve` has anything to do."""
+        return bool(self._pushes or self._wrenches or self._efforts)
+
+    def wrench(
+        self,
+        model: str,
+        link: str,
+        *,
+        force: Vec3,
+        torque: Vec3,
+        start_ns: int = 0,
+        duration_ns: int | None = None,
+    ) -> None:
+        """Pushes a link at its centre of mass.
+
+        Args:
+            model: Name of the model.
+            link: Name of its link.
+            force: N, in the world's axes.
+            torque: N m, in the world's axes.
+            start_ns: Simulation time; now when it is past.
+            duration_ns: None is without end, 0 is one step.
+        """
+        self._add(model, link, np.array([*force, *torque], dtype=float), start_ns, duration_ns)
+
+    def effort(
+        self,
+        model: str,
+        joint: str,
+        effort: float,
+        *,
+        start_ns: int = 0,
+        duration_ns: int | None = None,
+    ) -> None:
+        """Drives a joint of one degree of freedom by N m or N; see `wrench`."""
+        self._add(model, joint, np.array([effort], dtype=float), start_ns, duration_ns)
+
+    def clear_wrenches(self, model: str, link: str) -> None:
+        """Ends all pushes on a link."""
+        self._keep(lambda push: push.turns or (push.model, push.part) != (model, link))
+
+    def clear_efforts(self, model: str, joint: str) -> None:
+        """Ends all efforts on a joint."""
+        self._keep(lambda push: not push.turns or (push.model, push.part) != (model, joint))
+
+    def drop(self, model: str) -> None:
+        """Ends what acts on a model that leaves the world."""
+        self._keep(lambda push: push.model != model)
+
+    def forget(self) -> None:
+        """Ends all of them."""
+        self._keep(lambda _: False)
+
+    def bind(self) -> None:
+        """Goes on in a state that was made anew, where nothing is pushed yet."""
+        self._wrenches, self._efforts, self._due = {}, {}, 0
+
+    def serve(self) -> int:
+        """Makes the forces those of the step that begins now.
+
+        Returns:
+            The step at which something changes next.
+        """
+        engine = self._engine
+        if engine.step < self._due:
+            return self._due
+        time_ns, step_ns = engine.time_ns, engine.step_ns
+        self._pushes = [p for p in self._pushes if p.end_ns is None or p.end_ns > time_ns]
+        wrenches: dict[int, Array] = {}
+        efforts: dict[int, Array] = {}
+        steady = _NEVER
+        for push in self._pushes:
+            steady = min(steady, push.steady(time_ns, step_ns))
+            weight = push.weight(time_ns, step_ns)
+            if not weight:
+                continue
+            if push.turns:
+                joint = engine.joint_id(push.model, push.part)
+                dof = int(engine.model.jnt_dofadr[joint])
+                efforts[dof] = efforts.get(dof, np.zeros(1)) + weight * push.value
+            else:
+                body = engine.body_id(push.model, push.part)
+                wrenches[body] = wrenches.get(body, np.zeros(6)) + weight * push.value
+        _exchange(engine.data.xfrc_applied, self._wrenches, wrenches)
+        _exchange(engine.data.qfrc_applied.reshape(-1, 1), self._efforts, efforts)
+        self._wrenches, self._efforts = wrenches, efforts
+        self._due = engine.step + steady
+        return self._due
+
+    def _add(
+        self, model: str, part: str, value: Array, start_ns: int, duration_ns: int | None
+    ) -> None:
+        engine = self._engine
+        start = max(start_ns, engine.time_ns)
+        end = None if duration_ns is None else start + (duration_ns or engine.step_ns)
+        self._pushes.append(
+            Push(
+                model=model,
+                part=part,
+                turns=value.size == 1,
+                value=value,
+                start_ns=start,
+                end_ns=end,
+            )
+        )
+        self._due = 0
+
+    def _keep(self, wanted: Callable[[Push], bool]) -> None:
+        kept = [push for push in self._pushes if wanted(push)]
+        if len(kept) != len(self._pushes):
+            self._pushes, self._due = kept, 0
+
+
+def _exchange(rows: Array, old: dict[int, Array], new: dict[int, Array]) -> None:
+    """Takes what was given to rows, and gives them the new; others may have given as well."""
+    for index in sorted(old.keys() | new.keys()):
+        row = rows[index]
+        before, after = old.get(index, 0.0), new.get(index, 0.0)
+        row += np.subtract(after, before)
+        # What is left of rounding would keep a body awake.
+        row[np.abs(row) <= 1e-14 * (np.abs(before) + np.abs(after))] = 0.0

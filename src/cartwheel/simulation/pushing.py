@@ -1,0 +1,116 @@
+"""What moves whole models and links from outside: a servo, and a force."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import mujoco
+import numpy as np
+
+from cartwheel.geometry import from_wxyz, quat_from_rpy, rotate, yaw_of
+from cartwheel.world.entry import DRIVE_AXES, BodyDrive, scoped
+
+_OBJ = mujoco.mjtObj
+_FREE: tuple[float | None, ...] = (None,) * 6
+VELOCITY_ERROR = 0.05
+"""m/s or rad/s at which a servo of a whole model gives all of its force or torque."""
+
+
+class BodyDriveHandle:
+    """A servo that moves a whole model by its root link; free until it is commanded."""
+
+    def __init__(self, model: str, drive: BodyDrive) -> None:
+        self.model_name = model
+        self.drive = drive
+        self._velocity: tuple[float | None, ...] = _FREE
+        self._level = True
+        self._rows = range(0)
+        """Of its actuators; empty until the model is built."""
+
+    def bind(self, model: Any, data: Any) -> None:
+        """Resolves the names in a compiled model."""
+        link = scoped(self.model_name, self.drive.link)
+        first = mujoco.mj_name2id(model, _OBJ.mjOBJ_ACTUATOR, scoped(link, "drive", DRIVE_AXES[0]))
+        last = first + len(DRIVE_AXES)
+        self._ctrl = data.ctrl[first:last]
+        self._gain, self._bias = model.actuator_gainprm, model.actuator_biasprm
+        self._rows = range(first, last)
+        joint = mujoco.mj_name2id(model, _OBJ.mjOBJ_JOINT, link)
+        position, velocity = int(model.jnt_qposadr[joint]), int(model.jnt_dofadr[joint])
+        self._turned = data.qpos[position + 3 : position + 7]
+        self._linear = data.qvel[velocity : velocity + 3]
+        self._angular = data.qvel[velocity + 3 : velocity + 6]
+        self._enable()
+        self.hold()
+
+    def command(
+        self,
+        linear: Sequence[float | None],
+        angular: Sequence[float | None],
+        *,
+        level: bool = True,
+    ) -> None:
+        """Sets the velocity of the link's origin, in the link's axes, until the next command.
+
+        Args:
+            linear: m/s; None leaves that direction free.
+            angular: rad/s; None leaves that direction free.
+            level: The axes turn with the link's heading alone, z is up.
+        """
+        self._velocity = (*linear, *angular)
+        self._level = level
+        self._enable()
+        self.hold()
+
+    def release(self) -> None:
+        """Lets the model move freely."""
+        self.command((None,) * 3, (None,) * 3)
+
+    def _enable(self) -> None:
+        for row, value in zip(self._rows, self._velocity, strict=False):
+            limit = self.drive.max_force if row - self._rows[0] < 3 else self.drive.max_torque
+            gain = 0.0 if value is None else limit / VELOCITY_ERROR
+            self._gain[row, 0], self._bias[row, 2] = gain, -gain
+
+    def hold(self) -> None:
+        """Aims the servos; before each step, since their axes are the world's."""
+        if self._velocity == _FREE or not self._rows:
+            return
+        turn = from_wxyz(self._turned.tolist())
+        axes = quat_from_rpy(0.0, 0.0, yaw_of(turn)) if self._level else turn
+        wanted = [value or 0.0 for value in self._velocity]
+        turning = rotate(turn, self._angular.tolist())
+        spin = rotate(axes, wanted[3:])
+        # The servo sits at the centre of mass, which turns about the link's origin.
+        arm = rotate(turn, self.drive.centre)
+        target = np.array([*(rotate(axes, wanted[:3]) + np.cross(spin, arm)), *spin])
+        now = np.array([*(self._linear + np.cross(turning, arm)), *turning])
+        # A limit on the force itself would let a servo overshoot by what a step can do.
+        self._ctrl[:] = now + np.clip(target - now, -VELOCITY_ERROR, VELOCITY_ERROR)
+
+
+class WrenchHandle:
+    """A force and torque on a link from outside, that last until they are changed."""
+
+    def __init__(self, model: str, link: str) -> None:
+        self.model_name = model
+        self.name = link
+        self._given = np.zeros(6)
+
+    def bind(self, model: Any, data: Any) -> None:
+        """Resolves the name in a compiled model."""
+        body = mujoco.mj_name2id(model, _OBJ.mjOBJ_BODY, scoped(self.model_name, self.name))
+        self._total = data.xfrc_applied[body]
+        # Others push the same link with handles of their own.
+        self._total += self._given
+
+    def apply(self, force: Sequence[float], torque: Sequence[float]) -> None:
+        """Force in N at the link's centre of mass, torque in N m, both in the world's axes."""
+        self._total -= self._given
+        self._given = np.array([*force, *torque], dtype=float)
+        self._total += self._given
+
+    def forget(self) -> None:
+        """After a reset, which has taken every push away."""
+        self._given = np.zeros(6)

@@ -1,0 +1,229 @@
+"""Rays from a link into the world: what laser scanners and sonars measure with."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator
+from typing import Any
+
+import mujoco
+import numpy as np
+
+from cartwheel.geometry import Array, Pose, matrix_from_quat
+from cartwheel.world.bodies import COLLISION_GROUP, VISUAL_GROUP
+from cartwheel.world.entry import scoped
+
+_HIDDEN_GROUP = 5
+"""Holds what a sensor looks past, for the time of one cast; nothing lives there."""
+_NO_LIMIT = 1e10
+"""m: the engine's own cutoff would lose planes whose frame is farther away."""
+_AXES = np.vstack([np.eye(3), -np.eye(3)])
+_MESH = mujoco.mjtGeom.mjGEOM_MESH
+_BUNDLE_RAYS = 64
+_MOST_BUNDLES = 48
+_SLACK = 1e-6
+"""rad."""
+
+
+class _Bundles:
+    """Rays sorted into groups of like directions, so that few shapes concern a group.
+
+    Args:
+        directions: Unit vectors, shape (n, 3).
+    """
+
+    def __init__(self, directions: Array) -> None:
+        count = len(directions)
+        azimuth = np.arctan2(directions[:, 1], directions[:, 0])
+        self.order: Any = np.argsort(azimuth, kind="stable")
+        """The index of each ray before it was sorted."""
+        self.directions: Array = directions[self.order]
+        number = min(max(1, count // _BUNDLE_RAYS), _MOST_BUNDLES)
+        edges = np.linspace(0, count, number + 1).astype(int).tolist()
+        self.parts = [slice(*pair) for pair in itertools.pairwise(edges)]
+        """The sorted rays of each bundle."""
+        sums = np.array([self.directions[part].sum(axis=0) for part in self.parts])
+        lengths = np.linalg.norm(sums, axis=1)
+        self.axes: Array = sums / np.maximum(lengths, 1e-9)[:, None]
+        """Of the cones that hold the bundles, shape (bundles, 3)."""
+        cosines = [
+            (self.directions[part] @ axis).min()
+            for part, axis in zip(self.parts, self.axes, strict=True)
+        ]
+        self.angles: Array = np.arccos(np.clip(cosines, -1.0, 1.0)) + _SLACK
+        """Between a cone's axis and its edge, rad, shape (bundles,)."""
+        # Rays all around have no middle: their cone is the whole sphere.
+        self.angles[lengths < 1e-6] = np.pi
+
+
+class RayHandle:
+    """A bundle of rays that start in one point of a link.
+
+    A shape of the own model that encloses the point is looked past: it is the sensor's housing.
+    So is what of the own model lies nearer than `minimum`. Everything else is seen.
+
+    Args:
+        model: Name of the model.
+        link: Name of the link.
+        pose: Of the sensor in the link.
+        directions: Unit vectors in the sensor's axes, shape (n, 3).
+        minimum: Nearest distance that is measured, in m.
+        maximum: Farthest distance that is measured, in m; may be inf.
+        visuals: See visuals, as a GPU does, instead of collisions.
+    """
+
+    def __init__(
+        self,
+        model: str,
+        link: str,
+        pose: Pose,
+        directions: Array,
+        *,
+        minimum: float,
+        maximum: float,
+        visuals: bool,
+    ) -> None:
+        self.model_name = model
+        self.link_name = link
+        self.minimum = minimum
+        self.maximum = maximum
+        self._offset = np.array(pose.position)
+        self._bundles = _Bundles(np.asarray(directions) @ matrix_from_quat(pose.orientation).T)
+        self._groups = np.zeros(mujoco.mjNGROUP, dtype=np.uint8)
+        self._groups[VISUAL_GROUP if visuals else COLLISION_GROUP] = 1
+        count = len(directions)
+        self._geoms = np.full(count, -1, dtype=np.int32)
+        self._distances = np.zeros(count)
+        self._housing: Array | None = None
+
+    def bind(self, model: Any, data: Any) -> None:
+        """Resolves names in a compiled model."""
+        self._model, self._data = model, data
+        body = mujoco.mj_name2id(
+            model, mujoco.mjtObj.mjOBJ_BODY, scoped(self.model_name, self.link_name)
+        )
+        self._body = body
+        prefix = scoped(self.model_name, "")
+        own = np.array([model.body(i).name.startswith(prefix) for i in range(model.nbody)])
+        self._own = own[model.geom_bodyid]
+        retros = model.geom_user[:, 0] if model.nuser_geom else np.zeros(model.ngeom)
+        # One more, for the geom -1 of a ray that hits nothing.
+        self._retros = np.append(retros, 0.0)
+        # Found at the first cast: poses of the new model are not computed yet.
+        self._housing = None
+
+    def cast(self) -> tuple[Array, Array]:
+        """Measures along all rays, as of the last forward pass.
+
+        Returns:
+            Distances in m, shape (n,): -inf where something is nearer than `minimum`, inf where
+            nothing is within `maximum` (REP 117). And the laser_retro of what each ray hit,
+            shape (n,), 0 where it hit nothing.
+        """
+        turn = self._data.xmat[self._body].reshape(3, 3)
+        start = self._data.xpos[self._body] + turn @ self._offset
+        rays = self._bundles.directions @ turn.T
+        model = self._model
+        groups, trees = model.geom_group, model.body_bvhadr
+        saved_groups, saved_trees = groups.copy(), trees.copy()
+        if self._housing is None:
+            self._housing = self._enclosing(start)
+        distances, geoms = self._distances, self._geoms
+        distances[:] = -1.0
+        geoms[:] = -1
+        try:
+            # The engine's quick tests for whole bodies miss shapes: they forget that a body may
+            # be turned. Without trees it makes none; the bundles take their place.
+            trees[:] = -1
+            open_groups = saved_groups.copy()
+            open_groups[self._housing] = _HIDDEN_GROUP
+            for part, visible in self._candidates(start, turn, open_groups):
+                groups[:] = np.where(visible, open_groups, _HIDDEN_GROUP)
+                self._cast(start, rays[part], distances[part], geoms[part])
+            groups[:] = open_groups
+            while True:
+                near = np.flatnonzero((distances >= 0) & (distances < self.minimum))
+                near = near[self._own[geoms[near]]]
+                if not near.size:
+                    break
+                groups[np.unique(geoms[near])] = _HIDDEN_GROUP
+                again, others = np.empty(near.size), np.empty(near.size, dtype=np.int32)
+                self._cast(start, rays[near], again, others)
+                distances[near], geoms[near] = again, others
+        finally:
+            groups[:] = saved_groups
+            trees[:] = saved_trees
+        far = (distances < 0) | (distances >= self.maximum)
+        order = self._bundles.order
+        measured, retros = np.empty_like(distances), np.empty_like(distances)
+        measured[order] = np.where(
+            far, np.inf, np.where(distances <= self.minimum, -np.inf, distances)
+        )
+        retros[order] = np.where(far, 0.0, self._retros[geoms])
+        return measured, retros
+
+    def _candidates(self, start: Array, turn: Array, groups: Any) -> Iterator[tuple[slice, Any]]:
+        """The bundles that may hit something, each with the geoms that its cone may touch."""
+        model = self._model
+        away = self._data.geom_xpos - start
+        distance = np.linalg.norm(away, axis=1)
+        radius = model.geom_rbound
+        endless = radius <= 0
+        inside = distance <= radius
+        seen = (self._groups[groups] == 1) & (endless | (distance - radius < self.maximum))
+        beyond = np.where(endless | inside, 1.0, distance)
+        width = np.arcsin(np.where(endless | inside, 1.0, radius / beyond))
+        cosine = (self._bundles.axes @ turn.T @ away.T) / beyond
+        angle = np.arccos(np.clip(cosine, -1.0, 1.0))
+        touched = seen & (endless | inside | (angle <= self._bundles.angles[:, None] + width))
+        for part, visible in zip(self._bundles.parts, touched, strict=True):
+            if visible.any():
+                yield part, visible
+
+    def _cast(self, start: Array, rays: Array, distances: Array, geoms: Any) -> None:
+        """Fills in distances, -1 where nothing is hit, and the geoms that are."""
+        mujoco.mj_multiRay(
+            self._model,
+            self._data,
+            start,
+            rays.reshape(-1),
+            self._groups,
+            True,
+            -1,
+            geoms,
+            distances,
+            None,
+            len(distances),
+            _NO_LIMIT,
+        )
+
+    def _enclosing(self, start: Array) -> Array:
+        """The geoms that ride with the sensor and have its start inside.
+
+        From the inside of a convex shape every ray hits it, from the outside none does in two
+        opposite senses. Of a mesh it says that there are walls on all sides.
+        """
+        model = self._model
+        rigid = model.body_weldid[model.geom_bodyid] == model.body_weldid[self._body]
+        seen = self._groups[model.geom_group] == 1
+        found = []
+        for geom in np.flatnonzero(self._own & rigid & seen).tolist():
+            hits = (self._distance(geom, start, axis) for axis in _AXES)
+            if all(hit >= 0 for hit in hits):
+                found.append(geom)
+        return np.array(found, dtype=np.intp)
+
+    def _distance(self, geom: int, start: Array, direction: Array) -> float:
+        model, data = self._model, self._data
+        if model.geom_type[geom] == _MESH:
+            return float(mujoco.mj_rayMesh(model, data, geom, start, direction))
+        return float(
+            mujoco.mju_rayGeom(
+                data.geom_xpos[geom],
+                data.geom_xmat[geom],
+                model.geom_size[geom],
+                start,
+                direction,
+                model.geom_type[geom],
+            )
+        )

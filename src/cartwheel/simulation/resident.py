@@ -1,0 +1,77 @@
+"""A model that stands in a simulation, with its plugins."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Protocol
+
+from cartwheel.errors import WorldError
+from cartwheel.geometry import Pose
+from cartwheel.simulation.handles import MotorHandle
+from cartwheel.simulation.part import Part
+from cartwheel.world.entry import ModelEntry
+
+_WEAKEST = 1e-9
+"""N m or N, of a motor that shall give none."""
+
+
+class Behaviour(Protocol):
+    """What a plugin is to the simulation."""
+
+    def reset(self) -> None:
+        """Everything goes back to the start; time as well, or it goes on."""
+
+    def close(self) -> None:
+        """The model leaves the world."""
+
+
+Attach = Callable[[Part], list[Behaviour]]
+"""Makes the plugins of a model that is about to be spawned."""
+
+
+class Resident:
+    """A model with its part and plugins."""
+
+    def __init__(self, entry: ModelEntry, part: Part) -> None:
+        self.entry = entry
+        self.part = part
+        self.behaviours: list[Behaviour] = []
+        self.drives: dict[str, MotorHandle] = {}
+        """Of joints that are driven and by no plugin."""
+        self.start: Pose = entry.pose
+        """Where a reset returns it."""
+
+    def motorise(self, joint: str, max_effort: float | None) -> bool:
+        """Gives a joint a motor, or its motor another limit.
+
+        Args:
+            joint: Of one degree of freedom.
+            max_effort: N m or N; None leaves it as it is; 0 takes away what no plugin has made.
+
+        Returns:
+            Whether the model must be compiled anew.
+
+        Raises:
+            UnknownNameError: There is no such joint.
+            WorldError: A plugin drives it by effort or position.
+        """
+        motors = self.entry.motors
+        motor = motors.get(joint)
+        if motor is not None and motor.mode != "velocity":
+            raise WorldError(f'joint "{joint}" is driven by a plugin, by effort or position')
+        if max_effort is None or max_effort == (motor.max_effort if motor else 0.0):
+            return False
+        if motor is None:
+            self.drives[joint] = self.part.velocity_motor(joint, max_effort=max_effort)
+        elif joint in self.drives and max_effort == 0:
+            self.part.handles.remove(self.drives.pop(joint))
+            del motors[joint]
+        else:
+            motors[joint] = replace(motor, max_effort=max(max_effort, _WEAKEST))
+        return True
+
+    def close(self) -> None:
+        """Ends its plugins."""
+        for behaviour in self.behaviours:
+            behaviour.close()

@@ -1,0 +1,140 @@
+"""Chains of joints, which the integrator would drive faster and faster.
+
+A step takes the Coriolis forces of its beginning. What turns at ω turns by ωh meanwhile, and
+what is advanced along a tangent gets longer: energy grows by (ωh)² of itself in each step. An
+arm without damping that falls hands its energy on to lighter and lighter links, and the last
+of them turn so fast that this growth outruns all else. Each joint of a chain is therefore
+given the drag that takes as much: ½ h I ω³, with the largest inertia I that what it carries
+can have about it. ``docs/physics.md`` tells how little that is at speeds that a step resolves.
+"""
+
+from __future__ import annotations
+
+import math
+
+import mujoco
+import numpy as np
+
+from cartwheel.geometry import Array, from_wxyz, matrix_from_quat
+
+_HINGE, _SLIDE = int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE)
+_BALANCED = 0.05
+"""Of its inertia about the axis: less that a rotor's imbalance makes is none."""
+
+
+def drag(model: mujoco.MjModel) -> dict[int, float]:
+    """What each hinge of a chain needs: the coefficient of ω³, by the joint's number.
+
+    Args:
+        model: Compiled; its time step counts.
+
+    Returns:
+        N m s³/rad³ of each hinge that moves other joints or is moved by them. A wheel is not
+        among them: a balanced body on its axis changes no inertia by turning.
+    """
+    if not model.njnt:
+        return {}
+    pivots, carried = _carried(model)
+    moving = model.body_dofnum > 0
+    found = {}
+    for joint in range(model.njnt):
+        body = int(model.jnt_bodyid[joint])
+        if model.jnt_type[joint] != _HINGE or model.body_treeid[body] < 0:
+            continue
+        below = bool(moving[_subtree(model, body)[1:]].any())
+        above = bool(model.body_weldid[model.body_parentid[body]]) or model.body_dofnum[body] > 1
+        if not (below or above) or (not below and _is_balanced(model, joint, body)):
+            continue
+        inertia = float(carried[body, 2])
+        away = float(np.linalg.norm(model.jnt_pos[joint] - pivots[body]))
+        inertia += 2 * away * float(carried[body, 1]) + away**2 * float(carried[body, 0])
+        found[joint] = 0.5 * model.opt.timestep * inertia
+    return found
+
+
+def apply(model: mujoco.MjModel) -> dict[int, float]:
+    """Gives the model's hinges their drag; returns it as `drag` does."""
+    found = drag(model)
+    for joint, coefficient in found.items():
+        model.dof_dampingpoly[model.jnt_dofadr[joint], 1] = coefficient
+    return found
+
+
+def _carried(model: mujoco.MjModel) -> tuple[Array, Array]:
+    """Of each body its pivot, in its own frame, and the mass that hangs on that.
+
+    Returns:
+        (nbody, 3) in m; and (nbody, 3): Σm, Σmd and Σmd² with the inertia, where d is the
+        farthest that a mass can come from the pivot, whatever the joints between do.
+    """
+    pivots = np.zeros((model.nbody, 3))
+    frames = [matrix_from_quat(from_wxyz(quat)) for quat in model.body_quat]
+    travel = np.zeros(model.nbody)
+    has_joint = np.zeros(model.nbody, dtype=bool)
+    for body in range(1, model.nbody):
+        first = int(model.body_jntadr[body])
+        if first < 0:
+            offset = pivots[model.body_parentid[body]] - model.body_pos[body]
+            pivots[body] = frames[body].T @ offset
+            continue
+        has_joint[body] = True
+        pivots[body] = model.jnt_pos[first]
+        for joint in range(first, first + int(model.body_jntnum[body])):
+            if model.jnt_type[joint] == _SLIDE and model.jnt_limited[joint]:
+                travel[body] += float(np.abs(model.jnt_range[joint]).max())
+    carried = np.zeros((model.nbody, 3))
+    for body in range(model.nbody - 1, 0, -1):
+        mass = float(model.body_mass[body])
+        away = float(np.linalg.norm(model.body_ipos[body] - pivots[body]))
+        own = float(model.body_inertia[body].max())
+        carried[body] += (mass, mass * away, mass * away**2 + own)
+        parent = int(model.body_parentid[body])
+        if not has_joint[body]:
+            carried[parent] += carried[body]
+            continue
+        place = model.body_pos[body] + frames[body] @ pivots[body]
+        arm = float(np.linalg.norm(place - pivots[parent])) + float(travel[body])
+        m, first_moment, second = carried[body]
+        carried[parent] += (m, m * arm + first_moment, m * arm**2 + 2 * arm * first_moment + second)
+    return pivots, carried
+
+
+def _is_balanced(model: mujoco.MjModel, joint: int, body: int) -> bool:
+    """Whether a rigid part may turn about its joint without moving any mass to another place."""
+    axis = np.asarray(model.jnt_axis[joint])
+    anchor = np.asarray(model.jnt_pos[joint])
+    mass, moment, tensor = 0.0, np.zeros(3), np.zeros((3, 3))
+    places = {body: (np.eye(3), np.zeros(3))}
+    for part in _subtree(model, body):
+        if part != body:
+            R, origin = places[int(model.body_parentid[part])]
+            turned = R @ matrix_from_quat(from_wxyz(model.body_quat[part]))
+            places[part] = (turned, origin + R @ model.body_pos[part])
+        R, origin = places[part]
+        own = R @ matrix_from_quat(from_wxyz(model.body_iquat[part]))
+        r = origin + R @ model.body_ipos[part] - anchor
+        m = float(model.body_mass[part])
+        mass += m
+        moment += m * r
+        tensor += own @ np.diag(model.body_inertia[part]) @ own.T
+        tensor += m * (float(r @ r) * np.eye(3) - np.outer(r, r))
+    about = float(axis @ tensor @ axis)
+    off_axis = moment - float(moment @ axis) * axis
+    tilt = tensor @ axis - about * axis
+    slack = _BALANCED * about
+    return bool(
+        float(off_axis @ off_axis) <= slack * mass and math.sqrt(float(tilt @ tilt)) <= slack
+    )
+
+
+def _subtree(model: mujoco.MjModel, body: int) -> list[int]:
+    """A body and all below it, parents first."""
+    found = [body]
+    inside = {body}
+    # The compiler numbers bodies depth first.
+    for other in range(body + 1, model.nbody):
+        if int(model.body_parentid[other]) not in inside:
+            break
+        inside.add(other)
+        found.append(other)
+    return found

@@ -1,0 +1,146 @@
+"""A description's joints as MuJoCo's."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import mujoco
+import numpy as np
+
+from cartwheel.description.model import Axis, Joint
+from cartwheel.geometry import Array, matrix_from_quat, quat_between, rotate
+from cartwheel.world.entry import ModelEntry, scoped
+
+_KIND = mujoco.mjtJoint
+_EQUALITY = mujoco.mjtEq
+_COUPLING_REFERENCE = (0.01, 1.0)
+"""solref of threads and gears: as stiff as the default step allows."""
+_COUPLING_IMPEDANCE = (0.9999, 0.9999, 0.001, 0.5, 2.0)
+"""solimp: a nut under load slips by nothing that could be seen."""
+_LOOP_ARM = 0.1
+"""m between the two points at which a closing hinge holds."""
+
+
+def add_joint(spec: mujoco.MjSpec, entry: ModelEntry, body: Any, joint: Joint) -> None:
+    """Adds a joint between a body and its parent; a fixed one adds nothing.
+
+    A joint of several degrees of freedom is several of the engine's: a universal joint has
+    ``<name>`` and ``<name>::axis2``, a screw turns as ``<name>`` and travels as
+    ``<name>::travel``.
+    """
+    name = scoped(entry.name, joint.name)
+    axis = rotate(joint.pose.orientation, joint.axis.xyz)
+    pos = list(joint.pose.position)
+    match joint.type:
+        case "revolute" | "continuous" | "prismatic":
+            made = _add_axis(body, name, joint, joint.axis)
+            made.type = _KIND.mjJNT_SLIDE if joint.type == "prismatic" else _KIND.mjJNT_HINGE
+        case "ball":
+            made = body.add_joint(name=name, type=_KIND.mjJNT_BALL, pos=pos)
+            made.damping = [joint.axis.damping, 0, 0]
+            made.frictionloss = joint.axis.friction
+        case "universal":
+            _add_axis(body, name, joint, joint.axis)
+            _add_axis(body, f"{name}::axis2", joint, joint.axis2 or Axis(xyz=(1.0, 0.0, 0.0)))
+        case "screw":
+            _add_axis(body, name, joint, joint.axis)
+            travel = f"{name}::travel"
+            body.add_joint(name=travel, type=_KIND.mjJNT_SLIDE, axis=list(axis), pos=pos)
+            ratio = (joint.thread_pitch or 0.0) / (2 * math.pi)
+            couple(spec, f"{name}::thread", travel, name, ratio=ratio)
+        case "planar":
+            across = matrix_from_quat(quat_between((0.0, 0.0, 1.0), axis))
+            for index in range(2):
+                _slide(body, f"{name}::{'xy'[index]}", across[:, index])
+            body.add_joint(name=name, type=_KIND.mjJNT_HINGE, axis=list(axis), pos=pos)
+        case "floating":
+            for index in range(3):
+                _slide(body, f"{name}::{'xyz'[index]}", np.eye(3)[index])
+            body.add_joint(name=name, type=_KIND.mjJNT_BALL)
+
+
+def couple(
+    spec: mujoco.MjSpec,
+    name: str,
+    follower: str,
+    leader: str,
+    *,
+    ratio: float,
+    offset: float = 0.0,
+) -> None:
+    """Holds follower = ratio * leader + offset, both of one degree of freedom.
+
+    The engine takes the sum of both inverse inertias for that of the constraint and makes it as
+    soft as that asks for: written for the joint that moves more, it is never softer than it is.
+    """
+    if 0 < abs(ratio) < 1:
+        follower, leader, offset, ratio = leader, follower, -offset / ratio, 1 / ratio
+    spec.add_equality(
+        name=name,
+        type=_EQUALITY.mjEQ_JOINT,
+        objtype=mujoco.mjtObj.mjOBJ_JOINT,
+        name1=follower,
+        name2=leader,
+        data=equality_data(offset, ratio),
+        solref=list(_COUPLING_REFERENCE),
+        solimp=list(_COUPLING_IMPEDANCE),
+    )
+
+
+def close_loop(spec: mujoco.MjSpec, entry: ModelEntry, joint: Joint) -> None:
+    """Holds a link that hangs on another joint already.
+
+    A fixed joint holds all of it, a revolute one two points of its axis, any other one point.
+    """
+    points = [joint.pose.position]
+    if joint.type in ("revolute", "continuous"):
+        axis = rotate(joint.pose.orientation, joint.axis.xyz)
+        x, y, z = joint.pose.position
+        arm = [_LOOP_ARM * c for c in axis]
+        points.append((x + arm[0], y + arm[1], z + arm[2]))
+    name = scoped(entry.name, joint.name)
+    for number, point in enumerate(points):
+        spec.add_equality(
+            name=f"{name}::{number}" if number else name,
+            type=_EQUALITY.mjEQ_WELD if joint.type == "fixed" else _EQUALITY.mjEQ_CONNECT,
+            objtype=mujoco.mjtObj.mjOBJ_BODY,
+            name1=scoped(entry.name, joint.child),
+            name2="world" if joint.parent == "world" else scoped(entry.name, joint.parent),
+            # A weld's relative pose is that of the model as built; the last number is how hard
+            # it holds the orientation.
+            data=equality_data(*point, *([0.0] * 7), 1.0),
+        )
+
+
+def equality_data(*values: float) -> list[float]:
+    """A constraint's numbers, as many as the engine wants."""
+    return [*values, *([0.0] * (mujoco.mjNEQDATA - len(values)))]
+
+
+def _add_axis(body: Any, name: str, joint: Joint, axis: Axis) -> Any:
+    made = body.add_joint(
+        name=name,
+        type=_KIND.mjJNT_HINGE,
+        axis=list(rotate(joint.pose.orientation, axis.xyz)),
+        pos=list(joint.pose.position),
+    )
+    made.damping = [axis.damping, 0, 0]
+    made.frictionloss = axis.friction
+    if axis.spring_stiffness:
+        made.stiffness = [axis.spring_stiffness, 0, 0]
+        made.springref = axis.spring_reference
+    if joint.type != "continuous" and (axis.lower is not None or axis.upper is not None):
+        lower = -1e10 if axis.lower is None else axis.lower
+        upper = 1e10 if axis.upper is None else axis.upper
+        if lower < upper:
+            made.limited = mujoco.mjtLimited.mjLIMITED_TRUE
+            made.range = [lower, upper]
+    if axis.effort is not None and axis.effort > 0:
+        made.actfrclimited = mujoco.mjtLimited.mjLIMITED_TRUE
+        made.actfrcrange = [-axis.effort, axis.effort]
+    return made
+
+
+def _slide(body: Any, name: str, axis: Array) -> None:
+    body.add_joint(name=name, type=_KIND.mjJNT_SLIDE, axis=axis.tolist())
