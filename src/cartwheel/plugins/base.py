@@ -2,12 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any, ClassVar, Generic, TypeVar
 
 from cartwheel.description.model import PluginTag, Sensor
-from cartwheel.errors import Diagnostic, GraphError
-from cartwheel.graph import Graph, Publisher, Qos, Service, Subscription, resolve_name
+from cartwheel.errors import CartwheelError, Diagnostic, GraphError, Origin
+from cartwheel.graph import (
+    Graph,
+    Publisher,
+    Qos,
+    ReconfigureParameter,
+    ReconfigureServer,
+    Service,
+    Subscription,
+    resolve_frame,
+    resolve_name,
+)
+from cartwheel.graph.reconfigure import OnChange, Value
 from cartwheel.plugins.parameters import read
 from cartwheel.simulation import Part
 
@@ -28,6 +39,15 @@ class Plugin(Generic[C]):
     """A frozen dataclass of `tag` fields."""
     for_sensor: ClassVar[bool] = False
     """Whether it belongs inside a ``<sensor>``."""
+    empty_is_model: ClassVar[bool] = False
+    """Whether an empty ``<robotNamespace>`` is the model's name; for others it is none."""
+    prefixes_by_namespace: ClassVar[bool] = False
+    """Whether its frames have the namespace before them where there is no tf_prefix."""
+    serves: ClassVar[tuple[str, ...]] = ()
+    """Types of sensors that it makes work without a ``<plugin>``, as new Gazebo's systems do.
+
+    Its parameters are then read from the ``<sensor>`` itself.
+    """
 
     def __init__(self, part: Part, graph: Graph, tag: PluginTag, sensor: Sensor | None) -> None:
         self.part = part
@@ -40,11 +60,23 @@ class Plugin(Generic[C]):
             part.report(diagnostic)
         ros = tag.element.find("ros/namespace")
         plain = tag.element.find("robotNamespace")
-        found = ros or plain
-        self.namespace = found.text.strip() if found is not None else ""
+        # As Gazebo does: what the tag says counts, and else what the spawner said.
+        self.namespace = part.namespace
+        self._frame_prefix = part.frame_prefix
+        if ros is not None:
+            self.namespace = ros.text.strip()
+        elif plain is not None:
+            self.namespace = plain.text.strip() or (part.name if self.empty_is_model else "")
+        if ros is None and self.prefixes_by_namespace and not self._frame_prefix:
+            self._frame_prefix = self.namespace
         self._remappings = _remappings(tag)
-        self._open: list[Publisher | Subscription | Service] = []
-        self.configure()
+        self._open: list[Publisher | Subscription | Service | ReconfigureServer] = []
+        try:
+            self.configure()
+        except CartwheelError:
+            # A subclass's own close counts on what it did not come to.
+            Plugin.close(self)
+            raise
 
     def configure(self) -> None:
         """Takes handles, advertises, schedules.
@@ -69,8 +101,21 @@ class Plugin(Generic[C]):
 
     def resolve(self, name: str) -> str:
         """A topic or service name in the plugin's namespace, remapped."""
-        name = self._remappings.get(name, name)
-        return resolve_name(name, self.namespace)
+        if name in self._remappings:
+            return resolve_name(self._remappings[name], self.namespace)
+        full = resolve_name(name, self.namespace)
+        for source, target in self._remappings.items():
+            if resolve_name(source, self.namespace) == full:
+                return resolve_name(target, self.namespace)
+        return full
+
+    def remaps(self, name: str) -> bool:
+        """Whether the tag gives that private name (``~/out`` is ``out``) another."""
+        return name in self._remappings
+
+    def frame(self, name: str) -> str:
+        """A frame's name with the robot's prefix."""
+        return resolve_frame(name, self._frame_prefix)
 
     def advertise(
         self, topic: str, type_name: str, *, rate: float | None = None, qos: Qos = "default"
@@ -88,21 +133,66 @@ class Plugin(Generic[C]):
             self.graph.subscribe(self.resolve(topic), callback, type_name=type_name, node=self.node)
         )
 
-    def serve(self, name: str, type_name: str, handler: Callable[[Any], Any]) -> None:
+    def serve(
+        self,
+        name: str,
+        type_name: str,
+        handler: Callable[[Any], Any],
+        *,
+        threaded: bool = False,
+    ) -> bool:
         """A service that closes with the plugin; left to another that offers it already.
 
         Two robots of one kind can share topics, and a service must not keep the second out.
+
+        Returns:
+            Whether it is offered.
         """
         try:
-            service = self.graph.serve(self.resolve(name), type_name, handler, node=self.node)
+            service = self.graph.serve(
+                self.resolve(name), type_name, handler, node=self.node, threaded=threaded
+            )
         except GraphError as error:
             self.warn(f"{error.message}: give one of the two a namespace")
-        else:
-            self._open.append(service)
+            return False
+        self._open.append(service)
+        return True
 
-    def warn(self, message: str) -> None:
-        """Tells the user something about this plugin's tag."""
-        self.part.report(Diagnostic(severity="warning", message=message, origin=self.tag.origin))
+    def reconfigure(
+        self,
+        name: str,
+        parameters: tuple[ReconfigureParameter, ...],
+        on_change: OnChange,
+        *,
+        initial: Mapping[str, Value] | None = None,
+        preset: bool = False,
+    ) -> ReconfigureServer | None:
+        """Parameters to be set while it runs, as `ReconfigureServer` has them.
+
+        None where another offers them already, or where a preset value makes no sense.
+        """
+        full = self.resolve(name)
+        try:
+            server = ReconfigureServer(
+                self.graph,
+                full,
+                parameters,
+                on_change,
+                node=self.node,
+                initial=initial,
+                preset=preset,
+            )
+        except GraphError as error:
+            self.warn(f"{error.message}, so {full} cannot be reconfigured")
+            return None
+        self._open.append(server)
+        return server
+
+    def warn(self, message: str, *, at: Origin | None = None) -> None:
+        """Tells the user something about this plugin's tag, or about the element at a place."""
+        self.part.report(
+            Diagnostic(severity="warning", message=message, origin=at or self.tag.origin)
+        )
 
     @property
     def node(self) -> str:

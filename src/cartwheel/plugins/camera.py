@@ -2,33 +2,23 @@
 
 from __future__ import annotations
 
-import io
 import math
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import ClassVar, TypeVar
 
-import numpy as np
-
-from cartwheel.errors import Diagnostic, PluginError, SimulationError
-from cartwheel.messages import header, message_class
-from cartwheel.plugins.base import Plugin
+from cartwheel.description.model import CameraIntrinsics
+from cartwheel.plugins.camera_base import CameraBase
+from cartwheel.plugins.camera_depth import DepthOptions
+from cartwheel.plugins.camera_eye import Eye, EyeTopics, joined
+from cartwheel.plugins.camera_lens import Distortion
 from cartwheel.plugins.parameters import tag
-
-_JPEG_QUALITY = 80
-_ENCODINGS = {
-    "R8G8B8": ("rgb8", 3),
-    "RGB_INT8": ("rgb8", 3),
-    "B8G8R8": ("bgr8", 3),
-    "BGR_INT8": ("bgr8", 3),
-    "L8": ("mono8", 1),
-    "L_INT8": ("mono8", 1),
-}
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class CameraParameters:
     camera_name: str = tag(
-        "cameraName", "camera_name", default="", doc="Namespace of its topics; the sensor's name."
+        "cameraName", "camera_name", default="", doc="Namespace of its topics; see above."
     )
     image_topic: str = tag("imageTopicName", default="image_raw", doc="Image.")
     info_topic: str = tag("cameraInfoTopicName", default="camera_info", doc="CameraInfo.")
@@ -42,140 +32,182 @@ class CameraParameters:
         "hackBaseline", "hack_baseline", default=0.0, unit="m", doc="Of a stereo pair, in P."
     )
     focal_length: float = tag(
-        "focalLength", "focal_length", default=0.0, unit="px", doc="0 is that of the field of view."
+        "focalLength",
+        "focal_length",
+        default=0.0,
+        unit="px",
+        doc="Told in K; 0 is that of the field of view.",
     )
     cx: float = tag("Cx", "cx", default=0.0, unit="px", doc="0 is (width + 1) / 2.")
     cy: float = tag("Cy", "cy", default=0.0, unit="px", doc="0 is (height + 1) / 2.")
     cx_prime: float = tag("CxPrime", "cx_prime", default=0.0, unit="px", doc="Accepted.")
-    k1: float = tag("distortionK1", "distortion_k1", default=0.0, doc="Radial, told in D.")
-    k2: float = tag("distortionK2", "distortion_k2", default=0.0, doc="Radial, told in D.")
-    k3: float = tag("distortionK3", "distortion_k3", default=0.0, doc="Radial, told in D.")
-    t1: float = tag("distortionT1", "distortion_t1", default=0.0, doc="Tangential, told in D.")
-    t2: float = tag("distortionT2", "distortion_t2", default=0.0, doc="Tangential, told in D.")
+    k1: float = tag("distortionK1", "distortion_k1", default=0.0, doc="Radial; see above.")
+    k2: float = tag("distortionK2", "distortion_k2", default=0.0, doc="Radial.")
+    k3: float = tag("distortionK3", "distortion_k3", default=0.0, doc="Radial.")
+    t1: float = tag("distortionT1", "distortion_t1", default=0.0, doc="Tangential.")
+    t2: float = tag("distortionT2", "distortion_t2", default=0.0, doc="Tangential.")
+    auto_distortion: bool = tag(
+        "autoDistortion", "auto_distortion", default=False, doc="Accepted: it is always so."
+    )
+    border_crop: bool = tag(
+        "borderCrop", "border_crop", default=True, doc="Accepted: there are no black borders."
+    )
+    trigger_topic: str = tag(
+        "triggerTopicName", default="image_trigger", doc="Empty, of a triggered camera."
+    )
+    triggered: bool = tag("triggered", default=False, doc="Images only on demand.")
 
 
-class Camera(Plugin[CameraParameters]):
+P = TypeVar("P", bound=CameraParameters)
+
+
+class RosCamera(CameraBase[P]):
+    """A camera plugin of gazebo_plugins: what all of them read."""
+
+    waits: ClassVar[bool] = False
+    """Whether it always waits for its trigger."""
+
+    @property
+    def is_ros2(self) -> bool:
+        """Whether the tag is written for gazebo_plugins of ROS 2."""
+        tags = [child.tag for child in self.tag.element.children]
+        return "ros" in tags or (
+            any("_" in name for name in tags) and all(name.islower() for name in tags)
+        )
+
+    def _asked_rate(self) -> float:
+        return self.config.update_rate
+
+    def _base(self) -> str:
+        """The namespace of all topics: ROS 2's default is the sensor's name, ROS 1's none."""
+        assert self.sensor is not None
+        if self.config.camera_name:
+            return self.config.camera_name
+        written_for_ros1 = not self.is_ros2 and any(
+            child.tag != child.tag.lower() for child in self.tag.element.children
+        )
+        return "" if written_for_ros1 else self.sensor.name
+
+    def _lenses(self) -> Sequence[tuple[CameraIntrinsics, str]]:
+        """Each lens with the namespace of its topics."""
+        assert self.sensor is not None
+        base = self._base()
+        if self.sensor.type not in ("multicamera", "multi_camera"):
+            return [(self.sensor.cameras[0], base)]
+        lenses = []
+        for index, lens in enumerate(self.sensor.cameras):
+            side = lens.name or str(index)
+            if not self.is_ros2:
+                side = next((word for word in ("left", "right") if word in lens.name), side)
+            lenses.append((lens, joined(base, side)))
+        return lenses
+
+    def _open_eyes(self) -> Iterator[Eye]:
+        config, lenses = self.config, self._lenses()
+        told = Distortion(k1=config.k1, k2=config.k2, p1=config.t1, p2=config.t2, k3=config.k3)
+        for lens, base in lenses:
+            left = len(lenses) > 1 and "left" in lens.name
+            yield self._eye(
+                lens,
+                EyeTopics(
+                    image=joined(base, config.image_topic),
+                    info=joined(base, config.info_topic),
+                    base=base,
+                    adjustable=not self.is_ros2,
+                ),
+                frame=config.frame,
+                told=told,
+                focal_length=config.focal_length,
+                centre=(config.cx, config.cy),
+                baseline=0.0 if left else config.hack_baseline,
+            )
+
+    def _trigger_topics(self) -> list[str]:
+        config = self.config
+        if not (self.waits or config.triggered):
+            return []
+        return [joined(base, config.trigger_topic) for _, base in self._lenses()]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class DepthByTypeParameters(CameraParameters):
+    min_depth: float = tag(
+        "min_depth", default=0.4, unit="m", doc="Of a sensor of type depth: -inf is told below."
+    )
+    max_depth: float = tag(
+        "max_depth", default=math.inf, unit="m", doc="Of a sensor of type depth: inf beyond."
+    )
+
+
+class Camera(RosCamera[DepthByTypeParameters]):
     """Publishes what a camera sensor sees, and draws only what somebody reads.
 
-    The sensor looks along its x axis. Source: gazebo_plugins, gazebo_ros_camera and
-    gazebo_ros_camera_utils.
+    The sensor looks along its x axis. Topics go under ``<cameraName>``. Without one they go under
+    the sensor's name, as in ROS 2, and where other tags are written as in ROS 1, under the
+    namespace alone. Of a sensor of type multicamera each camera has its own:
+    ``<cameraName>/left``. In one of type depth the plugin publishes depths and points besides.
+
+    ``image_raw/compressed`` holds JPEGs or PNGs. ``set_camera_info`` changes what is told of the
+    camera. In ROS 1's way of writing, dynamic_reconfigure has ``imager_rate`` and what concerns
+    compression.
+
+    The sensor's ``<distortion>`` bends the image, and where it has none the plugin's numbers do:
+    ``camera_info`` tells the same.
+
+    Source: gazebo_plugins, gazebo_ros_camera and gazebo_ros_camera_utils, of ROS 1 and ROS 2.
     """
 
-    filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_camera.so",)
-    parameters: ClassVar[type] = CameraParameters
-    for_sensor: ClassVar[bool] = True
+    filenames: ClassVar[tuple[str, ...]] = (
+        "libgazebo_ros_camera.so",
+        "libgazebo_ros_multicamera.so",
+    )
+    parameters: ClassVar[type] = DepthByTypeParameters
+
+    def _depth_options(self) -> DepthOptions | None:
+        assert self.sensor is not None
+        if self.sensor.type not in ("depth", "depth_camera", "rgbd_camera"):
+            return None
+        base, config = self._base(), self.config
+        return DepthOptions(
+            depth=joined(base, "depth/image_raw"),
+            info=joined(base, "depth/camera_info"),
+            points=joined(base, "points"),
+            nearest=config.min_depth,
+            furthest=config.max_depth,
+            beyond="inf",
+            compressed=True,
+        )
+
+
+class TriggeredCamera(Camera):
+    """A camera that publishes one image for each message on ``<cameraName>/image_trigger``.
+
+    Source: gazebo_plugins, gazebo_ros_triggered_camera and gazebo_ros_triggered_multicamera.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = (
+        "libgazebo_ros_triggered_camera.so",
+        "libgazebo_ros_triggered_multicamera.so",
+    )
+    waits: ClassVar[bool] = True
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ProsilicaParameters(CameraParameters):
+    poll_service: str = tag("pollServiceName", default="request_image", doc="Not served.")
+
+
+class Prosilica(RosCamera[ProsilicaParameters]):
+    """A camera in its streaming mode, with the topics of any other; polling is reported.
+
+    Source: gazebo_plugins, gazebo_ros_prosilica.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_prosilica.so",)
+    parameters: ClassVar[type] = ProsilicaParameters
 
     def configure(self) -> None:
-        sensor, config = self.sensor, self.config
-        assert sensor is not None
-        if not sensor.cameras:
-            raise PluginError(f'sensor "{sensor.name}" has no <camera>', origin=sensor.origin)
-        lens = self._lens = sensor.cameras[0]
-        if lens.format not in _ENCODINGS:
-            raise PluginError(
-                f'image format "{lens.format}" is not supported',
-                origin=sensor.origin,
-                hint=f"There are: {', '.join(_ENCODINGS)}.",
-            )
-        if lens.k1 or lens.k2 or lens.k3 or lens.p1 or lens.p2:
-            self.warn("<distortion> has no effect on the image yet: it is drawn undistorted")
-        self._encoding, self._channels = _ENCODINGS[lens.format]
-        self._camera = self.part.camera(sensor.name, sensor.link, sensor.pose @ lens.pose, lens)
-        self._frame = config.frame or sensor.link
-        self._Image = message_class("sensor_msgs/msg/Image")
-        self._CompressedImage = message_class("sensor_msgs/msg/CompressedImage")
-        rates = [rate for rate in (config.update_rate, sensor.update_rate) if rate > 0]
-        rate = min(rates, default=0.0)
-        base = config.camera_name or sensor.name
-        image = f"{base}/{config.image_topic}"
-        told = rate or None
-        self._image = self.advertise(image, "sensor_msgs/msg/Image", rate=told, qos="sensor")
-        self._compressed = self.advertise(
-            f"{image}/compressed", "sensor_msgs/msg/CompressedImage", rate=told, qos="sensor"
-        )
-        self._info = self.advertise(
-            f"{base}/{config.info_topic}", "sensor_msgs/msg/CameraInfo", rate=told, qos="sensor"
-        )
-        self._blind = False
-        self.part.schedule(rate, after=self._publish, active=self._wanted)
-
-    def _wanted(self) -> bool:
-        return self._image.wanted or self._compressed.wanted or self._info.wanted
-
-    def _publish(self) -> None:
-        now = self.part.time_ns
-        if self._info.wanted:
-            self._info.publish(self._calibration(now))
-        if self._blind or not (self._image.wanted or self._compressed.wanted):
-            return
-        try:
-            pixels = self.part.render(self._camera)
-        except SimulationError as error:
-            # Said once; everything but images goes on.
-            self._blind = True
-            self.part.report(
-                Diagnostic(severity="warning", message=str(error), origin=self.tag.origin)
-            )
-            return
-        pixels = self._noisy(pixels)
-        if self._image.wanted:
-            self._image.publish(self._raw(now, pixels))
-        if self._compressed.wanted:
-            self._compressed.publish(self._jpeg(now, pixels))
-
-    def _noisy(self, pixels: Any) -> Any:
-        lens = self._lens
-        if lens.noise_stddev <= 0 and lens.noise_mean == 0:
-            return pixels
-        random = self.part.random(f"camera {self._camera.name}")
-        noise = random.normal(lens.noise_mean, lens.noise_stddev, pixels.shape) * 255
-        return np.clip(pixels + noise, 0, 255).astype(np.uint8)
-
-    def _raw(self, now: int, pixels: Any) -> Any:
-        if self._encoding == "bgr8":
-            pixels = pixels[..., ::-1]
-        elif self._encoding == "mono8":
-            pixels = (pixels @ np.array([0.299, 0.587, 0.114])).round().astype(np.uint8)
-        height, width = self._lens.height, self._lens.width
-        return self._Image(
-            header=header(now, self._frame),
-            height=height,
-            width=width,
-            encoding=self._encoding,
-            is_bigendian=0,
-            step=width * self._channels,
-            data=np.ascontiguousarray(pixels).reshape(-1),
-        )
-
-    def _jpeg(self, now: int, pixels: Any) -> Any:
-        from PIL import Image
-
-        buffer = io.BytesIO()
-        Image.fromarray(pixels).save(buffer, format="JPEG", quality=_JPEG_QUALITY)
-        return self._CompressedImage(
-            header=header(now, self._frame),
-            format="rgb8; jpeg compressed bgr8",
-            data=np.frombuffer(buffer.getvalue(), dtype=np.uint8),
-        )
-
-    def _calibration(self, now: int) -> Any:
-        """The pinhole's numbers, with Gazebo's centre at (w + 1) / 2 and its stereo term."""
-        lens, config = self._lens, self.config
-        focal = config.focal_length or lens.width / (2 * math.tan(lens.horizontal_fov / 2))
-        cx = config.cx or (lens.width + 1) / 2
-        cy = config.cy or (lens.height + 1) / 2
-        return message_class("sensor_msgs/msg/CameraInfo")(
-            header=header(now, self._frame),
-            height=lens.height,
-            width=lens.width,
-            distortion_model="plumb_bob",
-            d=np.array([config.k1, config.k2, config.t1, config.t2, config.k3]),
-            k=np.array([focal, 0, cx, 0, focal, cy, 0, 0, 1]),
-            r=np.eye(3).ravel(),
-            p=np.array([focal, 0, cx, -focal * config.hack_baseline, 0, focal, cy, 0, 0, 0, 1, 0]),
-            binning_x=0,
-            binning_y=0,
-            roi=message_class("sensor_msgs/msg/RegionOfInterest")(
-                x_offset=0, y_offset=0, height=0, width=0, do_rectify=False
-            ),
-        )
+        super().configure()
+        scope = f"{self.namespace}/{self._base()}"
+        if self.graph.parameters.search("trigger_mode", scope) == "polled":
+            self.warn("trigger_mode polled is not supported: the camera streams instead")

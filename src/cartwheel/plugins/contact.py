@@ -32,7 +32,7 @@ class BumperParameters:
     )
 
 
-class Bumper(Plugin[BumperParameters]):
+class Bumper(Plugin[Any]):
     """Publishes the contacts of a sensor's collisions; empty states while nothing touches.
 
     Source: gazebo_plugins, gazebo_ros_bumper.
@@ -44,15 +44,25 @@ class Bumper(Plugin[BumperParameters]):
 
     def configure(self) -> None:
         assert self.sensor is not None
+        config: BumperParameters = self.config
+        rate = config.update_rate or self.sensor.update_rate
+        self.publish_on(config.topic, frame=config.frame, rate=rate)
+
+    def publish_on(self, topic: str, *, frame: str, rate: float) -> None:
+        """Resolves the collisions, advertises and schedules.
+
+        Args:
+            topic: As `advertise` takes it.
+            frame: Of the messages.
+            rate: Hz; 0 is every step.
+        """
         self._collisions = self._resolve_collisions()
+        self._frame = self.frame(frame)
         self._ContactsState = message_class("gazebo_msgs/msg/ContactsState")
         self._ContactState = message_class("gazebo_msgs/msg/ContactState")
         self._Wrench = message_class("geometry_msgs/msg/Wrench")
         self._Vector3 = message_class("geometry_msgs/msg/Vector3")
-        rate = self.config.update_rate or self.sensor.update_rate
-        self._publisher = self.advertise(
-            self.config.topic, "gazebo_msgs/msg/ContactsState", rate=rate or None
-        )
+        self._publisher = self.advertise(topic, "gazebo_msgs/msg/ContactsState", rate=rate or None)
         self.part.schedule(rate, after=self._publish, active=lambda: self._publisher.wanted)
 
     def _resolve_collisions(self) -> set[str]:
@@ -89,7 +99,7 @@ class Bumper(Plugin[BumperParameters]):
             self._state(first, second, pairs[first, second]) for first, second in sorted(pairs)
         ]
         self._publisher.publish(
-            self._ContactsState(header=header(self.part.time_ns, self.config.frame), states=states)
+            self._ContactsState(header=header(self.part.time_ns, self._frame), states=states)
         )
 
     def _state(self, first: str, second: str, contacts: list[Contact]) -> Any:

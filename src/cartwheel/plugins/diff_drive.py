@@ -1,37 +1,45 @@
-"""``libgazebo_ros_diff_drive.so``: two driven wheels, odometry, TF and joint states."""
+"""``libgazebo_ros_diff_drive.so``: driven wheels in pairs, odometry, TF and joint states."""
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
-from typing import Any, ClassVar, Literal
-
-import numpy as np
+from typing import ClassVar, Literal
 
 from cartwheel.errors import Diagnostic, PluginError
-from cartwheel.geometry import Quat, Vec3, yaw_of
-from cartwheel.messages import header, message_class
-from cartwheel.plugins.base import Plugin
+from cartwheel.plugins.odometry import NO_COVARIANCE, Odometry, planar_covariance
 from cartwheel.plugins.parameters import tag
-
-_COVARIANCE = np.diag([1e-5, 1e-5, 1e12, 1e12, 1e12, 1e-3]).ravel()
-_NO_COVARIANCE = np.zeros(36)
-_NOTHING = np.zeros(0)
+from cartwheel.plugins.wheel_drive import WheelDrive, WheelPair
+from cartwheel.plugins.wheel_states import JointStates, WheelTransforms
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class DiffDriveParameters:
-    left_joint: str = tag(
-        "leftJoint", "left_joint", default="left_joint", doc="Joint of the left wheel."
+    left_joint: tuple[str, ...] = tag(
+        "leftJoint",
+        "left_joint",
+        default=("left_joint",),
+        doc="Joint of the left wheel; once for each pair.",
     )
-    right_joint: str = tag(
-        "rightJoint", "right_joint", default="right_joint", doc="Joint of the right wheel."
+    right_joint: tuple[str, ...] = tag(
+        "rightJoint",
+        "right_joint",
+        default=("right_joint",),
+        doc="Joint of the right wheel; once for each pair.",
     )
-    wheel_separation: float = tag(
-        "wheelSeparation", "wheel_separation", default=0.34, unit="m", doc="Between the wheels."
+    pairs: int = tag("num_wheel_pairs", default=1, doc="How many pairs there are.")
+    wheel_separation: tuple[float, ...] = tag(
+        "wheelSeparation",
+        "wheel_separation",
+        default=(0.34,),
+        unit="m",
+        doc="Between the wheels; once for each pair, the last counts for those that follow.",
     )
-    wheel_diameter: float = tag(
-        "wheelDiameter", "wheel_diameter", default=0.15, unit="m", doc="Of both wheels."
+    wheel_diameter: tuple[float, ...] = tag(
+        "wheelDiameter",
+        "wheel_diameter",
+        default=(0.15,),
+        unit="m",
+        doc="Of both wheels; once for each pair, the last counts for those that follow.",
     )
     wheel_torque: float = tag(
         "wheelTorque",
@@ -73,9 +81,14 @@ class DiffDriveParameters:
     publish_tf: bool = tag(
         "publishTf", "publishTF", default=True, doc="Publish odometry and its transform."
     )
-    publish_odom: bool = tag("publish_odom", default=True, doc="Publish odometry (ROS 2 spelling).")
-    publish_odom_tf: bool = tag(
-        "publishOdomTF", "publish_odom_tf", default=True, doc="Publish odometry's transform."
+    publish_odom: bool | None = tag(
+        "publish_odom", default=None, doc="Publish odometry: ROS 2's, where false is the default."
+    )
+    publish_odom_tf: bool | None = tag(
+        "publishOdomTF",
+        "publish_odom_tf",
+        default=None,
+        doc="Publish odometry's transform; true, and false in ROS 2's spelling.",
     )
     publish_wheel_tf: bool = tag(
         "publishWheelTF", "publish_wheel_tf", default=False, doc="Publish the wheels' transforms."
@@ -85,34 +98,34 @@ class DiffDriveParameters:
         default=False,
         doc="Publish the wheels' positions on joint_states.",
     )
+    covariance_x: float = tag("covariance_x", default=1e-5, unit="m²", doc="Of the odometry.")
+    covariance_y: float = tag("covariance_y", default=1e-5, unit="m²", doc="Of the odometry.")
+    covariance_yaw: float = tag("covariance_yaw", default=1e-3, unit="rad²", doc="Of the odometry.")
     legacy_mode: bool = tag(
         "legacyMode", default=False, doc="Turn the other way, as an old release did."
     )
 
 
-class DiffDrive(Plugin[DiffDriveParameters]):
-    """Drives two wheels by Twist, and tells where that took the robot.
+class DiffDrive(WheelDrive):
+    """Drives pairs of wheels by Twist, and tells where that took the robot.
 
     Each wheel is a velocity servo that gives at most `wheel_torque`; a command holds until
     the next one. Source: gazebo_plugins, gazebo_ros_diff_drive.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_diff_drive.so",)
+    empty_is_model: ClassVar[bool] = True
+    prefixes_by_namespace: ClassVar[bool] = True
     parameters: ClassVar[type] = DiffDriveParameters
 
     def configure(self) -> None:
-        config = self.config
-        origin = self.tag.origin
-        for value, what in (
-            (config.wheel_separation, "wheelSeparation"),
-            (config.wheel_diameter, "wheelDiameter"),
-            (config.wheel_torque, "wheelTorque"),
-        ):
-            if value <= 0:
-                raise PluginError(f"<{what}> {value:g} must be above 0", origin=origin)
-        if config.wheel_acceleration < 0 or config.update_rate < 0:
-            raise PluginError("an acceleration or rate cannot be below 0", origin=origin)
-        if self.tag.element.find("torque") and not self.tag.element.find("wheelTorque"):
+        config: DiffDriveParameters = self.config
+        origin, element = self.tag.origin, self.tag.element
+        if config.wheel_torque <= 0:
+            raise PluginError(
+                f"<wheelTorque> {config.wheel_torque:g} must be above 0", origin=origin
+            )
+        if element.find("torque") and not element.find("wheelTorque"):
             self.part.report(
                 Diagnostic(
                     severity="info",
@@ -120,172 +133,57 @@ class DiffDrive(Plugin[DiffDriveParameters]):
                     origin=origin,
                 )
             )
-        part = self.part
-        self._joints = [
-            part.joint(name, origin=origin) for name in (config.left_joint, config.right_joint)
-        ]
-        self._motors = [
-            part.velocity_motor(handle.name, max_effort=config.wheel_torque, origin=origin)
-            for handle in self._joints
-        ]
-        description = part.description
-        known = description.link(config.base_frame) is not None
-        self._base = part.link(config.base_frame if known else description.canonical_link)
-        made = {joint.name: joint for joint in description.joints}
-        self._wheels = [
-            (handle, made[handle.name].parent, made[handle.name].child) for handle in self._joints
-        ]
-        self._names = [config.right_joint, config.left_joint]
-        self._encoded = config.source in ("encoder", "0")
-        self._load_classes()
+        self._take_wheels(self._wheel_pairs(), torque=config.wheel_torque)
         rate = config.update_rate
-        tells = config.publish_tf and config.publish_odom
-        self._odometry = (
-            self.advertise(config.odometry_topic, "nav_msgs/msg/Odometry", rate=rate)
-            if tells
-            else None
+        # ROS 2's plugin of the same name publishes only what it is told to.
+        ros2 = any(element.find(name) for name in ("left_joint", "right_joint", "ros"))
+        told = not ros2 if config.publish_odom is None else config.publish_odom
+        moved = not ros2 if config.publish_odom_tf is None else config.publish_odom_tf
+        covariance = planar_covariance(
+            config.covariance_x, config.covariance_y, config.covariance_yaw
         )
-        transforms = (config.publish_tf and config.publish_odom_tf) or config.publish_wheel_tf
-        self._tf = (
-            self.advertise("/tf", "tf2_msgs/msg/TFMessage", rate=rate) if transforms else None
+        self.odometry = Odometry(
+            self,
+            topic=config.odometry_topic if config.publish_tf and told else None,
+            frame=config.odometry_frame,
+            base=config.base_frame,
+            rate=rate,
+            transform=config.publish_tf and moved,
+            wheels=WheelTransforms(self, self.joints) if config.publish_wheel_tf else None,
+            pose_covariance=covariance,
+            twist_covariance=covariance if ros2 else NO_COVARIANCE,
         )
-        self._joint_states = (
-            self.advertise("joint_states", "sensor_msgs/msg/JointState", rate=rate)
-            if config.publish_joint_state
-            else None
+        if config.publish_joint_state:
+            # Gazebo's order, right before left.
+            order = [self.joints[i ^ 1] for i in range(len(self.joints))]
+            self.joint_states = JointStates(self, order, rate=rate)
+        self._run(
+            command_topic=config.command_topic,
+            base=config.base_frame,
+            encoded=config.source in ("encoder", "0"),
+            control_rate=rate,
+            rate=rate,
+            acceleration=config.wheel_acceleration,
+            reverse=config.legacy_mode,
         )
-        told = (self._odometry, self._tf, self._joint_states)
-        self._publishers = [publisher for publisher in told if publisher is not None]
-        self.subscribe(config.command_topic, "geometry_msgs/msg/Twist", self._on_command)
-        part.schedule(rate, before=self._control)
-        part.schedule(rate, after=self._publish, active=self._wanted)
-        self._radius = config.wheel_diameter / 2
-        self.reset()
 
-    def reset(self) -> None:
-        self._target = [0.0, 0.0]
-        self._ramped = [0.0, 0.0]
-        self._updated_ns: int | None = None
-        self._turned: list[float] | None = None
-        self._x = self._y = self._heading = 0.0
-        self._speed = self._turn_rate = 0.0
-        for motor in self._motors:
-            motor.target = 0.0
-
-    def _load_classes(self) -> None:
-        self._Odometry = message_class("nav_msgs/msg/Odometry")
-        self._PoseWithCovariance = message_class("geometry_msgs/msg/PoseWithCovariance")
-        self._TwistWithCovariance = message_class("geometry_msgs/msg/TwistWithCovariance")
-        self._Pose = message_class("geometry_msgs/msg/Pose")
-        self._Point = message_class("geometry_msgs/msg/Point")
-        self._Quaternion = message_class("geometry_msgs/msg/Quaternion")
-        self._Twist = message_class("geometry_msgs/msg/Twist")
-        self._Vector3 = message_class("geometry_msgs/msg/Vector3")
-        self._Transform = message_class("geometry_msgs/msg/Transform")
-        self._TransformStamped = message_class("geometry_msgs/msg/TransformStamped")
-        self._TFMessage = message_class("tf2_msgs/msg/TFMessage")
-        self._JointState = message_class("sensor_msgs/msg/JointState")
-
-    def _on_command(self, message: Any) -> None:
-        forward, turn = float(message.linear.x), float(message.angular.z)
-        if not (math.isfinite(forward) and math.isfinite(turn)):
-            self.warn("a command that is not finite was ignored")
-            return
-        rim = turn * self.config.wheel_separation / 2
-        if self.config.legacy_mode:
-            rim = -rim
-        self._target = [forward - rim, forward + rim]
-
-    def _control(self) -> None:
-        """Ramps the rim speeds towards the command; integrates the encoders."""
-        now = self.part.time_ns
-        seconds = 0.0 if self._updated_ns is None else (now - self._updated_ns) * 1e-9
-        self._updated_ns = now
-        ramp = self.config.wheel_acceleration
-        limit = ramp * seconds
-        for index, motor in enumerate(self._motors):
-            target, ramped = self._target[index], self._ramped[index]
-            if target != ramped:
-                ramped = ramped + min(max(target - ramped, -limit), limit) if ramp > 0 else target
-                self._ramped[index] = ramped
-            motor.command(ramped / self._radius)
-        if self._encoded:
-            self._integrate(seconds)
-
-    def _integrate(self, seconds: float) -> None:
-        turned = [joint.position for joint in self._joints]
-        if self._turned is not None:
-            left, right = (
-                (new - old) * self._radius for new, old in zip(turned, self._turned, strict=True)
+    def _wheel_pairs(self) -> list[WheelPair]:
+        config: DiffDriveParameters = self.config
+        lefts, rights = config.left_joint, config.right_joint
+        if not len(lefts) == len(rights) == config.pairs:
+            raise PluginError(
+                f"{len(lefts)} left and {len(rights)} right joints for "
+                f"{config.pairs} pairs of wheels",
+                origin=self.tag.origin,
+                hint="<num_wheel_pairs> says how many pairs there are.",
             )
-            forward, turn = (left + right) / 2, (right - left) / self.config.wheel_separation
-            # Along the chord of the arc: exact for constant wheel speeds.
-            chord = forward * (math.sin(turn / 2) / (turn / 2) if abs(turn) > 1e-9 else 1.0)
-            self._x += chord * math.cos(self._heading + turn / 2)
-            self._y += chord * math.sin(self._heading + turn / 2)
-            self._heading += turn
-            if seconds > 0:
-                self._speed, self._turn_rate = forward / seconds, turn / seconds
-        self._turned = turned
-
-    def _wanted(self) -> bool:
-        for publisher in self._publishers:  # noqa: SIM110 - any() costs more than the answer
-            if publisher.wanted:
-                return True
-        return False
-
-    def _publish(self) -> None:
-        # The path of most messages. Fields are given by position, in the order of their
-        # definition, and parts that say the same are one object: both halve its cost.
-        now = self.part.time_ns
-        config = self.config
-        if self._joint_states is not None and self._joint_states.wanted:
-            left, right = self._joints
-            positions = np.array((right.position, left.position))
-            self._joint_states.publish(
-                self._JointState(header(now, ""), self._names, positions, _NOTHING, _NOTHING)
+        separations, diameters = config.wheel_separation, config.wheel_diameter
+        return [
+            WheelPair(
+                left=left.strip(),
+                right=right.strip(),
+                separation=separations[min(index, len(separations) - 1)],
+                diameter=diameters[min(index, len(diameters) - 1)],
             )
-        odometry = self._odometry is not None and self._odometry.wanted
-        transforms = self._tf is not None and self._tf.wanted
-        if not (odometry or transforms):
-            return
-        (x, y, z), turn, forward, sideways, turn_rate = self._state()
-        Vector3 = self._Vector3
-        head, rotation = header(now, config.odometry_frame), self._Quaternion(*turn)
-        if transforms:
-            assert self._tf is not None
-            TransformStamped, Transform = self._TransformStamped, self._Transform
-            sent = []
-            if config.publish_tf and config.publish_odom_tf:
-                moved = Transform(Vector3(x, y, z), rotation)
-                sent.append(TransformStamped(head, config.base_frame, moved))
-            if config.publish_wheel_tf:
-                for joint, parent, child in self._wheels:
-                    place, (qx, qy, qz, qw) = joint.child_place()
-                    moved = Transform(Vector3(*place), self._Quaternion(qx, qy, qz, qw))
-                    sent.append(TransformStamped(header(now, parent), child, moved))
-            self._tf.publish(self._TFMessage(sent))
-        if odometry:
-            assert self._odometry is not None
-            pose = self._Pose(self._Point(x, y, z), rotation)
-            twist = self._Twist(Vector3(forward, sideways, 0.0), Vector3(0.0, 0.0, turn_rate))
-            self._odometry.publish(
-                self._Odometry(
-                    head,
-                    config.base_frame,
-                    self._PoseWithCovariance(pose, _COVARIANCE),
-                    self._TwistWithCovariance(twist, _NO_COVARIANCE),
-                )
-            )
-
-    def _state(self) -> tuple[Vec3, Quat, float, float, float]:
-        """Place in the odometry frame; forward and sideways speed in m/s; turning in rad/s."""
-        if self._encoded:
-            half = self._heading / 2
-            turned: Quat = (0.0, 0.0, math.sin(half), math.cos(half))
-            return (self._x, self._y, 0.0), turned, self._speed, 0.0, self._turn_rate
-        place, turned = self._base.place()
-        (vx, vy, _), (_, _, turn_rate) = self._base.motion(local=False)
-        yaw = yaw_of(turned)
-        cos, sin = math.cos(yaw), math.sin(yaw)
-        return place, turned, cos * vx + sin * vy, cos * vy - sin * vx, turn_rate
+            for index, (left, right) in enumerate(zip(lefts, rights, strict=True))
+        ]

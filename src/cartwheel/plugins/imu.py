@@ -17,6 +17,8 @@ from cartwheel.errors import PluginError
 from cartwheel.geometry import Pose, matrix_from_quat, quat_from_rpy, quat_multiply
 from cartwheel.messages import header, message_class
 from cartwheel.plugins.base import Plugin
+from cartwheel.plugins.gz_sensor import default_topic
+from cartwheel.plugins.noise import VectorNoise, read_noise
 from cartwheel.plugins.parameters import tag
 
 
@@ -46,6 +48,24 @@ class ImuParameters:
 class _ImuBase(Plugin[Any]):
     """Reads a link and publishes what a unit mounted on it measures."""
 
+    _rate_noise: VectorNoise | None = None
+    _accel_noise: VectorNoise | None = None
+
+    def _sensor_noise(self) -> None:
+        """Takes what the sensor's own ``<imu>`` says of noise, axis by axis."""
+        assert self.sensor is not None
+        element = self.sensor.element.find("imu")
+        if element is None:
+            return
+        both = []
+        for what, older in (("angular_velocity", "rate"), ("linear_acceleration", "accel")):
+            noises = [read_noise(element.find(f"{what}/{axis}/noise")) for axis in "xyz"]
+            if element.find(f"noise/{older}") is not None and element.find(what) is None:
+                # As SDF 1.4 wrote it, one for all axes.
+                noises = [read_noise(element.find(f"noise/{older}"))] * 3
+            both.append(VectorNoise(self.part, f"imu {self.sensor.name} {what}", noises))
+        self._rate_noise, self._accel_noise = both
+
     def _start(
         self, *, link: str, mount: Pose, topic: str, frame: str, noise: float, rate: float
     ) -> None:
@@ -54,12 +74,16 @@ class _ImuBase(Plugin[Any]):
         self._link = self.part.link(link, origin=self.tag.origin)
         self._mount = mount
         self._turn = matrix_from_quat(mount.orientation).T.tolist()
-        self._frame = frame
+        self._frame = self.frame(frame)
         self._noise = noise
         self._Imu = message_class("sensor_msgs/msg/Imu")
         self._Vector3 = message_class("geometry_msgs/msg/Vector3")
         self._Quaternion = message_class("geometry_msgs/msg/Quaternion")
         self._covariance = np.diag([noise**2] * 3).ravel()
+        self._rate_covariance = self._accel_covariance = self._covariance
+        if self._rate_noise is not None and self._accel_noise is not None:
+            self._rate_covariance = self._covariance + np.diag(self._rate_noise.variance).ravel()
+            self._accel_covariance = self._covariance + np.diag(self._accel_noise.variance).ravel()
         self._publisher = self.advertise(
             topic, "sensor_msgs/msg/Imu", rate=rate or None, qos="sensor"
         )
@@ -76,16 +100,17 @@ class _ImuBase(Plugin[Any]):
             random = self.part.random(f"imu {self._publisher.topic}")
             rate = (rate + random.normal(0.0, self._noise, 3)).tolist()
             acceleration = (acceleration + random.normal(0.0, self._noise, 3)).tolist()
-        covariance = self._covariance
+        if self._rate_noise is not None and self._accel_noise is not None:
+            rate, acceleration = self._rate_noise.add(rate), self._accel_noise.add(acceleration)
         self._publisher.publish(
             self._Imu(
                 header(self.part.time_ns, self._frame),
                 self._Quaternion(x, y, z, w),
-                covariance,
+                self._covariance,
                 self._Vector3(*rate),
-                covariance,
+                self._rate_covariance,
                 self._Vector3(*acceleration),
-                covariance,
+                self._accel_covariance,
             )
         )
 
@@ -147,7 +172,11 @@ class ImuSensorParameters:
 
 
 class ImuSensor(_ImuBase):
-    """The plugin of an ``imu`` sensor. Source: gazebo_plugins, gazebo_ros_imu_sensor; REP 145."""
+    """The plugin of an ``imu`` sensor, with the noise that its ``<imu>`` states.
+
+    In ROS 2's spelling, with ``<ros>``, the topic is ``~/out``, to be remapped. Source:
+    gazebo_plugins, gazebo_ros_imu_sensor; REP 145.
+    """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_imu_sensor.so",)
     parameters: ClassVar[type] = ImuSensorParameters
@@ -162,11 +191,54 @@ class ImuSensor(_ImuBase):
                 "<initialOrientationAsReference> has no effect: "
                 "the orientation is against the world, as REP 145 asks"
             )
+        topic = config.topic
+        element = self.tag.element
+        named = element.find("topicName") or element.find("topic")
+        if element.find("ros") is not None and named is None:
+            topic = "out" if self.remaps("out") else f"{self.tag.name or 'imu'}/out"
+        self._sensor_noise()
         self._start(
             link=self.sensor.link,
             mount=self.sensor.pose @ offset,
-            topic=config.topic,
+            topic=topic,
             frame=config.frame or self.sensor.link,
             noise=config.noise,
             rate=config.update_rate or self.sensor.update_rate,
+        )
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class GzImuParameters:
+    topic: str = tag("topic", default="", doc="Imu; Gazebo's long name when empty.")
+    frame: str = tag(
+        "gz_frame_id",
+        "ignition_frame_id",
+        default="",
+        doc="Frame of the messages; the link's when empty.",
+    )
+
+
+class GzImu(_ImuBase):
+    """An ``imu`` sensor that needs no plugin, with the noise that its ``<imu>`` states.
+
+    Source: gz-sensors, ImuSensor; REP 145.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ()
+    parameters: ClassVar[type] = GzImuParameters
+    for_sensor: ClassVar[bool] = True
+    serves: ClassVar[tuple[str, ...]] = ("imu",)
+
+    def configure(self) -> None:
+        sensor = self.sensor
+        assert sensor is not None
+        config: GzImuParameters = self.config
+        self._sensor_noise()
+        self._start(
+            link=sensor.link,
+            mount=sensor.pose,
+            topic=config.topic or default_topic(self.part, sensor, "imu"),
+            frame=config.frame or sensor.link,
+            noise=0.0,
+            rate=sensor.update_rate,
         )

@@ -34,6 +34,11 @@ def tag(*names: str, default: Any = dataclasses.MISSING, unit: str = "", doc: st
     return dataclasses.field(default=default, metadata=metadata)
 
 
+def tags_of(cls: type) -> set[str]:
+    """All tags that a parameter dataclass is read from."""
+    return {name for item in dataclasses.fields(cls) for name in item.metadata["tags"]}
+
+
 def read(
     cls: type[C], element: Element, *, ignore: Iterable[str] = ()
 ) -> tuple[C, list[Diagnostic]]:
@@ -51,9 +56,11 @@ def read(
         found = next((child for name in names if (child := element.find(name)) is not None), None)
         if found is not None:
             kind = hints[item.name]
-            if get_origin(kind) is tuple and get_args(kind) == (str, Ellipsis):
+            if get_origin(kind) is tuple and Ellipsis in get_args(kind):
                 values[item.name] = tuple(
-                    child.text for name in names for child in element.find_all(name)
+                    _value(get_args(kind)[0], child)
+                    for name in names
+                    for child in element.find_all(name)
                 )
             else:
                 values[item.name] = _value(kind, found)

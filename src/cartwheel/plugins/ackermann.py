@@ -1,0 +1,355 @@
+"""``libgazebo_ros_ackermann_drive.so`` and ``gz-sim-ackermann-steering-system``: cars."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from cartwheel.description.kinematics import link_poses
+from cartwheel.description.model import Capsule, Cylinder, Sphere
+from cartwheel.errors import Diagnostic, PluginError
+from cartwheel.messages import message_class
+from cartwheel.plugins.gz_drive import (
+    GzLimitedParameters,
+    Limiter,
+    gz_name,
+    gz_odometry,
+    report_limits,
+)
+from cartwheel.plugins.odometry import Odometry, planar_covariance
+from cartwheel.plugins.parameters import tag
+from cartwheel.plugins.steered_drive import SteeredDrive
+from cartwheel.plugins.wheel_states import WheelTransforms
+
+
+def wheel_angles(steer: float, base: float, track: float) -> tuple[float, float]:
+    """Angles of the left and the right steered wheel, all four wheels turning about one point.
+
+    Args:
+        steer: Of the wheel that stands in the middle between them, rad, left positive.
+        base: m, between the axles.
+        track: m, between the steered wheels.
+    """
+    tangent = math.tan(steer)
+    half = track / 2 / base * tangent
+    return math.atan2(tangent, 1 - half), math.atan2(tangent, 1 + half)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class AckermannParameters:
+    front_left: str = tag("front_left_joint", default="front_left_joint", doc="Joint of a wheel.")
+    front_right: str = tag(
+        "front_right_joint", default="front_right_joint", doc="Joint of a wheel."
+    )
+    rear_left: str = tag("rear_left_joint", default="rear_left_joint", doc="Driven wheel.")
+    rear_right: str = tag("rear_right_joint", default="rear_right_joint", doc="Driven wheel.")
+    steer_left: str = tag(
+        "left_steering_joint", default="left_steering_joint", doc="Steers the left wheel."
+    )
+    steer_right: str = tag(
+        "right_steering_joint", default="right_steering_joint", doc="Steers the right wheel."
+    )
+    steering_wheel: str = tag(
+        "steering_wheel_joint",
+        default="steering_wheel_joint",
+        doc="Turns with the wheels; none where there is no such joint.",
+    )
+    max_steer: float = tag("max_steer", default=0.6, unit="rad", doc="Most of the wheels.")
+    max_steering_angle: float = tag(
+        "max_steering_angle", default=7.85, unit="rad", doc="Of the steering wheel at max_steer."
+    )
+    max_speed: float = tag("max_speed", default=20.0, unit="m/s", doc="Most of the command.")
+    left_gain: tuple[float, float, float] | None = tag(
+        "left_steering_pid_gain", default=None, doc="Has no effect: a servo steers."
+    )
+    left_range: tuple[float, float] | None = tag(
+        "left_steering_i_range", default=None, doc="Has no effect."
+    )
+    right_gain: tuple[float, float, float] | None = tag(
+        "right_steering_pid_gain", default=None, doc="Has no effect: a servo steers."
+    )
+    right_range: tuple[float, float] | None = tag(
+        "right_steering_i_range", default=None, doc="Has no effect."
+    )
+    speed_gain: tuple[float, float, float] | None = tag(
+        "linear_velocity_pid_gain", default=None, doc="Has no effect: servos drive."
+    )
+    speed_range: tuple[float, float] | None = tag(
+        "linear_velocity_i_range", default=None, doc="Has no effect."
+    )
+    update_rate: float = tag("update_rate", default=100.0, unit="Hz", doc="Of control and topics.")
+    odometry_frame: str = tag("odometry_frame", default="odom", doc="Frame of the odometry.")
+    base_frame: str = tag(
+        "robot_base_frame",
+        default="base_footprint",
+        doc="Link whose pose is told; the root link where there is none of that name.",
+    )
+    publish_odom: bool = tag("publish_odom", default=False, doc="Publish odometry on odom.")
+    publish_odom_tf: bool = tag("publish_odom_tf", default=False, doc="Publish its transform.")
+    publish_wheel_tf: bool = tag(
+        "publish_wheel_tf", default=False, doc="Publish the joints' transforms."
+    )
+    publish_distance: bool = tag(
+        "publish_distance", default=False, doc="Publish the way gone, in m, on distance."
+    )
+    publish_steerangle: bool = tag(
+        "publish_steerangle", default=False, doc="Publish the mean steering angle on steerangle."
+    )
+    covariance_x: float = tag("covariance_x", default=1e-5, unit="m²", doc="Of the odometry.")
+    covariance_y: float = tag("covariance_y", default=1e-5, unit="m²", doc="Of the odometry.")
+    covariance_yaw: float = tag("covariance_yaw", default=1e-3, unit="rad²", doc="Of the odometry.")
+
+
+class AckermannDrive(SteeredDrive):
+    """Drives the rear wheels of a car and steers its front ones, on cmd_vel.
+
+    The Twist's linear.x is the speed of the middle of the rear axle; its angular.z is the
+    steering angle in rad, taken the other way round in reverse. Source: gazebo_plugins,
+    gazebo_ros_ackermann_drive.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_ackermann_drive.so",)
+    parameters: ClassVar[type] = AckermannParameters
+
+    def configure(self) -> None:
+        config: AckermannParameters = self.config
+        origin, part = self.tag.origin, self.part
+        self._measure()
+        names = [config.front_left, config.front_right, config.rear_left, config.rear_right]
+        names += [config.steer_left, config.steer_right]
+        joints = {name: part.joint(name, origin=origin) for name in names}
+        self._steered = [joints[config.steer_left], joints[config.steer_right]]
+        self._forks = [
+            part.servo(name, max_effort=None, origin=origin)
+            for name in (config.steer_left, config.steer_right)
+        ]
+        self._motors = [
+            part.velocity_motor(name, max_effort=None, origin=origin)
+            for name in (config.rear_left, config.rear_right)
+        ]
+        self._wheel = None
+        if part.description.joint(config.steering_wheel) is not None:
+            self._wheel = part.servo(config.steering_wheel, max_effort=None, origin=origin)
+            joints[config.steering_wheel] = part.joint(config.steering_wheel)
+        if config.left_gain or config.right_gain or config.speed_gain:
+            part.report(
+                Diagnostic(
+                    severity="info",
+                    message="gains of PIDs have no effect: servos steer and drive, "
+                    "within the joints' effort limits",
+                    origin=origin,
+                )
+            )
+        rate = config.update_rate
+        covariance = planar_covariance(
+            config.covariance_x, config.covariance_y, config.covariance_yaw
+        )
+        wheels = WheelTransforms(self, list(joints.values())) if config.publish_wheel_tf else None
+        self.odometry = Odometry(
+            self,
+            topic="odom" if config.publish_odom else None,
+            frame=config.odometry_frame,
+            base=config.base_frame,
+            rate=rate,
+            transform=config.publish_odom_tf,
+            wheels=wheels,
+            pose_covariance=covariance,
+            twist_covariance=covariance,
+        )
+        self._Float = message_class("std_msgs/msg/Float32")
+        self._distance = (
+            self.advertise("distance", "std_msgs/msg/Float32", rate=rate)
+            if config.publish_distance
+            else None
+        )
+        self._angle = (
+            self.advertise("steerangle", "std_msgs/msg/Float32", rate=rate)
+            if config.publish_steerangle
+            else None
+        )
+        self._run(command_topic="cmd_vel", base=config.base_frame, control_rate=rate, rate=rate)
+
+    def _measure(self) -> None:
+        """Wheel radius, track and wheel base, from the description."""
+        config: AckermannParameters = self.config
+        description, origin = self.part.description, self.tag.origin
+        poses = link_poses(description, {})
+        centres = []
+        for name in (config.front_left, config.front_right, config.rear_left, config.rear_right):
+            joint = description.joint(name)
+            link = description.link(joint.child) if joint is not None else None
+            if link is None or not link.collisions:
+                self.part.joint(name, origin=origin)
+                raise PluginError(
+                    f'the wheel of joint "{name}" has no collision to be measured', origin=origin
+                )
+            collision = link.collisions[0]
+            centres.append(poses[link.name].apply(collision.pose.position))
+            shape = collision.shape
+        if not isinstance(shape, Cylinder | Sphere | Capsule):
+            raise PluginError(
+                f'the wheel of joint "{name}" is neither cylinder nor sphere: it has no radius',
+                origin=origin,
+            )
+        self._radius = shape.radius
+        front_left, front_right, rear_left, rear_right = centres
+        self._track = math.dist(front_left, front_right)
+        front = [(a + b) / 2 for a, b in zip(front_left, front_right, strict=True)]
+        rear = [(a + b) / 2 for a, b in zip(rear_left, rear_right, strict=True)]
+        self._wheel_base = math.dist(front, rear)
+        if self._wheel_base <= 0 or self._track <= 0:
+            raise PluginError("the wheels stand in one place", origin=origin)
+
+    def reset(self) -> None:
+        super().reset()
+        self._gone = 0.0
+        self._was: tuple[float, float] | None = None
+
+    def _steer(self, seconds: float) -> None:  # noqa: ARG002
+        config: AckermannParameters = self.config
+        speed = min(max(self._forward, -config.max_speed), config.max_speed)
+        steer = self._turn * math.copysign(1.0, self._forward)
+        steer = min(max(steer, -config.max_steer), config.max_steer)
+        angles = wheel_angles(steer, self._wheel_base, self._track)
+        for fork, angle in zip(self._forks, angles, strict=True):
+            fork.command_position(angle)
+        half = self._track / 2 / self._wheel_base * math.tan(steer)
+        for motor, share in zip(self._motors, (1 - half, 1 + half), strict=True):
+            motor.command(speed * share / self._radius)
+        if self._wheel is not None:
+            wheel = steer * config.max_steering_angle / config.max_steer
+            self._wheel.command_position(wheel)
+        if self._distance is not None:
+            x, y, _ = self._base.place()[0]
+            if self._was is not None:
+                self._gone += math.dist(self._was, (x, y))
+            self._was = (x, y)
+
+    def _wanted(self) -> bool:
+        own = (self._distance, self._angle)
+        return super()._wanted() or any(p is not None and p.wanted for p in own)
+
+    def _publish(self) -> None:
+        super()._publish()
+        if self._distance is not None and self._distance.wanted:
+            self._distance.publish(self._Float(self._gone))
+        if self._angle is not None and self._angle.wanted:
+            left, right = self._steered
+            self._angle.publish(self._Float((left.position + right.position) / 2))
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class GzAckermannParameters(GzLimitedParameters):
+    left_joint: tuple[str, ...] = tag(
+        "left_joint", default=("left_joint",), doc="Joint of a driven left wheel; once for each."
+    )
+    right_joint: tuple[str, ...] = tag(
+        "right_joint", default=("right_joint",), doc="Joint of a driven right wheel; once for each."
+    )
+    steer_left: str = tag(
+        "left_steering_joint", default="left_steering_joint", doc="Steers the left wheel."
+    )
+    steer_right: str = tag(
+        "right_steering_joint", default="right_steering_joint", doc="Steers the right wheel."
+    )
+    wheel_separation: float = tag(
+        "wheel_separation", default=1.0, unit="m", doc="Between left and right."
+    )
+    kingpin_width: float = tag(
+        "kingpin_width", default=0.8, unit="m", doc="Between the axes of steering."
+    )
+    wheel_base: float = tag("wheel_base", default=1.0, unit="m", doc="Between the axles.")
+    steering_limit: float = tag("steering_limit", default=0.5, unit="rad", doc="Most.")
+    wheel_radius: float = tag("wheel_radius", default=0.2, unit="m", doc="Of all wheels.")
+    steer_gain: float = tag(
+        "steer_p_gain", default=1.0, doc="Accepted: a servo steers, without delay."
+    )
+    sub_topic: str = tag("sub_topic", default="", doc="Twist under /model/<name>.")
+    steering_only: bool = tag("steering_only", default=False, doc="Not supported.")
+    actuators: bool = tag("use_actuator_msg", default=False, doc="Not supported.")
+
+
+class GzAckermann(SteeredDrive):
+    """Drives and steers a car by Twist: linear.x in m/s, angular.z in rad/s.
+
+    The odometry is what the driven wheels turn. Source: gz-sim, AckermannSteering.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ("gz-sim-ackermann-steering-system",)
+    parameters: ClassVar[type] = GzAckermannParameters
+
+    def configure(self) -> None:
+        config: GzAckermannParameters = self.config
+        origin, part = self.tag.origin, self.part
+        for value, what in (
+            (config.wheel_base, "wheel_base"),
+            (config.wheel_separation, "wheel_separation"),
+            (config.kingpin_width, "kingpin_width"),
+            (config.wheel_radius, "wheel_radius"),
+            (config.steering_limit, "steering_limit"),
+        ):
+            if value <= 0:
+                raise PluginError(f"<{what}> {value:g} must be above 0", origin=origin)
+        for flag, what in (
+            (config.steering_only, "steering_only"),
+            (config.actuators, "use_actuator_msg"),
+        ):
+            if flag:
+                self.warn(f"<{what}> is not supported: the car is driven by Twist")
+        report_limits(self, config)
+        self._linear = Limiter.of(config, "linear")
+        self._angular = Limiter.of(config, "angular")
+        self._driven = [
+            [(part.joint(name, origin=origin), part.velocity_motor(name, max_effort=None))
+             for name in names]
+            for names in (config.left_joint, config.right_joint)
+        ]  # fmt: skip
+        self._forks = [
+            part.servo(name, max_effort=None, origin=origin)
+            for name in (config.steer_left, config.steer_right)
+        ]
+        self.odometry = gz_odometry(self, config)
+        topic = config.topic or (
+            f"/model/{part.name}/{config.sub_topic}" if config.sub_topic else ""
+        )
+        self._run(
+            command_topic=gz_name(self, topic, "cmd_vel"),
+            base="",
+            control_rate=100.0,
+            rate=config.rate,
+        )
+
+    def reset(self) -> None:
+        super().reset()
+        self._linear.value = self._angular.value = 0.0
+        self._turned: tuple[float, float] | None = None
+
+    def _steer(self, seconds: float) -> None:
+        config: GzAckermannParameters = self.config
+        speed = self._linear.step(self._forward, seconds or 0.01)
+        turn = self._angular.step(self._turn, seconds or 0.01)
+        # The middle of the front axle points across the line to the centre of the turn.
+        steer = math.atan2(turn * config.wheel_base, abs(speed))
+        steer = math.copysign(steer, turn * speed) if speed else 0.0
+        steer = min(max(steer, -config.steering_limit), config.steering_limit)
+        angles = wheel_angles(steer, config.wheel_base, config.kingpin_width)
+        for fork, angle in zip(self._forks, angles, strict=True):
+            fork.command_position(angle)
+        half = config.wheel_separation / 2 / config.wheel_base * math.tan(steer)
+        for side, share in zip(self._driven, (1 - half, 1 + half), strict=True):
+            for _, motor in side:
+                motor.command(speed * share / config.wheel_radius)
+        self._integrate(seconds)
+
+    def _integrate(self, seconds: float) -> None:
+        config: GzAckermannParameters = self.config
+        turned = (self._driven[0][0][0].position, self._driven[1][0][0].position)
+        if self._turned is not None:
+            left, right = ((turned[i] - self._turned[i]) * config.wheel_radius for i in (0, 1))
+            turn = (right - left) / config.wheel_separation
+            self._reckoning.go((left + right) / 2, turn, seconds)
+        self._turned = turned
+
+    def _motion(self) -> Any:
+        return self._reckoning.motion()

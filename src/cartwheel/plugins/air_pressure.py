@@ -1,0 +1,80 @@
+"""``air_pressure`` sensors: the atmosphere at a height."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from cartwheel.errors import PluginError
+from cartwheel.messages import header, message_class
+from cartwheel.plugins.base import Plugin
+from cartwheel.plugins.gz_sensor import default_topic
+from cartwheel.plugins.noise import VectorNoise, read_noise
+from cartwheel.plugins.parameters import tag
+
+SEA_LEVEL = 101325.0
+"""Pa."""
+TEMPERATURE = 288.15
+"""K, at sea level."""
+LAPSE = 0.0065
+"""K/m."""
+EXPONENT = 9.80665 * 0.0289644 / (8.31446 * LAPSE)
+
+
+def pressure_at(height: float) -> float:
+    """Pa at a height in m above the sea: the international standard atmosphere up to 11 km."""
+    return float(SEA_LEVEL * (1 - LAPSE * height / TEMPERATURE) ** EXPONENT)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class AirPressureParameters:
+    topic: str = tag("topic", default="", doc="FluidPressure; Gazebo's long name when empty.")
+    frame: str = tag(
+        "gz_frame_id",
+        "ignition_frame_id",
+        default="",
+        doc="Frame of the messages; the link's when empty.",
+    )
+
+
+class AirPressure(Plugin[AirPressureParameters]):
+    """Publishes the pressure at the sensor's height, in Pa.
+
+    ``<reference_altitude>`` is the height of the world's origin. Source: gz-sensors,
+    AirPressureSensor; the international standard atmosphere.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ()
+    parameters: ClassVar[type] = AirPressureParameters
+    for_sensor: ClassVar[bool] = True
+    serves: ClassVar[tuple[str, ...]] = ("air_pressure",)
+
+    def configure(self) -> None:
+        sensor, part = self.sensor, self.part
+        assert sensor is not None
+        self._link, self._mount = part.link(sensor.link), sensor.pose.position
+        self._frame = self.frame(self.config.frame or sensor.link)
+        reference = sensor.element.find("air_pressure/reference_altitude")
+        try:
+            self._reference = float(reference.text) if reference is not None else 0.0
+        except ValueError:
+            raise PluginError(
+                "<reference_altitude> is not a number", origin=sensor.origin
+            ) from None
+        noise = read_noise(sensor.element.find("air_pressure/pressure/noise"))
+        self._noise = VectorNoise(part, f"pressure {sensor.name}", [noise])
+        self._FluidPressure = message_class("sensor_msgs/msg/FluidPressure")
+        topic = self.config.topic or default_topic(part, sensor, "air_pressure")
+        rate = sensor.update_rate
+        self._publisher = self.advertise(
+            topic, "sensor_msgs/msg/FluidPressure", rate=rate or None, qos="sensor"
+        )
+        part.schedule(rate, after=self._measure, active=lambda: self._publisher.wanted)
+
+    def _measure(self) -> None:
+        _, _, height = self._link.pose.apply(self._mount)
+        (pressure,) = self._noise.add([pressure_at(self._reference + height)])
+        variance = float(self._noise.variance[0])
+        self._publisher.publish(
+            self._FluidPressure(header(self.part.time_ns, self._frame), pressure, variance)
+        )

@@ -1,0 +1,65 @@
+"""``libgazebo_ros_block_laser.so``: a laser with several rows, as a cloud of points."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from cartwheel.errors import PluginError
+from cartwheel.messages import header
+from cartwheel.plugins.base import Plugin
+from cartwheel.plugins.parameters import tag
+from cartwheel.plugins.scan import Scanner
+from cartwheel.plugins.scan_messages import point_cloud
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class BlockLaserParameters:
+    topic: str = tag("topicName", "topic_name", default="points", doc="PointCloud.")
+    frame: str = tag(
+        "frameName", "frame_name", default="", doc="Frame of the messages; the link's when empty."
+    )
+    noise: float = tag(
+        "gaussianNoise", default=0.0, unit="m", doc="Standard deviation of each coordinate."
+    )
+    least_intensity: float = tag(
+        "hokuyoMinIntensity", default=101.0, doc="Accepted: Gazebo does nothing with it."
+    )
+    update_rate: float = tag(
+        "updateRate", "update_rate", default=0.0, unit="Hz", doc="Accepted: the sensor's counts."
+    )
+
+
+class BlockLaser(Plugin[BlockLaserParameters]):
+    """Publishes the points that a ray sensor hits, z up.
+
+    Source: gazebo_plugins, gazebo_ros_block_laser.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_block_laser.so",)
+    parameters: ClassVar[type] = BlockLaserParameters
+    for_sensor: ClassVar[bool] = True
+
+    def configure(self) -> None:
+        assert self.sensor is not None
+        if self.config.noise < 0:
+            raise PluginError("<gaussianNoise> cannot be below 0", origin=self.tag.origin)
+        self._scanner = Scanner(self.part, self.sensor)
+        self._frame = self.frame(self.config.frame or self.sensor.link)
+        rate = self.sensor.update_rate
+        self._publisher = self.advertise(
+            self.config.topic, "sensor_msgs/msg/PointCloud", rate=rate or None, qos="sensor"
+        )
+        self.part.schedule(rate, after=self._publish, active=lambda: self._publisher.wanted)
+
+    def _publish(self) -> None:
+        scan = self._scanner.measure()
+        hit = np.isfinite(scan.ranges)
+        points = scan.points(self._scanner.directions)
+        if self.config.noise > 0:
+            random = self._scanner.random("points")
+            points = points + random.normal(0.0, self.config.noise, points.shape)
+        moment = header(self.part.time_ns, self._frame)
+        self._publisher.publish(point_cloud(moment, points[hit], scan.intensities[hit]))

@@ -1,0 +1,186 @@
+"""What all plugins of cameras do: one or more eyes, drawn at a rate or on demand."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Iterator
+from typing import Any, ClassVar, TypeVar
+
+from cartwheel.description.model import CameraIntrinsics
+from cartwheel.errors import Diagnostic, GraphError, PluginError, SimulationError
+from cartwheel.plugins.base import Plugin
+from cartwheel.plugins.camera_depth import DepthOptions, Depths
+from cartwheel.plugins.camera_eye import Eye, EyeTopics
+from cartwheel.plugins.camera_info import Calibration
+from cartwheel.plugins.camera_lens import Distortion, Lens
+
+_WIDEST_VIEW = 2.8
+"""rad; a pinhole's picture of more is nearly all edge."""
+_IDLE_RATE = 1.0
+"""Hz at which a camera that waits for its trigger is looked at."""
+_LOST = {
+    "lens": "the view of <horizontal_fov> counts",
+    "save": "no pictures are saved",
+    "visibility_mask": "all visuals are seen",
+}
+"""What SDF can say of a camera, and what counts instead."""
+_WIDE = ("wideanglecamera", "wide_angle_camera")
+
+C = TypeVar("C")
+
+
+class CameraBase(Plugin[C]):
+    """A camera's sensor, its rate and its trigger; what its topics are called is a subclass's."""
+
+    empty_is_model: ClassVar[bool] = True
+    for_sensor: ClassVar[bool] = True
+
+    def configure(self) -> None:
+        sensor = self.sensor
+        assert sensor is not None
+        if not sensor.cameras:
+            raise PluginError(f'sensor "{sensor.name}" has no <camera>', origin=sensor.origin)
+        if sensor.type in _WIDE:
+            self.warn("a wide-angle lens is drawn as a pinhole")
+        for camera in sensor.element.find_all("camera"):
+            for child in camera.children:
+                if child.tag in _LOST and child.attribute("enabled") not in ("false", "0"):
+                    self.warn(f"<{child.tag}> has no effect: {_LOST[child.tag]}", at=child.origin)
+        rates = [rate for rate in (self._asked_rate(), sensor.update_rate) if rate > 0]
+        self._rate = min(rates, default=0.0)
+        self._triggers = 0
+        self._blind = False
+        self._eyes: list[Eye] = list(self._open_eyes())
+        trigger_topics = self._trigger_topics()
+        for topic in trigger_topics:
+            self.subscribe(topic, "std_msgs/msg/Empty", self._trigger)
+        self._waits = bool(trigger_topics)
+        options = self._depth_options()
+        self._depths = (
+            None
+            if options is None
+            else Depths(self, self._eyes[0], options, rate=self._rate or None)
+        )
+        self._task = self.part.schedule(
+            _IDLE_RATE if self._waits else self._rate,
+            after=self._publish_once if self._waits else self._publish,
+            active=(lambda: self._triggers > 0) if self._waits else self._wanted,
+        )
+
+    def _asked_rate(self) -> float:
+        """Hz that the plugin's own tags ask for; 0 is the sensor's."""
+        return 0.0
+
+    def _open_eyes(self) -> Iterator[Eye]:
+        """Makes each lens with its topics."""
+        raise NotImplementedError
+
+    def _trigger_topics(self) -> list[str]:
+        """What it waits for; empty where it does not."""
+        return []
+
+    def _depth_options(self) -> DepthOptions | None:
+        """How depths are told; None where they are not."""
+        return None
+
+    def _eye(
+        self,
+        lens: CameraIntrinsics,
+        topics: EyeTopics,
+        *,
+        frame: str,
+        told: Distortion | None = None,
+        **calibration: Any,
+    ) -> Eye:
+        """One lens.
+
+        Args:
+            lens: As the sensor has it.
+            topics: Where it publishes.
+            frame: Of the messages; the link's where it is empty.
+            told: The distortion where the sensor has none.
+            calibration: See `Calibration`.
+        """
+        sensor = self.sensor
+        assert sensor is not None
+        lens = self._narrowed(lens)
+        bent = Lens(lens, self._distortion(lens, told or Distortion()))
+        frame = self.frame(frame or sensor.link)
+        return Eye(
+            self,
+            sensor,
+            lens,
+            bent=bent,
+            calibration=Calibration(bent, frame, **calibration),
+            topics=topics,
+            frame=frame,
+            rate=self._rate,
+            on_rate=self._set_rate,
+        )
+
+    def _narrowed(self, lens: CameraIntrinsics) -> CameraIntrinsics:
+        if lens.horizontal_fov <= _WIDEST_VIEW:
+            return lens
+        self.warn(
+            f"a view of {lens.horizontal_fov:g} rad is drawn as one of {_WIDEST_VIEW:g}: "
+            "no pinhole has more"
+        )
+        return dataclasses.replace(lens, horizontal_fov=_WIDEST_VIEW)
+
+    def _distortion(self, lens: CameraIntrinsics, told: Distortion) -> Distortion:
+        """The sensor's own, else the plugin's: the image is drawn as camera_info tells it."""
+        own = Distortion(k1=lens.k1, k2=lens.k2, p1=lens.p1, p2=lens.p2, k3=lens.k3)
+        if not any(own.coefficients):
+            return told
+        if any(told.coefficients) and told != own:
+            self.warn("the sensor's <distortion> counts, not the plugin's own other numbers")
+        if lens.distortion_center != (0.5, 0.5):
+            self.warn("camera_info cannot tell the <center> of a distortion: it is drawn alone")
+        return own
+
+    def _set_rate(self, rate: float) -> None:
+        if self._waits:
+            raise GraphError("a camera that waits for its trigger has no rate")
+        if rate != self._rate:
+            self._rate = rate
+            self._task = self.part.reschedule(self._task, rate)
+
+    def _trigger(self, _: Any) -> None:
+        self._triggers += 1
+        # At the next step, whatever the sensor's rate is.
+        self._task = self.part.reschedule(self._task, 0.0)
+
+    def _publish_once(self) -> None:
+        self._publish()
+        self._triggers -= 1
+        if not self._triggers:
+            self._task = self.part.reschedule(self._task, _IDLE_RATE)
+
+    def _wanted(self) -> bool:
+        if self._depths is not None and self._depths.wanted:
+            return True
+        return any(eye.wanted for eye in self._eyes)
+
+    def _publish(self) -> None:
+        now, depths = self.part.time_ns, self._depths
+        for eye in self._eyes:
+            eye.publish_info(now)
+        if depths is not None:
+            depths.publish_info(now)
+        if self._blind:
+            return
+        try:
+            if depths is not None and depths.sees:
+                pixels, metres = self._eyes[0].picture_with_depth()
+                self._eyes[0].publish(now, pixels)
+                depths.publish(now, pixels, metres)
+            else:
+                for eye in self._eyes:
+                    if eye.sees:
+                        eye.publish(now, eye.picture())
+        except SimulationError as error:
+            # Said once; everything but images goes on.
+            self._blind = True
+            self.part.report(
+                Diagnostic(severity="warning", message=str(error), origin=self.tag.origin)
+            )

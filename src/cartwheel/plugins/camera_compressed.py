@@ -1,0 +1,234 @@
+"""Images in fewer bytes, as image_transport's plugins publish them beside an image."""
+
+from __future__ import annotations
+
+import io
+import struct
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cartwheel.errors import GraphError
+from cartwheel.graph import ReconfigureParameter, choices
+from cartwheel.messages import message_class
+from cartwheel.plugins.base import Plugin
+from cartwheel.plugins.camera_formats import ImageFormat, Pixels
+
+COMPRESSED = "sensor_msgs/msg/CompressedImage"
+_FORMATS = ("jpeg", "png")
+_INVERSE = 1
+"""What the head of compressed depths says of how they are stored."""
+
+PARAMETERS = (
+    ReconfigureParameter(
+        name="enable", type="bool", default=True, description="Publish these images"
+    ),
+    ReconfigureParameter(
+        name="format",
+        type="str",
+        default="jpeg",
+        description="How images are compressed",
+        edit_method=choices(*_FORMATS, description="JPEG loses some detail, PNG none"),
+    ),
+    ReconfigureParameter(
+        name="jpeg_quality",
+        type="int",
+        default=80,
+        minimum=1,
+        maximum=100,
+        description="Quality of a JPEG, 100 is the best",
+    ),
+    ReconfigureParameter(
+        name="jpeg_progressive", type="bool", default=False, description="Progressive JPEG"
+    ),
+    ReconfigureParameter(
+        name="jpeg_optimize", type="bool", default=False, description="Smaller JPEG, slower"
+    ),
+    ReconfigureParameter(
+        name="jpeg_restart_interval",
+        type="int",
+        default=0,
+        minimum=0,
+        maximum=65535,
+        description="Blocks between restart markers of a JPEG, 0 is none",
+    ),
+    ReconfigureParameter(
+        name="png_level",
+        type="int",
+        default=9,
+        minimum=1,
+        maximum=9,
+        description="Effort of PNG, 9 is the smallest",
+    ),
+)
+"""Names, types, defaults and bounds as compressed_image_transport has them."""
+
+DEPTH_PARAMETERS = (
+    ReconfigureParameter(
+        name="enable", type="bool", default=True, description="Publish these images"
+    ),
+    ReconfigureParameter(
+        name="format",
+        type="str",
+        default="png",
+        description="How depths are compressed",
+        edit_method=choices("png", "rvl", description="Neither loses any detail"),
+    ),
+    ReconfigureParameter(
+        name="depth_max",
+        type="double",
+        default=10.0,
+        minimum=1.0,
+        maximum=100.0,
+        description="Largest depth, m",
+    ),
+    ReconfigureParameter(
+        name="depth_quantization",
+        type="double",
+        default=100.0,
+        minimum=1.0,
+        maximum=150.0,
+        description="Depth at which a step is 1 m",
+    ),
+    ReconfigureParameter(
+        name="png_level",
+        type="int",
+        default=1,
+        minimum=1,
+        maximum=9,
+        description="Effort of PNG, 9 is the smallest",
+    ),
+)
+"""As compressed_depth_image_transport has them."""
+
+
+class CompressedImages:
+    """``<image>/compressed``, and what may be set of it while it runs.
+
+    Source: compressed_image_transport.
+
+    Args:
+        plugin: Which publishes.
+        image: Topic of the image.
+        form: Its format.
+        rate: Hz as listings tell it.
+        adjustable: Whether ``dynamic_reconfigure`` offers its parameters.
+    """
+
+    def __init__(
+        self,
+        plugin: Plugin[Any],
+        image: str,
+        form: ImageFormat,
+        *,
+        rate: float | None,
+        adjustable: bool,
+    ) -> None:
+        self._format = form
+        self._publisher = plugin.advertise(
+            f"{image}/compressed", COMPRESSED, rate=rate, qos="sensor"
+        )
+        self._message = message_class(COMPRESSED)
+        self._values: Mapping[str, Any] = {p.name: p.default for p in PARAMETERS}
+        if adjustable:
+            server = plugin.reconfigure(
+                f"{image}/compressed", PARAMETERS, self._change, preset=True
+            )
+            self._values = server.values if server is not None else self._values
+
+    @property
+    def wanted(self) -> bool:
+        return self._publisher.wanted and bool(self._values["enable"])
+
+    def publish(self, moment: Any, pixels: Pixels) -> None:
+        """Compresses RGB, shape (height, width, 3), in the image's format."""
+        form = self._format
+        kind = self._values["format"]
+        told = f"{form.encoding}; {kind} compressed {'bgr8' if form.colour else ''}"
+        data = _packed(pixels if form.colour else form.encode(pixels), kind, self._values)
+        self._publisher.publish(
+            self._message(
+                header=moment,
+                format=told if kind == "jpeg" else told.rstrip(),
+                data=np.frombuffer(data, dtype=np.uint8),
+            )
+        )
+
+    def _change(self, values: dict[str, Any]) -> None:
+        if values["format"] not in _FORMATS:
+            raise GraphError(
+                f'"{values["format"]}" is no way to compress images',
+                hint=f"There are: {', '.join(_FORMATS)}.",
+            )
+        self._values = values
+
+
+class CompressedDepths:
+    """``<image>/compressedDepth`` of an image of depths in m, as ROS 2 publishes it.
+
+    Depths are quantised inversely, finer the nearer; 0 is none. Source:
+    compressed_depth_image_transport.
+
+    Args:
+        plugin: Which publishes.
+        image: Topic of the depths.
+        rate: Hz as listings tell it.
+    """
+
+    def __init__(self, plugin: Plugin[Any], image: str, *, rate: float | None) -> None:
+        self._publisher = plugin.advertise(
+            f"{image}/compressedDepth", COMPRESSED, rate=rate, qos="sensor"
+        )
+        self._message = message_class(COMPRESSED)
+        values: dict[str, Any] = {p.name: p.default for p in DEPTH_PARAMETERS}
+        self._furthest, self._level = values["depth_max"], values["png_level"]
+        step = values["depth_quantization"]
+        self._factor = step * (step + 1.0)
+        self._offset = 1.0 - self._factor / self._furthest
+
+    @property
+    def wanted(self) -> bool:
+        return self._publisher.wanted
+
+    def publish(self, moment: Any, depths: NDArray[np.float32]) -> None:
+        """Compresses depths in m, shape (height, width); what is not finite is none."""
+        from PIL import Image
+
+        told = np.isfinite(depths) & (depths > 0) & (depths < self._furthest)
+        steps = np.zeros(depths.shape, dtype=np.uint16)
+        inverse = self._factor / depths[told] + self._offset
+        steps[told] = np.minimum(inverse, np.iinfo(np.uint16).max)
+        buffer = io.BytesIO()
+        buffer.write(struct.pack("<iff", _INVERSE, self._factor, self._offset))
+        Image.fromarray(steps).save(buffer, format="PNG", compress_level=self._level)
+        self._publisher.publish(
+            self._message(
+                header=moment,
+                format="32FC1; compressedDepth png",
+                data=np.frombuffer(buffer.getvalue(), dtype=np.uint8),
+            )
+        )
+
+
+def _packed(pixels: NDArray[Any], kind: str, values: Mapping[str, Any]) -> bytes:
+    from PIL import Image
+
+    if pixels.dtype != np.uint8:
+        # Their lower byte repeats the upper one.
+        pixels = (pixels >> 8).astype(np.uint8)
+    buffer = io.BytesIO()
+    image = Image.fromarray(pixels)
+    if kind == "png":
+        image.save(buffer, format="PNG", compress_level=values["png_level"])
+    else:
+        image.save(
+            buffer,
+            format="JPEG",
+            quality=values["jpeg_quality"],
+            progressive=values["jpeg_progressive"],
+            optimize=values["jpeg_optimize"],
+            restart_marker_blocks=values["jpeg_restart_interval"],
+        )
+    return buffer.getvalue()

@@ -1,0 +1,154 @@
+"""Depths of a camera: as an image, and as coloured points."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cartwheel.messages import header, message_class
+from cartwheel.plugins.base import Plugin
+from cartwheel.plugins.camera_compressed import CompressedDepths
+from cartwheel.plugins.camera_eye import Eye
+from cartwheel.plugins.camera_formats import Pixels
+from cartwheel.plugins.camera_info import INFO
+from cartwheel.plugins.scan_messages import point_cloud2
+
+_MILLIMETRES = 1000.0
+
+POINT = np.dtype(
+    {
+        "names": ["x", "y", "z", "rgb"],
+        "formats": ["<f4", "<f4", "<f4", "<f4"],
+        "offsets": [0, 4, 8, 16],
+        "itemsize": 32,
+    }
+)
+"""As sensor_msgs' PointCloud2Modifier lays ``xyz`` and ``rgb`` out."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class DepthOptions:
+    """How depths are told."""
+
+    depth: str
+    points: str
+    info: str = ""
+    """Topics; "" is none."""
+    nearest: float = 0.0
+    furthest: float = np.inf
+    """m; depths at or beyond are not told."""
+    beyond: Literal["nan", "inf"] = "nan"
+    """What stands for them: nan, or -inf when too near and inf when too far (REP 118)."""
+    millimetres: bool = False
+    """16UC1 in mm instead of 32FC1 in m; 0 stands for what is not told."""
+    compressed: bool = False
+    """Whether ``<depth>/compressedDepth`` is published."""
+    optical: bool = True
+    """Points with x right, y down, z ahead; else x ahead, y left, z up."""
+
+
+class Depths:
+    """The depth topics of an eye; its image and these come from one picture.
+
+    Args:
+        plugin: Whose they are.
+        eye: Which sees them.
+        options: How they are told.
+        rate: Hz as listings tell it.
+    """
+
+    def __init__(
+        self, plugin: Plugin[Any], eye: Eye, options: DepthOptions, *, rate: float | None
+    ) -> None:
+        self._eye = eye
+        self._options = options
+        self._message = message_class("sensor_msgs/msg/Image")
+        self._image = plugin.advertise(
+            options.depth, "sensor_msgs/msg/Image", rate=rate, qos="sensor"
+        )
+        self._points = plugin.advertise(
+            options.points, "sensor_msgs/msg/PointCloud2", rate=rate, qos="sensor"
+        )
+        self._compressed = (
+            CompressedDepths(plugin, options.depth, rate=rate) if options.compressed else None
+        )
+        self._info = (
+            plugin.advertise(options.info, INFO, rate=rate, qos="sensor") if options.info else None
+        )
+        right, down = eye.lens.rays()
+        self._right, self._down = right.astype(np.float32), down.astype(np.float32)
+
+    @property
+    def sees(self) -> bool:
+        """Whether somebody wants depths."""
+        packed = self._compressed is not None and self._compressed.wanted
+        return packed or self._image.wanted or self._points.wanted
+
+    @property
+    def wanted(self) -> bool:
+        return self.sees or (self._info is not None and self._info.wanted)
+
+    def publish_info(self, now: int) -> None:
+        """Tells the calibration, where somebody reads it."""
+        if self._info is not None and self._info.wanted:
+            self._info.publish(self._eye.calibration.message(now))
+
+    def publish(self, now: int, pixels: Pixels, depths: NDArray[np.float32]) -> None:
+        """Publishes depths in m and the colours that belong to them."""
+        moment = header(now, self._eye.frame)
+        told = self._told(depths)
+        if self._image.wanted:
+            self._image.publish(self._depth_image(moment, told))
+        if self._compressed is not None and self._compressed.wanted:
+            self._compressed.publish(moment, told)
+        if self._points.wanted:
+            dense = bool(np.isfinite(told).all())
+            self._points.publish(point_cloud2(moment, self._cloud(pixels, told), dense=dense))
+
+    def _told(self, depths: NDArray[np.float32]) -> NDArray[np.float32]:
+        options = self._options
+        near, far = depths <= options.nearest, depths >= options.furthest
+        if options.beyond == "nan":
+            # Where nothing is there is no depth, and infinitely far is not below infinity.
+            return np.where(near | far, np.float32(np.nan), depths)
+        return np.where(near, np.float32(-np.inf), np.where(far, np.float32(np.inf), depths))
+
+    def _depth_image(self, moment: Any, told: NDArray[np.float32]) -> Any:
+        height, width = told.shape
+        data: NDArray[Any] = told.astype("<f4", copy=False)
+        if self._options.millimetres:
+            whole = np.nan_to_num(told * _MILLIMETRES, nan=0.0, posinf=0.0, neginf=0.0)
+            data = np.where(whole > np.iinfo(np.uint16).max, 0, whole).astype("<u2")
+        return self._message(
+            header=moment,
+            height=height,
+            width=width,
+            encoding="16UC1" if self._options.millimetres else "32FC1",
+            is_bigendian=0,
+            step=width * data.itemsize,
+            data=np.ascontiguousarray(data).reshape(-1).view(np.uint8),
+        )
+
+    def _cloud(self, pixels: Pixels, told: NDArray[np.float32]) -> NDArray[np.void]:
+        cloud = np.zeros(told.shape, dtype=POINT)
+        with np.errstate(invalid="ignore"):
+            right, down = self._right * told, self._down * told
+        if self._options.beyond == "inf":
+            # All three alike: a ray to the left makes minus infinity of it, and one ahead nan.
+            lost = ~np.isfinite(told)
+            np.copyto(right, told if self._options.optical else -told, where=lost)
+            np.copyto(down, told if self._options.optical else -told, where=lost)
+        if self._options.optical:
+            cloud["x"], cloud["y"], cloud["z"] = right, down, told
+        else:
+            cloud["x"] = told
+            np.negative(right, out=cloud["y"])
+            np.negative(down, out=cloud["z"])
+        colours = np.zeros((*told.shape, 4), dtype=np.uint8)
+        # 0x00RRGGBB, its lowest byte first.
+        colours[..., 2], colours[..., 1], colours[..., 0] = np.moveaxis(pixels, -1, 0)
+        cloud["rgb"] = colours.view("<f4")[..., 0]
+        return cloud

@@ -1,0 +1,100 @@
+"""SDF's image formats as the encodings of ``sensor_msgs/Image``."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Pixels = NDArray[np.uint8]
+"""RGB, shape (height, width, 3)."""
+
+_WEIGHTS = np.array([0.299, 0.587, 0.114], dtype=np.float32)
+"""Of red, green and blue in brightness. Source: ITU-R BT.601, as OpenCV has it."""
+_TO_16_BITS = 257
+"""So that 255 becomes 65535."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ImageFormat:
+    """How pixels are laid out."""
+
+    encoding: str
+    """Source: sensor_msgs/image_encodings."""
+    bytes_per_pixel: int
+    encode: Callable[[Pixels], NDArray[Any]]
+    """Takes RGB, gives what the message holds."""
+    colour: bool = True
+    """Whether a pixel has all three colours."""
+
+
+def _same(pixels: Pixels) -> Pixels:
+    return pixels
+
+
+def _swap(pixels: Pixels) -> Pixels:
+    return pixels[..., ::-1]
+
+
+def grey(pixels: Pixels) -> Pixels:
+    """Brightness, shape (height, width)."""
+    return (pixels @ _WEIGHTS).round().astype(np.uint8)
+
+
+def _wide(pixels: Pixels) -> NDArray[np.uint16]:
+    return pixels.astype("<u2") * np.uint16(_TO_16_BITS)
+
+
+def _wide_grey(pixels: Pixels) -> NDArray[np.uint16]:
+    return _wide(grey(pixels))
+
+
+def _bayer(pattern: str) -> Callable[[Pixels], Pixels]:
+    """The mosaic of a sensor whose 2 x 2 filters are `pattern`, row by row."""
+    channels = ["RGB".index(letter) for letter in pattern]
+
+    def encode(pixels: Pixels) -> Pixels:
+        mosaic = np.empty(pixels.shape[:2], dtype=np.uint8)
+        for index, channel in enumerate(channels):
+            row, column = divmod(index, 2)
+            mosaic[row::2, column::2] = pixels[row::2, column::2, channel]
+        return mosaic
+
+    return encode
+
+
+_RGB8 = ImageFormat(encoding="rgb8", bytes_per_pixel=3, encode=_same)
+_BGR8 = ImageFormat(encoding="bgr8", bytes_per_pixel=3, encode=_swap)
+_MONO8 = ImageFormat(encoding="mono8", bytes_per_pixel=1, encode=grey, colour=False)
+_MONO16 = ImageFormat(encoding="mono16", bytes_per_pixel=2, encode=_wide_grey, colour=False)
+_RGB16 = ImageFormat(encoding="rgb16", bytes_per_pixel=6, encode=_wide)
+
+FORMATS = {
+    "R8G8B8": _RGB8,
+    "RGB_INT8": _RGB8,
+    "RGB8": _RGB8,
+    "B8G8R8": _BGR8,
+    "BGR_INT8": _BGR8,
+    "BGR8": _BGR8,
+    "L8": _MONO8,
+    "L_INT8": _MONO8,
+    "MONO8": _MONO8,
+    "L16": _MONO16,
+    "L_INT16": _MONO16,
+    "MONO16": _MONO16,
+    "R16G16B16": _RGB16,
+    "RGB_INT16": _RGB16,
+    "RGB16": _RGB16,
+} | {
+    f"BAYER_{pattern}8": ImageFormat(
+        encoding=f"bayer_{pattern.lower()}8",
+        bytes_per_pixel=1,
+        encode=_bayer(pattern),
+        colour=False,
+    )
+    for pattern in ("RGGB", "BGGR", "GBRG", "GRBG")
+}
+"""By SDF's word in capitals. Source: SDF, ``<camera><image><format>``; gazebo_ros_camera_utils."""

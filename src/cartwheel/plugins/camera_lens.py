@@ -1,0 +1,232 @@
+"""A lens: which pinhole picture is drawn for it, and which point of that each pixel shows."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cartwheel.description.model import CameraIntrinsics
+
+Floats = NDArray[np.float64]
+
+_INVISIBLE = 0.02
+"""Pixels: a distortion that moves nothing further than this is not drawn."""
+_WIDEST = 4
+"""The drawn picture is at most this many times as wide and as high as the image."""
+_ROUNDS = 40
+_CLOSE = 1e-10
+_ONE = 256
+"""A whole pixel's weight."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Distortion:
+    """Brown and Conrady's model, ``plumb_bob`` in ROS.
+
+    Source: sensor_msgs/CameraInfo; OpenCV, Camera Calibration and 3D Reconstruction.
+    """
+
+    k1: float = 0.0
+    k2: float = 0.0
+    p1: float = 0.0
+    p2: float = 0.0
+    k3: float = 0.0
+
+    @property
+    def coefficients(self) -> tuple[float, float, float, float, float]:
+        """As `CameraInfo.d` holds them: k1, k2, t1, t2, k3."""
+        return (self.k1, self.k2, self.p1, self.p2, self.k3)
+
+    def apply(self, x: Floats, y: Floats) -> tuple[Floats, Floats]:
+        """Where a point of the plane at depth 1 is seen, x to the right, y down."""
+        r2 = x * x + y * y
+        radial = 1 + r2 * (self.k1 + r2 * (self.k2 + r2 * self.k3))
+        return (
+            x * radial + 2 * self.p1 * x * y + self.p2 * (r2 + 2 * x * x),
+            y * radial + self.p1 * (r2 + 2 * y * y) + 2 * self.p2 * x * y,
+        )
+
+    def invert(self, x: Floats, y: Floats) -> tuple[Floats, Floats]:
+        """The points that are seen at x, y; nan where no point is.
+
+        A strong distortion folds the plane over; only what lies within the fold counts.
+        """
+        fold = self._fold()
+        u, v = x.copy(), y.copy()
+        for _ in range(_ROUNDS):
+            _within(u, v, fold)
+            r2 = u * u + v * v
+            radial = 1 + r2 * (self.k1 + r2 * (self.k2 + r2 * self.k3))
+            slope = 2 * (self.k1 + r2 * (2 * self.k2 + r2 * 3 * self.k3))
+            a = radial + u * u * slope + 2 * self.p1 * v + 6 * self.p2 * u
+            b = u * v * slope + 2 * self.p1 * u + 2 * self.p2 * v
+            d = radial + v * v * slope + 6 * self.p1 * v + 2 * self.p2 * u
+            seen_u, seen_v = self.apply(u, v)
+            off_u, off_v = x - seen_u, y - seen_v
+            if not max(np.abs(off_u).max(), np.abs(off_v).max()) > _CLOSE:
+                break
+            determinant = a * d - b * b
+            determinant[np.abs(determinant) < 1e-9] = 1e-9
+            u = u + (d * off_u - b * off_v) / determinant
+            v = v + (a * off_v - b * off_u) / determinant
+        seen_u, seen_v = self.apply(u, v)
+        lost = ~(np.hypot(seen_u - x, seen_v - y) < 1e-6) | (np.hypot(u, v) > fold)
+        u[lost] = v[lost] = math.nan
+        return u, v
+
+    def _fold(self) -> float:
+        """The radius at which what lies further out is seen further in again."""
+        roots = np.roots([7 * self.k3, 5 * self.k2, 3 * self.k1, 1.0])
+        real = [root.real for root in roots if abs(root.imag) < 1e-9 and root.real > 0]
+        return math.sqrt(min(real)) if real else math.inf
+
+
+def _within(u: Floats, v: Floats, radius: float) -> None:
+    """Draws what is further out than `radius` back to a little less."""
+    if math.isinf(radius):
+        return
+    far = np.hypot(u, v)
+    scale = np.where(far > 0.999 * radius, 0.999 * radius / np.maximum(far, 1e-12), 1.0)
+    u *= scale
+    v *= scale
+
+
+class Lens:
+    """What becomes of a pinhole picture on its way through the lens.
+
+    Args:
+        intrinsics: The image that is wanted; its own distortion does not count.
+        distortion: Of the lens.
+    """
+
+    def __init__(self, intrinsics: CameraIntrinsics, distortion: Distortion) -> None:
+        self.intrinsics = intrinsics
+        self.distortion = distortion
+        width, height = intrinsics.width, intrinsics.height
+        self.focal = width / (2 * math.tan(intrinsics.horizontal_fov / 2))
+        """Pixels."""
+        self.drawn = intrinsics
+        """The picture that has to be drawn: wider than the image where that is bent inwards."""
+        x = (np.arange(width) + 0.5 - width / 2) / self.focal
+        y = (np.arange(height) + 0.5 - height / 2) / self.focal
+        self._x, self._y = (
+            np.broadcast_to(x, (height, width)),
+            np.broadcast_to(y[:, None], (height, width)),
+        )
+        self._map: _Map | None = None
+        if any(distortion.coefficients):
+            self._bend()
+
+    def _bend(self) -> None:
+        image = self.intrinsics
+        # What lies off the optical axis is bent about the centre that the description states.
+        cx = (image.distortion_center[0] - 0.5) * image.width / self.focal
+        cy = (image.distortion_center[1] - 0.5) * image.height / self.focal
+        x, y = self.distortion.invert(self._x - cx, self._y - cy)
+        x, y = x + cx, y + cy
+        moved = np.hypot(x - self._x, y - self._y) * self.focal
+        if not (np.isnan(moved).any() or moved.max() > _INVISIBLE):
+            return
+        self._x, self._y = x, y
+        width = _even(2 * self.focal * _reach(x), image.width)
+        height = _even(2 * self.focal * _reach(y), image.height)
+        self.drawn = dataclasses.replace(
+            image,
+            width=width,
+            height=height,
+            horizontal_fov=2 * math.atan(width / (2 * self.focal)),
+        )
+        self._map = _Map(x * self.focal + width / 2, y * self.focal + height / 2, width, height)
+
+    @property
+    def is_bent(self) -> bool:
+        """Whether the image differs from the pinhole's."""
+        return self._map is not None
+
+    def rays(self) -> tuple[Floats, Floats]:
+        """What each pixel's middle looks at in the plane at depth 1: right and down."""
+        return self._x, self._y
+
+    def image(self, picture: NDArray[np.uint8]) -> NDArray[np.uint8]:
+        """The image of a drawn picture, shape (height, width, 3); black where no ray comes in."""
+        return picture if self._map is None else self._map.blend(picture)
+
+    def depths(self, picture: NDArray[np.float32]) -> NDArray[np.float32]:
+        """Depths in m, shape (height, width); nan where no ray comes in.
+
+        Never a mixture of two: between a thing and what is behind it there is nothing.
+        """
+        return picture if self._map is None else self._map.pick(picture)
+
+
+def _reach(values: Floats) -> float:
+    return float(np.nanmax(np.abs(values))) if not np.isnan(values).all() else 0.0
+
+
+def _even(pixels: float, least: int) -> int:
+    """The drawn size for a reach in pixels, with one to blend with on each side."""
+    most = _WIDEST * least
+    return min(most, max(least, 2 * math.ceil(pixels / 2) + 2))
+
+
+class _Map:
+    """For each pixel the four of a picture that it lies between.
+
+    Args:
+        u: From the picture's left edge, in pixels; nan for none.
+        v: From its upper edge.
+        width: Of the picture.
+        height: Of the picture.
+    """
+
+    def __init__(self, u: Floats, v: Floats, width: int, height: int) -> None:
+        self.shape = u.shape
+        with np.errstate(invalid="ignore"):
+            self._dark = ~((u >= 0) & (u < width) & (v >= 0) & (v < height))
+        u = np.where(self._dark, 0.0, u) - 0.5
+        v = np.where(self._dark, 0.0, v) - 0.5
+        left, top = np.floor(u).astype(np.int64), np.floor(v).astype(np.int64)
+        part = np.round((u - left) * _ONE).astype(np.int64)
+        below = np.round((v - top) * _ONE).astype(np.int64)
+        right, low = np.minimum(left + 1, width - 1), np.minimum(top + 1, height - 1)
+        left, top = np.maximum(left, 0), np.maximum(top, 0)
+        first = (_ONE - part) * (_ONE - below) // _ONE
+        second = part * (_ONE - below) // _ONE
+        third = (_ONE - part) * below // _ONE
+        corners = [
+            (top * width + left, first),
+            (top * width + right, second),
+            (low * width + left, third),
+            (low * width + right, _ONE - first - second - third),
+        ]
+        self._corners = [
+            # A weight for each of the three colours.
+            (index.ravel(), np.repeat(weight.ravel().astype(np.uint16), 3))
+            for index, weight in corners
+        ]
+        near_u = np.clip(np.round(u), 0, width - 1).astype(np.int64)
+        near_v = np.clip(np.round(v), 0, height - 1).astype(np.int64)
+        self._nearest = near_v * width + near_u
+        self._none = np.flatnonzero(self._dark.ravel())
+
+    def blend(self, picture: NDArray[np.uint8]) -> NDArray[np.uint8]:
+        flat = picture.reshape(-1, 3)
+        mixed = np.full(3 * self._nearest.size, _ONE // 2, dtype=np.uint16)
+        product = np.empty_like(mixed)
+        for index, weight in self._corners:
+            # Four weights are 256 together, and 256 times 255 fits.
+            np.multiply(flat.take(index, axis=0).ravel(), weight, out=product, dtype=np.uint16)
+            mixed += product
+        mixed //= _ONE
+        image: NDArray[np.uint8] = mixed.astype(np.uint8).reshape(*self.shape, 3)
+        image.reshape(-1, 3)[self._none] = 0
+        return image
+
+    def pick(self, picture: NDArray[np.float32]) -> NDArray[np.float32]:
+        depths: NDArray[np.float32] = picture.ravel().take(self._nearest)
+        depths.ravel()[self._none] = np.nan
+        return depths

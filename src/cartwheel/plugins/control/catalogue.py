@@ -1,0 +1,62 @@
+"""The types of controllers there are."""
+
+from __future__ import annotations
+
+import functools
+
+from cartwheel.errors import UnknownNameError
+from cartwheel.plugins.control.controller import Controller
+
+ACKERMANN = "ackermann_steering_controller/AckermannSteeringController"
+
+
+@functools.cache
+def controller_types() -> dict[str, type[Controller]]:
+    """All types by name, as ROS 1 and ROS 2 write them."""
+    from cartwheel.plugins.control.diff_drive import DiffDriveController
+    from cartwheel.plugins.control.gripper import GripperActionController
+    from cartwheel.plugins.control.joint_commands import JointCommand, JointGroup, JointPid
+    from cartwheel.plugins.control.joint_states import JointStateController
+    from cartwheel.plugins.control.joint_trajectory import JointTrajectoryController
+    from cartwheel.plugins.control.mecanum import MecanumDriveController
+    from cartwheel.plugins.control.sensors import ForceTorqueBroadcaster, ImuBroadcaster
+    from cartwheel.plugins.control.steering import (
+        SingleSteering,
+        SteeringController,
+        TricycleController,
+    )
+
+    families: tuple[type[Controller], ...] = (
+        JointStateController,
+        JointCommand,
+        JointPid,
+        JointGroup,
+        JointTrajectoryController,
+        GripperActionController,
+        DiffDriveController,
+        SingleSteering,
+        SteeringController,
+        TricycleController,
+        MecanumDriveController,
+        ImuBroadcaster,
+        ForceTorqueBroadcaster,
+    )
+    return {name: family for family in families for name in family.types}
+
+
+def find_type(name: str, *, ros2: bool) -> type[Controller]:
+    """The class of a controller type; C++'s ``a::B`` is taken as ``a/B``.
+
+    Raises:
+        UnknownNameError: There is none of that name.
+    """
+    known = controller_types()
+    plain = name.strip().replace("::", "/")
+    if not ros2 and plain == ACKERMANN:
+        # Two controllers that have nothing but their name in common.
+        from cartwheel.plugins.control.steering import SingleSteering
+
+        return SingleSteering
+    if plain not in known:
+        raise UnknownNameError("controller type", name, known)
+    return known[plain]

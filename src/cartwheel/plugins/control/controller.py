@@ -1,0 +1,256 @@
+"""What every controller is."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, ClassVar
+
+from cartwheel.description.model import Sensor
+from cartwheel.errors import CartwheelError, Diagnostic
+from cartwheel.graph import Graph, Publisher, Qos, Service, Subscription, resolve_name
+from cartwheel.plugins.base import Plugin
+from cartwheel.plugins.control.hardware import Hardware, JointHardware
+from cartwheel.plugins.control.settings import Settings
+from cartwheel.simulation import Part
+from cartwheel.simulation.clock import NANOSECONDS, Beat
+from cartwheel.simulation.handles import LinkHandle
+from cartwheel.simulation.pushing import BodyDriveHandle
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class SensedLink:
+    """A sensor whose measurements controllers tell."""
+
+    name: str
+    type: str
+    """imu or force_torque."""
+    link: LinkHandle
+    sensor: Sensor
+
+
+class Rig:
+    """What controllers get of a robot.
+
+    Args:
+        plugin: The manager's.
+        hardware: The joints.
+        namespace: Of the controllers.
+        ros2: Whether names and defaults are those of ros2_control.
+        sensors: That broadcasters may tell of.
+        push: A servo of the whole robot, where it was spawned with one.
+    """
+
+    def __init__(
+        self,
+        plugin: Plugin[Any],
+        hardware: Hardware,
+        *,
+        namespace: str,
+        ros2: bool,
+        sensors: Sequence[SensedLink] = (),
+        push: BodyDriveHandle | None = None,
+    ) -> None:
+        self.plugin = plugin
+        self.hardware = hardware
+        self.namespace = namespace
+        self.ros2 = ros2
+        self.sensors = {each.name: each for each in sensors}
+        self.push = push
+        """Moves the whole robot, for wheels that our friction cannot make do so."""
+        self.period_ns = 0
+        """Of control."""
+
+    def report(self, message: str) -> None:
+        """Tells the user something."""
+        self.plugin.part.report(
+            Diagnostic(severity="warning", message=message, origin=self.plugin.tag.origin)
+        )
+
+
+class Controller:
+    """Base of all controllers; made when it is loaded.
+
+    A subclass names its `types`, reads its settings in `configure`, and there says which
+    joints it commands by `claim`. While it runs, `update` is called at the manager's rate.
+    """
+
+    types: ClassVar[tuple[str, ...]]
+    """As ROS 1 and ROS 2 write them."""
+
+    def __init__(self, name: str, type_name: str, settings: Settings, rig: Rig) -> None:
+        self.name = name
+        self.type = type_name
+        self.settings = settings
+        self.rig = rig
+        self.running = False
+        """Whether it was told to run."""
+        self.started = False
+        """Whether `start` was called since; what is heard before waits for it."""
+        self._early: list[Callable[[], None]] = []
+        self.claims: dict[str, JointHardware] = {}
+        """The joints it commands."""
+        self.interfaces: dict[str, str] = {}
+        """By which interface."""
+        self._open: list[Publisher | Subscription | Service] = []
+        try:
+            self.configure(settings)
+        except CartwheelError:
+            Controller.close(self)
+            raise
+
+    def configure(self, settings: Settings) -> None:
+        """Reads parameters, claims joints, advertises and subscribes.
+
+        Raises:
+            PluginError: A parameter makes no sense.
+            UnknownNameError: A joint does not exist.
+        """
+        raise NotImplementedError
+
+    def begin(self, time_ns: int) -> None:
+        """Starts it, and lets it hear what came too early."""
+        self.start(time_ns)
+        self.started = True
+        early, self._early = self._early, []
+        for call in early:
+            call()
+
+    def end(self, time_ns: int) -> None:
+        """Stops it."""
+        self.started = False
+        self._early.clear()
+        self.stop(time_ns)
+
+    def start(self, time_ns: int) -> None:
+        """It runs from now on; its joints are at their commands."""
+
+    def update(self, time_ns: int, seconds: float) -> None:
+        """Commands its joints.
+
+        Args:
+            time_ns: Simulation time.
+            seconds: Since the last update, s.
+        """
+
+    senses: bool = False
+    """Whether `sense` has anything to do."""
+
+    def sense(self, time_ns: int) -> None:
+        """Tells what only a settled state shows: accelerations and forces."""
+
+    def stop(self, time_ns: int) -> None:
+        """It runs no longer."""
+
+    def close(self) -> None:
+        """It is unloaded: takes everything off the graph."""
+        for item in self._open:
+            if isinstance(item, Service):
+                self.rig.plugin.graph.withdraw(item)
+            else:
+                item.close()
+        self._open.clear()
+
+    def claim(self, joint: str, interface: str) -> JointHardware:
+        """A joint that it commands while it runs.
+
+        Raises:
+            UnknownNameError: There is none of that name.
+            PluginError: It does not take such commands.
+        """
+        hardware = self.rig.hardware.joint(joint, interface)
+        self.claims[joint] = hardware
+        self.interfaces[joint] = interface
+        return hardware
+
+    def resolve(self, name: str) -> str:
+        """A name of a topic: below the controller's own unless it begins with ``/``."""
+        full = resolve_name(name, f"{self.rig.namespace.strip('/')}/{self.name}")
+        return self.rig.plugin.resolve(full)
+
+    def advertise(
+        self, topic: str, type_name: str, *, rate: float | None = None, qos: Qos = "default"
+    ) -> Publisher:
+        """A publisher that closes with the controller; see `resolve`."""
+        publisher = self.rig.plugin.graph.advertise(
+            self.resolve(topic), type_name, node=self.node, rate=rate, qos=qos
+        )
+        self._open.append(publisher)
+        return publisher
+
+    def subscribe(
+        self,
+        topic: str,
+        type_name: str,
+        callback: Callable[[Any], None],
+        *,
+        always: bool = False,
+    ) -> None:
+        """A subscription that closes with the controller; heard while it runs, or `always`."""
+
+        def heard(message: Any) -> None:
+            if self.running and not self.started:
+                self._early.append(lambda: callback(message))
+            elif self.running or always:
+                callback(message)
+
+        self._open.append(
+            self.rig.plugin.graph.subscribe(
+                self.resolve(topic), heard, type_name=type_name, node=self.node
+            )
+        )
+
+    def serve(self, name: str, type_name: str, handler: Callable[[Any], Any]) -> None:
+        """A service that closes with the controller."""
+        self._open.append(
+            self.rig.plugin.graph.serve(self.resolve(name), type_name, handler, node=self.node)
+        )
+
+    def frame(self, name: str) -> str:
+        """A frame's name with the robot's prefix."""
+        return self.rig.plugin.frame(name)
+
+    @property
+    def part(self) -> Part:
+        """The robot's part of the simulation."""
+        return self.rig.plugin.part
+
+    @property
+    def graph(self) -> Graph:
+        """Where it publishes."""
+        return self.rig.plugin.graph
+
+    @property
+    def node(self) -> str:
+        """Who publishes, for listings."""
+        return f"{self.rig.plugin.part.name}/{self.name}"
+
+    def warn(self, message: str) -> None:
+        """Tells the user something about this controller."""
+        self.rig.report(f"controller {self.name}: {message}")
+
+
+class Rhythm:
+    """Whether something is due, at fixed multiples of its period since time zero.
+
+    Args:
+        rate: Hz; 0 is always.
+    """
+
+    def __init__(self, rate: float) -> None:
+        period = (
+            Fraction(NANOSECONDS) / Fraction(rate).limit_denominator(1_000_000) if rate > 0 else 1
+        )
+        self._beat = Beat(max(Fraction(period), Fraction(1)))
+
+    def start(self, time_ns: int) -> None:
+        """Is due at the first multiple from now on."""
+        self._beat.seek(time_ns)
+
+    def due(self, time_ns: int) -> bool:
+        """Whether it is due since the last time it was asked; the next is then."""
+        if self._beat.due > time_ns:
+            return False
+        self._beat.seek(time_ns + 1)
+        return True

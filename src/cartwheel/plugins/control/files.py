@@ -1,0 +1,188 @@
+"""Controllers' YAML files, as rosparam and ros2_control read them."""
+
+from __future__ import annotations
+
+import weakref
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from cartwheel.errors import Origin, PluginError
+from cartwheel.graph import Graph
+
+_ROS2 = "ros__parameters"
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ControllerEntry:
+    """A controller in a file."""
+
+    name: str
+    type: str
+    values: Mapping[str, Any]
+    namespace: str
+    """As the file has it, without slashes at its ends."""
+    source: str
+
+
+class ControllerFiles:
+    """The files whose controllers the next robot starts by itself.
+
+    A robot's manager takes them when it is made.
+    """
+
+    def __init__(self) -> None:
+        self.paths: tuple[Path, ...] = ()
+        self.started: list[str] = []
+        """What managers took from them, for those who tell the user."""
+
+    @classmethod
+    def of(cls, graph: Graph) -> ControllerFiles:
+        """Those of a graph, none at first."""
+        found = _BY_GRAPH.get(graph)
+        if found is None:
+            found = _BY_GRAPH[graph] = cls()
+        return found
+
+    def take(self) -> tuple[Path, ...]:
+        """The files, for one robot alone."""
+        paths, self.paths = self.paths, ()
+        return paths
+
+
+_BY_GRAPH: weakref.WeakKeyDictionary[Graph, ControllerFiles] = weakref.WeakKeyDictionary()
+
+
+def read_parameters(path: Path) -> dict[str, Any]:
+    """A file's mapping of controllers.
+
+    A file that is one controller itself, which launch files load into a namespace, is named as
+    the file is, or as ``NAME=FILE`` says.
+
+    Raises:
+        PluginError: As `read_yaml`.
+    """
+    name, equals, file = str(path).partition("=")
+    if not equals or path.exists():
+        name, file = "", str(path)
+    content = read_yaml(Path(file))
+    if name or isinstance(content.get("type"), str):
+        return {name or Path(file).stem: content}
+    return content
+
+
+def read_yaml(path: Path) -> dict[str, Any]:
+    """A file's mapping.
+
+    Raises:
+        PluginError: It cannot be read, is no YAML, or no mapping; with its place.
+    """
+    # Only robots with controllers pay for the import.
+    import yaml
+
+    origin = Origin(file=str(path))
+    try:
+        content = yaml.safe_load(path.read_text())
+    except OSError as error:
+        raise PluginError(
+            f"the file cannot be read: {error.strerror or error}", origin=origin
+        ) from None
+    except UnicodeDecodeError:
+        raise PluginError("the file is no text", origin=origin) from None
+    except yaml.YAMLError as error:
+        mark = getattr(error, "problem_mark", None)
+        line = mark.line + 1 if mark is not None else 0
+        problem = getattr(error, "problem", None) or "it is no YAML"
+        raise PluginError(
+            f"the file is no YAML: {problem}", origin=Origin(file=str(path), line=line)
+        ) from None
+    if content is None:
+        return {}
+    if not isinstance(content, dict):
+        raise PluginError("the file holds no parameters by name", origin=origin)
+    return content
+
+
+def ros1_entries(content: Mapping[str, Any], source: str) -> list[ControllerEntry]:
+    """The controllers of a file for rosparam: mappings with a ``type``, wherever they are."""
+    return list(_ros1_entries(content, (), source))
+
+
+def _ros1_entries(
+    content: Mapping[str, Any], path: tuple[str, ...], source: str
+) -> Iterator[ControllerEntry]:
+    for key, value in content.items():
+        if not isinstance(value, Mapping):
+            continue
+        parts = tuple(part for part in str(key).split("/") if part)
+        kind = value.get("type")
+        if isinstance(kind, str) and "/" in kind.replace("::", "/"):
+            *space, name = (*path, *parts)
+            yield ControllerEntry(
+                name=name, type=kind, values=value, namespace="/".join(space), source=source
+            )
+        elif len(path) < 4:
+            yield from _ros1_entries(value, (*path, *parts), source)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Ros2File:
+    """What a ros2_control file says."""
+
+    manager: Mapping[str, Any]
+    """Parameters of the controller manager."""
+    nodes: Mapping[str, Mapping[str, Any]]
+    """Parameters of the other nodes, by name."""
+
+
+def is_ros2(content: Mapping[str, Any]) -> bool:
+    """Whether a file's parameters are those of ROS 2's nodes."""
+    return any(
+        isinstance(value, Mapping) and (_ROS2 in value or is_ros2(value))
+        for value in content.values()
+    )
+
+
+def ros2_file(
+    contents: Sequence[Mapping[str, Any]], namespace: str, manager: str = "controller_manager"
+) -> Ros2File:
+    """Several files' parameters for the nodes of a namespace; later ones win.
+
+    ``/**`` stands for all nodes, ``/ns/node`` and nested names for one. Source:
+    rcl_yaml_param_parser.
+
+    Args:
+        contents: Of the files.
+        namespace: Of the nodes.
+        manager: Name of the controller manager's node.
+    """
+    shared: dict[str, Any] = {}
+    nodes: dict[str, dict[str, Any]] = {}
+    wanted = namespace.strip("/")
+    for content in contents:
+        for path, values in _ros2_nodes(content, ()):
+            *space, name = path
+            if name in ("**", "*"):
+                shared.update(values)
+                continue
+            inside = "/".join(space)
+            if inside and inside != wanted and "**" not in space and "*" not in space:
+                continue
+            nodes.setdefault(name, {}).update(values)
+    own = {**shared, **nodes.pop(manager, {})}
+    return Ros2File(manager=own, nodes=nodes)
+
+
+def _ros2_nodes(
+    content: Mapping[str, Any], path: tuple[str, ...]
+) -> Iterator[tuple[tuple[str, ...], Mapping[str, Any]]]:
+    for key, value in content.items():
+        if not isinstance(value, Mapping):
+            continue
+        parts = (*path, *(part for part in str(key).split("/") if part))
+        found = value.get(_ROS2)
+        if isinstance(found, Mapping):
+            yield parts or ("**",), found
+        else:
+            yield from _ros2_nodes(value, parts)

@@ -1,0 +1,255 @@
+"""The joints of a robot as controllers see them: state, command, limits, PID."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from cartwheel.description.model import Axis, Mimic
+from cartwheel.errors import PluginError, UnknownNameError
+from cartwheel.plugins.base import Plugin
+from cartwheel.plugins.control.interfaces import JointInterfaces
+from cartwheel.plugins.control.pid import Gains, Pid
+from cartwheel.simulation.handles import JointHandle, MotorHandle
+from cartwheel.simulation.servo import ServoHandle
+
+_STRONGEST = 1e5
+"""N m or N of a joint that states no effort limit."""
+
+
+class JointHardware:
+    """One joint; what is commanded is limited as joint_limits_interface does.
+
+    Args:
+        plugin: Whose robot it is.
+        interfaces: What it offers.
+        gains: An interface whose commands become efforts by a PID.
+    """
+
+    def __init__(
+        self,
+        plugin: Plugin[Any],
+        interfaces: JointInterfaces,
+        gains: tuple[str, Gains] | None = None,
+    ) -> None:
+        part, name, origin = plugin.part, interfaces.name, interfaces.origin
+        joint = part.description.joint(name)
+        assert joint is not None
+        self.name = name
+        self.interfaces = interfaces
+        self.type = joint.type
+        self.axis: Axis = joint.axis
+        self.effort_limit = joint.axis.effort if joint.axis.effort else math.inf
+        self.velocity_limit = joint.axis.velocity if joint.axis.velocity else math.inf
+        self.lower, self.upper = -math.inf, math.inf
+        if joint.type != "continuous":
+            self.lower = -math.inf if joint.axis.lower is None else joint.axis.lower
+            self.upper = math.inf if joint.axis.upper is None else joint.axis.upper
+        self.state: JointHandle = part.joint(name, origin=origin)
+        self.motor: MotorHandle | None = None
+        self.servo: ServoHandle | None = None
+        strength = min(self.effort_limit, _STRONGEST)
+        self.pids = {gains[0]: Pid(gains[1])} if gains is not None else {}
+        if interfaces.commands == ("velocity",) and not self.pids:
+            self.motor = part.velocity_motor(name, max_effort=strength, origin=origin)
+        elif interfaces.commands:
+            self.servo = part.servo(name, max_effort=strength, origin=origin)
+        self.active: str = ""
+        """The interface that is commanded."""
+        self.command = 0.0
+        self.rate = 0.0
+        """How a commanded position changes, rad/s or m/s, where a controller knows it."""
+        self.strength = math.inf
+        """N m or N that a held position may take, where a controller grips more gently."""
+        self._damping = 0.0
+        if interfaces.mimic is not None and joint.mimic is None:
+            leader, multiplier = interfaces.mimic
+            part.mimic(name, Mimic(joint=leader, multiplier=multiplier), origin=origin)
+
+    @property
+    def position(self) -> float:
+        """rad or m."""
+        return self.state.position
+
+    @property
+    def velocity(self) -> float:
+        """rad/s or m/s."""
+        return self.state.velocity
+
+    @property
+    def effort(self) -> float:
+        """N m or N that drove it in the last step."""
+        return self.state.effort
+
+    def activate(self, interface: str) -> None:
+        """Commands are of this interface from now on; the joint stays where it is."""
+        self.active = interface
+        self._damping = 0.0
+        self.strength = math.inf
+        self.command = self.position if interface == "position" else 0.0
+        self.rate = 0.0
+        for pid in self.pids.values():
+            pid.reset()
+
+    def release(self) -> None:
+        """No controller commands it any more: positions are kept, velocities and efforts are 0."""
+        self.rate = self._damping = 0.0
+        if self.active in ("velocity", "effort"):
+            self.command = 0.0
+
+    def rest(self, *, holds: bool) -> None:
+        """Before any controller commands it.
+
+        Args:
+            holds: Whether one that takes efforts holds as well, as in ros2_control's simulations.
+        """
+        commands = self.interfaces.commands
+        if not commands:
+            return
+        self.activate(commands[0])
+        if holds and self.servo is not None:
+            self.active = "held"
+            self.command = self.position
+
+    def set_effort(self, effort: float, *, damping: float = 0.0) -> None:
+        """An effort that falls with the velocity, for controllers with a PID of their own."""
+        self.command = effort
+        self._damping = damping
+
+    def write(self, seconds: float, *, lead: float = 0.0) -> None:
+        """Brings the command to the joint.
+
+        Args:
+            seconds: Since the last time, s.
+            lead: Since the command was given, s; what it changes by goes on.
+        """
+        match self.active:
+            case "position":
+                self._write_position(seconds, lead)
+            case "velocity":
+                self._write_velocity(seconds)
+            case "effort":
+                self._write_effort()
+            case "held":
+                assert self.servo is not None
+                self.servo.command_position(self.command)
+
+    def halt(self) -> None:
+        """Stops: efforts are 0, and what holds a velocity or a position stands."""
+        if self.motor is not None:
+            self.motor.command(0.0)
+        elif self.servo is not None and self.active == "effort":
+            self.servo.release()
+        elif self.servo is not None:
+            self.servo.command_velocity(0.0)
+
+    def _write_position(self, seconds: float, lead: float) -> None:
+        target = min(max(self.command + lead * self.rate, self.lower), self.upper)
+        assert self.servo is not None
+        pid = self.pids.get("position")
+        if pid is None:
+            self.servo.command_position(
+                target,
+                velocity=self.rate,
+                max_velocity=self.velocity_limit,
+                max_effort=self.strength,
+            )
+            return
+        error = target - self.position
+        if self.type == "continuous":
+            error = math.remainder(error, 2 * math.pi)
+        law = pid.position(error, seconds, target=target, rate=self.rate or None)
+        self.servo.command_effort(law.effort, damping=law.damping)
+
+    def _write_velocity(self, seconds: float) -> None:
+        limit = self.velocity_limit
+        target = min(max(self.command, -limit), limit)
+        if self.motor is not None:
+            self.motor.command(target)
+            return
+        assert self.servo is not None
+        pid = self.pids.get("velocity")
+        if pid is None:
+            self.servo.command_velocity(target)
+        else:
+            law = pid.velocity(target, self.velocity, seconds)
+            self.servo.command_effort(law.effort, damping=law.damping)
+
+    def _write_effort(self) -> None:
+        effort = min(max(self.command, -self.effort_limit), self.effort_limit)
+        # Beyond a limit it may only come back.
+        if self.position < self.lower or self.velocity < -self.velocity_limit:
+            effort = max(effort, 0.0)
+        elif self.position > self.upper or self.velocity > self.velocity_limit:
+            effort = min(effort, 0.0)
+        assert self.servo is not None
+        self.servo.command_effort(effort, damping=self._damping)
+
+
+class Hardware:
+    """All joints of a robot that controllers can see.
+
+    Args:
+        plugin: Whose robot it is.
+        joints: What they offer.
+        gains: Of joints whose commands of an interface go through a PID, by joint.
+    """
+
+    def __init__(
+        self,
+        plugin: Plugin[Any],
+        joints: list[JointInterfaces],
+        gains: Mapping[str, tuple[str, Gains]],
+    ) -> None:
+        self._joints = {
+            each.name: JointHardware(plugin, each, gains.get(each.name)) for each in joints
+        }
+        self.holds = False
+        """Whether joints that take efforts hold as well before a controller commands them."""
+        self.halted = False
+        """Whether all joints stop, whatever they are told."""
+
+    @property
+    def names(self) -> list[str]:
+        """All joints, in the order of the description's tags."""
+        return list(self._joints)
+
+    def joint(self, name: str, interface: str | None = None) -> JointHardware:
+        """A joint, which must offer a command interface where one is given.
+
+        Raises:
+            UnknownNameError: There is none of that name.
+            PluginError: It has no such interface.
+        """
+        if name not in self._joints:
+            raise UnknownNameError("joint of a controller", name, self._joints)
+        found = self._joints[name]
+        if interface is not None and interface not in found.interfaces.commands:
+            offered = ", ".join(found.interfaces.commands) or "none"
+            raise PluginError(
+                f'joint "{name}" has no {interface} interface; it has: {offered}',
+                origin=found.interfaces.origin,
+            )
+        return found
+
+    def start(self) -> None:
+        """Before any controller runs: joints hold; those that take efforts are free in ROS 1."""
+        for joint in self._joints.values():
+            initial = joint.interfaces.initial_position
+            if initial is not None:
+                joint.state.position = initial
+            joint.rest(holds=self.holds)
+
+    @property
+    def follows(self) -> bool:
+        """Whether joints must be led at every step: those that have a PID."""
+        return any(joint.pids for joint in self._joints.values())
+
+    def write(self, seconds: float, *, lead: float = 0.0) -> None:
+        """Brings all commands to the joints; see `JointHardware.write`."""
+        for joint in self._joints.values():
+            if self.halted:
+                joint.halt()
+            else:
+                joint.write(seconds, lead=lead)

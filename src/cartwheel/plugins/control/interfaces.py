@@ -1,0 +1,247 @@
+"""What a description offers to controllers: ``<transmission>`` and ``<ros2_control>``."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from cartwheel.description.model import Element, RobotDescription
+from cartwheel.errors import Diagnostic, Origin, PluginError
+
+COMMANDS = ("position", "velocity", "effort")
+"""What a joint can be commanded by."""
+SYSTEMS = (
+    "gazebo_ros2_control/GazeboSystem",
+    "gz_ros2_control/GazeboSimSystem",
+    "ign_ros2_control/IgnitionSystem",
+)
+"""Hardware of ros2_control that stands for a simulation."""
+_HARDWARE = {
+    "PositionJointInterface": "position",
+    "VelocityJointInterface": "velocity",
+    "EffortJointInterface": "effort",
+    "PosVelJointInterface": "position",
+    "PosVelAccJointInterface": "position",
+}
+_STATES_ONLY = ("JointStateInterface", "ImuSensorInterface", "ForceTorqueSensorInterface")
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class JointInterfaces:
+    """What controllers may do with a joint."""
+
+    name: str
+    commands: tuple[str, ...] = ()
+    """Some of `COMMANDS`."""
+    states: tuple[str, ...] = ("position", "velocity", "effort")
+    initial_position: float | None = None
+    mimic: tuple[str, float] | None = None
+    """The joint that it follows, and by which factor."""
+    by_pid: str = ""
+    """The command that becomes an effort by a PID: position or velocity."""
+    gains: Mapping[str, float] = field(default_factory=dict)
+    """``pos_kp``, ``vel_ki`` and so on, as written beside the joint."""
+    origin: Origin
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class SensorInterfaces:
+    """A sensor of ``<ros2_control>``."""
+
+    name: str
+    states: tuple[str, ...]
+    parameters: Mapping[str, str]
+    origin: Origin
+
+
+def transmissions(
+    description: RobotDescription,
+) -> tuple[list[JointInterfaces], list[Diagnostic]]:
+    """The joints that transmissions drive, as ros_control's robot simulation takes them.
+
+    Only what they say of the joint counts; reductions are between motor and joint, where
+    nothing is simulated. Source: transmission_interface, gazebo_ros_control.
+    """
+    found: dict[str, JointInterfaces] = {}
+    notes: list[Diagnostic] = []
+
+    def warn(element: Element, message: str) -> None:
+        notes.append(Diagnostic(severity="warning", message=message, origin=element.origin))
+
+    for element in description.transmissions:
+        label = f'transmission "{element.attribute("name") or ""}"'
+        joints = list(element.find_all("joint"))
+        kind = element.find("type")
+        if kind is None and element.attribute("type"):
+            # Of a format before ros_control's, which its parser skips as well.
+            notes.append(
+                Diagnostic(
+                    severity="info",
+                    message=f"{label} is of the format of the PR2: it drives nothing",
+                    origin=element.origin,
+                )
+            )
+            continue
+        if len(joints) != 1:
+            warn(element, f"{label} has {len(joints)} joints: only one with one joint acts")
+            continue
+        name = joints[0].attribute("name") or ""
+        written = list(joints[0].find_all("hardwareInterface"))
+        if not written:
+            written = [
+                interface
+                for actuator in element.find_all("actuator")
+                for interface in actuator.find_all("hardwareInterface")
+            ]
+        commands: list[str] = []
+        for interface in written:
+            short = interface.text.strip().rpartition("/")[2]
+            if short in _HARDWARE:
+                commands.append(_HARDWARE[short])
+            elif short not in _STATES_ONLY:
+                warn(interface, f'{label}: there is no hardware interface "{interface.text}"')
+        if not written:
+            warn(element, f"{label} names no <hardwareInterface>, so nothing drives its joint")
+        if not _movable(description, name):
+            warn(element, f'{label}: "{name}" is no joint that moves')
+            continue
+        before = found[name].commands if name in found else ()
+        found[name] = JointInterfaces(
+            name=name,
+            commands=tuple(dict.fromkeys((*before, *commands))),
+            origin=element.origin,
+        )
+    return list(found.values()), notes
+
+
+def hardware_of(system: Element) -> str:
+    """The hardware plugin that a ``<ros2_control>`` names."""
+    plugin = system.find("hardware/plugin")
+    return plugin.text.strip() if plugin is not None else ""
+
+
+def simulated_systems(description: RobotDescription) -> list[Element]:
+    """The ``<ros2_control>`` tags for a simulation; all of them where none is."""
+    simulated = [each for each in description.ros2_control if hardware_of(each) in SYSTEMS]
+    return simulated or list(description.ros2_control)
+
+
+def ros2_control(
+    description: RobotDescription,
+) -> tuple[list[JointInterfaces], list[SensorInterfaces], list[Diagnostic]]:
+    """The joints and sensors of all ``<ros2_control>`` tags. Source: ros2_control.
+
+    Raises:
+        PluginError: A number is none.
+    """
+    joints: dict[str, JointInterfaces] = {}
+    sensors: list[SensorInterfaces] = []
+    notes: list[Diagnostic] = []
+    for system in simulated_systems(description):
+        for element in system.find_all("joint"):
+            name = element.attribute("name") or ""
+            if not _movable(description, name):
+                notes.append(
+                    Diagnostic(
+                        severity="warning",
+                        message=f'<ros2_control>: "{name}" is no joint that moves',
+                        origin=element.origin,
+                    )
+                )
+                continue
+            joints[name] = _joint(element, name, notes)
+        sensors += [_sensor(element) for element in system.find_all("sensor")]
+        notes += [
+            Diagnostic(
+                severity="warning",
+                message=f'<gpio name="{element.attribute("name") or ""}"> has no effect: '
+                "there is nothing behind it in a simulation",
+                origin=element.origin,
+            )
+            for element in system.find_all("gpio")
+        ]
+    return list(joints.values()), sensors, notes
+
+
+def _sensor(element: Element) -> SensorInterfaces:
+    return SensorInterfaces(
+        name=element.attribute("name") or "",
+        states=tuple(
+            state.attribute("name") or "" for state in element.find_all("state_interface")
+        ),
+        parameters=_parameters(element),
+        origin=element.origin,
+    )
+
+
+def _joint(element: Element, name: str, notes: list[Diagnostic]) -> JointInterfaces:
+    commands: list[str] = []
+    initial: float | None = None
+    by_pid = ""
+    for interface in element.find_all("command_interface"):
+        written = interface.attribute("name") or ""
+        kind = written.removesuffix("_pid")
+        if kind not in COMMANDS:
+            notes.append(
+                Diagnostic(
+                    severity="warning",
+                    message=f'joint "{name}": the command interface "{kind}" is not simulated; '
+                    f"there are {', '.join(COMMANDS)}",
+                    origin=interface.origin,
+                )
+            )
+            continue
+        # Its min and max bind nothing, as in gazebo_ros2_control and gz_ros2_control.
+        commands.append(kind)
+        if written != kind:
+            by_pid = kind
+    states = []
+    for interface in element.find_all("state_interface"):
+        kind = interface.attribute("name") or ""
+        states.append(kind)
+        start = _number(_parameters(interface), "initial_value", interface)
+        if kind == "position" and start is not None:
+            initial = start
+    values = _parameters(element)
+    mimic = None
+    if values.get("mimic"):
+        multiplier = _number(values, "multiplier", element)
+        mimic = (values["mimic"], 1.0 if multiplier is None else multiplier)
+    return JointInterfaces(
+        name=name,
+        commands=tuple(dict.fromkeys(commands)),
+        states=tuple(states),
+        initial_position=initial,
+        mimic=mimic,
+        by_pid=by_pid,
+        gains={
+            key: number
+            for key in values
+            if key[:4] in ("pos_", "vel_") and (number := _number(values, key, element)) is not None
+        },
+        origin=element.origin,
+    )
+
+
+def _parameters(element: Element) -> dict[str, str]:
+    return {
+        param.attribute("name") or "": param.text.strip() for param in element.find_all("param")
+    }
+
+
+def _number(values: Mapping[str, str], name: str, element: Element) -> float | None:
+    text = values.get(name, "")
+    if not text or re.fullmatch(r"[{$].*", text):
+        return None
+    try:
+        return float(text)
+    except ValueError:
+        raise PluginError(
+            f'<param name="{name}"> "{text}" is not a number', origin=element.origin
+        ) from None
+
+
+def _movable(description: RobotDescription, name: str) -> bool:
+    joint = description.joint(name)
+    return joint is not None and joint.type in ("revolute", "continuous", "prismatic")

@@ -1,0 +1,475 @@
+"""``joint_trajectory_controller``: joints along trajectories, by topic and by action."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar
+
+import numpy as np
+
+from cartwheel.errors import PluginError
+from cartwheel.messages import header, message_class
+from cartwheel.plugins.control.action import ActionServer, Goal
+from cartwheel.plugins.control.controller import Controller, Rhythm
+from cartwheel.plugins.control.hardware import JointHardware
+from cartwheel.plugins.control.pid import Gains, Pid
+from cartwheel.plugins.control.settings import Settings
+from cartwheel.plugins.control.trajectory import State, Trajectory, Waypoint
+
+SUCCESSFUL, INVALID_GOAL, INVALID_JOINTS, OLD_HEADER, PATH, GOAL = 0, -1, -2, -3, -4, -5
+_KIND = "control_msgs/FollowJointTrajectory"
+_SETTLING_NS = 100_000_000
+"""What a joint that stops gets to stand still, before a goal counts as missed."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Tolerance:
+    """The most that a joint may be off; 0 is not checked."""
+
+    position: float = 0.0
+    velocity: float = 0.0
+
+    def violated(self, position: float, velocity: float) -> bool:
+        """Whether errors of these sizes are too large."""
+        return (0 < self.position < abs(position)) or (0 < self.velocity < abs(velocity))
+
+
+class InvalidTrajectoryError(PluginError):
+    """A trajectory that cannot be followed, with the error code of the action."""
+
+    def __init__(self, code: int, message: str) -> None:
+        super().__init__(message)
+        self.code = code
+
+
+class JointTrajectoryController(Controller):
+    """Follows trajectories, holds where they end, and where it is told to stop.
+
+    ROS 1 listens to ``command``, ROS 2 to ``joint_trajectory``; both take the action
+    ``follow_joint_trajectory``. A goal ends with success when the last point's time has come
+    and all joints are within their goal tolerances; where they are not within ``goal_time``
+    more, or leave their path's tolerance, it is aborted, and the joints stand. Source:
+    joint_trajectory_controller.
+    """
+
+    types: ClassVar[tuple[str, ...]] = (
+        "position_controllers/JointTrajectoryController",
+        "velocity_controllers/JointTrajectoryController",
+        "effort_controllers/JointTrajectoryController",
+        "pos_vel_controllers/JointTrajectoryController",
+        "pos_vel_acc_controllers/JointTrajectoryController",
+        "joint_trajectory_controller/JointTrajectoryController",
+    )
+
+    def configure(self, settings: Settings) -> None:
+        ros2 = self.rig.ros2
+        self._names = settings.texts("joints")
+        if not self._names:
+            raise settings.error('"joints" is empty')
+        self._interface = self._take_interface(settings)
+        commanded = settings.texts("command_joints", []) or self._names
+        self._joints: list[JointHardware] = [
+            self.claim(name, self._interface) for name in commanded
+        ]
+        self._pids: list[Pid] = []
+        self._forward = [0.0] * len(self._joints)
+        if self._interface != "position":
+            self._read_gains(settings)
+        settings.ignore(
+            "gains", "velocity_ff", "constraints", "state_interfaces", "command_interfaces"
+        )
+        constraints = settings.section("constraints")
+        stopped = constraints.number("stopped_velocity_tolerance", 0.01)
+        self._goal_time = constraints.number("goal_time", 0.0)
+        self._path: list[Tolerance] = []
+        self._goal: list[Tolerance] = []
+        for name in self._names:
+            self._path.append(Tolerance(position=constraints.number(f"{name}/trajectory", 0.0)))
+            self._goal.append(
+                Tolerance(position=constraints.number(f"{name}/goal", 0.0), velocity=stopped)
+            )
+        self._partial = settings.boolean("allow_partial_joints_goal", False)
+        rate = settings.number("state_publish_rate", 50.0)
+        self._rhythm = Rhythm(rate)
+        self._monitor = Rhythm(settings.number("action_monitor_rate", 20.0))
+        settings.ignore(
+            "stop_trajectory_duration", "hold_trajectory_duration", "verbose",
+            "open_loop_control", "allow_integration_in_goal_trajectories",
+            "interpolation_method", "allow_nonzero_velocity_at_trajectory_end",
+            "set_last_command_interface_value_as_state_on_activation", "cmd_timeout",
+        )  # fmt: skip
+        topic = "joint_trajectory" if ros2 else "command"
+        self.subscribe(topic, "trajectory_msgs/msg/JointTrajectory", self._on_trajectory)
+        self._action = ActionServer(
+            self,
+            "follow_joint_trajectory",
+            _KIND,
+            on_goal=self._on_goal,
+            on_cancel=self._on_cancel,
+        )
+        self._state = self.advertise(
+            "controller_state" if ros2 else "state",
+            "control_msgs/msg/JointTrajectoryControllerState",
+            rate=rate or None,
+        )
+        if not ros2:
+            self.serve("query_state", "control_msgs/srv/QueryTrajectoryState", self._on_query)
+        self._following = Trajectory.hold(0, [0.0] * len(self._joints))
+        self._next: Trajectory | None = None
+        self._active: Goal | None = None
+        self._goal_path = self._path
+        self._goal_end = self._goal
+        self._goal_patience = self._goal_time
+
+    def start(self, time_ns: int) -> None:
+        self._hold(time_ns)
+        for pid in self._pids:
+            pid.reset()
+        self._rhythm.start(time_ns)
+        self._monitor.start(time_ns)
+        self._action.start(time_ns)
+        self._finish("abort", INVALID_GOAL, "the controller began anew")
+
+    def update(self, time_ns: int, seconds: float) -> None:
+        if self._next is not None and time_ns >= self._next.start_ns:
+            self._following, self._next = self._next, None
+        wanted = self._following.at(time_ns)
+        errors = [self._error(index, wanted) for index in range(len(self._joints))]
+        self._command(wanted, errors, seconds)
+        if self._active is not None:
+            self._watch(time_ns, wanted, errors)
+        self._action.tick(time_ns)
+        due = self._rhythm.due(time_ns)
+        if due and self._state.wanted:
+            self._state.publish(
+                self._told(
+                    "control_msgs/msg/JointTrajectoryControllerState", time_ns, wanted, errors
+                )
+            )
+
+    def stop(self, time_ns: int) -> None:
+        self._hold(time_ns)
+        self._finish("cancel", INVALID_GOAL, "the controller was stopped")
+
+    # -- commands to the joints
+
+    def _take_interface(self, settings: Settings) -> str:
+        kind = self.type.partition("_")[0]
+        if kind in ("position", "velocity", "effort"):
+            return kind
+        if kind == "pos":
+            return "position"
+        wanted = settings.texts("command_interfaces", ["position"])
+        for interface in ("position", "velocity", "effort"):
+            if interface in wanted:
+                return interface
+        raise settings.error(f'"command_interfaces" {wanted} holds none that is known')
+
+    def _read_gains(self, settings: Settings) -> None:
+        for index, name in enumerate(self._names):
+            section = settings.section(f"gains/{name}")
+            forward = 0.0
+            if self.rig.ros2:
+                forward = section.number("ff_velocity_scale", 0.0)
+                gains = Gains.read(section) if section.has("p") else Gains(p=0.0)
+            elif section.has("p"):
+                gains = Gains.read(section)
+            elif self._interface == "effort":
+                raise settings.error(f'"gains/{name}/p" is missing')
+            else:
+                gains = Gains(p=0.0)
+            self._forward[index] = settings.number(f"velocity_ff/{name}", forward)
+            self._pids.append(Pid(gains))
+
+    def _error(self, index: int, wanted: State) -> tuple[float, float]:
+        joint = self._joints[index]
+        position = wanted.position[index] - joint.position
+        if joint.type == "continuous":
+            position = math.remainder(position, 2 * math.pi)
+        return position, wanted.velocity[index] - joint.velocity
+
+    def _command(self, wanted: State, errors: list[tuple[float, float]], seconds: float) -> None:
+        for index, joint in enumerate(self._joints):
+            position, velocity = wanted.position[index], wanted.velocity[index]
+            if self._interface == "position":
+                joint.command, joint.rate = position, velocity
+                continue
+            law = self._pids[index].position(
+                errors[index][0], seconds, target=position, rate=velocity
+            )
+            forward = self._forward[index] * velocity
+            if self._interface == "effort":
+                joint.set_effort(law.effort + forward, damping=law.damping)
+            else:
+                joint.command = law.effort - law.damping * joint.velocity + forward
+
+    def _hold(self, time_ns: int) -> None:
+        """Stands where it is."""
+        self._next = None
+        self._following = Trajectory.hold(time_ns, [joint.position for joint in self._joints])
+
+    # -- trajectories that come in
+
+    def _on_trajectory(self, message: Any) -> None:
+        time_ns = self.part.time_ns
+        if not message.points:
+            self._finish("cancel", SUCCESSFUL, "stopped by an empty trajectory")
+            self._hold(time_ns)
+            return
+        try:
+            trajectory = self._read(message, time_ns)
+        except InvalidTrajectoryError as error:
+            self.warn(f"a trajectory was ignored: {error.message}")
+            return
+        self._finish("cancel", SUCCESSFUL, "another trajectory took its place")
+        self._follow(trajectory, time_ns)
+
+    def _follow(self, trajectory: Trajectory, time_ns: int) -> None:
+        if trajectory.start_ns > time_ns:
+            self._next = trajectory
+        else:
+            self._following, self._next = trajectory, None
+
+    def _read(self, message: Any, time_ns: int) -> Trajectory:
+        """A message as a trajectory that begins where the joints are to be then.
+
+        Raises:
+            InvalidTrajectoryError: It cannot be followed.
+        """
+        names = list(message.joint_names)
+        order = self._order(names)
+        moment = message.header.stamp
+        stamp_ns = moment.sec * 1_000_000_000 + moment.nanosec
+        start_ns = stamp_ns or time_ns
+        begin_ns = max(start_ns, time_ns)
+        begin = self._following.at(begin_ns)
+        points = []
+        last = -1.0
+        for number, point in enumerate(message.points):
+            span = point.time_from_start
+            time = span.sec + span.nanosec / 1e9
+            if time < 0 or time <= last:
+                raise InvalidTrajectoryError(
+                    INVALID_GOAL, f"the time of point {number} does not come after the one before"
+                )
+            last = time
+            moved = time - (begin_ns - start_ns) / 1e9
+            made = self._waypoint(point, number, order, begin, moved)
+            if moved > 1e-9:
+                points.append(made)
+            elif number == len(message.points) - 1 and stamp_ns == 0:
+                # At once, as far as the joints can.
+                return Trajectory(time_ns, [replace(made, time=0.0)])
+        if not points:
+            raise InvalidTrajectoryError(OLD_HEADER, "all of its points lie in the past")
+        self._unwind(points, begin)
+        first = Waypoint(
+            time=0.0,
+            position=begin.position,
+            velocity=begin.velocity,
+            acceleration=begin.acceleration,
+        )
+        return Trajectory(begin_ns, [first, *points])
+
+    def _order(self, names: list[str]) -> list[int]:
+        """Where each of our joints is in a message; -1 where it is not."""
+        unknown = [name for name in names if name not in self._names]
+        if unknown:
+            raise InvalidTrajectoryError(
+                INVALID_JOINTS, f'joint "{unknown[0]}" is not of this controller'
+            )
+        missing = [name for name in self._names if name not in names]
+        if missing and not self._partial:
+            raise InvalidTrajectoryError(INVALID_JOINTS, f'joint "{missing[0]}" is missing')
+        return [names.index(name) if name in names else -1 for name in self._names]
+
+    def _waypoint(
+        self, point: Any, number: int, order: list[int], begin: State, time: float
+    ) -> Waypoint:
+        count = sum(place >= 0 for place in order)
+
+        def ours(values: Any, what: str, rest: tuple[float, ...]) -> tuple[float, ...]:
+            if len(values) == 0:
+                return ()
+            if len(values) != count:
+                raise InvalidTrajectoryError(
+                    INVALID_GOAL,
+                    f"point {number} has {len(values)} {what} for {count} joints",
+                )
+            numbers = [float(value) for value in values]
+            if not all(math.isfinite(value) for value in numbers):
+                raise InvalidTrajectoryError(
+                    INVALID_GOAL, f"point {number} has {what} that are none"
+                )
+            return tuple(
+                numbers[place] if place >= 0 else rest[index] for index, place in enumerate(order)
+            )
+
+        still = (0.0,) * len(order)
+        positions = ours(point.positions, "positions", begin.position)
+        if not positions:
+            raise InvalidTrajectoryError(INVALID_GOAL, f"point {number} has no positions")
+        return Waypoint(
+            time=time,
+            position=positions,
+            velocity=ours(point.velocities, "velocities", still),
+            acceleration=ours(point.accelerations, "accelerations", still),
+        )
+
+    def _unwind(self, points: list[Waypoint], begin: State) -> None:
+        """Joints without limits go the short way: whole turns are taken off."""
+        for joint, hardware in enumerate(self._joints):
+            if hardware.type != "continuous":
+                continue
+            way = points[0].position[joint] - begin.position[joint]
+            turns = way - math.remainder(way, 2 * math.pi)
+            if abs(turns) < 1e-9:
+                continue
+            for index, point in enumerate(points):
+                position = list(point.position)
+                position[joint] -= turns
+                points[index] = replace(point, position=tuple(position))
+
+    # -- the action
+
+    def _on_goal(self, goal: Goal) -> None:
+        time_ns = self.part.time_ns
+        if not self.running:
+            goal.reject(
+                self._result(INVALID_GOAL, "the controller does not run"),
+                "the controller does not run",
+            )
+            return
+        try:
+            if not goal.goal.trajectory.points:
+                raise InvalidTrajectoryError(INVALID_GOAL, "the trajectory has no points")
+            trajectory = self._read(goal.goal.trajectory, time_ns)
+            paths, ends = self._tolerances(goal.goal)
+        except InvalidTrajectoryError as error:
+            goal.reject(self._result(error.code, error.message), error.message)
+            return
+        self._finish("cancel", SUCCESSFUL, "another goal took its place")
+        self._goal_path, self._goal_end = paths, ends
+        span = goal.goal.goal_time_tolerance
+        patience = span.sec + span.nanosec / 1e9
+        self._goal_patience = patience if patience > 0 else self._goal_time
+        if patience < 0:
+            self._goal_patience = math.inf
+        self._active = goal
+        goal.accept()
+        self._follow(trajectory, time_ns)
+
+    def _tolerances(self, goal: Any) -> tuple[list[Tolerance], list[Tolerance]]:
+        """Of path and goal: the controller's, or what the goal says of a joint instead."""
+
+        def merged(defaults: list[Tolerance], stated: Any) -> list[Tolerance]:
+            made = list(defaults)
+            for each in stated:
+                if each.name not in self._names:
+                    raise InvalidTrajectoryError(
+                        INVALID_JOINTS, f'there is a tolerance for the unknown joint "{each.name}"'
+                    )
+                index = self._names.index(each.name)
+                # 0 leaves the default, and what is below takes the check away.
+                made[index] = Tolerance(
+                    position=max(each.position or made[index].position, 0.0),
+                    velocity=max(each.velocity or made[index].velocity, 0.0),
+                )
+            return made
+
+        return merged(self._path, goal.path_tolerance), merged(self._goal, goal.goal_tolerance)
+
+    def _on_cancel(self, goal: Goal) -> None:
+        if goal is self._active:
+            self._finish("cancel", SUCCESSFUL, "cancelled")
+            self._hold(self.part.time_ns)
+        else:
+            goal.cancel(self._result(SUCCESSFUL, ""), "cancelled")
+
+    def _watch(self, time_ns: int, wanted: State, errors: list[tuple[float, float]]) -> None:
+        """Ends the goal when it is reached or missed, and tells how it goes."""
+        goal = self._active
+        assert goal is not None
+        if self._monitor.due(time_ns) and self._action.feedback_wanted:
+            goal.feedback(
+                self._told(
+                    "control_msgs/msg/FollowJointTrajectoryFeedback", time_ns, wanted, errors
+                )
+            )
+        followed = self._next or self._following
+        if time_ns < followed.end_ns:
+            if self._next is not None:
+                return
+            for name, tolerance, error in zip(self._names, self._goal_path, errors, strict=True):
+                if tolerance.violated(*error):
+                    text = f"{name} is {error[0]:.4g} off its path"
+                    self._finish("abort", PATH, text)
+                    self._hold(time_ns)
+                    return
+            return
+        off = [
+            name
+            for name, tolerance, error in zip(self._names, self._goal_end, errors, strict=True)
+            if tolerance.violated(*error)
+        ]
+        if not off:
+            self._finish("succeed", SUCCESSFUL, "")
+            return
+        endless = self.rig.ros2 and self._goal_patience == 0
+        late_ns = followed.end_ns + _SETTLING_NS + round(min(self._goal_patience, 1e9) * 1e9)
+        if not endless and time_ns > late_ns:
+            index = self._names.index(off[0])
+            self._finish("abort", GOAL, f"{off[0]} is {errors[index][0]:.4g} off its goal")
+            self._hold(time_ns)
+
+    def _finish(self, how: str, code: int, text: str) -> None:
+        goal, self._active = self._active, None
+        if goal is not None:
+            getattr(goal, how)(self._result(code, text), text)
+
+    def _result(self, code: int, text: str) -> Any:
+        return message_class("control_msgs/msg/FollowJointTrajectoryResult")(
+            error_code=code, error_string=text
+        )
+
+    # -- what is told
+
+    def _told(
+        self, kind: str, time_ns: int, wanted: State, errors: list[tuple[float, float]]
+    ) -> Any:
+        Point = message_class("trajectory_msgs/msg/JointTrajectoryPoint")
+        nothing = np.zeros(0)
+        duration = message_class("builtin_interfaces/msg/Duration")(0, 0)
+
+        def point(position: Any, velocity: Any, acceleration: Any = nothing) -> Any:
+            return Point(
+                positions=np.array(position, dtype=float),
+                velocities=np.array(velocity, dtype=float),
+                accelerations=np.array(acceleration, dtype=float),
+                effort=nothing,
+                time_from_start=duration,
+            )
+
+        joints = self._joints
+        return message_class(kind)(
+            header=header(time_ns, ""),
+            joint_names=self._names,
+            desired=point(wanted.position, wanted.velocity, wanted.acceleration),
+            actual=point([j.position for j in joints], [j.velocity for j in joints]),
+            error=point([error[0] for error in errors], [error[1] for error in errors]),
+        )
+
+    def _on_query(self, request: Any) -> Any:
+        moment = request.time
+        time_ns = moment.sec * 1_000_000_000 + moment.nanosec
+        followed = self._following
+        if self._next is not None and time_ns >= self._next.start_ns:
+            followed = self._next
+        state = followed.at(time_ns)
+        return message_class("control_msgs/srv/QueryTrajectoryState_Response")(
+            name=self._names,
+            position=np.array(state.position),
+            velocity=np.array(state.velocity),
+            acceleration=np.array(state.acceleration),
+        )

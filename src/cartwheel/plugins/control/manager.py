@@ -1,0 +1,208 @@
+"""Controllers loaded, started, run and unloaded: what ros_control calls a controller manager."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from cartwheel.errors import CartwheelError, GraphError
+from cartwheel.plugins.control.catalogue import find_type
+from cartwheel.plugins.control.controller import Controller, Rig
+from cartwheel.plugins.control.settings import Settings
+
+
+class ControllerManager:
+    """The controllers of one robot; for the simulation's thread alone.
+
+    Args:
+        rig: The robot.
+    """
+
+    def __init__(self, rig: Rig) -> None:
+        self.rig = rig
+        self._controllers: dict[str, Controller] = {}
+        self._begun: set[str] = set()
+        """Controllers that were started once."""
+        self._starting: list[Controller] = []
+        self._stopping: list[Controller] = []
+        self._last_ns: int | None = None
+        self.writes = True
+        """Whether each update brings the commands to the joints; else `write` does."""
+
+    @property
+    def controllers(self) -> list[Controller]:
+        """All that are loaded, in that order."""
+        return list(self._controllers.values())
+
+    def state(self, controller: Controller) -> str:
+        """``initialized``, ``running`` or ``stopped``."""
+        if controller.running:
+            return "running"
+        return "stopped" if controller.name in self._begun else "initialized"
+
+    def load(self, name: str, settings: Settings, type_name: str) -> Controller:
+        """Makes a controller.
+
+        Raises:
+            CartwheelError: It is loaded already, there is no such type, or its parameters or
+                joints do not fit; nothing has changed.
+        """
+        if name in self._controllers:
+            raise GraphError(f'controller "{name}" is loaded already')
+        family = find_type(type_name, ros2=self.rig.ros2)
+        made = family(name, type_name.strip().replace("::", "/"), settings, self.rig)
+        settings.ignore("type")
+        unread = settings.unread()
+        if unread:
+            self.rig.report(f"controller {name}: without effect: {', '.join(unread)}")
+        self._controllers[name] = made
+        return made
+
+    def unload(self, name: str) -> None:
+        """Takes a controller away that does not run.
+
+        Raises:
+            GraphError: There is none of that name, or it runs.
+        """
+        controller = self._controllers.get(name)
+        if controller is None:
+            raise GraphError(f'controller "{name}" is not loaded')
+        if controller.running:
+            raise GraphError(f'controller "{name}" runs: stop it first')
+        del self._controllers[name]
+        self._begun.discard(name)
+        controller.close()
+
+    def switch(self, start: Sequence[str], stop: Sequence[str], *, strict: bool = True) -> None:
+        """Stops some controllers and starts others, at the next time of control.
+
+        Args:
+            start: Names.
+            stop: Names.
+            strict: All of it or nothing; else what is possible.
+
+        Raises:
+            GraphError: A name is not loaded, is running or not running already, or commands a
+                joint that another one does; while strict.
+        """
+        stopping = [each for name in stop if (each := self._one(name, True, strict))]
+        starting = [each for name in start if (each := self._one(name, False, strict))]
+        # What is stopped and started at once begins anew.
+        for name in start:
+            controller = self._controllers.get(name)
+            if controller in stopping and controller not in starting and controller is not None:
+                starting.append(controller)
+        held = {
+            joint: each.name
+            for each in self._controllers.values()
+            if each.running and each not in stopping
+            for joint in each.claims
+        }
+        able = []
+        for controller in starting:
+            taken = [joint for joint in controller.claims if joint in held]
+            if taken:
+                message = (
+                    f'controller "{controller.name}" cannot start: joint "{taken[0]}" is '
+                    f'commanded by "{held[taken[0]]}"'
+                )
+                if strict:
+                    raise GraphError(message)
+                self.rig.report(message)
+                continue
+            held.update(dict.fromkeys(controller.claims, controller.name))
+            able.append(controller)
+        for controller in stopping:
+            controller.running = False
+            if controller in self._starting:
+                self._starting.remove(controller)
+            self._stopping.append(controller)
+        for controller in able:
+            controller.running = True
+            self._begun.add(controller.name)
+            self._starting.append(controller)
+
+    def update(self, time_ns: int, nominal: float) -> None:
+        """Starts, stops and updates controllers, and commands the joints.
+
+        Args:
+            time_ns: Simulation time.
+            nominal: Of control, s: what the first update counts for.
+        """
+        seconds = nominal if self._last_ns is None else (time_ns - self._last_ns) / 1e9
+        if self._last_ns is None:
+            self.rig.hardware.start()
+        self._last_ns = time_ns
+        if self._stopping:
+            for controller in self._stopping:
+                controller.end(time_ns)
+                for joint in controller.claims.values():
+                    joint.release()
+            self._stopping.clear()
+        if self._starting:
+            for controller in self._starting:
+                for name, joint in controller.claims.items():
+                    joint.activate(controller.interfaces[name])
+                controller.begin(time_ns)
+            self._starting.clear()
+        for controller in self._controllers.values():
+            if controller.running:
+                controller.update(time_ns, seconds)
+        if self.writes:
+            self.rig.hardware.write(seconds)
+
+    def write(self, time_ns: int, seconds: float) -> None:
+        """Brings the commands to the joints, between updates as well.
+
+        Args:
+            time_ns: Simulation time.
+            seconds: Since the last time, s.
+        """
+        if self._last_ns is not None:
+            self.rig.hardware.write(seconds, lead=(time_ns - self._last_ns) / 1e9)
+
+    def sense(self, time_ns: int) -> None:
+        """Lets controllers tell what only a settled state shows: accelerations and forces."""
+        for controller in self._controllers.values():
+            if controller.started:
+                controller.sense(time_ns)
+
+    @property
+    def senses(self) -> bool:
+        """Whether `sense` has anything to do."""
+        return any(each.running and each.senses for each in self._controllers.values())
+
+    def reset(self) -> None:
+        """Everything stands where it was spawned: running controllers begin anew."""
+        self._last_ns = None
+        self._stopping.clear()
+        self._starting = [each for each in self._controllers.values() if each.running]
+        for controller in self._starting:
+            controller.started = False
+
+    def close(self) -> None:
+        """Unloads everything."""
+        for controller in self._controllers.values():
+            controller.close()
+        self._controllers.clear()
+
+    def _one(self, name: str, running: bool, strict: bool) -> Controller | None:
+        """A controller that is to change its state; None where it cannot and need not."""
+        controller = self._controllers.get(name)
+        problem = ""
+        if controller is None:
+            problem = f'controller "{name}" is not loaded'
+        elif controller.running != running:
+            if not running and not strict:
+                return None
+            problem = f'controller "{name}" {"does not run" if running else "runs already"}'
+        if not problem:
+            return controller
+        if strict and (controller is None or running):
+            raise GraphError(problem)
+        return None
+
+
+def tell(rig: Rig, error: CartwheelError) -> None:
+    """Reports an error that the user did not cause by a call of their own."""
+    text = error.message if error.hint is None else f"{error.message}. {error.hint}"
+    rig.report(text)

@@ -1,0 +1,110 @@
+"""``mecanum_drive_controller``: four wheels with rollers, in all directions."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from cartwheel.plugins.control.controller import Controller
+from cartwheel.plugins.control.settings import Settings
+from cartwheel.plugins.control.wheels import (
+    TwistCommand,
+    WheelOdometry,
+    joint_place,
+    wheel_radius,
+)
+
+_CORNERS = ("front_left", "front_right", "back_left", "back_right")
+_ROS2_CORNERS = ("front_left", "front_right", "rear_left", "rear_right")
+_SIDEWAYS = (-1.0, 1.0, 1.0, -1.0)
+_AROUND = (-1.0, 1.0, -1.0, 1.0)
+
+
+class MecanumDriveController(Controller):
+    """Turns four wheels by Twist, and tells where they took the robot.
+
+    Friction here is the same in all directions, so rollers would take it nowhere: where the
+    robot was spawned with these parameters known, a servo pushes it along, as for
+    gz-sim-mecanum-drive-system. ROS 1 listens to ``cmd_vel``, ROS 2 to ``reference``.
+    Source: mecanum_drive_controller.
+    """
+
+    types: ClassVar[tuple[str, ...]] = ("mecanum_drive_controller/MecanumDriveController",)
+
+    def configure(self, settings: Settings) -> None:
+        ros2 = self.rig.ros2
+        names = []
+        for corner, plain in zip(_ROS2_CORNERS, _CORNERS, strict=True):
+            if ros2:
+                names.append(settings.text(f"{corner}_wheel_command_joint_name"))
+                settings.ignore(f"{corner}_wheel_state_joint_name")
+            else:
+                names.append(settings.text(f"{plain}_wheel_joint", f"{plain}_wheel_joint"))
+        self._wheels = [self.claim(name, "velocity") for name in names]
+        description = self.part.description
+        radius = settings.optional_number("kinematics/wheels_radius" if ros2 else "wheel_radius")
+        self._radius = radius or wheel_radius(description, names[0]) or 0.0
+        reach = (
+            settings.optional_number("kinematics/sum_of_robot_center_projection_on_X_Y_axis")
+            if ros2
+            else None
+        )
+        if not reach:
+            along = [joint_place(description, name)[0] for name in names]
+            across = [joint_place(description, name)[1] for name in names]
+            x = settings.number("wheel_separation_x", max(along) - min(along))
+            y = settings.number("wheel_separation_y", max(across) - min(across))
+            reach = (x + y) / 2
+        self._reach = reach * settings.number("wheel_separation_multiplier", 1.0)
+        self._radius *= settings.number("wheel_radius_multiplier", 1.0)
+        if self._radius <= 0 or self._reach <= 0:
+            raise settings.error("the wheels' radius and separations must be above 0")
+        settings.ignore("kinematics", "linear", "angular", "open_loop", "twist_input")
+        stamped = ros2 and settings.boolean("use_stamped_vel", True)
+        topic = "cmd_vel"
+        if ros2:
+            topic = "reference" if stamped else "reference_unstamped"
+        timeout = settings.number("reference_timeout" if ros2 else "cmd_vel_timeout", 0.5)
+        self._command = TwistCommand(self, topic, timeout=timeout, stamped=stamped)
+        self._odometry = WheelOdometry(
+            self,
+            settings,
+            topic="odometry" if ros2 else "odom",
+            tf_topic="tf_odometry" if ros2 else "/tf",
+            transform=settings.boolean("enable_odom_tf", True),
+        )
+        self._turned = [0.0] * 4
+        if self.rig.push is None:
+            self.warn(
+                "its wheels roll like any others: sideways they move the robot only where "
+                "the controller's parameters are known when the robot is spawned"
+            )
+
+    def start(self, time_ns: int) -> None:
+        self._command.stop()
+        self._odometry.start(time_ns)
+        self._turned = [wheel.position for wheel in self._wheels]
+
+    def update(self, time_ns: int, seconds: float) -> None:
+        turned = [wheel.position for wheel in self._wheels]
+        ways = [(new - old) * self._radius for new, old in zip(turned, self._turned, strict=True)]
+        self._turned = turned
+        across = sum(sign * way for sign, way in zip(_SIDEWAYS, ways, strict=True)) / 4
+        around = sum(sign * way for sign, way in zip(_AROUND, ways, strict=True)) / 4
+        self._odometry.go(sum(ways) / 4, around / self._reach, seconds, sideways=across)
+        self._odometry.tell(time_ns)
+        forward, sideways, turn = self._command.at(time_ns)
+        for wheel, side, round_ in zip(self._wheels, _SIDEWAYS, _AROUND, strict=True):
+            speed = forward + side * sideways + round_ * self._reach * turn
+            wheel.command = speed / self._radius
+        if self.rig.push is not None:
+            self.rig.push.command((forward, sideways, None), (None, None, turn))
+
+    def stop(self, time_ns: int) -> None:  # noqa: ARG002
+        for wheel in self._wheels:
+            wheel.command = 0.0
+        if self.rig.push is not None:
+            self.rig.push.command((0.0, 0.0, None), (None, None, 0.0))
+
+    def close(self) -> None:
+        self._odometry.close()
+        super().close()

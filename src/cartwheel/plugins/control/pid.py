@@ -1,0 +1,102 @@
+"""The PID law of ros_control."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from cartwheel.plugins.control.settings import Settings
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Gains:
+    """Source: control_toolbox."""
+
+    p: float
+    i: float = 0.0
+    d: float = 0.0
+    i_min: float = 0.0
+    i_max: float = 0.0
+    antiwindup: bool = False
+    """Clamps the integral itself, not only what it gives."""
+
+    @classmethod
+    def read(cls, settings: Settings) -> Gains:
+        """``p``, ``i``, ``d``, ``i_clamp`` or ``i_clamp_min`` and ``i_clamp_max``, ``antiwindup``.
+
+        The integral gives nothing where no clamp is stated, as in ros_control.
+
+        Raises:
+            PluginError: A value is no number, or there is no ``p``.
+        """
+        clamp = abs(settings.number("i_clamp", 0.0))
+        settings.ignore("publish_state")
+        return cls(
+            p=settings.number("p"),
+            i=settings.number("i", 0.0),
+            d=settings.number("d", 0.0),
+            i_min=-abs(settings.number("i_clamp_min", -clamp)),
+            i_max=abs(settings.number("i_clamp_max", clamp)),
+            antiwindup=settings.boolean("antiwindup", False),
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Law:
+    """An effort that falls with the joint's velocity: ``effort - damping * velocity``.
+
+    The physics takes the damping implicitly, so a derivative gain is stable at any step.
+    """
+
+    effort: float
+    damping: float = 0.0
+
+
+class Pid:
+    """Holds a position or a velocity by effort."""
+
+    def __init__(self, gains: Gains) -> None:
+        self.gains = gains
+        self.reset()
+
+    def reset(self) -> None:
+        """Forgets the integral and the last error."""
+        self._integral = 0.0
+        self._target: float | None = None
+        self._error: float | None = None
+
+    def position(
+        self, error: float, seconds: float, *, target: float, rate: float | None = None
+    ) -> Law:
+        """The law for an error of position.
+
+        Args:
+            error: Target minus position, rad or m.
+            seconds: Since the last call, s.
+            target: Of position; how it changes is part of the derivative.
+            rate: Of the target, rad/s or m/s, where it is known.
+        """
+        if rate is None:
+            before = target if self._target is None else self._target
+            rate = (target - before) / seconds if seconds > 0 else 0.0
+        self._target = target
+        gains = self.gains
+        effort = gains.p * error + self._integrate(error, seconds) + gains.d * rate
+        return Law(effort, gains.d)
+
+    def velocity(self, target: float, velocity: float, seconds: float) -> Law:
+        """The law for a wanted velocity, rad/s or m/s."""
+        error = target - velocity
+        before = error if self._error is None else self._error
+        self._error = error
+        gains = self.gains
+        change = (error - before) / seconds if seconds > 0 else 0.0
+        effort = gains.p * target + self._integrate(error, seconds) + gains.d * change
+        return Law(effort, gains.p)
+
+    def _integrate(self, error: float, seconds: float) -> float:
+        gains = self.gains
+        self._integral += error * seconds
+        if gains.antiwindup and gains.i:
+            low, high = sorted((gains.i_min / gains.i, gains.i_max / gains.i))
+            self._integral = min(max(self._integral, low), high)
+        return min(max(gains.i * self._integral, gains.i_min), gains.i_max)

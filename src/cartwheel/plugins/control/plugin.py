@@ -1,0 +1,87 @@
+"""What the plugins of ros_control and ros2_control share."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+from cartwheel.errors import CartwheelError
+from cartwheel.plugins.base import Plugin
+from cartwheel.plugins.control.controller import Rig, SensedLink
+from cartwheel.plugins.control.files import ControllerEntry, ControllerFiles
+from cartwheel.plugins.control.manager import ControllerManager
+from cartwheel.plugins.control.mecanum import MecanumDriveController
+from cartwheel.plugins.control.settings import Settings
+from cartwheel.simulation.pushing import BodyDriveHandle
+
+_SENSED = ("imu", "force_torque")
+
+
+class ControlPlugin(Plugin[Any]):
+    """Runs a controller manager at a rate."""
+
+    manager: ControllerManager | None = None
+
+    def reset(self) -> None:
+        if self.manager is not None:
+            self.manager.reset()
+
+    def close(self) -> None:
+        if self.manager is not None:
+            self.manager.close()
+        super().close()
+
+    def _run(self, rig: Rig, rate: float) -> ControllerManager:
+        """Makes the manager, and schedules it.
+
+        Args:
+            rig: Of its controllers.
+            rate: Hz; 0 is every step.
+        """
+        manager = self.manager = ControllerManager(rig)
+        part = self.part
+        rig.period_ns = part.period_ns(rate)
+        nominal = rig.period_ns / 1e9
+        part.schedule(rate, before=lambda: manager.update(part.time_ns, nominal))
+        step_ns = part.period_ns(0)
+        if rig.hardware.follows and rig.period_ns > step_ns:
+            # As in Gazebo: controllers at their rate, joints at every step.
+            manager.writes = False
+            part.schedule(0, before=lambda: manager.write(part.time_ns, part.period_ns(0) / 1e9))
+        part.schedule(
+            rate, after=lambda: manager.sense(part.time_ns), active=lambda: manager.senses
+        )
+        return manager
+
+    def _sensors(self) -> list[SensedLink]:
+        """The robot's sensors that a broadcaster can tell of."""
+        return [
+            SensedLink(
+                name=sensor.name, type=sensor.type, link=self.part.link(link.name), sensor=sensor
+            )
+            for link in self.part.description.links
+            for sensor in link.sensors
+            if sensor.type in _SENSED
+        ]
+
+    def _push(self, types: Iterable[str]) -> BodyDriveHandle | None:
+        """A servo of the whole robot where a controller among these needs one."""
+        if any(name in MecanumDriveController.types for name in types):
+            return self.part.body_drive(origin=self.tag.origin)
+        return None
+
+    def _start(self, entries: Iterable[ControllerEntry]) -> None:
+        """Loads and starts controllers; one that does not fit is told and left."""
+        manager = self.manager
+        assert manager is not None
+        for entry in entries:
+            try:
+                manager.load(
+                    entry.name, Settings(entry.values, entry.name, entry.source), entry.type
+                )
+                manager.switch([entry.name], [])
+            except CartwheelError as error:
+                hint = f". {error.hint}" if error.hint else ""
+                self.warn(f"controller {entry.name} was not started: {error.message}{hint}")
+            else:
+                ControllerFiles.of(self.graph).started.append(entry.name)

@@ -1,0 +1,203 @@
+"""``libgazebo_ros2_control.so`` and ``gz_ros2_control-system``: ROS 2's controllers."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, ClassVar
+
+from cartwheel.description.model import Element
+from cartwheel.errors import PluginError
+from cartwheel.plugins.control.controller import Rig
+from cartwheel.plugins.control.files import (
+    ControllerEntry,
+    ControllerFiles,
+    Ros2File,
+    is_ros2,
+    read_yaml,
+    ros2_file,
+)
+from cartwheel.plugins.control.hardware import Hardware
+from cartwheel.plugins.control.interfaces import (
+    SYSTEMS,
+    JointInterfaces,
+    hardware_of,
+    ros2_control,
+    simulated_systems,
+)
+from cartwheel.plugins.control.pid import Gains
+from cartwheel.plugins.control.plugin import ControlPlugin
+from cartwheel.plugins.control.settings import Settings
+from cartwheel.plugins.parameters import tag
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Ros2ControlParameters:
+    files: tuple[str, ...] = tag(
+        "parameters", default=(), doc="YAML files of the manager and its controllers."
+    )
+    manager: str = tag(
+        "controller_manager_name",
+        "controller_manager_node_name",
+        default="controller_manager",
+        doc="Name of the manager's node, under which the files have its parameters.",
+    )
+    hold_joints: bool = tag(
+        "hold_joints", default=True, doc="Joints that no controller commands yet hold still."
+    )
+    gain: float = tag(
+        "position_proportional_gain",
+        default=0.1,
+        doc="Without effect: positions are held as fast as the joint's effort allows.",
+    )
+    description: str = tag(
+        "robot_param", default="robot_description", doc="Without effect: the robot is this one."
+    )
+    description_node: str = tag(
+        "robot_param_node", default="", doc="Without effect, as robot_param."
+    )
+
+
+class Ros2Control(ControlPlugin):
+    """Runs the controllers that its files name, at the manager's ``update_rate``.
+
+    Source: gazebo_ros2_control, gz_ros2_control.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = (
+        "libgazebo_ros2_control.so",
+        "gz_ros2_control-system",
+        "ign_ros2_control-system",
+    )
+    parameters: ClassVar[type] = Ros2ControlParameters
+
+    def configure(self) -> None:
+        config: Ros2ControlParameters = self.config
+        part = self.part
+        self.namespace = self.namespace.strip("/")
+        own = ControllerFiles.of(self.graph).take()
+        contents = []
+        for path in (*(self._path(text) for text in config.files), *own):
+            content = read_yaml(path)
+            if content and not is_ros2(content):
+                raise PluginError(
+                    f"{path} has no ros__parameters, and the robot has ros2_control",
+                    hint="In ROS 2 a node's parameters stand under its name and ros__parameters.",
+                )
+            contents.append(content)
+        found = ros2_file(contents, self.namespace, config.manager)
+        source = ", ".join(str(path) for path in (*config.files, *own))
+        settings = Settings(found.manager, config.manager, source)
+        rate = settings.number("update_rate", 100.0)
+        if rate <= 0:
+            raise settings.error(f'"update_rate" {rate:g} must be above 0')
+        joints, sensors, notes = ros2_control(part.description)
+        for note in notes:
+            part.report(note)
+        for system in simulated_systems(part.description):
+            self._check_system(system)
+        if not joints:
+            self.warn("no <ros2_control> names a joint, so controllers have none to command")
+        known = {sensor.name for link in part.description.links for sensor in link.sensors}
+        for sensor in sensors:
+            if sensor.name not in known:
+                self.warn(
+                    f'<ros2_control>: there is no <sensor name="{sensor.name}"> in a <gazebo> tag, '
+                    "so nothing measures",
+                    at=sensor.origin,
+                )
+        entries = self._entries(settings, found, source)
+        hardware = Hardware(self, joints, _gains(joints, found.nodes))
+        hardware.holds = config.hold_joints
+        rig = Rig(
+            self,
+            hardware,
+            namespace=self.namespace,
+            ros2=True,
+            sensors=self._sensors(),
+            push=self._push(entry.type for entry in entries),
+        )
+        self._run(rig, rate)
+        self._start(entries)
+
+    def _entries(self, manager: Settings, found: Ros2File, source: str) -> list[ControllerEntry]:
+        """Controllers whose type the manager's or their own parameters state."""
+        types: dict[str, str] = {}
+        for name in (*manager.names(), *found.nodes):
+            stated = found.nodes.get(name, {}).get("type")
+            listed = manager.raw(name)
+            if isinstance(listed, Mapping) and isinstance(listed.get("type"), str):
+                stated = listed["type"]
+            if isinstance(stated, str):
+                types[name] = stated
+        return [
+            ControllerEntry(
+                name=name,
+                type=type_name,
+                values=found.nodes.get(name, {}),
+                namespace=self.namespace,
+                source=source,
+            )
+            for name, type_name in types.items()
+        ]
+
+    def _path(self, text: str) -> Path:
+        text = text.strip()
+        path = Path(text)
+        origin = self.tag.origin
+        if not path.is_absolute():
+            path = Path(origin.file).parent / path
+        if not path.is_file():
+            raise PluginError(f'<parameters> "{text}": there is no such file', origin=origin)
+        return path
+
+    def _check_system(self, system: Element) -> None:
+        name = hardware_of(system)
+        if name and name not in SYSTEMS:
+            self.warn(
+                f'<ros2_control name="{system.attribute("name") or ""}">: the hardware '
+                f'"{name}" is not simulated, so its joints are driven as by {SYSTEMS[0]}',
+                at=system.origin,
+            )
+
+
+def _gains(
+    joints: list[JointInterfaces], nodes: Mapping[str, Mapping[str, Any]]
+) -> dict[str, tuple[str, Gains]]:
+    """Of joints whose commands go through a PID.
+
+    They stand beside the joint, or in the files under ``pid_gains``. Source:
+    gazebo_ros2_control.
+
+    Raises:
+        PluginError: A gain is no number.
+    """
+    gains = {}
+    for joint in joints:
+        if not joint.by_pid:
+            continue
+        prefix = f"{joint.by_pid[:3]}_"
+        found: Mapping[str, Any] = {
+            key.removeprefix(prefix): value
+            for key, value in joint.gains.items()
+            if key.startswith(prefix)
+        }
+        for name, values in nodes.items():
+            listed = Settings(values, name).section(f"pid_gains/{joint.by_pid}/{joint.name}")
+            if not found and listed.names():
+                found = {key: listed.raw(key) for key in listed.names()}
+        settings = Settings(found, f"gains of {joint.name}")
+        most = settings.number("max_integral_error", math.inf)
+        gains[joint.name] = (
+            joint.by_pid,
+            Gains(
+                p=settings.number("kp", 0.0),
+                i=settings.number("ki", 0.0),
+                d=settings.number("kd", 0.0),
+                i_min=settings.number("min_integral_error", -most),
+                i_max=most,
+            ),
+        )
+    return gains

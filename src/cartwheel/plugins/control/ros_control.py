@@ -1,0 +1,151 @@
+"""``libgazebo_ros_control.so``: ROS 1's controllers on the joints of transmissions."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar
+
+from cartwheel.errors import PluginError
+from cartwheel.plugins.control.controller import Rig
+from cartwheel.plugins.control.files import (
+    ControllerEntry,
+    ControllerFiles,
+    is_ros2,
+    read_parameters,
+    ros1_entries,
+)
+from cartwheel.plugins.control.hardware import Hardware
+from cartwheel.plugins.control.interfaces import JointInterfaces, transmissions
+from cartwheel.plugins.control.pid import Gains
+from cartwheel.plugins.control.plugin import ControlPlugin
+from cartwheel.plugins.control.services import ManagerServices
+from cartwheel.plugins.control.settings import Settings
+from cartwheel.plugins.parameters import tag
+
+_PLAIN = ("gazebo_ros_control/DefaultRobotHWSim", "DefaultRobotHWSim", "")
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class RosControlParameters:
+    sim_type: str = tag(
+        "robotSimType", "robot_sim_type", default="", doc="Hardware; only the default is simulated."
+    )
+    period: float = tag(
+        "controlPeriod", default=0.0, unit="s", doc="Between updates; every step when missing."
+    )
+    legacy: bool = tag(
+        "legacyModeNS",
+        default=True,
+        doc="PID gains may be in the global namespace; always looked for.",
+    )
+    stop_topic: str = tag("eStopTopic", default="", doc="Bool that stops all joints while true.")
+
+
+class RosControl(ControlPlugin):
+    """Runs controllers that the services of its controller manager load.
+
+    Without ROS, those of the files that the robot was started with run from the start. The
+    namespace is the global one where the tag and the spawner state none, as with spawn_model.
+    Source: gazebo_ros_control.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_control.so",)
+    parameters: ClassVar[type] = RosControlParameters
+
+    def configure(self) -> None:
+        config: RosControlParameters = self.config
+        part = self.part
+        if config.period < 0:
+            raise PluginError("<controlPeriod> cannot be below 0", origin=self.tag.origin)
+        if config.sim_type.rpartition("::")[2] not in _PLAIN:
+            self.warn(
+                f'<robotSimType> "{config.sim_type}" is not simulated: joints are driven as by '
+                "DefaultRobotHWSim"
+            )
+        self.namespace = self.namespace.strip("/")
+        contents = [
+            (str(path), read_parameters(path)) for path in ControllerFiles.of(self.graph).take()
+        ]
+        entries = [entry for path, content in contents for entry in self._load(path, content)]
+        joints, notes = transmissions(part.description)
+        for note in notes:
+            part.report(note)
+        if not joints:
+            self.warn("no <transmission> drives a joint, so controllers have none to command")
+        rate = 0.0 if config.period == 0 else 1.0 / config.period
+        hardware = Hardware(self, joints, self._gains(joints))
+        self._hardware = hardware
+        manager = self._run(
+            Rig(
+                self,
+                hardware,
+                namespace=self.namespace,
+                ros2=False,
+                sensors=self._sensors(),
+                push=self._push(self._known_types()),
+            ),
+            rate,
+        )
+        if config.stop_topic:
+            self.subscribe(config.stop_topic, "std_msgs/msg/Bool", self._on_stop)
+        ManagerServices(self, manager)
+        self._start([replace(entry, values=self._parameters_of(entry)) for entry in entries])
+
+    def _parameters_of(self, entry: ControllerEntry) -> Mapping[str, Any]:
+        found: Mapping[str, Any] = self.graph.parameters.get(
+            f"/{self.namespace}/{entry.name}", entry.values
+        )
+        return found
+
+    def _known_types(self) -> list[str]:
+        """Of controllers whose parameters are there already."""
+        values = self.graph.parameters.get(f"/{self.namespace}" if self.namespace else "/")
+        if not isinstance(values, Mapping):
+            return []
+        return [entry.type for entry in ros1_entries(values, "")]
+
+    def _on_stop(self, message: Any) -> None:
+        self._hardware.halted = bool(message.data)
+
+    def _load(self, path: str, content: Mapping[str, Any]) -> list[ControllerEntry]:
+        """Puts a file's parameters into the namespace, as rosparam would; its controllers."""
+        if is_ros2(content):
+            raise PluginError(
+                f"{path} is a file for ros2_control, and the robot has gazebo_ros_control",
+                hint="Name the file that its launch file gives to rosparam.",
+            )
+        entries = ros1_entries(content, path)
+        if not entries:
+            self.warn(f"{path} names no controller: none of its parameters has a type")
+        spaces = {entry.namespace for entry in entries}
+        inner: Any = content
+        if len(spaces) == 1 and (space := spaces.pop()):
+            # A file for the whole server names the namespace itself.
+            for name in space.split("/"):
+                inner = next(
+                    (value for key, value in inner.items() if str(key).strip("/") == name), inner
+                )
+        for key, value in inner.items():
+            name = f"/{self.namespace}/{str(key).strip('/')}"
+            before = self.graph.parameters.get(name)
+            if isinstance(before, dict) and isinstance(value, dict):
+                value = {**before, **value}  # noqa: PLW2901
+            self.graph.parameters.set(name, value)
+        return entries
+
+    def _gains(self, joints: list[JointInterfaces]) -> dict[str, tuple[str, Gains]]:
+        """Of the joints whose commands are to go through a PID."""
+        path = "gazebo_ros_control/pid_gains"
+        parameters = self.graph.parameters
+        found = parameters.get(f"/{self.namespace}/{path}") or parameters.get(f"/{path}")
+        gains: dict[str, tuple[str, Gains]] = {}
+        if not isinstance(found, Mapping):
+            return gains
+        for joint in joints:
+            values = found.get(joint.name)
+            moves = [kind for kind in joint.commands if kind in ("position", "velocity")]
+            if isinstance(values, Mapping) and moves:
+                settings = Settings(values, f"{path}/{joint.name}", f"/{self.namespace}")
+                gains[joint.name] = (moves[0], Gains.read(settings))
+        return gains

@@ -1,0 +1,151 @@
+"""Broadcasters of sensors: IMU and force-torque."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+import numpy as np
+
+from cartwheel.errors import UnknownNameError
+from cartwheel.geometry import Array, matrix_from_quat, quat_multiply
+from cartwheel.graph import Publisher
+from cartwheel.messages import header, message_class
+from cartwheel.plugins.control.controller import Controller, Rhythm, SensedLink
+from cartwheel.plugins.control.settings import Settings
+
+
+class _SensorBroadcaster(Controller):
+    """Tells what sensors of one type measure."""
+
+    kind: ClassVar[str]
+    message: ClassVar[str]
+    topic: ClassVar[str]
+
+    def configure(self, settings: Settings) -> None:
+        self._outlets: list[tuple[SensedLink, Publisher, str]] = []
+        rate = 0.0 if self.rig.ros2 else settings.number("publish_rate")
+        self._rhythm = Rhythm(rate)
+        found = [each for each in self.rig.sensors.values() if each.type == self.kind]
+        if self.rig.ros2:
+            name = settings.text("sensor_name", "")
+            if not name and len(found) == 1:
+                name = found[0].name
+            if name not in [each.name for each in found]:
+                raise UnknownNameError(f"{self.kind} sensor", name, [each.name for each in found])
+            chosen = self.rig.sensors[name]
+            frame = settings.text("frame_id", chosen.sensor.link)
+            self._outlets.append((chosen, self.advertise(self.topic, self.message), frame))
+        else:
+            if not found:
+                raise settings.error(f"the robot has no {self.kind} sensor in a <gazebo> tag")
+            space = f"/{self.rig.namespace.strip('/')}/"
+            self._outlets = [
+                (
+                    each,
+                    self.advertise(f"{space}{each.name}", self.message, rate=rate),
+                    each.sensor.link,
+                )
+                for each in found
+            ]
+        self.take(settings)
+
+    def take(self, settings: Settings) -> None:
+        """Reads what else there is."""
+
+    def start(self, time_ns: int) -> None:
+        self._rhythm.start(time_ns)
+
+    @property
+    def senses(self) -> bool:  # type: ignore[override]
+        return any(publisher.wanted for _, publisher, _ in self._outlets)
+
+    def sense(self, time_ns: int) -> None:
+        if not self._rhythm.due(time_ns):
+            return
+        for sensed, publisher, frame in self._outlets:
+            if publisher.wanted:
+                publisher.publish(self.measure(sensed, header(time_ns, self.frame(frame))))
+
+    def measure(self, sensed: SensedLink, head: Any) -> Any:
+        """The message."""
+        raise NotImplementedError
+
+
+class ImuBroadcaster(_SensorBroadcaster):
+    """Publishes Imu: ROS 2 on ``imu`` below its name, ROS 1 on the sensor's name.
+
+    Rates and proper acceleration in the sensor's axes, orientation against the world (REP
+    145). Source: imu_sensor_broadcaster, imu_sensor_controller.
+    """
+
+    types: ClassVar[tuple[str, ...]] = (
+        "imu_sensor_broadcaster/IMUSensorBroadcaster",
+        "imu_sensor_controller/ImuSensorController",
+    )
+    kind = "imu"
+    message = "sensor_msgs/msg/Imu"
+    topic = "imu"
+
+    def take(self, settings: Settings) -> None:
+        self._covariances = [
+            _nine(settings, f"static_covariance_{what}")
+            for what in ("orientation", "angular_velocity", "linear_acceleration")
+        ]
+
+    def measure(self, sensed: SensedLink, head: Any) -> Any:
+        mount = sensed.sensor.pose
+        turn = matrix_from_quat(mount.orientation).T
+        _, turned = sensed.link.place()
+        _, rate = sensed.link.motion(local=True)
+        acceleration = turn @ sensed.link.proper_acceleration(mount.position)
+        Vector3 = message_class("geometry_msgs/msg/Vector3")
+        orientation, rates, accelerations = self._covariances
+        return message_class("sensor_msgs/msg/Imu")(
+            header=head,
+            orientation=message_class("geometry_msgs/msg/Quaternion")(
+                *quat_multiply(turned, mount.orientation)
+            ),
+            orientation_covariance=orientation,
+            angular_velocity=Vector3(*(turn @ np.array(rate)).tolist()),
+            angular_velocity_covariance=rates,
+            linear_acceleration=Vector3(*acceleration.tolist()),
+            linear_acceleration_covariance=accelerations,
+        )
+
+
+class ForceTorqueBroadcaster(_SensorBroadcaster):
+    """Publishes WrenchStamped: what a joint's child exerts on its parent, in the child's axes.
+
+    ROS 2 on ``wrench`` below its name, ROS 1 on the sensor's name. Source:
+    force_torque_sensor_broadcaster, force_torque_sensor_controller.
+    """
+
+    types: ClassVar[tuple[str, ...]] = (
+        "force_torque_sensor_broadcaster/ForceTorqueSensorBroadcaster",
+        "force_torque_sensor_controller/ForceTorqueSensorController",
+    )
+    kind = "force_torque"
+    message = "geometry_msgs/msg/WrenchStamped"
+    topic = "wrench"
+
+    def take(self, settings: Settings) -> None:
+        settings.ignore("interface_names")
+
+    def measure(self, sensed: SensedLink, head: Any) -> Any:
+        joint = self.part.description.joint(sensed.sensor.joint or "")
+        anchor = joint.pose.position if joint is not None else (0.0, 0.0, 0.0)
+        force, torque = sensed.link.reaction(anchor)
+        Vector3 = message_class("geometry_msgs/msg/Vector3")
+        return message_class("geometry_msgs/msg/WrenchStamped")(
+            header=head,
+            wrench=message_class("geometry_msgs/msg/Wrench")(
+                force=Vector3(*force.tolist()), torque=Vector3(*torque.tolist())
+            ),
+        )
+
+
+def _nine(settings: Settings, name: str) -> Array:
+    values = settings.numbers(name, [0.0] * 9)
+    if len(values) != 9:
+        raise settings.error(f'"{name}" has {len(values)} numbers, not 9')
+    return np.array(values)

@@ -1,0 +1,202 @@
+"""A controller's parameters, read with their kinds checked and their file named."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from cartwheel.errors import PluginError, likely
+
+_MISSING: Any = object()
+
+
+class Settings:
+    """The parameters of one controller.
+
+    Names have slashes: ``linear/x/max_velocity``. What ROS 2 writes with dots is the same.
+
+    Args:
+        values: By name; mappings may be nested.
+        name: Of the controller, or the parameters' namespace.
+        source: The file or server they come from, for errors.
+    """
+
+    def __init__(self, values: Mapping[str, Any], name: str, source: str = "") -> None:
+        self._values = _nested(values)
+        self.name = name
+        self.source = source
+        self._asked: set[str] = set()
+        """Full names; shared with all sections."""
+        self._prefix = ""
+
+    def has(self, name: str) -> bool:
+        """Whether there is a value of that name."""
+        return self._find(name) is not _MISSING
+
+    def raw(self, name: str) -> Any:
+        """The value as it is; None where there is none."""
+        found = self._find(name)
+        return None if found is _MISSING else found
+
+    def section(self, name: str) -> Settings:
+        """The parameters below a name; empty where there are none."""
+        found = self._find(name)
+        values = found if isinstance(found, Mapping) else {}
+        self._asked.discard(self._prefix + name)
+        made = Settings({}, self.name, self.source)
+        made._values = dict(values)
+        made._asked = self._asked
+        made._prefix = f"{self._prefix}{name}/"
+        return made
+
+    def names(self) -> list[str]:
+        """The top names."""
+        return list(self._values)
+
+    def number(self, name: str, default: float = _MISSING) -> float:
+        """A finite number."""
+        value = self._get(name, default)
+        if isinstance(value, str):
+            # rosparam keeps numbers such as 1e-3, which YAML takes for text.
+            try:
+                value = float(value)
+            except ValueError:
+                raise self._wrong(name, value, "a number") from None
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            raise self._wrong(name, value, "a number")
+        if math.isnan(value):
+            raise self._wrong(name, value, "a number")
+        return float(value)
+
+    def optional_number(self, name: str) -> float | None:
+        """A number, or None where there is none."""
+        return self.number(name) if self.has(name) else None
+
+    def integer(self, name: str, default: int = _MISSING) -> int:
+        """A whole number."""
+        value = self.number(name, default)
+        if value != int(value):
+            raise self._wrong(name, value, "a whole number")
+        return int(value)
+
+    def boolean(self, name: str, default: bool = _MISSING) -> bool:
+        """True or false."""
+        value = self._get(name, default)
+        if isinstance(value, str) and value.strip().lower() in ("true", "false"):
+            return value.strip().lower() == "true"
+        if isinstance(value, bool):
+            return value
+        if value in (0, 1) and isinstance(value, int):
+            return bool(value)
+        raise self._wrong(name, value, "true or false")
+
+    def text(self, name: str, default: str = _MISSING) -> str:
+        """A text."""
+        value = self._get(name, default)
+        if not isinstance(value, str):
+            raise self._wrong(name, value, "a text")
+        return value.strip()
+
+    def texts(self, name: str, default: Sequence[str] = _MISSING) -> list[str]:
+        """A list of texts; a single one is a list of one."""
+        value = self._get(name, default)
+        if isinstance(value, str):
+            return [value.strip()]
+        if not isinstance(value, list | tuple) or not all(isinstance(one, str) for one in value):
+            raise self._wrong(name, value, "a list of texts")
+        return [one.strip() for one in value]
+
+    def numbers(self, name: str, default: Sequence[float] = _MISSING) -> list[float]:
+        """A list of numbers."""
+        value = self._get(name, default)
+        good = isinstance(value, list | tuple) and all(
+            isinstance(one, int | float) and not isinstance(one, bool) for one in value
+        )
+        if not good:
+            raise self._wrong(name, value, "a list of numbers")
+        return [float(one) for one in value]
+
+    def unread(self) -> list[str]:
+        """Names of the values that nobody asked for."""
+        return [
+            name
+            for name in _leaves(self._values)
+            if not any(name == asked or name.startswith(f"{asked}/") for asked in self._asked)
+        ]
+
+    def ignore(self, *names: str) -> None:
+        """Counts names as read: they have no meaning here and do no harm."""
+        self._asked.update(self._prefix + name for name in names)
+
+    def error(self, message: str) -> PluginError:
+        """Something that makes no sense, with its place; to be raised by the caller."""
+        return PluginError(f"controller {self.name}: {message}{self._place()}")
+
+    def _place(self) -> str:
+        return f" ({self.source})" if self.source else ""
+
+    def _find(self, name: str) -> Any:
+        self._asked.add(self._prefix + name)
+        node: Any = self._values
+        for part in name.split("/"):
+            if not isinstance(node, Mapping) or part not in node:
+                return _MISSING
+            node = node[part]
+        return node
+
+    def _get(self, name: str, default: Any) -> Any:
+        found = self._find(name)
+        if found is not _MISSING:
+            return found
+        if default is _MISSING:
+            hint = likely(name, list(_leaves(self._values)))
+            raise PluginError(
+                f'controller {self.name}: the parameter "{self._prefix}{name}" is missing'
+                f"{self._place()}",
+                hint=hint or None,
+            )
+        return default
+
+    def _wrong(self, name: str, value: Any, wanted: str) -> PluginError:
+        return PluginError(
+            f'controller {self.name}: the parameter "{self._prefix}{name}" must be {wanted}, '
+            f"not {value!r}{self._place()}"
+        )
+
+
+def _nested(values: Mapping[str, Any]) -> dict[str, Any]:
+    """The tree that dotted and slashed names stand for."""
+    tree: dict[str, Any] = {}
+    for key, value in values.items():
+        *parents, last = [part for part in str(key).replace("/", ".").split(".") if part] or [""]
+        node = tree
+        for part in parents:
+            below = node.get(part)
+            if not isinstance(below, dict):
+                below = node[part] = {}
+            node = below
+        if isinstance(value, Mapping):
+            below = node.setdefault(last, {})
+            if isinstance(below, dict):
+                _merge(below, _nested(value))
+        else:
+            node[last] = value
+    return tree
+
+
+def _merge(tree: dict[str, Any], other: Mapping[str, Any]) -> None:
+    for key, value in other.items():
+        below = tree.get(key)
+        if isinstance(below, dict) and isinstance(value, Mapping):
+            _merge(below, value)
+        else:
+            tree[key] = value
+
+
+def _leaves(values: Mapping[str, Any], prefix: str = "") -> Iterator[str]:
+    for key, value in values.items():
+        if isinstance(value, Mapping) and value:
+            yield from _leaves(value, f"{prefix}{key}/")
+        else:
+            yield f"{prefix}{key}"

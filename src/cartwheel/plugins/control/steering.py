@@ -1,0 +1,331 @@
+"""Drives that steer: ackermann, bicycle, tricycle, in ROS 1's and ROS 2's spelling."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import ClassVar
+
+from cartwheel.plugins.control.controller import Controller
+from cartwheel.plugins.control.hardware import JointHardware
+from cartwheel.plugins.control.limiter import Limiter
+from cartwheel.plugins.control.settings import Settings
+from cartwheel.plugins.control.wheels import (
+    TwistCommand,
+    WheelOdometry,
+    joint_place,
+    wheel_radius,
+)
+
+
+class SingleSteering(Controller):
+    """One driven wheel and one steered joint, as ROS 1 has them.
+
+    ``cmd_vel`` states the speed and, in ``angular.z``, the angle of the steering. Source:
+    ackermann_steering_controller and steer_drive_controller of ROS 1.
+    """
+
+    types: ClassVar[tuple[str, ...]] = ("steer_drive_controller/SteerDriveController",)
+
+    def configure(self, settings: Settings) -> None:
+        wheel = settings.text("rear_wheel", "rear_wheel_joint")
+        steer = settings.text("front_steer", "front_steer_joint")
+        self._wheel = self.claim(wheel, "velocity")
+        self._steer = self.claim(steer, "position")
+        description = self.part.description
+        base = settings.optional_number("wheel_separation_h")
+        if base is None:
+            base = abs(joint_place(description, steer)[0] - joint_place(description, wheel)[0])
+        radius = settings.optional_number("wheel_radius") or wheel_radius(description, wheel)
+        if not base or base <= 0 or not radius or radius <= 0:
+            raise settings.error('"wheel_separation_h" and "wheel_radius" must be above 0')
+        self._base = base * settings.number("wheel_separation_h_multiplier", 1.0)
+        self._radius = radius * settings.number("wheel_radius_multiplier", 1.0)
+        angle = settings.number("steer_pos_multiplier", 1.0)
+        self._angle = angle
+        self._linear = Limiter.read(settings.section("linear/x"))
+        self._angular = Limiter.read(settings.section("angular/z"))
+        settings.ignore("allow_multiple_cmd_vel_publishers")
+        self._open_loop = settings.boolean("open_loop", False)
+        self._command = TwistCommand(
+            self, "cmd_vel", timeout=settings.number("cmd_vel_timeout", 0.5)
+        )
+        self._odometry = WheelOdometry(
+            self, settings, transform=settings.boolean("enable_odom_tf", True)
+        )
+        self._history = [(0.0, 0.0), (0.0, 0.0)]
+        self._turned = 0.0
+
+    def start(self, time_ns: int) -> None:
+        self._command.stop()
+        self._odometry.start(time_ns)
+        self._history = [(0.0, 0.0), (0.0, 0.0)]
+        self._turned = self._wheel.position
+
+    def update(self, time_ns: int, seconds: float) -> None:
+        angle = self._steer.position * self._angle
+        turned = self._wheel.position
+        way = (turned - self._turned) * self._radius
+        self._turned = turned
+        if self._open_loop:
+            way, angle = self._history[1][0] * seconds, self._history[1][1]
+        self._odometry.go(way, way * math.tan(angle) / self._base, seconds)
+        self._odometry.tell(time_ns)
+        forward, _, steer = self._command.at(time_ns)
+        (v1, w1), (v0, w0) = self._history
+        forward = self._linear.limit(forward, v0, v1, seconds)
+        steer = self._angular.limit(steer, w0, w1, seconds)
+        self._history = [(v0, w0), (forward, steer)]
+        self._wheel.command = forward / self._radius
+        self._steer.command = steer
+
+    def stop(self, time_ns: int) -> None:  # noqa: ARG002
+        self._wheel.command = 0.0
+
+    def close(self) -> None:
+        self._odometry.close()
+        super().close()
+
+
+class SteeringController(Controller):
+    """Driven wheels and steered ones, as ROS 2's steering_controllers_library has them.
+
+    Listens to ``reference``, TwistStamped, or with ``use_stamped_vel: false`` to
+    ``reference_unstamped``. Which of two wheels is the left one their places say. Source:
+    ackermann_steering_controller, bicycle_steering_controller, tricycle_steering_controller.
+    """
+
+    types: ClassVar[tuple[str, ...]] = (
+        "ackermann_steering_controller/AckermannSteeringController",
+        "bicycle_steering_controller/BicycleSteeringController",
+        "tricycle_steering_controller/TricycleSteeringController",
+    )
+
+    def configure(self, settings: Settings) -> None:
+        front = settings.boolean("front_steering", True)
+        driven, steered = ("rear", "front") if front else ("front", "rear")
+        traction = settings.texts("traction_joints_names", []) or settings.texts(
+            f"{driven}_wheels_names"
+        )
+        steering = settings.texts("steering_joints_names", []) or settings.texts(
+            f"{steered}_wheels_names"
+        )
+        for names in (traction, steering):
+            if len(names) not in (1, 2):
+                raise settings.error(f"{len(names)} wheels of an axle: there must be one or two")
+        self._traction = self._axle(traction, "velocity")
+        self._steering = self._axle(steering, "position")
+        self._base = self._positive(settings, "wheelbase")
+        tracks = ("traction_track_width", "wheel_track", f"{driven}_wheel_track")
+        self._traction_track = self._first(settings, tracks, len(traction) == 2)
+        tracks = ("steering_track_width", "wheel_track", f"{steered}_wheel_track")
+        self._steering_track = self._first(settings, tracks, len(steering) == 2)
+        radii = (
+            "traction_wheels_radius", "traction_wheel_radius", "wheels_radius",
+            f"{driven}_wheels_radius", f"{driven}_wheel_radius",
+        )  # fmt: skip
+        self._radius = self._first(settings, radii, True)
+        settings.ignore(
+            "front_wheels_radius", "rear_wheels_radius", "front_wheel_radius", "rear_wheel_radius",
+            "front_wheel_track", "rear_wheel_track", "front_wheels_state_names",
+            "rear_wheels_state_names", "traction_joints_state_names", "steering_joints_state_names",
+            "reduce_wheel_speed_until_steering_reached",
+        )  # fmt: skip
+        self._open_loop = settings.boolean("open_loop", False)
+        self._by_position = settings.boolean("position_feedback", False)
+        timeout = settings.number("reference_timeout", 1.0)
+        stamped = settings.boolean("use_stamped_vel", True)
+        topic = "reference" if stamped else "reference_unstamped"
+        self._command = TwistCommand(self, topic, timeout=timeout, stamped=stamped)
+        self._odometry = WheelOdometry(
+            self,
+            settings,
+            topic="odometry",
+            tf_topic="tf_odometry",
+            transform=settings.boolean("enable_odom_tf", True),
+        )
+        self._told = (0.0, 0.0)
+        self._turned = 0.0
+
+    def start(self, time_ns: int) -> None:
+        self._command.stop()
+        self._odometry.start(time_ns)
+        self._turned = self._rolled()
+        self._told = (0.0, 0.0)
+
+    def update(self, time_ns: int, seconds: float) -> None:
+        self._reckon(seconds)
+        self._odometry.tell(time_ns)
+        forward, _, turn = self._command.at(time_ns)
+        self._told = (forward, turn)
+        angle = _steering_angle(forward, turn, self._base)
+        speed = forward / self._radius
+        if forward == 0 and turn != 0:
+            speed = abs(turn) * self._base / self._radius
+        self._steer(angle)
+        self._drive(speed, angle)
+
+    def stop(self, time_ns: int) -> None:  # noqa: ARG002
+        for joint in self._traction:
+            joint.command = 0.0
+
+    def close(self) -> None:
+        self._odometry.close()
+        super().close()
+
+    def _axle(self, names: Sequence[str], interface: str) -> list[JointHardware]:
+        """The wheels of an axle, the left one first."""
+        ordered = sorted(names, key=lambda name: -self._across(name))
+        return [self.claim(name, interface) for name in ordered]
+
+    def _across(self, name: str) -> float:
+        self.rig.hardware.joint(name)
+        return joint_place(self.part.description, name)[1]
+
+    def _steer(self, angle: float) -> None:
+        if len(self._steering) == 1:
+            self._steering[0].command = angle
+            return
+        sin, cos, half = math.sin(angle), math.cos(angle), self._steering_track / 2
+        left, right = self._steering
+        left.command = math.atan2(self._base * sin, self._base * cos - half * sin)
+        right.command = math.atan2(self._base * sin, self._base * cos + half * sin)
+
+    def _drive(self, speed: float, angle: float) -> None:
+        # How much the wheels of the axle differ, of its middle's speed.
+        share = self._traction_track / 2 * math.tan(angle) / self._base
+        if abs(math.cos(angle)) < 1e-6:
+            share = 0.0
+        if len(self._traction) == 1:
+            self._traction[0].command = speed
+            return
+        left, right = self._traction
+        left.command = speed * (1 - share)
+        right.command = speed * (1 + share)
+
+    def _reckon(self, seconds: float) -> None:
+        if self._open_loop:
+            forward, turn = self._told
+            self._odometry.go(forward * seconds, turn * seconds, seconds)
+            return
+        rolled = self._rolled()
+        way = (rolled - self._turned) * self._radius
+        self._turned = rolled
+        if not self._by_position:
+            mean = sum(joint.velocity for joint in self._traction) / len(self._traction)
+            way = mean * self._radius * seconds
+        tangent = sum(math.tan(self._middle(joint, side)) for side, joint in self._sides())
+        self._odometry.go(way, way * tangent / len(self._steering) / self._base, seconds)
+
+    def _sides(self) -> list[tuple[float, JointHardware]]:
+        if len(self._steering) == 1:
+            return [(0.0, self._steering[0])]
+        return [(-1.0, self._steering[0]), (1.0, self._steering[1])]
+
+    def _middle(self, joint: JointHardware, side: float) -> float:
+        """The angle that the middle of the axle would have, from that of one wheel."""
+        tangent = math.tan(joint.position)
+        return math.atan(
+            tangent * self._base / (self._base - side * tangent * self._steering_track / 2)
+        )
+
+    def _rolled(self) -> float:
+        return sum(joint.position for joint in self._traction) / len(self._traction)
+
+    @staticmethod
+    def _positive(settings: Settings, name: str) -> float:
+        value = settings.number(name)
+        if value <= 0:
+            raise settings.error(f'"{name}" {value:g} must be above 0')
+        return value
+
+    def _first(self, settings: Settings, names: Sequence[str], needed: bool) -> float:
+        for name in names:
+            if settings.has(name):
+                return self._positive(settings, name)
+        if needed:
+            raise settings.error(f'"{names[0]}" is missing')
+        return 0.0
+
+
+class TricycleController(Controller):
+    """One wheel in front that is driven and steered. Source: tricycle_controller."""
+
+    types: ClassVar[tuple[str, ...]] = ("tricycle_controller/TricycleController",)
+
+    def configure(self, settings: Settings) -> None:
+        self._traction = self.claim(settings.text("traction_joint_name"), "velocity")
+        self._steer = self.claim(settings.text("steering_joint_name"), "position")
+        self._base = settings.number("wheelbase")
+        self._radius = settings.number("wheel_radius")
+        if self._base <= 0 or self._radius <= 0:
+            raise settings.error('"wheelbase" and "wheel_radius" must be above 0')
+        self._open_loop = settings.boolean("open_loop", False)
+        traction, steering = settings.section("traction"), settings.section("steering")
+        self._traction_limits = Limiter.read(traction)
+        self._steering_rate = steering.number("max_velocity", math.inf)
+        self._steering_range = (
+            steering.number("min_position", -math.inf),
+            steering.number("max_position", math.inf),
+        )
+        settings.ignore("traction", "steering", "publish_ackermann_command", "odom_only_twist")
+        timeout = settings.number("cmd_vel_timeout", 500.0) / 1000.0
+        stamped = settings.boolean("use_stamped_vel", True)
+        topic = "cmd_vel" if stamped else "cmd_vel_unstamped"
+        self._command = TwistCommand(self, topic, timeout=timeout, stamped=stamped)
+        self._odometry = WheelOdometry(
+            self, settings, transform=settings.boolean("enable_odom_tf", True)
+        )
+        self._history = [0.0, 0.0]
+        self._angle = 0.0
+        self._told = (0.0, 0.0)
+
+    def start(self, time_ns: int) -> None:
+        self._command.stop()
+        self._odometry.start(time_ns)
+        self._history = [0.0, 0.0]
+        self._angle = self._steer.position
+        self._turned = self._traction.position
+        self._told = (0.0, 0.0)
+
+    def update(self, time_ns: int, seconds: float) -> None:
+        turned = self._traction.position
+        rim = (turned - self._turned) * self._radius
+        self._turned = turned
+        angle = self._steer.position
+        if self._open_loop:
+            self._odometry.go(self._told[0] * seconds, self._told[1] * seconds, seconds)
+        else:
+            self._odometry.go(rim * math.cos(angle), rim * math.sin(angle) / self._base, seconds)
+        self._odometry.tell(time_ns)
+        forward, _, turn = self._command.at(time_ns)
+        self._told = (forward, turn)
+        wanted = _steering_angle(forward, turn, self._base)
+        wanted = min(max(wanted, self._steering_range[0]), self._steering_range[1])
+        if forward == 0:
+            speed = abs(turn) * self._base / self._radius
+        else:
+            speed = forward / (self._radius * math.cos(wanted))
+        # It drives as far as it points where it shall go.
+        off = abs(wanted - angle)
+        speed *= 1.0 if off < math.pi / 6 else 0.01 if off > math.pi / 2 else math.cos(off)
+        speed = self._traction_limits.limit(speed, self._history[1], self._history[0], seconds)
+        self._history = [self._history[1], speed]
+        most = self._steering_rate * seconds
+        self._angle += min(max(wanted - self._angle, -most), most)
+        self._traction.command = speed
+        self._steer.command = self._angle
+
+    def stop(self, time_ns: int) -> None:  # noqa: ARG002
+        self._traction.command = 0.0
+
+    def close(self) -> None:
+        self._odometry.close()
+        super().close()
+
+
+def _steering_angle(forward: float, turn: float, base: float) -> float:
+    """Of one wheel in the middle, rad."""
+    if forward == 0:
+        return math.copysign(math.pi / 2, turn) if turn else 0.0
+    return math.atan(turn * base / forward)

@@ -1,0 +1,111 @@
+"""Joint trajectories: polynomials between points, as smooth as the points state."""
+
+from __future__ import annotations
+
+import itertools
+from bisect import bisect_right
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+Vector = tuple[float, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class State:
+    """Of some joints at one time: rad or m, and their rates; one number for each joint."""
+
+    position: Vector
+    velocity: Vector
+    acceleration: Vector
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Waypoint:
+    """A point of a trajectory. Velocities and accelerations are empty where it states none."""
+
+    time: float
+    """s, since the trajectory's start."""
+    position: Vector
+    velocity: Vector = ()
+    acceleration: Vector = ()
+
+
+class Trajectory:
+    """Through points, from one to the next.
+
+    A segment is a line where one of its ends has no velocities, a cubic where both have, a
+    quintic where both have accelerations as well. Before its first point a trajectory is at the
+    first, after its last at the last, at rest. Source: joint_trajectory_controller,
+    QuinticSplineSegment.
+
+    Args:
+        start_ns: Simulation time of its time zero.
+        points: In the order of their times, each later than the one before; at least one.
+    """
+
+    def __init__(self, start_ns: int, points: Sequence[Waypoint]) -> None:
+        self.start_ns = start_ns
+        self._times = [point.time for point in points]
+        self._points = list(points)
+        self._segments = [_segment(a, b) for a, b in itertools.pairwise(points)]
+
+    @classmethod
+    def hold(cls, start_ns: int, position: Sequence[float]) -> Trajectory:
+        """Stands at a position."""
+        return cls(start_ns, [Waypoint(time=0.0, position=tuple(position))])
+
+    @property
+    def end_ns(self) -> int:
+        """Simulation time of its last point."""
+        return self.start_ns + round(self._times[-1] * 1e9)
+
+    @property
+    def last(self) -> Vector:
+        """Its last position."""
+        return self._points[-1].position
+
+    def at(self, time_ns: int) -> State:
+        """The state at a simulation time."""
+        time = (time_ns - self.start_ns) / 1e9
+        index = bisect_right(self._times, time) - 1
+        if index < 0:
+            return _rest(self._points[0].position)
+        if index >= len(self._segments):
+            return _rest(self._points[-1].position)
+        time -= self._times[index]
+        position, velocity, acceleration = [], [], []
+        for c0, c1, c2, c3, c4, c5 in self._segments[index]:
+            position.append(c0 + time * (c1 + time * (c2 + time * (c3 + time * (c4 + time * c5)))))
+            velocity.append(
+                c1 + time * (2 * c2 + time * (3 * c3 + time * (4 * c4 + time * 5 * c5)))
+            )
+            acceleration.append(2 * c2 + time * (6 * c3 + time * (12 * c4 + time * 20 * c5)))
+        return State(tuple(position), tuple(velocity), tuple(acceleration))
+
+
+def _rest(position: Vector) -> State:
+    still = (0.0,) * len(position)
+    return State(position, still, still)
+
+
+def _segment(a: Waypoint, b: Waypoint) -> list[tuple[float, ...]]:
+    """Coefficients of each joint's polynomial, the constant first."""
+    span = b.time - a.time
+    made: list[tuple[float, ...]] = []
+    for joint, (start, end) in enumerate(zip(a.position, b.position, strict=True)):
+        if not a.velocity or not b.velocity:
+            made.append((start, (end - start) / span, 0.0, 0.0, 0.0, 0.0))
+            continue
+        va, vb = a.velocity[joint], b.velocity[joint]
+        way = end - start
+        if not a.acceleration or not b.acceleration:
+            c2 = (3 * way / span - 2 * va - vb) / span
+            c3 = (va + vb - 2 * way / span) / span**2
+            made.append((start, va, c2, c3, 0.0, 0.0))
+            continue
+        aa, ab = a.acceleration[joint], b.acceleration[joint]
+        c3 = (20 * way - (8 * vb + 12 * va) * span - (3 * aa - ab) * span**2) / (2 * span**3)
+        c4 = (-30 * way + (14 * vb + 16 * va) * span + (3 * aa - 2 * ab) * span**2) / (2 * span**4)
+        c5 = (12 * way - 6 * (vb + va) * span + (ab - aa) * span**2) / (2 * span**5)
+        made.append((start, va, aa / 2, c3, c4, c5))
+    return made

@@ -1,0 +1,179 @@
+"""``libgazebo_ros_elevator.so``: a car that goes to floors, with a door."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from cartwheel.errors import PluginError
+from cartwheel.plugins.base import Plugin
+from cartwheel.plugins.parameters import tag
+from cartwheel.simulation.handles import JointHandle, MotorHandle
+
+_RATE = 100.0
+"""Hz of control."""
+_OPEN = 1.0
+"""m that the door opens, as in Gazebo; less where its joint ends before."""
+_LIFT_EFFORT = 1e5
+"""N where the joint states none."""
+_DOOR_EFFORT = 100.0
+_LIFT_SPEED, _LIFT_ACCELERATION = 1.5, 1.0
+"""m/s and m/s²: what stands in the car keeps standing."""
+_DOOR_SPEED, _DOOR_ACCELERATION = 0.5, 1.0
+_THERE = 1e-3
+"""m from the target, at which a motor is stopped."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ElevatorParameters:
+    lift_joint: str = tag("lift_joint", doc="Prismatic joint that moves the car.")
+    door_joint: str = tag("door_joint", doc="Prismatic joint of the door: 0 is closed.")
+    floor_height: float = tag("floor_height", default=3.0, unit="m", doc="From floor to floor.")
+    door_wait_time: float = tag(
+        "door_wait_time", default=5.0, unit="s", doc="How long the door stays open."
+    )
+    topic: str = tag("topic", default="elevator", doc="String: the number of a floor.")
+    bottom_floor: int | None = tag("bottom_floor", default=None, doc="Lowest floor; none is lower.")
+    top_floor: int | None = tag("top_floor", default=None, doc="Highest floor; none is higher.")
+
+
+class Elevator(Plugin[ElevatorParameters]):
+    """Takes its car to the floor that a message names: closes, moves, opens, waits, closes.
+
+    While it is busy it takes no other order. Floor n is at n times `floor_height` of the lift
+    joint. Source: gazebo_plugins, gazebo_ros_elevator; Gazebo, ElevatorPlugin.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_elevator.so", "libElevatorPlugin.so")
+    parameters: ClassVar[type] = ElevatorParameters
+
+    def configure(self) -> None:
+        config = self.config
+        if config.floor_height <= 0 or config.door_wait_time < 0:
+            raise PluginError(
+                "<floor_height> must be above 0 and <door_wait_time> not below it",
+                origin=self.tag.origin,
+            )
+        if self.tag.element.find("floor_height") is None:
+            self.warn("no <floor_height>: 3 m is taken")
+        self._lift = self._drive(config.lift_joint, _LIFT_EFFORT, _LIFT_SPEED, _LIFT_ACCELERATION)
+        self._door = self._drive(config.door_joint, _DOOR_EFFORT, _DOOR_SPEED, _DOOR_ACCELERATION)
+        self._steps: deque[Callable[[], bool]] = deque()
+        self._wait_until: int | None = None
+        topic = config.topic.strip().removeprefix("~/") or "elevator"
+        self.subscribe(topic, "std_msgs/msg/String", self._order)
+        self.part.schedule(_RATE, before=self._control)
+
+    def reset(self) -> None:
+        self._steps.clear()
+        self._wait_until = None
+        for drive in (self._lift, self._door):
+            drive.target = 0.0
+            drive.stop()
+
+    def _drive(self, name: str, effort: float, speed: float, acceleration: float) -> _Drive:
+        """A motor for a joint, which may be written with the model's name before it."""
+        origin = self.tag.origin
+        description = self.part.description
+        if description.joint(name) is None:
+            name = name.removeprefix(f"{description.name}::").removeprefix(f"{self.part.name}::")
+        joint = self.part.joint(name, origin=origin)
+        axis = next(each.axis for each in description.joints if each.name == name)
+        motor = self.part.velocity_motor(name, max_effort=axis.effort or effort, origin=origin)
+        low = -math.inf if axis.lower is None else axis.lower
+        high = math.inf if axis.upper is None else axis.upper
+        return _Drive(joint, motor, speed=speed, acceleration=acceleration, limits=(low, high))
+
+    def _order(self, message: Any) -> None:
+        """A floor to go to; what is no floor is told and left."""
+        text = str(message.data).strip()
+        config = self.config
+        try:
+            floor = int(text)
+        except ValueError:
+            self.warn(f'"{text}" is no floor: a whole number is expected')
+            return
+        lowest, highest = config.bottom_floor, config.top_floor
+        if (lowest is not None and floor < lowest) or (highest is not None and floor > highest):
+            self.warn(f"there is no floor {floor}: they go from {lowest} to {highest}")
+            return
+        if self._steps:
+            return
+        height = floor * config.floor_height
+        if self._lift.within(height) != height:
+            self.warn(f"floor {floor} at {height:g} m is beyond the limits of the lift's joint")
+            return
+        self._steps.extend(
+            [
+                lambda: self._door.reached(0.0),
+                lambda: self._lift.reached(height),
+                lambda: self._door.reached(self._door.within(_OPEN)),
+                self._waited,
+                lambda: self._door.reached(0.0),
+            ]
+        )
+
+    def _control(self) -> None:
+        if self._steps and self._steps[0]():
+            self._steps.popleft()
+        self._lift.control()
+        self._door.control()
+
+    def _waited(self) -> bool:
+        now = self.part.time_ns
+        if self._wait_until is None:
+            self._wait_until = now + round(self.config.door_wait_time * 1e9)
+        if now < self._wait_until:
+            return False
+        self._wait_until = None
+        return True
+
+
+class _Drive:
+    """Moves a joint to a place at a limited speed and acceleration, and holds it there."""
+
+    def __init__(
+        self,
+        joint: JointHandle,
+        motor: MotorHandle,
+        *,
+        speed: float,
+        acceleration: float,
+        limits: tuple[float, float],
+    ) -> None:
+        self._joint = joint
+        self._motor = motor
+        self._speed = speed
+        self._acceleration = acceleration
+        self._limits = limits
+        self._velocity = 0.0
+        self.target = 0.0
+
+    def within(self, position: float) -> float:
+        """The nearest position that the joint's limits allow."""
+        return min(max(position, self._limits[0]), self._limits[1])
+
+    def reached(self, target: float) -> bool:
+        """Sets the target; whether the joint stands there."""
+        self.target = target
+        return abs(target - self._joint.position) <= 2 * _THERE and self._velocity == 0.0
+
+    def stop(self) -> None:
+        """Stands where it is."""
+        self._velocity = 0.0
+        self._motor.command(0.0)
+
+    def control(self) -> None:
+        """Commands the speed from which it can still stop at the target."""
+        left = self.target - self._joint.position
+        if abs(left) <= _THERE:
+            self.stop()
+            return
+        allowed = min(self._speed, math.sqrt(2 * self._acceleration * abs(left)))
+        step = self._acceleration / _RATE
+        self._velocity = min(abs(self._velocity) + step, allowed)
+        self._velocity = math.copysign(self._velocity, left)
+        self._motor.command(self._velocity)

@@ -1,0 +1,58 @@
+"""``libgazebo_ros_force.so``: a push on a link."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, ClassVar, Literal
+
+from cartwheel.geometry import rotate
+from cartwheel.plugins.base import Plugin
+from cartwheel.plugins.parameters import tag
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ForceParameters:
+    body: str = tag("bodyName", "body_name", "link_name", doc="Link that is pushed.")
+    topic: str = tag("topicName", "topic_name", default="gazebo_ros_force", doc="Wrench.")
+    frame: Literal["world", "link"] = tag(
+        "force_frame", default="world", doc="In whose axes the force is told (ROS 2)."
+    )
+
+
+class Force(Plugin[ForceParameters]):
+    """Pushes a link with the last Wrench it heard, at its centre of mass, until the next.
+
+    Source: gazebo_plugins, gazebo_ros_force.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_force.so",)
+    parameters: ClassVar[type] = ForceParameters
+
+    def configure(self) -> None:
+        origin = self.tag.origin
+        self._link = self.part.link(self.config.body, origin=origin)
+        self._push = self.part.wrench(self.config.body, origin=origin)
+        self._wrench: tuple[list[float], list[float]] | None = None
+        self.subscribe(self.config.topic, "geometry_msgs/msg/Wrench", self._on_wrench)
+        if self.config.frame == "link":
+            self.part.schedule(0, before=self._turn)
+
+    def reset(self) -> None:
+        self._wrench = None
+        self._push.forget()
+
+    def _on_wrench(self, message: Any) -> None:
+        force, torque = message.force, message.torque
+        values = [force.x, force.y, force.z, torque.x, torque.y, torque.z]
+        if not all(math.isfinite(value) for value in values):
+            self.warn("a force that is not finite was ignored")
+            return
+        self._wrench = (values[:3], values[3:])
+        if self.config.frame == "world":
+            self._push.apply(*self._wrench)
+
+    def _turn(self) -> None:
+        if self._wrench is not None:
+            _, turned = self._link.place()
+            self._push.apply(*(rotate(turned, vector) for vector in self._wrench))

@@ -1,0 +1,192 @@
+"""``libgazebo_ros_ft_sensor.so`` and ``force_torque`` sensors: what a joint bears."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+
+from cartwheel.errors import PluginError, UnknownNameError
+from cartwheel.geometry import matrix_from_quat, quat_conjugate, quat_multiply
+from cartwheel.messages import header, message_class
+from cartwheel.plugins.base import Plugin
+from cartwheel.plugins.noise import VectorNoise, read_noise
+from cartwheel.plugins.parameters import tag
+
+_AXES = "xyz"
+
+
+class _JointWrench(Plugin[Any]):
+    """Reads what a joint bears, about its anchor."""
+
+    def _take(self, name: str, *, topic: str, frame: str, rate: float) -> None:
+        description = self.part.description
+        joint = description.joint(name)
+        if joint is None:
+            raise UnknownNameError(
+                "joint", name, [one.name for one in description.joints], origin=self.tag.origin
+            )
+        if rate < 0:
+            raise PluginError("a rate cannot be below 0", origin=self.tag.origin)
+        if description.static or self._stands(joint.child):
+            self.warn(f'joint "{name}" holds what stands fixed in the world: it bears nothing here')
+        self._child = self.part.link(joint.child)
+        self._parent = (
+            self.part.link(joint.parent) if description.link(joint.parent) is not None else None
+        )
+        self._anchor = joint.pose
+        self._frame = self.frame(frame or joint.child)
+        self._WrenchStamped = message_class("geometry_msgs/msg/WrenchStamped")
+        self._Wrench = message_class("geometry_msgs/msg/Wrench")
+        self._Vector3 = message_class("geometry_msgs/msg/Vector3")
+        self._publisher = self.advertise(
+            topic, "geometry_msgs/msg/WrenchStamped", rate=rate or None, qos="sensor"
+        )
+        self.part.schedule(rate, after=self._publish, active=lambda: self._publisher.wanted)
+
+    def _stands(self, link: str) -> bool:
+        """Whether only fixed joints are between a link and the world."""
+        inbound = {joint.child: joint for joint in self.part.description.joints}
+        seen = set()
+        while link in inbound and link not in seen:
+            seen.add(link)
+            if inbound[link].type != "fixed":
+                return False
+            link = inbound[link].parent
+        return link == "world"
+
+    def _measure(self) -> list[float]:
+        """Force in N and torque in N m that the child exerts on the parent, in the child's axes."""
+        force, torque = self._child.reaction(self._anchor.position)
+        return [*force.tolist(), *torque.tolist()]
+
+    def _publish(self) -> None:
+        values = self._measure()
+        wrench = self._Wrench(self._Vector3(*values[:3]), self._Vector3(*values[3:]))
+        self._publisher.publish(self._WrenchStamped(header(self.part.time_ns, self._frame), wrench))
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class FtSensorParameters:
+    joint: str = tag("jointName", "joint_name", default="", doc="Joint that bears the load.")
+    body: str = tag("bodyName", "body_name", default="", doc="Not supported: name a joint.")
+    topic: str = tag("topicName", "topic_name", default="wrench", doc="WrenchStamped.")
+    frame: str = tag(
+        "frame_name", default="", doc="Has no effect: the child link's frame counts, as in Gazebo."
+    )
+    noise: float = tag(
+        "gaussianNoise", "gaussian_noise", default=0.0, unit="N, N m", doc="Standard deviation."
+    )
+    update_rate: float = tag(
+        "updateRate", "update_rate", default=0.0, unit="Hz", doc="0 is every step."
+    )
+
+
+class FtSensor(_JointWrench):
+    """Publishes what the child link exerts on its parent: for what hangs, a pull downwards.
+
+    In the child link's axes, the torque about the joint. A fixed joint is one as well: it needs
+    no <preserveFixedJoint> here. Source: gazebo_plugins, gazebo_ros_ft_sensor.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_ft_sensor.so",)
+    parameters: ClassVar[type] = FtSensorParameters
+
+    def configure(self) -> None:
+        config: FtSensorParameters = self.config
+        sensed = self.sensor.joint if self.sensor is not None else None
+        name = config.joint or sensed or ""
+        if not name:
+            raise PluginError("a force-torque sensor needs <jointName>", origin=self.tag.origin)
+        if config.noise < 0:
+            raise PluginError("a noise cannot be below 0", origin=self.tag.origin)
+        rate = config.update_rate or (self.sensor.update_rate if self.sensor is not None else 0.0)
+        self._take(name, topic=config.topic, frame="", rate=rate)
+
+    def _measure(self) -> list[float]:
+        values = super()._measure()
+        if self.config.noise > 0:
+            random = self.part.random(f"force {self._publisher.topic}")
+            return [float(v) for v in values + random.normal(0.0, self.config.noise, 6)]
+        return values
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class GzForceTorqueParameters:
+    topic: str = tag("topic", default="", doc="WrenchStamped; Gazebo's long name when empty.")
+    frame: str = tag(
+        "gz_frame_id",
+        "ignition_frame_id",
+        default="",
+        doc="Of the messages; the link's when empty.",
+    )
+
+
+class GzForceTorque(_JointWrench):
+    """Publishes what the joint that holds a ``force_torque`` sensor bears.
+
+    ``<frame>`` says in whose axes (child, parent or sensor), ``<measure_direction>`` who pulls
+    (child_to_parent or parent_to_child), ``<force>`` and ``<torque>`` have noise by axis.
+    Source: gz-sensors, ForceTorqueSensor; sdformat.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ()
+    parameters: ClassVar[type] = GzForceTorqueParameters
+    for_sensor: ClassVar[bool] = True
+    serves: ClassVar[tuple[str, ...]] = ("force_torque",)
+
+    def configure(self) -> None:
+        sensor = self.sensor
+        assert sensor is not None
+        if sensor.joint is None:
+            raise PluginError(
+                f'sensor "{sensor.name}" measures a joint: write it inside one',
+                origin=sensor.origin,
+            )
+        element = sensor.element.find("force_torque") or sensor.element
+        self._axes = _word(element, "frame", ("child", "parent", "sensor"))
+        self._sign = 1.0
+        if _word(element, "measure_direction", ("child_to_parent", "parent_to_child")) == (
+            "parent_to_child"
+        ):
+            self._sign = -1.0
+        config: GzForceTorqueParameters = self.config
+        scope = f"/world/{self.part.world.name}/model/{self.part.name}/joint/{sensor.joint}"
+        topic = config.topic or f"{scope}/sensor/{sensor.name}/forcetorque"
+        noises = [
+            read_noise(element.find(f"{what}/{axis}/noise"))
+            for what in ("force", "torque")
+            for axis in _AXES
+        ]
+        self._noise = VectorNoise(self.part, f"force {sensor.name}", noises)
+        joint = self.part.description.joint(sensor.joint)
+        frame = config.frame
+        if not frame and joint is not None and self._axes == "parent":
+            frame = joint.parent
+        self._take(sensor.joint, topic=topic, frame=frame, rate=sensor.update_rate)
+
+    def _measure(self) -> list[float]:
+        values = np.array(super()._measure()) * self._sign
+        turn = (0.0, 0.0, 0.0, 1.0)
+        assert self.sensor is not None
+        if self._axes == "sensor":
+            turn = quat_conjugate((self._anchor @ self.sensor.pose).orientation)
+        elif self._axes == "parent":
+            back = quat_conjugate(self._parent.place()[1]) if self._parent is not None else turn
+            turn = quat_multiply(back, self._child.place()[1])
+        matrix = matrix_from_quat(turn)
+        both = [*(matrix @ values[:3]).tolist(), *(matrix @ values[3:]).tolist()]
+        return list(self._noise.add(both))
+
+
+def _word(element: Any, name: str, allowed: tuple[str, ...]) -> str:
+    child = element.find(name)
+    if child is None:
+        return allowed[0]
+    word: str = child.text.strip()
+    if word not in allowed:
+        raise PluginError(
+            f'<{name}> "{word}" is none of: {", ".join(allowed)}', origin=child.origin
+        )
+    return word

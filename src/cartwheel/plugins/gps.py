@@ -1,0 +1,353 @@
+"""Satellite navigation: hector's GPS, ROS 2's gps_sensor, and new Gazebo's ``navsat``."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+
+from cartwheel.description.model import Element
+from cartwheel.errors import Diagnostic, PluginError
+from cartwheel.geometry import Vec3
+from cartwheel.messages import header, message_class
+from cartwheel.plugins.base import Plugin
+from cartwheel.plugins.geodesy import ECCENTRICITY2, EQUATOR, Datum
+from cartwheel.plugins.gz_sensor import default_topic
+from cartwheel.plugins.noise import DriftingError, VectorNoise, read_noise
+from cartwheel.plugins.parameters import tag
+
+_NONE = (0.0, 0.0, 0.0)
+_HOUR = (1 / 3600.0,) * 3
+_KNOWN_DIAGONAL = 2
+"""``NavSatFix.COVARIANCE_TYPE_DIAGONAL_KNOWN``."""
+
+
+def world_datum(spherical: Element | None) -> Datum | None:
+    """The origin that a world's ``<spherical_coordinates>`` states; None where it states none.
+
+    Raises:
+        PluginError: A number that is none.
+    """
+    if spherical is None:
+        return None
+
+    def number(name: str) -> float:
+        child = spherical.find(name)
+        try:
+            return float(child.text) if child is not None else 0.0
+        except ValueError:
+            raise PluginError(f"<{name}> is not a number", origin=spherical.origin) from None
+
+    return Datum(
+        latitude=math.radians(number("latitude_deg")),
+        longitude=math.radians(number("longitude_deg")),
+        height=number("elevation"),
+        heading=math.radians(number("heading_deg")),
+    )
+
+
+class _Receiver(Plugin[Any]):
+    """Makes fixes and velocities."""
+
+    def _load(self) -> None:
+        self._NavSatFix = message_class("sensor_msgs/msg/NavSatFix")
+        self._NavSatStatus = message_class("sensor_msgs/msg/NavSatStatus")
+        self._Vector3Stamped = message_class("geometry_msgs/msg/Vector3Stamped")
+        self._Vector3 = message_class("geometry_msgs/msg/Vector3")
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class HectorGpsParameters:
+    body: str = tag("bodyName", default="", doc="Link that carries it; the root when empty.")
+    topic: str = tag("topicName", default="fix", doc="NavSatFix.")
+    velocity_topic: str = tag(
+        "velocityTopicName", default="fix_velocity", doc="Vector3Stamped: north, west, up."
+    )
+    frame: str = tag("frameId", default="/world", doc="Frame of the messages.")
+    update_rate: float = tag("updateRate", default=4.0, unit="Hz", doc="0 is every step.")
+    use_world: bool = tag(
+        "useWorldSphericalCoordinates", default=False, doc="Take the reference from the world."
+    )
+    latitude: float | None = tag(
+        "referenceLatitude", default=None, unit="degrees", doc="Of the world's origin; 49.9."
+    )
+    longitude: float | None = tag(
+        "referenceLongitude", default=None, unit="degrees", doc="Of the world's origin; 8.9."
+    )
+    altitude: float | None = tag(
+        "referenceAltitude", default=None, unit="m", doc="Of the world's origin; 0."
+    )
+    heading: float | None = tag(
+        "referenceHeading",
+        default=None,
+        unit="degrees",
+        doc="Of the world's x axis, from the north to the east; 0: x is north, y is west.",
+    )
+    status: int = tag("status", default=0, doc="Of the NavSatStatus.")
+    service: int = tag("service", default=0, doc="Of the NavSatStatus.")
+    offset: tuple[float, float, float] = tag(
+        "offset", default=_NONE, unit="m", doc="Constant error."
+    )
+    drift: tuple[float, float, float] = tag(
+        "drift", default=_NONE, unit="m", doc="Standard deviation of the drift."
+    )
+    frequency: tuple[float, float, float] = tag(
+        "driftFrequency", default=_HOUR, unit="1/s", doc="Of the drift."
+    )
+    noise: tuple[float, float, float] = tag(
+        "gaussianNoise", default=_NONE, unit="m", doc="Standard deviation."
+    )
+    scale: tuple[float, float, float] = tag("scaleError", default=(1.0,) * 3, doc="Factor.")
+    velocity_offset: tuple[float, float, float] = tag(
+        "velocityOffset", default=_NONE, unit="m/s", doc="Constant error."
+    )
+    velocity_drift: tuple[float, float, float] = tag(
+        "velocityDrift", default=_NONE, unit="m/s", doc="Standard deviation of the drift."
+    )
+    velocity_frequency: tuple[float, float, float] = tag(
+        "velocityDriftFrequency", default=_HOUR, unit="1/s", doc="Of the drift."
+    )
+    velocity_noise: tuple[float, float, float] = tag(
+        "velocityGaussianNoise", default=_NONE, unit="m/s", doc="Standard deviation."
+    )
+    velocity_scale: tuple[float, float, float] = tag(
+        "velocityScaleError", default=(1.0,) * 3, doc="Factor."
+    )
+
+
+class HectorGps(_Receiver):
+    """Publishes latitude, longitude and height of a link, and its velocity.
+
+    Around the reference the Earth is taken for flat, as hector does: to a metre within a few
+    kilometres. Errors are those of `HectorImu`. Source: hector_gazebo_plugins, gazebo_ros_gps.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ("libhector_gazebo_ros_gps.so",)
+    parameters: ClassVar[type] = HectorGpsParameters
+
+    def configure(self) -> None:
+        config: HectorGpsParameters = self.config
+        part, origin = self.part, self.tag.origin
+        if config.update_rate < 0:
+            raise PluginError("a rate cannot be below 0", origin=origin)
+        name = config.body or part.description.canonical_link
+        self._link = part.link(name, origin=origin)
+        self._frame = self.frame(config.frame)
+        latitude, longitude, altitude, heading = 49.9, 8.9, 0.0, 0.0
+        if config.use_world:
+            datum = world_datum(part.world.spherical_coordinates) or Datum()
+            latitude, longitude = math.degrees(datum.latitude), math.degrees(datum.longitude)
+            altitude, heading = datum.height, 90.0 - math.degrees(datum.heading)
+        self._latitude = latitude if config.latitude is None else config.latitude
+        self._longitude = longitude if config.longitude is None else config.longitude
+        self._altitude = altitude if config.altitude is None else config.altitude
+        self._heading = math.radians(heading if config.heading is None else config.heading)
+        sin = math.sin(math.radians(self._latitude))
+        bend = 1 / (1 - ECCENTRICITY2 * sin * sin)
+        across = EQUATOR * math.sqrt(bend)
+        self._to_north = across * (1 - ECCENTRICITY2) * bend
+        self._to_east = across * math.cos(math.radians(self._latitude))
+        self._position = self._error(
+            "position", config.offset, config.drift, config.frequency, config.noise, config.scale
+        )
+        self._velocity = self._error(
+            "velocity",
+            config.velocity_offset,
+            config.velocity_drift,
+            config.velocity_frequency,
+            config.velocity_noise,
+            config.velocity_scale,
+        )
+        self._load()
+        self._covariance = np.diag(np.square(config.drift) + np.square(config.noise)).ravel()
+        rate = config.update_rate
+        self._fixes = self.advertise(
+            config.topic, "sensor_msgs/msg/NavSatFix", rate=rate or None, qos="sensor"
+        )
+        self._velocities = self.advertise(
+            config.velocity_topic, "geometry_msgs/msg/Vector3Stamped", rate=rate or None
+        )
+        part.schedule(
+            rate,
+            after=self._measure,
+            active=lambda: self._fixes.wanted or self._velocities.wanted,
+        )
+
+    def _error(self, name: str, *numbers: tuple[float, float, float]) -> DriftingError:
+        offset, drift, frequency, noise, scale = numbers
+        if min(*drift, *frequency, *noise) < 0:
+            raise PluginError(
+                f"a drift, its frequency or a noise of the {name} is below 0",
+                origin=self.tag.origin,
+            )
+        return DriftingError(
+            self.part,
+            f"gps {self.config.topic} {name}",
+            rate=self.config.update_rate,
+            offset=offset,
+            drift=drift,
+            frequency=frequency,
+            noise=noise,
+            scale=scale,
+        )
+
+    def reset(self) -> None:
+        self._position.restart()
+        self._velocity.restart()
+
+    def _measure(self) -> None:
+        place, _ = self._link.place()
+        linear, _ = self._link.motion(local=False)
+        cos, sin = math.cos(self._heading), math.sin(self._heading)
+        head = header(self.part.time_ns, self._frame)
+        x, y, z = self._position.add(place).tolist()
+        if self._fixes.wanted:
+            self._fixes.publish(
+                self._NavSatFix(
+                    head,
+                    self._NavSatStatus(self.config.status, self.config.service),
+                    self._latitude + math.degrees((cos * x + sin * y) / self._to_north),
+                    self._longitude - math.degrees((cos * y - sin * x) / self._to_east),
+                    self._altitude + z,
+                    self._covariance,
+                    _KNOWN_DIAGONAL,
+                )
+            )
+        if self._velocities.wanted:
+            x, y, z = self._velocity.add(linear).tolist()
+            vector = self._Vector3(cos * x + sin * y, cos * y - sin * x, z)
+            self._velocities.publish(self._Vector3Stamped(head, vector))
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class GpsSensorParameters:
+    frame: str = tag("frame_name", default="", doc="Frame of the messages; the link's when empty.")
+
+
+class _GpsSensor(_Receiver):
+    """What sensors read of the world's ``<spherical_coordinates>``."""
+
+    def _start(self, *, topic: str, frame: str, element: str, velocity_topic: str | None) -> None:
+        sensor, part = self.sensor, self.part
+        assert sensor is not None
+        self._link = part.link(sensor.link)
+        self._mount = sensor.pose.position
+        self._frame = self.frame(frame or sensor.link)
+        datum = world_datum(part.world.spherical_coordinates)
+        if datum is None:
+            part.report(
+                Diagnostic(
+                    severity="info",
+                    message=f'sensor "{sensor.name}": the world has no <spherical_coordinates>, '
+                    "so its origin is at latitude 0, longitude 0",
+                    origin=sensor.origin,
+                )
+            )
+        self._datum = datum or Datum()
+        self._load()
+        self._noise = self._noises(element, "position_sensing")
+        self._velocity_noise = self._noises(element, "velocity_sensing")
+        horizontal, vertical = self._noise.variance[0], self._noise.variance[2]
+        self._covariance = np.diag([horizontal, horizontal, vertical]).ravel()
+        rate = sensor.update_rate
+        self._fixes = self.advertise(
+            topic, "sensor_msgs/msg/NavSatFix", rate=rate or None, qos="sensor"
+        )
+        self._velocities = (
+            self.advertise(velocity_topic, "geometry_msgs/msg/Vector3Stamped", rate=rate or None)
+            if velocity_topic
+            else None
+        )
+        part.schedule(rate, after=self._measure, active=self._wanted)
+
+    def _noises(self, element: str, what: str) -> VectorNoise:
+        """Noise along east, north and up."""
+        assert self.sensor is not None
+        of = self.sensor.element.find(f"{element}/{what}")
+        both = [read_noise(of.find(f"{axis}/noise") if of is not None else None)
+                for axis in ("horizontal", "vertical")]  # fmt: skip
+        noises = (both[0], both[0], both[1])
+        return VectorNoise(self.part, f"gps {self.sensor.name} {what}", noises)
+
+    def _wanted(self) -> bool:
+        return self._fixes.wanted or (self._velocities is not None and self._velocities.wanted)
+
+    def _measure(self) -> None:
+        pose = self._link.pose
+        linear, angular = self._link.motion(local=False)
+        arm = np.array(pose.apply(self._mount)) - np.array(pose.position)
+        x, y, z = (np.array(linear) + np.cross(angular, arm)).tolist()
+        velocity: Vec3 = (x, y, z)
+        # In the world's axes, so that its heading turns noise and place alike.
+        px, py, pz = self._noise.add(pose.apply(self._mount))
+        latitude, longitude, height = self._datum.locate((px, py, pz))
+        head = header(self.part.time_ns, self._frame)
+        if self._fixes.wanted:
+            self._fixes.publish(
+                self._NavSatFix(
+                    head,
+                    self._NavSatStatus(0, 1),
+                    math.degrees(latitude),
+                    math.degrees(longitude),
+                    height,
+                    self._covariance,
+                    _KNOWN_DIAGONAL,
+                )
+            )
+        if self._velocities is not None and self._velocities.wanted:
+            told = self._velocity_noise.add(self._datum.east_north(velocity))
+            self._velocities.publish(self._Vector3Stamped(head, self._Vector3(*told)))
+
+
+class GpsSensor(_GpsSensor):
+    """The plugin of a ``gps`` sensor: ``~/out`` NavSatFix, ``~/vel`` along east, north and up.
+
+    Noise is that of the sensor's ``<gps>``, read as metres and m/s. Source: gazebo_plugins
+    (ROS 2), gazebo_ros_gps_sensor.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_gps_sensor.so",)
+    parameters: ClassVar[type] = GpsSensorParameters
+    for_sensor: ClassVar[bool] = True
+
+    def configure(self) -> None:
+        config: GpsSensorParameters = self.config
+        name = self.tag.name or "gps"
+        self._start(
+            topic="out" if self.remaps("out") else f"{name}/out",
+            velocity_topic="vel" if self.remaps("vel") else f"{name}/vel",
+            frame=config.frame,
+            element="gps",
+        )
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class GzNavSatParameters:
+    topic: str = tag("topic", default="", doc="NavSatFix; Gazebo's long name when empty.")
+    frame: str = tag(
+        "gz_frame_id",
+        "ignition_frame_id",
+        default="",
+        doc="Frame of the messages; the link's when empty.",
+    )
+
+
+class GzNavSat(_GpsSensor):
+    """Publishes a ``navsat`` sensor's place on the world's Earth.
+
+    Noise is that of its ``<navsat>``, in m. Source: gz-sensors, NavSatSensor.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ()
+    parameters: ClassVar[type] = GzNavSatParameters
+    for_sensor: ClassVar[bool] = True
+    serves: ClassVar[tuple[str, ...]] = ("navsat", "gps")
+
+    def configure(self) -> None:
+        config: GzNavSatParameters = self.config
+        assert self.sensor is not None
+        topic = config.topic or default_topic(self.part, self.sensor, "navsat")
+        of = "navsat" if self.sensor.element.find("navsat") else "gps"
+        self._start(topic=topic, velocity_topic=None, frame=config.frame, element=of)

@@ -1,0 +1,98 @@
+"""Cameras as new Gazebo has them: a ``<sensor>`` that needs no plugin of its own."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import ClassVar
+
+from cartwheel.plugins.camera_base import CameraBase
+from cartwheel.plugins.camera_depth import DepthOptions
+from cartwheel.plugins.camera_eye import Eye, EyeTopics
+from cartwheel.plugins.gz_sensor import default_topic
+from cartwheel.plugins.parameters import tag
+
+_DEPTHS = ("depth_camera", "depth")
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class GzCameraParameters:
+    topic: str = tag("topic", default="", doc="See above. Else Gazebo's long name.")
+    frame: str = tag(
+        "camera/optical_frame_id",
+        "gz_frame_id",
+        "ignition_frame_id",
+        "frame_id",
+        default="",
+        doc="Frame of the messages; the link's when empty.",
+    )
+    info_topic: str = tag(
+        "camera/camera_info_topic", default="", doc="CameraInfo; else beside the image."
+    )
+    triggered: bool = tag("camera/triggered", default=False, doc="Images only on demand.")
+    nearest: float = tag(
+        "camera/depth_camera/clip/near", default=0.0, unit="m", doc="Depths up to this are -inf."
+    )
+    furthest: float = tag(
+        "camera/depth_camera/clip/far",
+        default=math.inf,
+        unit="m",
+        doc="Depths from this on are inf.",
+    )
+    trigger_topic: str = tag(
+        "camera/trigger_topic", default="", doc="Empty; else `<topic>/trigger`."
+    )
+
+
+class GzCamera(CameraBase[GzCameraParameters]):
+    """Publishes what the camera, depth_camera and rgbd_camera sensors of new Gazebo see.
+
+    A camera's image goes on ``<topic>``; an RGB-D camera's on ``<topic>/image``, with
+    ``<topic>/depth_image`` and ``<topic>/points``; a depth camera's depths on ``<topic>``, with
+    ``<topic>/points``. ``camera_info`` is beside the image. Depths are along the optical axis, inf
+    where nothing is. Points have x ahead, y left and z up, as new Gazebo makes them.
+
+    Source: gz-sensors, CameraSensor, DepthCameraSensor, RgbdCameraSensor; ros_gz_bridge.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ()
+    parameters: ClassVar[type] = GzCameraParameters
+    serves: ClassVar[tuple[str, ...]] = ("camera", "rgbd_camera", *_DEPTHS)
+
+    def _topic(self) -> str:
+        assert self.sensor is not None
+        last = {"camera": "image", "rgbd_camera": ""}.get(self.sensor.type, "depth_image")
+        return self.config.topic or default_topic(self.part, self.sensor, last).rstrip("/")
+
+    def _open_eyes(self) -> Iterator[Eye]:
+        sensor, config, topic = self.sensor, self.config, self._topic()
+        assert sensor is not None
+        around = topic if sensor.type == "rgbd_camera" else topic.rpartition("/")[0]
+        image = {"camera": topic, "rgbd_camera": f"{topic}/image"}.get(sensor.type, "")
+        info = config.info_topic or (f"{around}/camera_info" if around else "camera_info")
+        lens = sensor.cameras[0]
+        yield self._eye(
+            lens,
+            EyeTopics(image=image, info=info, base="", set_info=False, adjustable=False),
+            frame=config.frame,
+            centre=(lens.width / 2, lens.height / 2),
+        )
+
+    def _trigger_topics(self) -> list[str]:
+        config = self.config
+        return [config.trigger_topic or f"{self._topic()}/trigger"] if config.triggered else []
+
+    def _depth_options(self) -> DepthOptions | None:
+        assert self.sensor is not None
+        kind, topic = self.sensor.type, self._topic()
+        if kind == "camera":
+            return None
+        return DepthOptions(
+            depth=topic if kind in _DEPTHS else f"{topic}/depth_image",
+            points=f"{topic}/points",
+            nearest=self.config.nearest,
+            furthest=self.config.furthest,
+            beyond="inf",
+            optical=False,
+        )

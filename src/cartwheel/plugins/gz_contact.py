@@ -1,0 +1,37 @@
+"""Contact sensors as new Gazebo has them: a ``<sensor>`` that needs no plugin of its own."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from cartwheel.plugins.contact import Bumper
+from cartwheel.plugins.gz_sensor import default_topic
+from cartwheel.plugins.parameters import tag
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class GzContactParameters:
+    topic: str = tag(
+        "topic", default="", doc="ContactsState; the <contact>'s topic or Gazebo's name when empty."
+    )
+
+
+class GzContact(Bumper):
+    """Publishes the contacts of a sensor's collisions as gazebo_msgs/ContactsState.
+
+    Source: gz-sim, Contact.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ()
+    parameters: ClassVar[type] = GzContactParameters
+    serves: ClassVar[tuple[str, ...]] = ("contact",)
+
+    def configure(self) -> None:
+        assert self.sensor is not None
+        config = self.config
+        assert isinstance(config, GzContactParameters)
+        topic = (
+            config.topic or self.sensor.topic or default_topic(self.part, self.sensor, "contact")
+        )
+        self.publish_on("/" + topic.lstrip("/"), frame="world", rate=self.sensor.update_rate)

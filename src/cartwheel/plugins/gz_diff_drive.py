@@ -1,0 +1,89 @@
+"""``gz-sim-diff-drive-system``: wheels left and right, as new Gazebo drives them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from cartwheel.errors import PluginError
+from cartwheel.plugins.gz_drive import (
+    GzLimitedParameters,
+    Limiter,
+    gz_name,
+    gz_odometry,
+    report_limits,
+)
+from cartwheel.plugins.parameters import tag
+from cartwheel.plugins.wheel_drive import WheelDrive, WheelPair
+
+CONTROL_RATE = 100.0
+"""Hz at which limits are kept."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class GzDiffDriveParameters(GzLimitedParameters):
+    left_joint: tuple[str, ...] = tag(
+        "left_joint", default=("left_joint",), doc="Joint of a left wheel; once for each."
+    )
+    right_joint: tuple[str, ...] = tag(
+        "right_joint", default=("right_joint",), doc="Joint of a right wheel; once for each."
+    )
+    wheel_separation: float = tag(
+        "wheel_separation", default=1.0, unit="m", doc="Between left and right."
+    )
+    wheel_radius: float = tag("wheel_radius", default=0.2, unit="m", doc="Of all wheels.")
+
+
+class GzDiffDrive(WheelDrive):
+    """Drives wheels on the left and on the right by Twist; its odometry is what they turn.
+
+    The wheels' torque is limited by their joints' effort alone. Source: gz-sim, DiffDrive.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ("gz-sim-diff-drive-system",)
+    parameters: ClassVar[type] = GzDiffDriveParameters
+
+    def configure(self) -> None:
+        config: GzDiffDriveParameters = self.config
+        if len(config.left_joint) != len(config.right_joint):
+            raise PluginError(
+                f"{len(config.left_joint)} <left_joint> and "
+                f"{len(config.right_joint)} <right_joint> are no pairs",
+                origin=self.tag.origin,
+            )
+        report_limits(self, config)
+        self._linear = Limiter.of(config, "linear")
+        self._angular = Limiter.of(config, "angular")
+        self._wanted_speed = (0.0, 0.0)
+        pairs = [
+            WheelPair(
+                left=left,
+                right=right,
+                separation=config.wheel_separation,
+                diameter=2 * config.wheel_radius,
+            )
+            for left, right in zip(config.left_joint, config.right_joint, strict=True)
+        ]
+        self._take_wheels(pairs, torque=None)
+        self.odometry = gz_odometry(self, config)
+        self._run(
+            command_topic=gz_name(self, config.topic, "cmd_vel"),
+            base="",
+            encoded=True,
+            control_rate=CONTROL_RATE,
+            rate=config.rate,
+        )
+
+    def reset(self) -> None:
+        self._wanted_speed = (0.0, 0.0)
+        self._linear.value = self._angular.value = 0.0
+        super().reset()
+
+    def _aim(self, forward: float, turn: float) -> None:
+        self._wanted_speed = (forward, turn)
+
+    def _control(self) -> None:
+        forward, turn = self._wanted_speed
+        period = 1 / CONTROL_RATE
+        super()._aim(self._linear.step(forward, period), self._angular.step(turn, period))
+        super()._control()

@@ -1,0 +1,193 @@
+"""Single joints as new Gazebo drives them: to a position, at a velocity, or by a force."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from cartwheel.errors import PluginError
+from cartwheel.plugins.base import Plugin
+from cartwheel.plugins.gz_drive import gz_name
+from cartwheel.plugins.parameters import tag
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class _Gains:
+    p: float = tag("p_gain", default=1.0, doc="Proportional gain.")
+    i: float = tag("i_gain", default=0.0, doc="Integral gain.")
+    d: float = tag("d_gain", default=0.0, doc="Derivative gain: damps the joint.")
+    i_max: float = tag("i_max", default=1.0, doc="Most that the integral gives.")
+    i_min: float = tag("i_min", default=-1.0, doc="Least that the integral gives.")
+    cmd_max: float = tag("cmd_max", default=1000.0, doc="Most force, N m or N.")
+    cmd_min: float = tag("cmd_min", default=-1000.0, doc="Least force.")
+    cmd_offset: float = tag("cmd_offset", default=0.0, doc="Force that is always added.")
+    actuators: bool = tag("use_actuator_msg", default=False, doc="Not supported.")
+    topic: str = tag("topic", default="", doc="Float64; Gazebo's long name when empty.")
+    sub_topic: str = tag("sub_topic", default="", doc="The same, under /model/<name>.")
+    joints: tuple[str, ...] = tag("joint_name", doc="Joint; once for each that moves alike.")
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class JointPositionParameters(_Gains):
+    i: float = tag("i_gain", default=0.1, doc="Integral gain.")
+    d: float = tag("d_gain", default=0.01, doc="Derivative gain: damps the joint.")
+    index: float = tag("joint_index", default=0.0, doc="Axis of the joint: 0.")
+    velocity: bool = tag(
+        "use_velocity_commands",
+        default=False,
+        doc="Goes there at most at cmd_max, whatever the joint bears, instead of the PID.",
+    )
+    initial: float = tag("initial_position", default=0.0, doc="Held from the start, rad or m.")
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class JointVelocityParameters(_Gains):
+    force: bool = tag(
+        "use_force_commands", default=False, doc="By the PID, instead of a servo that holds it."
+    )
+    initial: float = tag("initial_velocity", default=0.0, doc="Held from the start.")
+
+
+class _Pid:
+    """Force from an error, with an integral that is bounded."""
+
+    def __init__(self, gains: _Gains) -> None:
+        self._gains = gains
+        self._integral = 0.0
+
+    def force(self, error: float, seconds: float) -> float:
+        """N m or N; the derivative is a damping, which the joint's servo takes."""
+        gains = self._gains
+        if gains.i:
+            self._integral += gains.i * error * seconds
+            self._integral = min(max(self._integral, gains.i_min), gains.i_max)
+        force = gains.p * error + self._integral + gains.cmd_offset
+        return min(max(force, gains.cmd_min), gains.cmd_max)
+
+
+class _JointController(Plugin[Any]):
+    """What both controllers share: a target that a topic sets, followed at each step."""
+
+    def configure(self) -> None:
+        config: _Gains = self.config
+        part, origin = self.part, self.tag.origin
+        if not config.joints:
+            raise PluginError("<joint_name> is missing", origin=origin)
+        if config.cmd_min > config.cmd_max or config.i_min > config.i_max:
+            raise PluginError("a lower bound is above its upper one", origin=origin)
+        if config.actuators:
+            self.warn("<use_actuator_msg> is not supported: the joint is driven by Float64")
+        names = [name.strip() for name in config.joints]
+        self._joints = [
+            (part.joint(name, origin=origin), part.servo(name, max_effort=None, origin=origin))
+            for name in names
+        ]
+        topic = config.topic
+        if not topic and config.sub_topic:
+            topic = f"/model/{part.name}/{config.sub_topic.strip().lstrip('/')}"
+        topic = topic or f"/model/{part.name}/joint/{names[0]}/{self._default_topic()}"
+        # Gazebo puts the axis there, /0/cmd_pos, which is no name in ROS.
+        topic = re.sub(r"/\d+(?=/)", "", topic)
+        self.subscribe(gz_name(self, topic, ""), "std_msgs/msg/Float64", self._on_command)
+        self.reset()
+        part.schedule(0, before=self._follow)
+
+    def reset(self) -> None:
+        self._target = float(self.config.initial)
+        self._pids = [_Pid(self.config) for _ in self._joints]
+        self._before_ns: int | None = None
+
+    def _default_topic(self) -> str:
+        raise NotImplementedError
+
+    def _on_command(self, message: Any) -> None:
+        if not math.isfinite(message.data):
+            self.warn("a command that is not finite was ignored")
+            return
+        self._target = float(message.data)
+
+    def _seconds(self) -> float:
+        """Since the last turn."""
+        now = self.part.time_ns
+        seconds = 0.0 if self._before_ns is None else (now - self._before_ns) * 1e-9
+        self._before_ns = now
+        return seconds
+
+    def _follow(self) -> None:
+        raise NotImplementedError
+
+
+class JointPositionController(_JointController):
+    """Holds a joint at the position that it last heard, from the start at an initial one.
+
+    Source: gz-sim, JointPositionController.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ("gz-sim-joint-position-controller-system",)
+    parameters: ClassVar[type] = JointPositionParameters
+
+    def _default_topic(self) -> str:
+        if self.config.index:
+            self.warn("<joint_index>: only the first axis of a joint is moved")
+        return "cmd_pos"
+
+    def _follow(self) -> None:
+        config: JointPositionParameters = self.config
+        seconds = self._seconds()
+        for (joint, servo), pid in zip(self._joints, self._pids, strict=True):
+            if config.velocity:
+                servo.command_position(self._target, max_velocity=abs(config.cmd_max))
+            else:
+                force = pid.force(self._target - joint.position, seconds)
+                servo.command_effort(force, damping=config.d)
+
+
+class JointController(_JointController):
+    """Holds a joint at the velocity that it last heard. Source: gz-sim, JointController."""
+
+    filenames: ClassVar[tuple[str, ...]] = ("gz-sim-joint-controller-system",)
+    parameters: ClassVar[type] = JointVelocityParameters
+
+    def _default_topic(self) -> str:
+        return "cmd_vel"
+
+    def _follow(self) -> None:
+        config: JointVelocityParameters = self.config
+        seconds = self._seconds()
+        for (joint, servo), pid in zip(self._joints, self._pids, strict=True):
+            if config.force:
+                servo.command_effort(pid.force(self._target - joint.velocity, seconds))
+            else:
+                servo.command_velocity(self._target)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ApplyJointForceParameters:
+    joint: str = tag("joint_name", doc="Joint.")
+
+
+class ApplyJointForce(Plugin[ApplyJointForceParameters]):
+    """Gives a joint the force in N m or N that it last heard.
+
+    On ``/model/<name>/joint/<joint>/cmd_force``. Source: gz-sim, ApplyJointForce.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ("gz-sim-apply-joint-force-system",)
+    parameters: ClassVar[type] = ApplyJointForceParameters
+
+    def configure(self) -> None:
+        name = self.config.joint.strip()
+        self._servo = self.part.servo(name, max_effort=None, origin=self.tag.origin)
+        topic = f"/model/{self.part.name}/joint/{name}/cmd_force"
+        self.subscribe(topic, "std_msgs/msg/Float64", self._on_command)
+
+    def reset(self) -> None:
+        self._servo.release()
+
+    def _on_command(self, message: Any) -> None:
+        if not math.isfinite(message.data):
+            self.warn("a command that is not finite was ignored")
+            return
+        self._servo.command_effort(float(message.data))

@@ -1,0 +1,92 @@
+"""Lidars as new Gazebo has them: a ``<sensor>`` that needs no plugin of its own."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from cartwheel.messages import header
+from cartwheel.plugins.base import Plugin
+from cartwheel.plugins.gz_sensor import default_topic
+from cartwheel.plugins.parameters import tag
+from cartwheel.plugins.scan import Scan, Scanner
+from cartwheel.plugins.scan_messages import laser_scan, point_cloud2
+
+_POINT = np.dtype(
+    {
+        "names": ["x", "y", "z", "intensity", "ring"],
+        "formats": ["<f4", "<f4", "<f4", "<f4", "<u2"],
+        "offsets": [0, 4, 8, 16, 24],
+        "itemsize": 32,
+    }
+)
+"""As gz-sensors packs it."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class GzLidarParameters:
+    topic: str = tag(
+        "topic", default="", doc="LaserScan; the points go on `<topic>/points`. Else Gazebo's name."
+    )
+    frame: str = tag(
+        "gz_frame_id",
+        "ignition_frame_id",
+        "frame_id",
+        default="",
+        doc="Frame of the messages; the link's when empty.",
+    )
+
+
+class GzLidar(Plugin[GzLidarParameters]):
+    """Publishes a lidar's middle row as a LaserScan and all of it as a PointCloud2.
+
+    The cloud is organised, the lowest row first; where nothing was hit its points are infinite.
+    ``gpu_lidar`` and ``gpu_ray`` see visuals, ``lidar`` and ``ray`` collisions.
+
+    Source: gz-sensors, GpuLidarSensor; ros_gz_bridge for the types.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ()
+    parameters: ClassVar[type] = GzLidarParameters
+    for_sensor: ClassVar[bool] = True
+    serves: ClassVar[tuple[str, ...]] = ("gpu_lidar", "lidar", "gpu_ray", "ray")
+
+    def configure(self) -> None:
+        sensor, config = self.sensor, self.config
+        assert sensor is not None
+        self._scanner = Scanner(self.part, sensor)
+        self._frame = self.frame(config.frame or sensor.link)
+        topic = config.topic or default_topic(self.part, sensor, "scan")
+        rate = sensor.update_rate
+        told = rate or None
+        self._scan = self.advertise(topic, "sensor_msgs/msg/LaserScan", rate=told, qos="sensor")
+        self._points = self.advertise(
+            f"{topic}/points", "sensor_msgs/msg/PointCloud2", rate=told, qos="sensor"
+        )
+        self.part.schedule(
+            rate,
+            after=self._publish,
+            active=lambda: self._scan.wanted or self._points.wanted,
+        )
+
+    def _publish(self) -> None:
+        moment = header(self.part.time_ns, self._frame)
+        scan = self._scanner.measure()
+        if self._scan.wanted:
+            self._scan.publish(laser_scan(moment, self._scanner.pattern, scan))
+        if self._points.wanted:
+            cloud = self._cloud(scan)
+            dense = bool(np.isfinite(scan.ranges).all())
+            self._points.publish(point_cloud2(moment, cloud, dense=dense))
+
+    def _cloud(self, scan: Scan) -> np.ndarray[tuple[int, int], np.dtype[np.void]]:
+        rows, columns = scan.ranges.shape
+        cloud = np.zeros((rows, columns), dtype=_POINT)
+        places = scan.points(self._scanner.directions)
+        for index, name in enumerate("xyz"):
+            cloud[name] = places[..., index]
+        cloud["intensity"] = scan.intensities
+        cloud["ring"] = np.arange(rows)[:, None]
+        return cloud

@@ -1,0 +1,86 @@
+"""Sensors that need no plugin of their own: new Gazebo's systems serve all of a type."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+
+from cartwheel.description.model import PluginTag, Sensor
+from cartwheel.simulation import Part
+
+SYSTEMS = {
+    "gz-sim-sensors-system": (
+        "camera",
+        "depth",
+        "depth_camera",
+        "rgbd_camera",
+        "thermal_camera",
+        "wide_angle_camera",
+        "segmentation_camera",
+        "boundingbox_camera",
+        "gpu_lidar",
+        "gpu_ray",
+        "lidar",
+        "ray",
+    ),
+    "gz-sim-imu-system": ("imu",),
+    "gz-sim-contact-system": ("contact",),
+    "gz-sim-navsat-system": ("navsat", "gps"),
+    "gz-sim-magnetometer-system": ("magnetometer",),
+    "gz-sim-altimeter-system": ("altimeter",),
+    "gz-sim-air-pressure-system": ("air_pressure",),
+    "gz-sim-air-speed-system": ("air_speed",),
+    "gz-sim-forcetorque-system": ("force_torque",),
+}
+"""What each system makes publish. Where one is named it has no more to do: Cartwheel's plugins
+serve the types themselves."""
+
+_NEW_TYPES = {
+    "rgbd_camera",
+    "thermal_camera",
+    "segmentation_camera",
+    "boundingbox_camera",
+    "gpu_lidar",
+    "lidar",
+    "navsat",
+    "air_pressure",
+    "air_speed",
+}
+"""Those that Gazebo Classic does not know."""
+_NEW_TAGS = ("topic", "gz_frame_id", "ignition_frame_id")
+
+
+def publishes(sensor: Sensor, systems: Iterable[str]) -> bool:
+    """Whether a sensor without a plugin is meant to publish.
+
+    It is where its system is named, and where it is written for new Gazebo: no world has to name
+    a system here. Gazebo Classic's sensors publish nothing to ROS without a plugin.
+
+    Args:
+        sensor: One without a plugin.
+        systems: Short names of the systems that the world and the model name.
+    """
+    if any(sensor.type in SYSTEMS.get(system, ()) for system in systems):
+        return True
+    return sensor.type in _NEW_TYPES or any(sensor.element.find(tag) for tag in _NEW_TAGS)
+
+
+def own_tag(sensor: Sensor, known: Iterable[str]) -> PluginTag:
+    """The sensor's element as the tag of the plugin that serves it, with what that one reads."""
+    tops = {name.split("/")[0] for name in known}
+    element = sensor.element
+    children = tuple(child for child in element.children if child.tag in tops)
+    return PluginTag(
+        name=sensor.name,
+        filename="",
+        element=type(element)(tag="sensor", children=children, origin=element.origin),
+        origin=sensor.origin,
+    )
+
+
+def default_topic(part: Part, sensor: Sensor, last: str) -> str:
+    """Where a sensor publishes that names no topic: Gazebo's long name."""
+    scope = ("world", part.world.name, "model", part.name, "link", sensor.link)
+    parts = (*scope, "sensor", sensor.name, last)
+    names = (re.sub(r"\W", "_", name, flags=re.ASCII) for name in parts)
+    return "".join(f"/_{name}" if name[:1].isdigit() else f"/{name}" for name in names)

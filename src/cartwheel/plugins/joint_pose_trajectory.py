@@ -1,0 +1,107 @@
+"""``libgazebo_ros_joint_pose_trajectory.so``: joints put where a trajectory says."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from cartwheel.errors import PluginError
+from cartwheel.messages import message_class
+from cartwheel.plugins.base import Plugin
+from cartwheel.plugins.parameters import tag
+from cartwheel.simulation.clock import NANOSECONDS
+from cartwheel.simulation.handles import JointHandle
+
+_MOVABLE = ("revolute", "continuous", "prismatic")
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class JointPoseTrajectoryParameters:
+    topic: str = tag(
+        "topicName", "topic_name", default="set_joint_trajectory", doc="JointTrajectory."
+    )
+    service: str = tag("serviceName", default="set_joint_trajectory", doc="SetJointTrajectory.")
+    update_rate: float = tag(
+        "updateRate", "update_rate", default=0.0, unit="Hz", doc="0 is every step."
+    )
+
+
+class JointPoseTrajectory(Plugin[JointPoseTrajectoryParameters]):
+    """Sets joints to a trajectory's positions at its times, whatever pushes them.
+
+    A point counts from its ``time_from_start`` after the start, which is the header's stamp or
+    the moment it is heard, whichever is later. (Gazebo's adds the times up instead.) The
+    root link stays where it is; another reference in ``header.frame_id`` is reported. Source:
+    gazebo_plugins, gazebo_ros_joint_pose_trajectory.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = (
+        "libgazebo_ros_joint_pose_trajectory.so",
+        "libgazebo_ros_joint_trajectory.so",
+    )
+    parameters: ClassVar[type] = JointPoseTrajectoryParameters
+
+    def configure(self) -> None:
+        if self.config.update_rate < 0:
+            raise PluginError("a rate cannot be below 0", origin=self.tag.origin)
+        self._handles: dict[str, JointHandle] = {
+            joint.name: self.part.joint(joint.name)
+            for joint in self.part.description.joints
+            if joint.type in _MOVABLE
+        }
+        self._points: list[tuple[int, list[tuple[JointHandle, float]]]] = []
+        self._Response = message_class("gazebo_msgs/srv/SetJointTrajectory_Response")
+        self.subscribe(
+            self.config.topic, "trajectory_msgs/msg/JointTrajectory", self._on_trajectory
+        )
+        self.serve(self.config.service, "gazebo_msgs/srv/SetJointTrajectory", self._on_request)
+        self.part.schedule(
+            self.config.update_rate, before=self._follow, active=lambda: bool(self._points)
+        )
+
+    def reset(self) -> None:
+        self._points = []
+
+    def _on_trajectory(self, trajectory: Any) -> None:
+        problem = self._take(trajectory)
+        if problem:
+            self.warn(f"a trajectory was ignored: {problem}")
+
+    def _on_request(self, request: Any) -> Any:
+        problem = self._take(request.joint_trajectory)
+        if not problem and request.model_name not in ("", self.part.name):
+            problem = f'this is model "{self.part.name}", not "{request.model_name}"'
+        if not problem and request.set_model_pose:
+            problem = "set_model_pose is not supported: use /gazebo/set_model_state"
+        if problem:
+            self._points = []
+        return self._Response(success=not problem, status_message=problem)
+
+    def _take(self, trajectory: Any) -> str:
+        """Replaces the trajectory; says what is wrong with it, or nothing."""
+        names = list(trajectory.joint_names)
+        unknown = [name for name in names if name not in self._handles]
+        if unknown:
+            return f'there is no movable joint "{unknown[0]}"'
+        root = self.part.description.canonical_link
+        frame = trajectory.header.frame_id.rsplit("::", 1)[-1].lstrip("/")
+        if frame not in ("", "world", "map", root):
+            return f'the reference must be the root link "{root}" or the world, not "{frame}"'
+        stamp = trajectory.header.stamp
+        start = max(self.part.time_ns, stamp.sec * NANOSECONDS + stamp.nanosec)
+        points = []
+        for point in trajectory.points:
+            if len(point.positions) != len(names):
+                return f"a point has {len(point.positions)} positions for {len(names)} joints"
+            due = start + point.time_from_start.sec * NANOSECONDS + point.time_from_start.nanosec
+            handles = [self._handles[name] for name in names]
+            positions = [float(position) for position in point.positions]
+            points.append((due, list(zip(handles, positions, strict=True))))
+        self._points = sorted(points, key=lambda point: point[0])
+        return ""
+
+    def _follow(self) -> None:
+        while self._points and self._points[0][0] <= self.part.time_ns:
+            for handle, position in self._points.pop(0)[1]:
+                handle.position = position
+                handle.velocity = 0.0

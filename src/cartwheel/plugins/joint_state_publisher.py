@@ -1,0 +1,120 @@
+"""``libgazebo_ros_joint_state_publisher.so`` and new Gazebo's: where joints are."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from cartwheel.errors import Diagnostic, PluginError
+from cartwheel.plugins.base import Plugin
+from cartwheel.plugins.gz_drive import gz_name
+from cartwheel.plugins.parameters import tag
+from cartwheel.plugins.wheel_states import JointStates
+from cartwheel.simulation.handles import JointHandle
+
+_MOVABLE = ("revolute", "continuous", "prismatic")
+
+
+def _joints(plugin: Plugin[Any], names: list[str]) -> list[JointHandle]:
+    """Those of the names, or all that move where there are none."""
+    description = plugin.part.description
+    if not names:
+        names = [joint.name for joint in description.joints if joint.type in _MOVABLE]
+    found = []
+    for name in names:
+        joint = description.joint(name)
+        if joint is not None and joint.type == "fixed":
+            plugin.part.report(
+                Diagnostic(
+                    severity="info",
+                    message=f'joint "{name}" is fixed: it has no state to be published',
+                    origin=plugin.tag.origin,
+                )
+            )
+        else:
+            found.append(plugin.part.joint(name, origin=plugin.tag.origin))
+    return found
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class JointStatePublisherParameters:
+    names: tuple[str, ...] = tag(
+        "jointName",
+        "joint_name",
+        default=(),
+        doc="Joints, with commas between or once for each; all that move when missing.",
+    )
+    update_rate: float = tag(
+        "updateRate", "update_rate", default=100.0, unit="Hz", doc="0 is every step."
+    )
+
+
+class JointStatePublisher(Plugin[JointStatePublisherParameters]):
+    """Publishes positions and velocities of joints on ``joint_states``.
+
+    Without a namespace that is ``/<model>/joint_states``, as in Gazebo Classic; in ROS 2's
+    spelling it is ``/joint_states``. Source: gazebo_plugins, gazebo_ros_joint_state_publisher.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_joint_state_publisher.so",)
+    parameters: ClassVar[type] = JointStatePublisherParameters
+
+    def configure(self) -> None:
+        config, element = self.config, self.tag.element
+        if config.update_rate < 0:
+            raise PluginError("a rate cannot be below 0", origin=self.tag.origin)
+        ros2 = any(element.find(name) for name in ("ros", "joint_name", "update_rate"))
+        if not ros2 and not self.namespace.strip("/"):
+            self.namespace = self.part.name
+        names = [name.strip() for text in config.names for name in text.split(",")]
+        self._states = JointStates(
+            self,
+            _joints(self, [name for name in names if name]),
+            rate=config.update_rate or None,
+            velocities=True,
+        )
+        self.part.schedule(
+            config.update_rate,
+            after=lambda: self._states.publish(self.part.time_ns),
+            active=self._states.wanted,
+        )
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class GzJointStatePublisherParameters:
+    topic: str = tag(
+        "topic", default="", doc="JointState; /world/<world>/model/<name>/joint_state when empty."
+    )
+    names: tuple[str, ...] = tag(
+        "joint_name", default=(), doc="Joints, once for each; all that move when missing."
+    )
+    update_rate: float = tag("update_rate", default=0.0, unit="Hz", doc="0 is every step.")
+
+
+class GzJointStatePublisher(Plugin[GzJointStatePublisherParameters]):
+    """Publishes positions, velocities and efforts of joints.
+
+    Source: gz-sim, JointStatePublisher.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ("gz-sim-joint-state-publisher-system",)
+    parameters: ClassVar[type] = GzJointStatePublisherParameters
+
+    def configure(self) -> None:
+        config, part = self.config, self.part
+        if config.update_rate < 0:
+            raise PluginError("a rate cannot be below 0", origin=self.tag.origin)
+        topic = config.topic or f"/world/{part.world.name}/model/{part.name}/joint_state"
+        self._states = JointStates(
+            self,
+            _joints(self, [name.strip() for name in config.names]),
+            topic=gz_name(self, topic, ""),
+            rate=config.update_rate or None,
+            velocities=True,
+            efforts=True,
+        )
+        part.schedule(
+            config.update_rate,
+            after=lambda: self._states.publish(part.time_ns),
+            active=self._states.wanted,
+        )

@@ -1,0 +1,61 @@
+"""``libgazebo_ros_laser.so`` and ``libgazebo_ros_gpu_laser.so``: laser scanners."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from cartwheel.messages import header
+from cartwheel.plugins.base import Plugin
+from cartwheel.plugins.parameters import tag
+from cartwheel.plugins.scan import Scanner
+from cartwheel.plugins.scan_messages import laser_scan
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class LaserParameters:
+    topic: str = tag("topicName", "topic_name", default="scan", doc="LaserScan.")
+    frame: str = tag(
+        "frameName", "frame_name", default="", doc="Frame of the messages; the link's when empty."
+    )
+    update_rate: float = tag(
+        "updateRate", "update_rate", default=0.0, unit="Hz", doc="Accepted: the sensor's counts."
+    )
+
+
+class Laser(Plugin[LaserParameters]):
+    """Publishes what a ray sensor measures, as a LaserScan.
+
+    A ``ray`` sensor sees collisions, a ``gpu_ray`` sensor visuals, as in Gazebo. The stamp is the
+    moment at which all rays are measured, so ``time_increment`` and ``scan_time`` are 0. Of a
+    sensor with several rows the middle one is published.
+
+    Source: gazebo_plugins, gazebo_ros_laser and gazebo_ros_gpu_laser.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = (
+        "libgazebo_ros_laser.so",
+        "libgazebo_ros_gpu_laser.so",
+    )
+    parameters: ClassVar[type] = LaserParameters
+    empty_is_model: ClassVar[bool] = True
+    for_sensor: ClassVar[bool] = True
+    prefixes_by_namespace: ClassVar[bool] = True
+
+    def configure(self) -> None:
+        assert self.sensor is not None
+        self._scanner = Scanner(self.part, self.sensor)
+        rows = self._scanner.pattern.vertical.count
+        if rows > 1:
+            self.warn(f"a LaserScan has one row: of the {rows} the middle one is published")
+        self._frame = self.frame(self.config.frame or self.sensor.link)
+        rate = self.sensor.update_rate
+        self._publisher = self.advertise(
+            self.config.topic, "sensor_msgs/msg/LaserScan", rate=rate or None, qos="sensor"
+        )
+        self.part.schedule(rate, after=self._publish, active=lambda: self._publisher.wanted)
+
+    def _publish(self) -> None:
+        moment = header(self.part.time_ns, self._frame)
+        scan = self._scanner.measure()
+        self._publisher.publish(laser_scan(moment, self._scanner.pattern, scan))

@@ -1,0 +1,168 @@
+"""``libhector_gazebo_ros_magnetic.so`` and ``magnetometer`` sensors: the Earth's field."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from cartwheel.errors import PluginError
+from cartwheel.geometry import quat_conjugate, quat_multiply, rotate
+from cartwheel.messages import header, message_class
+from cartwheel.plugins.base import Plugin
+from cartwheel.plugins.gps import world_datum
+from cartwheel.plugins.gz_sensor import default_topic
+from cartwheel.plugins.noise import DriftingError, VectorNoise, read_noise
+from cartwheel.plugins.parameters import tag
+
+_NONE = (0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class HectorMagneticParameters:
+    body: str = tag("bodyName", default="", doc="Link that carries it; the root when empty.")
+    topic: str = tag("topicName", default="magnetic", doc="Vector3Stamped or MagneticField.")
+    frame: str = tag("frameId", default="", doc="Frame of the messages; the link's when empty.")
+    update_rate: float = tag("updateRate", default=0.0, unit="Hz", doc="0 is every step.")
+    magnitude: float = tag("magnitude", default=1.0, doc="Of the field, in whatever unit.")
+    use_world: bool = tag(
+        "useWorldSphericalCoordinates", default=False, doc="Take the heading from the world."
+    )
+    heading: float | None = tag(
+        "referenceHeading",
+        default=None,
+        unit="degrees",
+        doc="Of the world's x axis, from the north to the east; 0.",
+    )
+    declination: float = tag("declination", default=0.0, unit="degrees", doc="Of the field.")
+    inclination: float = tag("inclination", default=60.0, unit="degrees", doc="Of the field.")
+    as_field: bool = tag(
+        "useMagneticFieldMsgs", default=False, doc="MagneticField instead of Vector3Stamped."
+    )
+    offset: tuple[float, float, float] = tag("offset", default=_NONE, doc="Constant error.")
+    drift: tuple[float, float, float] = tag(
+        "drift", default=_NONE, doc="Standard deviation of the drift."
+    )
+    frequency: tuple[float, float, float] = tag(
+        "driftFrequency", default=(1 / 3600.0,) * 3, unit="1/s", doc="Of the drift."
+    )
+    noise: tuple[float, float, float] = tag(
+        "gaussianNoise", default=_NONE, doc="Standard deviation."
+    )
+    scale: tuple[float, float, float] = tag("scaleError", default=(1.0,) * 3, doc="Factor.")
+
+
+class HectorMagnetic(Plugin[HectorMagneticParameters]):
+    """Publishes the Earth's magnetic field in a link's axes.
+
+    Errors are those of `HectorImu`. Source: hector_gazebo_plugins, gazebo_ros_magnetic.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ("libhector_gazebo_ros_magnetic.so",)
+    parameters: ClassVar[type] = HectorMagneticParameters
+
+    def configure(self) -> None:
+        config, part, origin = self.config, self.part, self.tag.origin
+        if config.update_rate < 0 or min(*config.drift, *config.frequency, *config.noise) < 0:
+            raise PluginError("a rate, drift or noise cannot be below 0", origin=origin)
+        name = config.body or part.description.canonical_link
+        self._link = part.link(name, origin=origin)
+        self._frame = self.frame(config.frame or name)
+        heading = 0.0
+        if config.use_world:
+            datum = world_datum(part.world.spherical_coordinates)
+            heading = 90.0 - math.degrees(datum.heading) if datum is not None else 90.0
+        if config.heading is not None:
+            heading = config.heading
+        turn = math.radians(heading - config.declination)
+        dip = math.radians(config.inclination)
+        level = config.magnitude * math.cos(dip)
+        self._field = (
+            level * math.cos(turn),
+            level * math.sin(turn),
+            -config.magnitude * math.sin(dip),
+        )
+        self._error = DriftingError(
+            part,
+            f"magnetic {config.topic}",
+            rate=config.update_rate,
+            offset=config.offset,
+            drift=config.drift,
+            frequency=config.frequency,
+            noise=config.noise,
+            scale=config.scale,
+        )
+        self._Vector3 = message_class("geometry_msgs/msg/Vector3")
+        kind = "sensor_msgs/msg/MagneticField"
+        if not config.as_field:
+            kind = "geometry_msgs/msg/Vector3Stamped"
+        self._Message = message_class(kind)
+        self._covariance = np.diag(self._error.variance).ravel()
+        rate = config.update_rate
+        self._publisher = self.advertise(config.topic, kind, rate=rate or None, qos="sensor")
+        part.schedule(rate, after=self._measure, active=lambda: self._publisher.wanted)
+
+    def reset(self) -> None:
+        self._error.restart()
+
+    def _measure(self) -> None:
+        _, turned = self._link.place()
+        felt = self._error.add(rotate(quat_conjugate(turned), self._field)).tolist()
+        head, vector = header(self.part.time_ns, self._frame), self._Vector3(*felt)
+        if self.config.as_field:
+            self._publisher.publish(self._Message(head, vector, self._covariance))
+        else:
+            self._publisher.publish(self._Message(head, vector))
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class GzMagnetometerParameters:
+    topic: str = tag("topic", default="", doc="MagneticField; Gazebo's long name when empty.")
+    frame: str = tag(
+        "gz_frame_id",
+        "ignition_frame_id",
+        default="",
+        doc="Frame of the messages; the link's when empty.",
+    )
+
+
+class GzMagnetometer(Plugin[GzMagnetometerParameters]):
+    """Publishes the world's ``<magnetic_field>`` in a ``magnetometer`` sensor's axes, in T.
+
+    Source: gz-sensors, MagnetometerSensor.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ()
+    parameters: ClassVar[type] = GzMagnetometerParameters
+    for_sensor: ClassVar[bool] = True
+    serves: ClassVar[tuple[str, ...]] = ("magnetometer",)
+
+    def configure(self) -> None:
+        sensor, part = self.sensor, self.part
+        assert sensor is not None
+        self._link, self._mount = part.link(sensor.link), sensor.pose.orientation
+        self._frame = self.frame(self.config.frame or sensor.link)
+        noises = [read_noise(sensor.element.find(f"magnetometer/{axis}/noise")) for axis in "xyz"]
+        self._noise = VectorNoise(part, f"magnetometer {sensor.name}", noises)
+        self._covariance = np.diag(self._noise.variance).ravel()
+        self._Vector3 = message_class("geometry_msgs/msg/Vector3")
+        self._MagneticField = message_class("sensor_msgs/msg/MagneticField")
+        topic = self.config.topic or default_topic(part, sensor, "magnetometer")
+        rate = sensor.update_rate
+        self._publisher = self.advertise(
+            topic, "sensor_msgs/msg/MagneticField", rate=rate or None, qos="sensor"
+        )
+        part.schedule(rate, after=self._measure, active=lambda: self._publisher.wanted)
+
+    def _measure(self) -> None:
+        turned = quat_multiply(self._link.place()[1], self._mount)
+        field = rotate(quat_conjugate(turned), self.part.world.magnetic_field)
+        self._publisher.publish(
+            self._MagneticField(
+                header(self.part.time_ns, self._frame),
+                self._Vector3(*self._noise.add(field)),
+                self._covariance,
+            )
+        )

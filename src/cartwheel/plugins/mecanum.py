@@ -1,0 +1,128 @@
+"""``gz-sim-mecanum-drive-system``: four wheels with rollers, which go sideways as well."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from cartwheel.errors import PluginError
+from cartwheel.plugins.base import Plugin
+from cartwheel.plugins.gz_drive import GzDriveParameters, gz_name, gz_odometry
+from cartwheel.plugins.odometry import DeadReckoning, Odometry
+from cartwheel.plugins.parameters import tag
+
+CONTROL_RATE = 100.0
+"""Hz at which the wheels' turning is read."""
+_CORNERS = ("front_left", "front_right", "back_left", "back_right")
+_SIDEWAYS = (-1.0, 1.0, 1.0, -1.0)
+_LEFT_RIGHT = (-1.0, 1.0, -1.0, 1.0)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class MecanumParameters(GzDriveParameters):
+    front_left: tuple[str, ...] = tag(
+        "front_left_joint", default=("front_left_joint",), doc="Joint of a wheel; once for each."
+    )
+    front_right: tuple[str, ...] = tag(
+        "front_right_joint", default=("front_right_joint",), doc="Joint of a wheel; once for each."
+    )
+    back_left: tuple[str, ...] = tag(
+        "back_left_joint", default=("back_left_joint",), doc="Joint of a wheel; once for each."
+    )
+    back_right: tuple[str, ...] = tag(
+        "back_right_joint", default=("back_right_joint",), doc="Joint of a wheel; once for each."
+    )
+    wheel_base: float = tag("wheelbase", default=1.0, unit="m", doc="Between the axles.")
+    wheel_separation: float = tag(
+        "wheel_separation", default=1.0, unit="m", doc="Between left and right."
+    )
+    wheel_radius: float = tag("wheel_radius", default=0.2, unit="m", doc="Of all wheels.")
+
+
+class MecanumDrive(Plugin[MecanumParameters]):
+    """Moves the robot along, sideways and around by Twist, and turns its wheels accordingly.
+
+    Friction here is the same in all directions, so the rollers are not what moves it: a servo
+    pushes the robot as `PlanarMove` does. The odometry is what the wheels turn. Source: gz-sim,
+    MecanumDrive.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ("gz-sim-mecanum-drive-system",)
+    parameters: ClassVar[type] = MecanumParameters
+    _told: tuple[Odometry, ...] = ()
+
+    def configure(self) -> None:
+        config, part, origin = self.config, self.part, self.tag.origin
+        for value, what in (
+            (config.wheel_base, "wheelbase"),
+            (config.wheel_separation, "wheel_separation"),
+            (config.wheel_radius, "wheel_radius"),
+        ):
+            if value <= 0:
+                raise PluginError(f"<{what}> {value:g} must be above 0", origin=origin)
+        self._wheels = [
+            [(part.joint(name, origin=origin), part.velocity_motor(name, max_effort=None))
+             for name in getattr(config, corner)]
+            for corner in _CORNERS
+        ]  # fmt: skip
+        self._drive = part.body_drive(origin=origin)
+        self._reach = (config.wheel_base + config.wheel_separation) / 2
+        self._reckoning = DeadReckoning()
+        self._odometry = gz_odometry(self, config)
+        self._told = (self._odometry,)
+        self.subscribe(
+            gz_name(self, config.topic, "cmd_vel"), "geometry_msgs/msg/Twist", self._on_command
+        )
+        part.schedule(CONTROL_RATE, before=self._control)
+        part.schedule(config.rate, after=self._publish, active=self._odometry.wanted)
+        self.reset()
+
+    def reset(self) -> None:
+        self._command = (0.0, 0.0, 0.0)
+        self._turned: list[float] | None = None
+        self._updated_ns = 0
+        self._reckoning.restart()
+        self._drive.command((0.0, 0.0, None), (None, None, 0.0))
+
+    def close(self) -> None:
+        for odometry in self._told:
+            odometry.close()
+        super().close()
+
+    def _on_command(self, message: Any) -> None:
+        forward, sideways = float(message.linear.x), float(message.linear.y)
+        turn = float(message.angular.z)
+        if not all(math.isfinite(value) for value in (forward, sideways, turn)):
+            self.warn("a command that is not finite was ignored")
+            return
+        self._command = (forward, sideways, turn)
+        self._drive.command((forward, sideways, None), (None, None, turn))
+
+    def _control(self) -> None:
+        forward, sideways, turn = self._command
+        radius = self.config.wheel_radius
+        for wheels, across, side in zip(self._wheels, _SIDEWAYS, _LEFT_RIGHT, strict=True):
+            speed = (forward + across * sideways + side * self._reach * turn) / radius
+            for _, motor in wheels:
+                motor.command(speed)
+        self._integrate(radius)
+
+    def _integrate(self, radius: float) -> None:
+        """The three motions of a body from what the first wheel at each corner has turned."""
+        now = self.part.time_ns
+        turned = [wheels[0][0].position * radius for wheels in self._wheels]
+        if self._turned is not None:
+            ways = [new - old for new, old in zip(turned, self._turned, strict=True)]
+            across = sum(sign * way for sign, way in zip(_SIDEWAYS, ways, strict=True)) / 4
+            around = sum(sign * way for sign, way in zip(_LEFT_RIGHT, ways, strict=True)) / 4
+            self._reckoning.go(
+                sum(ways) / 4,
+                around / self._reach,
+                (now - self._updated_ns) * 1e-9,
+                sideways=across,
+            )
+        self._turned, self._updated_ns = turned, now
+
+    def _publish(self) -> None:
+        self._odometry.publish(self.part.time_ns, *self._reckoning.motion())

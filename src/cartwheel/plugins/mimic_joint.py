@@ -1,0 +1,47 @@
+"""``libroboticsgroup_upatras_gazebo_mimic_joint_plugin.so``: a joint that follows another."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from cartwheel.description.model import Mimic
+from cartwheel.errors import PluginError
+from cartwheel.plugins.base import Plugin
+from cartwheel.plugins.parameters import tag
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class MimicJointParameters:
+    joint: str = tag("joint", default="left_joint", doc="Joint that leads.")
+    mimic_joint: str = tag("mimicJoint", default="right_joint", doc="Joint that follows.")
+    multiplier: float = tag("multiplier", default=1.0, doc="Of the leader's position.")
+    offset: float = tag("offset", default=0.0, unit="rad or m", doc="Added to it.")
+    max_effort: float = tag(
+        "maxEffort", default=1.0, unit="N m or N", doc="Has no effect: the joint follows exactly."
+    )
+    sensitiveness: float = tag(
+        "sensitiveness", default=0.0, unit="rad or m", doc="Has no effect: it follows any motion."
+    )
+    has_pid: str | None = tag("hasPID", default=None, doc="Has no effect: it follows exactly.")
+
+
+class MimicJoint(Plugin[MimicJointParameters]):
+    """Couples a joint to another one, as a URDF's ``<mimic>`` does here without it.
+
+    Source: roboticsgroup_upatras_gazebo_plugins, MimicJointPlugin.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = (
+        "libroboticsgroup_upatras_gazebo_mimic_joint_plugin.so",
+        "libroboticsgroup_gazebo_mimic_joint_plugin.so",
+        "libgazebo_mimic_joint_plugin.so",
+    )
+    parameters: ClassVar[type] = MimicJointParameters
+
+    def configure(self) -> None:
+        config = self.config
+        if config.joint == config.mimic_joint:
+            raise PluginError("a joint cannot follow itself", origin=self.tag.origin)
+        mimic = Mimic(joint=config.joint, multiplier=config.multiplier, offset=config.offset)
+        self.part.mimic(config.mimic_joint, mimic, origin=self.tag.origin)

@@ -1,0 +1,243 @@
+"""``libgazebo_ros_p3d.so`` and ``gz-sim-odometry-publisher-system``: the true pose."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import ClassVar, Literal
+
+import numpy as np
+
+from cartwheel.errors import PluginError
+from cartwheel.geometry import (
+    Pose,
+    quat_conjugate,
+    quat_from_rpy,
+    quat_multiply,
+    quat_normalize,
+    rotate,
+    yaw_of,
+)
+from cartwheel.messages import header, message_class
+from cartwheel.plugins.base import Plugin
+from cartwheel.plugins.gz_drive import gz_name
+from cartwheel.plugins.odometry import Odometry
+from cartwheel.plugins.parameters import tag
+
+_WORLD = {"world", "/world", "map", "/map"}
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class P3DParameters:
+    body: str = tag("bodyName", "body_name", doc="Link whose pose is told.")
+    topic: str = tag("topicName", "topic_name", default="odom", doc="Odometry.")
+    frame: str = tag(
+        "frameName",
+        "frame_name",
+        default="world",
+        doc="A link, or world or map: in whose axes pose and twist are told.",
+    )
+    xyz_offset: tuple[float, float, float] = tag(
+        "xyzOffset",
+        "xyzOffsets",
+        "xyz_offset",
+        "xyz_offsets",
+        default=(0.0, 0.0, 0.0),
+        unit="m",
+        doc="Added to the position.",
+    )
+    rpy_offset: tuple[float, float, float] = tag(
+        "rpyOffset",
+        "rpyOffsets",
+        "rpy_offset",
+        "rpy_offsets",
+        default=(0.0, 0.0, 0.0),
+        unit="rad",
+        doc="Turns the orientation, in the frame's axes.",
+    )
+    noise: float = tag(
+        "gaussianNoise",
+        "gaussian_noise",
+        default=0.0,
+        unit="m/s, rad/s",
+        doc="Standard deviation of the twist.",
+    )
+    update_rate: float = tag(
+        "updateRate", "update_rate", default=0.0, unit="Hz", doc="0 is every step."
+    )
+
+
+class P3D(Plugin[P3DParameters]):
+    """Publishes where a link truly is, as Odometry.
+
+    Its twist is in the axes of the frame, as Gazebo's is, not in those of the link. Source:
+    gazebo_plugins, gazebo_ros_p3d, which turns it the wrong way where the frame is a link.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_p3d.so",)
+    parameters: ClassVar[type] = P3DParameters
+
+    def configure(self) -> None:
+        config, part = self.config, self.part
+        if config.noise < 0 or config.update_rate < 0:
+            raise PluginError("a rate or noise cannot be below 0", origin=self.tag.origin)
+        self._link = part.link(config.body, origin=self.tag.origin)
+        self._reference = None
+        if config.frame not in _WORLD:
+            if part.description.link(config.frame) is not None:
+                self._reference = part.link(config.frame)
+            else:
+                self.warn(
+                    f'<frameName> "{config.frame}" is no link: the pose in the world is told '
+                    "under that name; Gazebo would tell nothing"
+                )
+        self._turn = quat_from_rpy(*config.rpy_offset)
+        self._frame, self._child = self.frame(config.frame), self.frame(config.body)
+        self._covariance = np.diag([config.noise**2] * 6).ravel()
+        self._Odometry = message_class("nav_msgs/msg/Odometry")
+        self._PoseWithCovariance = message_class("geometry_msgs/msg/PoseWithCovariance")
+        self._TwistWithCovariance = message_class("geometry_msgs/msg/TwistWithCovariance")
+        self._Pose = message_class("geometry_msgs/msg/Pose")
+        self._Point = message_class("geometry_msgs/msg/Point")
+        self._Quaternion = message_class("geometry_msgs/msg/Quaternion")
+        self._Twist = message_class("geometry_msgs/msg/Twist")
+        self._Vector3 = message_class("geometry_msgs/msg/Vector3")
+        rate = config.update_rate
+        self._publisher = self.advertise(config.topic, "nav_msgs/msg/Odometry", rate=rate or None)
+        part.schedule(rate, after=self._publish, active=lambda: self._publisher.wanted)
+
+    def _publish(self) -> None:
+        config = self.config
+        place, turn = self._link.place()
+        linear, angular = (np.array(v) for v in self._link.motion(local=False))
+        if self._reference is not None:
+            origin, turned = self._reference.place()
+            moved, spun = self._reference.motion(local=False)
+            pose = Pose(origin, turned).inverse() @ Pose(place, turn)
+            place, turn = pose.position, pose.orientation
+            back = quat_conjugate(turned)
+            linear = np.array(rotate(back, (linear - np.array(moved)).tolist()))
+            angular = np.array(rotate(back, (angular - np.array(spun)).tolist()))
+        if any(config.xyz_offset):
+            x, y, z = (a + b for a, b in zip(place, config.xyz_offset, strict=True))
+            place = (x, y, z)
+        if any(config.rpy_offset):
+            turn = quat_normalize(quat_multiply(self._turn, turn))
+        if config.noise > 0:
+            drawn = self.part.random(f"p3d {self._publisher.topic}").normal(0.0, config.noise, 6)
+            linear, angular = linear + drawn[:3], angular + drawn[3:]
+        Vector3 = self._Vector3
+        twist = self._Twist(Vector3(*linear.tolist()), Vector3(*angular.tolist()))
+        pose_told = self._Pose(self._Point(*place), self._Quaternion(*turn))
+        self._publisher.publish(
+            self._Odometry(
+                header(self.part.time_ns, self._frame),
+                self._child,
+                self._PoseWithCovariance(pose_told, self._covariance),
+                self._TwistWithCovariance(twist, self._covariance),
+            )
+        )
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class OdometryPublisherParameters:
+    frame: str = tag("odom_frame", default="", doc="Of the pose; <name>/odom when empty.")
+    base_frame: str = tag(
+        "robot_base_frame", default="", doc="Of the model; <name>/base_footprint when empty."
+    )
+    rate: float = tag("odom_publish_frequency", default=50.0, unit="Hz", doc="Of all topics.")
+    topic: str = tag("odom_topic", default="", doc="Odometry; /model/<name>/odometry when empty.")
+    covariance_topic: str = tag(
+        "odom_covariance_topic",
+        default="",
+        doc="Odometry with covariance; /model/<name>/odometry_with_covariance when empty.",
+    )
+    tf_topic: str = tag("tf_topic", default="", doc="TFMessage; /model/<name>/pose when empty.")
+    dimensions: Literal["2", "3"] = tag(
+        "dimensions", default="2", doc="2: on the ground, with a heading; 3: anyhow."
+    )
+    xyz_offset: tuple[float, float, float] = tag(
+        "xyz_offset", default=(0.0, 0.0, 0.0), unit="m", doc="Of the base in the model."
+    )
+    rpy_offset: tuple[float, float, float] = tag(
+        "rpy_offset", default=(0.0, 0.0, 0.0), unit="rad", doc="Of the base in the model."
+    )
+    noise: float = tag(
+        "gaussian_noise", default=0.0, doc="Standard deviation of the twist, m/s and rad/s."
+    )
+
+
+class OdometryPublisher(Plugin[OdometryPublisherParameters]):
+    """Publishes where the model truly is in the world, with its velocity in its own axes.
+
+    Source: gz-sim, OdometryPublisher.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ("gz-sim-odometry-publisher-system",)
+    parameters: ClassVar[type] = OdometryPublisherParameters
+    _told: tuple[Odometry, ...] = ()
+
+    def configure(self) -> None:
+        config, part = self.config, self.part
+        if config.noise < 0 or config.rate < 0:
+            raise PluginError("a rate or noise cannot be below 0", origin=self.tag.origin)
+        self._link = part.link(part.description.canonical_link)
+        to_link = part.description.canonical_pose.inverse()
+        offset = Pose(config.xyz_offset, quat_from_rpy(*config.rpy_offset))
+        self._offset = to_link @ offset
+        frame = config.frame or f"{part.name}/odom"
+        base = config.base_frame or f"{part.name}/base_footprint"
+        covariance = np.diag([config.noise**2] * 6).ravel()
+        self._told = (
+            Odometry(
+                self,
+                topic=gz_name(self, config.topic, "odometry"),
+                frame=frame,
+                base=base,
+                rate=config.rate,
+                transform=True,
+                tf_topic=gz_name(self, config.tf_topic, "pose"),
+            ),
+            Odometry(
+                self,
+                topic=gz_name(self, config.covariance_topic, "odometry_with_covariance"),
+                frame=frame,
+                base=base,
+                rate=config.rate,
+                transform=False,
+                pose_covariance=covariance,
+                twist_covariance=covariance,
+            ),
+        )
+        part.schedule(config.rate, after=self._publish, active=self._wanted)
+
+    def close(self) -> None:
+        for odometry in self._told:
+            odometry.close()
+        super().close()
+
+    def _wanted(self) -> bool:
+        return any(odometry.wanted() for odometry in self._told)
+
+    def _publish(self) -> None:
+        pose = self._link.pose @ self._offset
+        moved, spun = self._link.motion(local=False)
+        arm = rotate(self._link.pose.orientation, self._offset.position)
+        linear = np.array(moved) + np.cross(spun, arm)
+        place, turn = pose.position, pose.orientation
+        if self.config.dimensions == "2":
+            place = (place[0], place[1], 0.0)
+            half = yaw_of(turn) / 2
+            turn = (0.0, 0.0, math.sin(half), math.cos(half))
+        back = quat_conjugate(turn)
+        local = [*rotate(back, linear.tolist()), *rotate(back, spun)]
+        if self.config.noise > 0:
+            random = self.part.random(f"odometry {self.tag.name}")
+            local = (np.array(local) + random.normal(0.0, self.config.noise, 6)).tolist()
+        if self.config.dimensions == "2":
+            local[2] = local[3] = local[4] = 0.0
+        for odometry in self._told:
+            if odometry.wanted():
+                odometry.publish(
+                    self.part.time_ns, place, turn, local[:3], (local[3], local[4], local[5])
+                )

@@ -1,0 +1,169 @@
+"""``libgazebo_ros_planar_move.so`` and ``gz-sim-velocity-control-system``: no wheels needed."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from cartwheel.errors import PluginError
+from cartwheel.plugins.base import Plugin
+from cartwheel.plugins.gz_drive import gz_name
+from cartwheel.plugins.odometry import NO_COVARIANCE, Odometry, planar_covariance, planar_motion
+from cartwheel.plugins.parameters import tag
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class PlanarMoveParameters:
+    command_topic: str = tag("commandTopic", "command_topic", default="cmd_vel", doc="Twist.")
+    odometry_topic: str = tag("odometryTopic", "odometry_topic", default="odom", doc="Odometry.")
+    odometry_frame: str = tag(
+        "odometryFrame", "odometry_frame", default="odom", doc="Frame of the odometry."
+    )
+    base_frame: str = tag(
+        "robotBaseFrame",
+        "robot_base_frame",
+        default="base_footprint",
+        doc="Link whose pose is told; the root link where there is none of that name.",
+    )
+    rate: float = tag(
+        "odometryRate",
+        "publish_rate",
+        default=20.0,
+        unit="Hz",
+        doc="Of odometry and transform; 0 or less is none of both.",
+    )
+    update_rate: float = tag(
+        "update_rate", default=20.0, unit="Hz", doc="Accepted: the velocity is held all the time."
+    )
+    timeout: float = tag(
+        "cmdTimeout",
+        "cmd_timeout",
+        default=-1.0,
+        unit="s",
+        doc="After that long without a command it stands; below 0 a command holds.",
+    )
+    publish_odom: bool = tag("publish_odom", default=True, doc="Publish odometry.")
+    publish_odom_tf: bool = tag("publish_odom_tf", default=True, doc="Publish its transform.")
+    covariance_x: float = tag("covariance_x", default=1e-5, unit="m²", doc="Of the odometry.")
+    covariance_y: float = tag("covariance_y", default=1e-5, unit="m²", doc="Of the odometry.")
+    covariance_yaw: float = tag("covariance_yaw", default=1e-3, unit="rad²", doc="Of the odometry.")
+
+
+class PlanarMove(Plugin[PlanarMoveParameters]):
+    """Moves the robot along, sideways and around by Twist, whatever it stands on.
+
+    A servo pushes the whole robot, with at most five times its weight: a wall stops it.
+    Source: gazebo_plugins, gazebo_ros_planar_move.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_planar_move.so",)
+    parameters: ClassVar[type] = PlanarMoveParameters
+    _told: tuple[Odometry, ...] = ()
+
+    def configure(self) -> None:
+        config = self.config
+        part = self.part
+        known = part.description.link(config.base_frame) is not None
+        self._base = part.link(config.base_frame if known else part.description.canonical_link)
+        self._drive = part.body_drive(origin=self.tag.origin)
+        ros2 = self.tag.element.find("ros") is not None
+        covariance = planar_covariance(
+            config.covariance_x, config.covariance_y, config.covariance_yaw
+        )
+        tells = config.rate > 0
+        self._odometry = Odometry(
+            self,
+            topic=config.odometry_topic if tells and config.publish_odom else None,
+            frame=config.odometry_frame,
+            base=config.base_frame,
+            rate=config.rate,
+            transform=tells and config.publish_odom_tf,
+            pose_covariance=covariance,
+            twist_covariance=covariance if ros2 else NO_COVARIANCE,
+        )
+        self._told = (self._odometry,)
+        self.subscribe(config.command_topic, "geometry_msgs/msg/Twist", self._on_command)
+        if config.timeout >= 0:
+            part.schedule(0, before=self._watch)
+        if tells:
+            part.schedule(config.rate, after=self._publish, active=self._odometry.wanted)
+        self.reset()
+
+    def reset(self) -> None:
+        self._heard_ns: int | None = None
+        self._drive.command((0.0, 0.0, None), (None, None, 0.0))
+
+    def close(self) -> None:
+        for odometry in self._told:
+            odometry.close()
+        super().close()
+
+    def _on_command(self, message: Any) -> None:
+        linear, angular = message.linear, message.angular
+        if not all(math.isfinite(v) for v in (linear.x, linear.y, angular.z)):
+            self.warn("a command that is not finite was ignored")
+            return
+        self._heard_ns = self.part.time_ns
+        self._drive.command(
+            (float(linear.x), float(linear.y), None), (None, None, float(angular.z))
+        )
+
+    def _watch(self) -> None:
+        if self._heard_ns is None:
+            return
+        if (self.part.time_ns - self._heard_ns) * 1e-9 > self.config.timeout:
+            self._heard_ns = None
+            self._drive.command((0.0, 0.0, None), (None, None, 0.0))
+
+    def _publish(self) -> None:
+        self._odometry.publish(self.part.time_ns, *planar_motion(self._base))
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class VelocityControlParameters:
+    topic: str = tag("topic", default="", doc="Twist; /model/<name>/cmd_vel when empty.")
+    initial_linear: tuple[float, float, float] | None = tag(
+        "initial_linear", default=None, unit="m/s", doc="Velocity to begin with."
+    )
+    initial_angular: tuple[float, float, float] | None = tag(
+        "initial_angular", default=None, unit="rad/s", doc="Turning to begin with."
+    )
+
+
+class VelocityControl(Plugin[VelocityControlParameters]):
+    """Holds the model's velocity and turning in its own axes, up and down as well.
+
+    It is free until the first command. Source: gz-sim, VelocityControl.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ("gz-sim-velocity-control-system",)
+    parameters: ClassVar[type] = VelocityControlParameters
+
+    def configure(self) -> None:
+        if self.tag.element.find("link_name"):
+            raise PluginError(
+                "<link_name> is not supported: only the whole model is moved",
+                origin=self.tag.origin,
+            )
+        self._drive = self.part.body_drive(origin=self.tag.origin)
+        topic = gz_name(self, self.config.topic, "cmd_vel")
+        self.subscribe(topic, "geometry_msgs/msg/Twist", self._on_command)
+        self.reset()
+
+    def reset(self) -> None:
+        linear, angular = self.config.initial_linear, self.config.initial_angular
+        if linear is None and angular is None:
+            self._drive.release()
+        else:
+            self._hold(linear or (0.0, 0.0, 0.0), angular or (0.0, 0.0, 0.0))
+
+    def _on_command(self, message: Any) -> None:
+        linear, angular = message.linear, message.angular
+        self._hold((linear.x, linear.y, linear.z), (angular.x, angular.y, angular.z))
+
+    def _hold(self, linear: tuple[float, ...], angular: tuple[float, ...]) -> None:
+        if not all(math.isfinite(value) for value in (*linear, *angular)):
+            self.warn("a command that is not finite was ignored")
+            return
+        self._drive.command(linear, angular, level=False)

@@ -1,0 +1,167 @@
+"""``libgazebo_ros_range.so`` and hector's sonar: the distance of the nearest thing ahead."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, ClassVar, Literal
+
+import numpy as np
+
+from cartwheel.errors import PluginError
+from cartwheel.messages import header
+from cartwheel.plugins.base import Plugin
+from cartwheel.plugins.noise import DriftingError
+from cartwheel.plugins.parameters import tag
+from cartwheel.plugins.scan import Scanner
+from cartwheel.plugins.scan_messages import range_reading
+
+
+class _RangeBase(Plugin[Any]):
+    """The least of a ray sensor's ranges."""
+
+    def _start(
+        self,
+        *,
+        topic: str,
+        frame: str,
+        rate: float,
+        noise: float | None,
+        fov: float | None,
+        infrared: bool,
+        offset: float = 0.0,
+        drift: float = 0.0,
+        frequency: float = 0.0,
+    ) -> None:
+        assert self.sensor is not None
+        if min(noise or 0.0, rate, drift, frequency) < 0:
+            raise PluginError("a rate, drift or noise cannot be below 0", origin=self.tag.origin)
+        self._scanner = Scanner(self.part, self.sensor)
+        own = self._scanner.pattern.noise
+        self._fov = min(self._scanner.pattern.field_of_view) if fov is None else fov
+        self._infrared = infrared
+        self._frame = self.frame(frame or self.sensor.link)
+        rates = [hertz for hertz in (rate, self.sensor.update_rate) if hertz > 0]
+        slower = min(rates, default=0.0)
+        # Gazebo leaves the sensor's own noise out; who states that alone means it.
+        self._error = DriftingError(
+            self.part,
+            f"range {self.sensor.link} {self.sensor.name}",
+            rate=slower,
+            offset=[offset + (own.mean if noise is None else 0.0)],
+            drift=[drift],
+            frequency=[frequency],
+            noise=[own.stddev if noise is None else noise],
+            scale=[1.0],
+        )
+        self._publisher = self.advertise(
+            topic, "sensor_msgs/msg/Range", rate=slower or None, qos="sensor"
+        )
+        self.part.schedule(slower, after=self._publish, active=lambda: self._publisher.wanted)
+
+    def reset(self) -> None:
+        self._error.restart()
+
+    def _publish(self) -> None:
+        pattern = self._scanner.pattern
+        ranges = self._scanner.measure(noisy=False).ranges
+        value = float(np.clip(ranges.min(), pattern.minimum, pattern.maximum))
+        if value < pattern.maximum:
+            value = float(self._error.add([value])[0])
+            value = min(max(value, pattern.minimum), pattern.maximum)
+        moment = header(self.part.time_ns, self._frame)
+        self._publisher.publish(
+            range_reading(moment, pattern, value, fov=self._fov, infrared=self._infrared)
+        )
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class RangeParameters:
+    topic: str = tag("topicName", "topic_name", default="/range", doc="Range.")
+    frame: str = tag(
+        "frameName", "frame_name", default="", doc="Frame of the messages; the link's when empty."
+    )
+    fov: float = tag("fov", default=0.05, unit="rad", doc="What the messages say of the opening.")
+    radiation: Literal["ultrasound", "infrared"] = tag(
+        "radiation", default="ultrasound", doc="What the messages say of the kind."
+    )
+    noise: float | None = tag(
+        "gaussianNoise", default=None, unit="m", doc="Standard deviation; else the sensor's noise."
+    )
+    update_rate: float = tag(
+        "updateRate",
+        "update_rate",
+        default=0.0,
+        unit="Hz",
+        doc="The slower of this and the sensor's counts; 0 is the sensor's.",
+    )
+
+
+class Range(_RangeBase):
+    """Publishes the nearest of a ray sensor's ranges; its maximum where there is nothing.
+
+    Source: gazebo_plugins, gazebo_ros_range.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_range.so",)
+    parameters: ClassVar[type] = RangeParameters
+    for_sensor: ClassVar[bool] = True
+
+    def configure(self) -> None:
+        config: RangeParameters = self.config
+        self._start(
+            topic=config.topic,
+            frame=config.frame,
+            rate=config.update_rate,
+            noise=config.noise,
+            fov=config.fov,
+            infrared=config.radiation == "infrared",
+        )
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class SonarParameters:
+    topic: str = tag("topicName", default="sonar", doc="Range.")
+    frame: str = tag(
+        "frameId", "frameName", default="", doc="Frame of the messages; the link's when empty."
+    )
+    noise: float | None = tag(
+        "gaussianNoise", default=None, unit="m", doc="Standard deviation; else the sensor's noise."
+    )
+    offset: float = tag("offset", default=0.0, unit="m", doc="Added to each range.")
+    drift: float = tag(
+        "drift", default=0.0, unit="m", doc="Standard deviation of an error that wanders."
+    )
+    drift_frequency: float = tag(
+        "driftFrequency", default=0.0, unit="1/s", doc="Inverse of the wandering's time constant."
+    )
+    update_rate: float = tag(
+        "updateRate",
+        default=0.0,
+        unit="Hz",
+        doc="The slower of this and the sensor's counts; 0 is the sensor's.",
+    )
+
+
+class HectorSonar(_RangeBase):
+    """Publishes the nearest of a ray sensor's ranges as ultrasound.
+
+    Source: hector_gazebo_plugins, gazebo_ros_sonar.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ("libhector_gazebo_ros_sonar.so",)
+    parameters: ClassVar[type] = SonarParameters
+    for_sensor: ClassVar[bool] = True
+
+    def configure(self) -> None:
+        config: SonarParameters = self.config
+        self._start(
+            topic=config.topic,
+            frame=config.frame,
+            rate=config.update_rate,
+            noise=config.noise,
+            fov=None,
+            infrared=False,
+            offset=config.offset,
+            drift=config.drift,
+            frequency=config.drift_frequency,
+        )

@@ -1,0 +1,112 @@
+"""``libgazebo_ros_ray_sensor.so``: one plugin for lasers, clouds and ranges, as ROS 2 has it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar, Literal
+
+import numpy as np
+
+from cartwheel.errors import PluginError
+from cartwheel.messages import header
+from cartwheel.plugins.base import Plugin
+from cartwheel.plugins.parameters import tag
+from cartwheel.plugins.scan import Scanner
+from cartwheel.plugins.scan_messages import laser_scan, point_cloud, point_cloud2, range_reading
+
+_POINT = np.dtype([("x", "<f4"), ("y", "<f4"), ("z", "<f4"), ("intensity", "<f4")])
+_OUTPUTS = ("LaserScan", "PointCloud", "PointCloud2", "Range")
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class RaySensorParameters:
+    output_type: str = tag(
+        "output_type",
+        "outputType",
+        default="sensor_msgs/PointCloud2",
+        doc="sensor_msgs/LaserScan, PointCloud, PointCloud2 or Range.",
+    )
+    topic: str = tag(
+        "topicName",
+        "topic_name",
+        default="",
+        doc="Else `<plugin's name>/out`; a `<remapping>` of `~/out` counts before both.",
+    )
+    frame: str = tag(
+        "frame_name", "frameName", default="", doc="Frame of the messages; the link's when empty."
+    )
+    radiation: Literal["ultrasound", "infrared", "infared"] = tag(
+        "radiation_type", "radiationType", default="infrared", doc="Of a Range."
+    )
+    min_intensity: float = tag(
+        "min_intensity", "minIntensity", default=0.0, doc="The least intensity that is told."
+    )
+    update_rate: float = tag(
+        "updateRate", "update_rate", default=0.0, unit="Hz", doc="Accepted: the sensor's counts."
+    )
+
+
+class RaySensor(Plugin[RaySensorParameters]):
+    """Publishes what a ray sensor measures, as the type that is asked for.
+
+    A LaserScan is of the middle row. Clouds hold the points that were hit. A Range is the least of
+    all rays: inf where nothing was hit, -inf where something is too near (REP 117).
+
+    Source: gazebo_plugins for ROS 2, gazebo_ros_ray_sensor, and gazebo_ros's conversions.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_ray_sensor.so",)
+    parameters: ClassVar[type] = RaySensorParameters
+    for_sensor: ClassVar[bool] = True
+
+    def configure(self) -> None:
+        sensor, config = self.sensor, self.config
+        assert sensor is not None
+        self._scanner = Scanner(self.part, sensor)
+        self._output = config.output_type.rsplit("/", 1)[-1]
+        if self._output not in _OUTPUTS:
+            raise PluginError(
+                f'<output_type> "{config.output_type}" is none of: '
+                + ", ".join(f"sensor_msgs/{name}" for name in _OUTPUTS),
+                origin=self.tag.origin,
+            )
+        self._frame = self.frame(config.frame or sensor.link)
+        topic = config.topic or f"{self.tag.name}/out"
+        rate = sensor.update_rate
+        self._publisher = self.advertise(
+            "out" if self.remaps("out") else topic,
+            f"sensor_msgs/msg/{self._output}",
+            rate=rate or None,
+            qos="sensor",
+        )
+        self.part.schedule(rate, after=self._publish, active=lambda: self._publisher.wanted)
+
+    def _publish(self) -> None:
+        moment = header(self.part.time_ns, self._frame)
+        pattern, scan = self._scanner.pattern, self._scanner.measure()
+        floor = self.config.min_intensity
+        if self._output == "LaserScan":
+            self._publisher.publish(laser_scan(moment, pattern, scan, floor=floor))
+            return
+        if self._output == "Range":
+            self._publisher.publish(
+                range_reading(
+                    moment,
+                    pattern,
+                    float(scan.ranges.min()),
+                    fov=max(pattern.field_of_view),
+                    infrared=self.config.radiation != "ultrasound",
+                )
+            )
+            return
+        hit = np.isfinite(scan.ranges)
+        points = scan.points(self._scanner.directions)[hit]
+        intensities = np.maximum(scan.intensities[hit], floor)
+        if self._output == "PointCloud":
+            self._publisher.publish(point_cloud(moment, points, intensities))
+            return
+        cloud = np.empty(len(points), dtype=_POINT)
+        for index, name in enumerate("xyz"):
+            cloud[name] = points[:, index]
+        cloud["intensity"] = intensities
+        self._publisher.publish(point_cloud2(moment, cloud, dense=True))

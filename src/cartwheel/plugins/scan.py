@@ -1,0 +1,256 @@
+"""What the plugins of ray sensors share: a scan's pattern, its measurement, its noise."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from cartwheel.description.model import Element, Sensor
+from cartwheel.errors import Diagnostic, Origin, PluginError
+from cartwheel.geometry import Array
+from cartwheel.plugins.noise import Noise, read_noise
+from cartwheel.simulation import Part
+
+_MOST_RAYS = 4_000_000
+_GPU_TYPES = {"gpu_ray", "gpu_lidar"}
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Sweep:
+    """The angles of a scan in one sense, even from first to last."""
+
+    count: int
+    first: float
+    last: float
+    """rad."""
+
+    @property
+    def step(self) -> float:
+        """rad; 0 where there is one angle."""
+        return (self.last - self.first) / (self.count - 1) if self.count > 1 else 0.0
+
+    def angles(self) -> Array:
+        """rad, shape (count,)."""
+        return np.linspace(self.first, self.last, self.count)
+
+
+_LEVEL = Sweep(count=1, first=0.0, last=0.0)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ScanPattern:
+    """Where a ray sensor looks and how well it measures; source: SDF, ``<ray>`` and ``<lidar>``."""
+
+    horizontal: Sweep
+    vertical: Sweep
+    minimum: float
+    maximum: float
+    """m."""
+    noise: Noise
+    precision: float
+    """m; ranges are multiples of it where it is above 0."""
+
+    @property
+    def field_of_view(self) -> tuple[float, float]:
+        """Horizontal and vertical, rad."""
+        return (
+            self.horizontal.last - self.horizontal.first,
+            self.vertical.last - self.vertical.first,
+        )
+
+    def directions(self) -> Array:
+        """Unit vectors, x forward and z up, shape (rows, columns, 3); the lowest row first."""
+        azimuth, elevation = np.meshgrid(self.horizontal.angles(), self.vertical.angles())
+        level = np.cos(elevation)
+        return np.stack(
+            [level * np.cos(azimuth), level * np.sin(azimuth), np.sin(elevation)], axis=-1
+        )
+
+
+def read_pattern(sensor: Sensor, report: Callable[[Diagnostic], None]) -> ScanPattern:
+    """What a sensor's ``<ray>`` or ``<lidar>`` says, with SDF's defaults.
+
+    Args:
+        sensor: With its elements.
+        report: Takes what is understood in another sense than it is written.
+
+    Raises:
+        PluginError: It has none, or one that no sensor can have; with its place.
+    """
+    ray = sensor.element.find("ray") or sensor.element.find("lidar")
+    if ray is None:
+        raise PluginError(
+            f'sensor "{sensor.name}" has neither <ray> nor <lidar>', origin=sensor.origin
+        )
+    across = ray.find("scan/horizontal")
+    if across is None:
+        raise PluginError(
+            f'sensor "{sensor.name}" has no <scan> with a <horizontal>', origin=ray.origin
+        )
+    horizontal = _sweep(across, report, samples=640)
+    upright = ray.find("scan/vertical")
+    vertical = _sweep(upright, report, samples=1) if upright is not None else _LEVEL
+    if horizontal.count * vertical.count > _MOST_RAYS:
+        raise PluginError(
+            f"a scan of {horizontal.count} x {vertical.count} rays is more than can be measured",
+            origin=across.origin,
+        )
+    limits = ray.find("range")
+    minimum = _number(limits, "min", 0.0)
+    maximum = _number(limits, "max", 0.0, endless=True)
+    if minimum < 0 or maximum <= minimum:
+        raise PluginError(
+            f'sensor "{sensor.name}" measures from {minimum:g} m to {maximum:g} m: '
+            "<max> must be above <min>, and <min> not below 0",
+            origin=limits.origin if limits is not None else ray.origin,
+        )
+    noise = ray.find("noise") or sensor.element.find("noise")
+    kind = noise.find("type") if noise is not None else None
+    quantized = kind is not None and kind.text.strip() == "gaussian_quantized"
+    precision = _number(noise, "precision", 0.0) if quantized else 0.0
+    if precision < 0:
+        raise PluginError(
+            "the <precision> of a noise cannot be below 0",
+            origin=noise.origin if noise is not None else ray.origin,
+        )
+    return ScanPattern(
+        horizontal=horizontal,
+        vertical=vertical,
+        minimum=minimum,
+        maximum=maximum,
+        noise=read_noise(noise),
+        precision=precision,
+    )
+
+
+def _sweep(element: Element, report: Callable[[Diagnostic], None], *, samples: int) -> Sweep:
+    asked = _number(element, "samples", samples)
+    resolution = _number(element, "resolution", 1.0)
+    first, last = _number(element, "min_angle", 0.0), _number(element, "max_angle", 0.0)
+    if asked < 1 or asked != int(asked):
+        raise PluginError(
+            f"<samples> {asked:g} must be a whole number above 0", origin=_place(element, "samples")
+        )
+    if resolution <= 0:
+        raise PluginError(
+            f"<resolution> {resolution:g} must be above 0",
+            origin=_place(element, "resolution"),
+            hint="It multiplies <samples>; 1 is one range a sample.",
+        )
+    if last < first:
+        report(
+            Diagnostic(
+                severity="warning",
+                message=f"<max_angle> {last:g} is below <min_angle> {first:g}: they are swapped",
+                origin=_place(element, "max_angle"),
+            )
+        )
+        first, last = last, first
+    count = max(1, int(asked * resolution))
+    if count == 1:
+        first = last = (first + last) / 2
+    return Sweep(count=count, first=first, last=last)
+
+
+def _place(element: Element, tag: str) -> Origin:
+    child = element.find(tag)
+    return child.origin if child is not None else element.origin
+
+
+def _number(element: Element | None, tag: str, default: float, *, endless: bool = False) -> float:
+    child = element.find(tag) if element is not None else None
+    if child is None:
+        return default
+    text = child.text.strip()
+    try:
+        number = float(text)
+    except ValueError:
+        number = math.nan
+    if math.isnan(number) or (math.isinf(number) and not (endless and number > 0)):
+        raise PluginError(f'<{tag}> "{text}" is not a finite number', origin=child.origin)
+    return number
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Scan:
+    """One measurement, row by row, the lowest row first."""
+
+    ranges: Array
+    """m, shape (rows, columns): -inf where something is too near, inf where nothing is near
+    enough (REP 117)."""
+    intensities: Array
+    """The laser_retro of what was hit, shape (rows, columns)."""
+
+    def points(self, directions: Array) -> Array:
+        """Where the ranges end, in the sensor's axes, in m, shape (rows, columns, 3).
+
+        Points that are not there are infinite.
+        """
+        # An infinite range along an axis would be no number in the others.
+        missing = ~np.isfinite(self.ranges)
+        places: Array = directions * np.where(missing, 1.0, self.ranges)[..., None]
+        places[missing] = np.inf
+        return places
+
+
+class Scanner:
+    """Measures a sensor's scan, at most once for each moment.
+
+    Args:
+        part: Of the model that carries the sensor.
+        sensor: With a ``<ray>`` or ``<lidar>``. One of a GPU type sees visuals, as a GPU does.
+
+    Raises:
+        PluginError: See `read_pattern`.
+    """
+
+    def __init__(self, part: Part, sensor: Sensor) -> None:
+        self.pattern = read_pattern(sensor, part.report)
+        self._part = part
+        self._name = f"scan {sensor.link} {sensor.name}"
+        self.directions = self.pattern.directions()
+        self._rays = part.rays(
+            sensor.link,
+            sensor.pose,
+            self.directions.reshape(-1, 3),
+            minimum=self.pattern.minimum,
+            maximum=self.pattern.maximum,
+            visuals=sensor.type in _GPU_TYPES,
+        )
+        self._bias = self._draw_bias()
+
+    def measure(self, *, noisy: bool = True) -> Scan:
+        """The ranges of this moment, with the sensor's own noise where `noisy`."""
+        ranges, intensities = self._rays.cast()
+        if noisy:
+            self._blur(ranges)
+        shape = self.directions.shape[:2]
+        return Scan(ranges=ranges.reshape(shape), intensities=intensities.reshape(shape))
+
+    def random(self, purpose: str) -> np.random.Generator:
+        """Noise of this moment for one purpose."""
+        return self._part.random(f"{self._name} {purpose}")
+
+    def _blur(self, ranges: Array) -> None:
+        noise, precision = self.pattern.noise, self.pattern.precision
+        if noise == Noise() and not precision:
+            return
+        measured = np.isfinite(ranges)
+        blurred = ranges + (noise.mean + self._bias)
+        if noise.stddev > 0:
+            # One for each ray, so that what one ray meets changes no other's noise.
+            blurred += self.random("noise").normal(0.0, noise.stddev, ranges.shape)
+        if precision > 0:
+            blurred = np.round(blurred / precision) * precision
+        np.clip(blurred, self.pattern.minimum, self.pattern.maximum, out=blurred)
+        ranges[measured] = blurred[measured]
+
+    def _draw_bias(self) -> float:
+        noise = self.pattern.noise
+        random = self.random("bias")
+        bias = float(random.normal(noise.bias_mean, noise.bias_stddev))
+        # Gazebo gives a bias either sign.
+        return bias if random.random() < 0.5 else -bias

@@ -1,0 +1,116 @@
+"""A scan as the messages that ROS has for it."""
+
+from __future__ import annotations
+
+import functools
+from typing import Any
+
+import numpy as np
+
+from cartwheel.geometry import Array
+from cartwheel.messages import message_class
+from cartwheel.plugins.scan import Scan, ScanPattern
+
+_DATATYPES = {np.dtype(np.float32): "FLOAT32", np.dtype(np.uint16): "UINT16"}
+
+
+def laser_scan(moment: Any, pattern: ScanPattern, scan: Scan, *, floor: float = 0.0) -> Any:
+    """A LaserScan of the middle row.
+
+    Args:
+        moment: The header.
+        pattern: Of the scan.
+        scan: What was measured.
+        floor: The least intensity that is told.
+    """
+    sweep = pattern.horizontal
+    row = pattern.vertical.count // 2
+    return message_class("sensor_msgs/msg/LaserScan")(
+        header=moment,
+        angle_min=sweep.first,
+        angle_max=sweep.last,
+        angle_increment=sweep.step,
+        time_increment=0.0,
+        scan_time=0.0,
+        range_min=pattern.minimum,
+        range_max=pattern.maximum,
+        ranges=scan.ranges[row].astype(np.float32),
+        intensities=np.maximum(scan.intensities[row], floor).astype(np.float32),
+    )
+
+
+def range_reading(
+    moment: Any, pattern: ScanPattern, value: float, *, fov: float, infrared: bool
+) -> Any:
+    """A Range.
+
+    Args:
+        moment: The header.
+        pattern: Of the scan that it was made from.
+        value: m.
+        fov: Opening angle, rad.
+        infrared: Light; else sound.
+    """
+    kind = message_class("sensor_msgs/msg/Range")
+    return kind(
+        header=moment,
+        radiation_type=kind.INFRARED if infrared else kind.ULTRASOUND,
+        field_of_view=fov,
+        min_range=pattern.minimum,
+        max_range=pattern.maximum,
+        range=value,
+        variance=0.0,
+    )
+
+
+def point_cloud(moment: Any, points: Array, intensities: Array) -> Any:
+    """A PointCloud with one channel, ``intensity``.
+
+    Args:
+        moment: The header.
+        points: m, shape (n, 3).
+        intensities: Shape (n,).
+    """
+    point = message_class("geometry_msgs/msg/Point32")
+    return message_class("sensor_msgs/msg/PointCloud")(
+        header=moment,
+        points=[point(x, y, z) for x, y, z in points.tolist()],
+        channels=[
+            message_class("sensor_msgs/msg/ChannelFloat32")(
+                name="intensity", values=intensities.astype(np.float32)
+            )
+        ],
+    )
+
+
+def point_cloud2(moment: Any, cloud: Any, *, dense: bool) -> Any:
+    """A PointCloud2 with the fields of a structured array.
+
+    Args:
+        moment: The header.
+        cloud: Shape (n,), or (height, width) of an organised cloud.
+        dense: Whether every point is one.
+    """
+    height, width = cloud.shape if cloud.ndim == 2 else (1, len(cloud))
+    step = cloud.dtype.itemsize
+    return message_class("sensor_msgs/msg/PointCloud2")(
+        header=moment,
+        height=height,
+        width=width,
+        fields=_fields(cloud.dtype),
+        is_bigendian=False,
+        point_step=step,
+        row_step=step * width,
+        data=np.ascontiguousarray(cloud).reshape(-1).view(np.uint8),
+        is_dense=dense,
+    )
+
+
+@functools.cache
+def _fields(layout: np.dtype[np.void]) -> list[Any]:
+    kind = message_class("sensor_msgs/msg/PointField")
+    assert layout.fields is not None
+    return [
+        kind(name=name, offset=place[1], datatype=getattr(kind, _DATATYPES[place[0]]), count=1)
+        for name, place in layout.fields.items()
+    ]

@@ -1,0 +1,88 @@
+"""``libgazebo_ros_skid_steer_drive.so``: four driven wheels that turn by skidding."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from cartwheel.errors import PluginError
+from cartwheel.plugins.odometry import Odometry, planar_covariance
+from cartwheel.plugins.parameters import tag
+from cartwheel.plugins.wheel_drive import WheelDrive, WheelPair
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class SkidSteerParameters:
+    left_front: str = tag("leftFrontJoint", default="left_front_joint", doc="Joint of that wheel.")
+    right_front: str = tag(
+        "rightFrontJoint", default="right_front_joint", doc="Joint of that wheel."
+    )
+    left_rear: str = tag("leftRearJoint", default="left_rear_joint", doc="Joint of that wheel.")
+    right_rear: str = tag("rightRearJoint", default="right_rear_joint", doc="Joint of that wheel.")
+    wheel_separation: float = tag(
+        "wheelSeparation", default=0.4, unit="m", doc="Between left and right."
+    )
+    wheel_diameter: float = tag("wheelDiameter", default=0.15, unit="m", doc="Of all wheels.")
+    torque: float = tag(
+        "torque", "wheelTorque", default=5.0, unit="N m", doc="The most that each motor gives."
+    )
+    command_topic: str = tag("commandTopic", "topicName", default="cmd_vel", doc="Twist.")
+    odometry_topic: str = tag("odometryTopic", default="odom", doc="Odometry.")
+    odometry_frame: str = tag("odometryFrame", default="odom", doc="Frame of the odometry.")
+    base_frame: str = tag(
+        "robotBaseFrame",
+        default="base_footprint",
+        doc="Link whose pose is told; the root link where there is none of that name.",
+    )
+    update_rate: float = tag("updateRate", default=100.0, unit="Hz", doc="Of control and topics.")
+    broadcast_tf: bool = tag("broadcastTF", default=False, doc="Publish odometry's transform.")
+    covariance_x: float = tag("covariance_x", default=1e-4, unit="m²", doc="Of the odometry.")
+    covariance_y: float = tag("covariance_y", default=1e-4, unit="m²", doc="Of the odometry.")
+    covariance_yaw: float = tag("covariance_yaw", default=1e-2, unit="rad²", doc="Of the odometry.")
+
+
+class SkidSteerDrive(WheelDrive):
+    """Drives four wheels by Twist; the odometry is the true pose.
+
+    Such a robot turns less than it is told: its tyres slide sideways, and lose as much of
+    their turning. Source: gazebo_plugins, gazebo_ros_skid_steer_drive.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_skid_steer_drive.so",)
+    parameters: ClassVar[type] = SkidSteerParameters
+
+    def configure(self) -> None:
+        config: SkidSteerParameters = self.config
+        if config.torque <= 0:
+            raise PluginError(f"<torque> {config.torque:g} must be above 0", origin=self.tag.origin)
+        pairs = [
+            WheelPair(
+                left=left,
+                right=right,
+                separation=config.wheel_separation,
+                diameter=config.wheel_diameter,
+            )
+            for left, right in (
+                (config.left_front, config.right_front),
+                (config.left_rear, config.right_rear),
+            )
+        ]
+        self._take_wheels(pairs, torque=config.torque)
+        self.odometry = Odometry(
+            self,
+            topic=config.odometry_topic,
+            frame=config.odometry_frame,
+            base=config.base_frame,
+            rate=config.update_rate,
+            transform=config.broadcast_tf,
+            pose_covariance=planar_covariance(
+                config.covariance_x, config.covariance_y, config.covariance_yaw
+            ),
+        )
+        self._run(
+            command_topic=config.command_topic,
+            base=config.base_frame,
+            encoded=False,
+            control_rate=config.update_rate,
+            rate=config.update_rate,
+        )

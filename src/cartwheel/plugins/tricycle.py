@@ -1,0 +1,179 @@
+"""``libgazebo_ros_tricycle_drive.so``: one wheel that drives and steers, two that roll."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, ClassVar, Literal
+
+from cartwheel.errors import PluginError
+from cartwheel.plugins.odometry import Odometry, planar_covariance
+from cartwheel.plugins.parameters import tag
+from cartwheel.plugins.steered_drive import SteeredDrive, toward
+from cartwheel.plugins.wheel_states import JointStates, WheelTransforms
+
+_QUARTER = math.pi / 2
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class TricycleParameters:
+    steering_joint: str = tag(
+        "steeringJoint", default="front_steering_joint", doc="Turns the driven wheel's fork."
+    )
+    wheel_joint: str = tag(
+        "actuatedWheelJoint", default="front_wheel_joint", doc="Joint of the driven wheel."
+    )
+    left_joint: str = tag(
+        "encoderWheelLeftJoint", default="left_wheel_joint", doc="Joint of the left rolling wheel."
+    )
+    right_joint: str = tag(
+        "encoderWheelRightJoint",
+        default="right_wheel_joint",
+        doc="Joint of the right rolling wheel.",
+    )
+    wheel_diameter: float = tag(
+        "actuatedWheelDiameter", default=0.15, unit="m", doc="Of the driven wheel."
+    )
+    encoder_diameter: float = tag(
+        "encoderWheelDiameter", default=0.15, unit="m", doc="Of the rolling wheels."
+    )
+    encoder_separation: float = tag(
+        "encoderWheelSeparation", default=0.5, unit="m", doc="Between the rolling wheels."
+    )
+    wheel_torque: float = tag(
+        "wheelTorque", default=5.0, unit="N m", doc="The most that each motor gives."
+    )
+    wheel_acceleration: float = tag(
+        "wheelAcceleration",
+        default=0.0,
+        unit="rad/s²",
+        doc="Ramp of the driven wheel's turning; 0 is none.",
+    )
+    wheel_deceleration: float | None = tag(
+        "wheelDeceleration",
+        default=None,
+        unit="rad/s²",
+        doc="The same towards a stand; as wheelAcceleration when missing.",
+    )
+    wheel_tolerance: float = tag(
+        "wheelSpeedTolerance", default=0.01, unit="rad/s", doc="Accepted: the ramp ends exactly."
+    )
+    steering_speed: float = tag(
+        "steeringSpeed", default=0.0, unit="rad/s", doc="Of the fork; 0 is at once."
+    )
+    steering_tolerance: float = tag(
+        "steeringAngleTolerance", default=0.01, unit="rad", doc="Accepted: the angle is exact."
+    )
+    command_topic: str = tag(
+        "commandTopic",
+        default="cmd_vel",
+        doc="Twist: linear.x is the driven wheel's speed, angular.z its steering angle in rad.",
+    )
+    odometry_topic: str = tag("odometryTopic", default="odom", doc="Odometry.")
+    odometry_frame: str = tag("odometryFrame", default="odom", doc="Frame of the odometry.")
+    base_frame: str = tag(
+        "robotBaseFrame",
+        default="base_link",
+        doc="Link whose pose is told; the root link where there is none of that name.",
+    )
+    update_rate: float = tag("updateRate", default=100.0, unit="Hz", doc="Of control and topics.")
+    source: Literal["world", "encoder"] = tag(
+        "odometrySource",
+        default="world",
+        doc="world: the true pose; encoder: what the rolling wheels' turning gives.",
+    )
+    publish_wheel_tf: bool = tag(
+        "publishWheelTF", default=False, doc="Publish the joints' transforms."
+    )
+    publish_joint_state: bool = tag(
+        "publishWheelJointState", default=False, doc="Publish the joints on joint_states."
+    )
+
+
+class TricycleDrive(SteeredDrive):
+    """Drives and steers one wheel by Twist, and tells where that took the robot.
+
+    Source: gazebo_plugins, gazebo_ros_tricycle_drive.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_tricycle_drive.so",)
+    empty_is_model: ClassVar[bool] = True
+    prefixes_by_namespace: ClassVar[bool] = True
+    parameters: ClassVar[type] = TricycleParameters
+
+    def configure(self) -> None:
+        config: TricycleParameters = self.config
+        origin, part = self.tag.origin, self.part
+        for value, what in (
+            (config.wheel_diameter, "actuatedWheelDiameter"),
+            (config.encoder_diameter, "encoderWheelDiameter"),
+            (config.encoder_separation, "encoderWheelSeparation"),
+            (config.wheel_torque, "wheelTorque"),
+        ):
+            if value <= 0:
+                raise PluginError(f"<{what}> {value:g} must be above 0", origin=origin)
+        names = (config.steering_joint, config.wheel_joint, config.left_joint, config.right_joint)
+        joints = [part.joint(name, origin=origin) for name in names]
+        self._left, self._right = joints[2], joints[3]
+        # Gazebo sets the angle at once where no speed is given: nothing limits its torque.
+        strength = config.wheel_torque if config.steering_speed > 0 else None
+        self._fork = part.servo(config.steering_joint, max_effort=strength, origin=origin)
+        self._motor = part.velocity_motor(
+            config.wheel_joint, max_effort=config.wheel_torque, origin=origin
+        )
+        rate = config.update_rate
+        self.odometry = Odometry(
+            self,
+            topic=config.odometry_topic,
+            frame=config.odometry_frame,
+            base=config.base_frame,
+            rate=rate,
+            transform=True,
+            wheels=WheelTransforms(self, joints) if config.publish_wheel_tf else None,
+            pose_covariance=planar_covariance(1e-5, 1e-5, 1e-3),
+        )
+        if config.publish_joint_state:
+            self.joint_states = JointStates(self, joints, rate=rate, velocities=True, efforts=True)
+        self._run(
+            command_topic=config.command_topic,
+            base=config.base_frame,
+            control_rate=rate,
+            rate=rate,
+        )
+
+    def reset(self) -> None:
+        super().reset()
+        self._speed = self._angle = 0.0
+        self._turned: tuple[float, float] | None = None
+
+    def _steer(self, seconds: float) -> None:
+        config: TricycleParameters = self.config
+        target = self._forward / (config.wheel_diameter / 2)
+        slows = abs(target) < abs(self._speed)
+        ramp = config.wheel_acceleration
+        if slows and config.wheel_deceleration is not None and ramp > 0:
+            ramp = config.wheel_deceleration
+        self._speed = toward(self._speed, target, ramp * seconds) if ramp > 0 else target
+        self._motor.command(self._speed)
+        angle = min(max(self._turn, -_QUARTER), _QUARTER)
+        swing = config.steering_speed
+        self._angle = toward(self._angle, angle, swing * seconds) if swing > 0 else angle
+        self._fork.command_position(self._angle)
+        if config.source == "encoder":
+            self._integrate(seconds)
+
+    def _integrate(self, seconds: float) -> None:
+        config: TricycleParameters = self.config
+        turned = (self._left.position, self._right.position)
+        if self._turned is not None:
+            radius = config.encoder_diameter / 2
+            left, right = ((turned[i] - self._turned[i]) * radius for i in (0, 1))
+            # Gazebo's has the sign of a robot whose left and right are swapped.
+            turn = (right - left) / config.encoder_separation
+            self._reckoning.go((left + right) / 2, turn, seconds)
+        self._turned = turned
+
+    def _motion(self) -> Any:
+        if self.config.source == "encoder":
+            return self._reckoning.motion()
+        return super()._motion()

@@ -1,0 +1,125 @@
+"""``libgazebo_ros_velodyne_laser.so`` and its GPU kind: lidars with many rings."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from cartwheel.errors import PluginError
+from cartwheel.messages import header
+from cartwheel.plugins.base import Plugin
+from cartwheel.plugins.parameters import tag
+from cartwheel.plugins.scan import Scanner
+from cartwheel.plugins.scan_messages import point_cloud2
+
+_POINT = np.dtype(
+    [
+        ("x", "<f4"),
+        ("y", "<f4"),
+        ("z", "<f4"),
+        ("intensity", "<f4"),
+        ("ring", "<u2"),
+        ("time", "<f4"),
+    ]
+)
+"""As the driver of the real one packs it: 22 bytes."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class VelodyneParameters:
+    topic: str = tag(
+        "topicName",
+        "topic_name",
+        default="/points",
+        doc="PointCloud2; a `<remapping>` of `~/out` counts before it.",
+    )
+    frame: str = tag(
+        "frameName", "frame_name", default="", doc="Frame of the messages; the link's when empty."
+    )
+    organize: bool = tag(
+        "organize_cloud", default=False, doc="One row a column of rays, NaN where nothing was hit."
+    )
+    min_range: float = tag("min_range", default=0.0, unit="m", doc="Nearer points are left out.")
+    max_range: float = tag(
+        "max_range", default=math.inf, unit="m", doc="Farther points are left out."
+    )
+    min_intensity: float | None = tag(
+        "min_intensity", default=None, doc="Points of less are left out."
+    )
+    noise: float = tag(
+        "gaussianNoise",
+        "gaussian_noise",
+        default=0.0,
+        unit="m",
+        doc="Standard deviation of ranges.",
+    )
+    update_rate: float = tag(
+        "updateRate", "update_rate", default=0.0, unit="Hz", doc="Accepted: the sensor's counts."
+    )
+
+
+class VelodyneLaser(Plugin[VelodyneParameters]):
+    """Publishes the points that a ray sensor hits, with the ring of each, the lowest being 0.
+
+    The points come column by column, and all of one moment: their ``time`` is 0.
+
+    Source: velodyne_simulator, GazeboRosVelodyneLaser.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = (
+        "libgazebo_ros_velodyne_laser.so",
+        "libgazebo_ros_velodyne_gpu_laser.so",
+    )
+    parameters: ClassVar[type] = VelodyneParameters
+    for_sensor: ClassVar[bool] = True
+    prefixes_by_namespace: ClassVar[bool] = True
+
+    def configure(self) -> None:
+        sensor, config = self.sensor, self.config
+        assert sensor is not None
+        if config.noise < 0:
+            raise PluginError("<gaussianNoise> cannot be below 0", origin=self.tag.origin)
+        self._scanner = Scanner(self.part, sensor)
+        pattern = self._scanner.pattern
+        self._near = max(config.min_range, pattern.minimum)
+        self._far = min(config.max_range, pattern.maximum)
+        if self._near >= self._far:
+            raise PluginError(
+                f"no point lies between {self._near:g} m and {self._far:g} m",
+                origin=self.tag.origin,
+                hint="<min_range> and <max_range> narrow the sensor's own <range>.",
+            )
+        self._frame = self.frame(config.frame or sensor.link)
+        rate = sensor.update_rate
+        self._publisher = self.advertise(
+            "out" if self.remaps("out") else config.topic,
+            "sensor_msgs/msg/PointCloud2",
+            rate=rate or None,
+            qos="sensor",
+        )
+        self.part.schedule(rate, after=self._publish, active=lambda: self._publisher.wanted)
+
+    def _publish(self) -> None:
+        config = self.config
+        scan = self._scanner.measure()
+        ranges = scan.ranges
+        kept = (ranges > self._near) & (ranges < self._far)
+        if config.min_intensity is not None:
+            kept &= scan.intensities >= config.min_intensity
+        if config.noise > 0:
+            ranges = ranges + self._scanner.random("points").normal(0.0, config.noise, ranges.shape)
+            kept &= (ranges > self._near) & (ranges < self._far)
+        rows, columns = ranges.shape
+        places = self._scanner.directions * np.where(kept, ranges, np.nan)[..., None]
+        cloud = np.zeros((columns, rows), dtype=_POINT)
+        for index, name in enumerate("xyz"):
+            cloud[name] = places[..., index].T
+        cloud["intensity"] = np.where(kept, scan.intensities, np.nan).T
+        cloud["ring"] = np.arange(rows)
+        if not config.organize:
+            cloud = cloud[kept.T]
+        moment = header(self.part.time_ns, self._frame)
+        self._publisher.publish(point_cloud2(moment, cloud, dense=not config.organize))
