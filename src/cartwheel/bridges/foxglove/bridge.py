@@ -1,0 +1,327 @@
+"""A server of Foxglove's protocol beside a simulation."""
+
+from __future__ import annotations
+
+import logging
+import queue
+import threading
+import time
+from collections.abc import Callable
+from typing import Any
+
+from cartwheel.bridges.foxglove.controls import Controls
+from cartwheel.bridges.foxglove.incoming import ENCODINGS, Incoming, offered
+from cartwheel.bridges.foxglove.listener import Listener
+from cartwheel.bridges.foxglove.publication import READER, Publication
+from cartwheel.bridges.foxglove.values import Values
+from cartwheel.errors import CartwheelError, Diagnostic
+from cartwheel.graph import Graph, Service, Subscription, TopicInfo
+
+PORT = 8765
+"""Foxglove's own."""
+BACKLOG = 256
+"""Messages that may wait for a client. The oldest is dropped then; and a client that has let
+as many words about time and topics wait is sent away, which frees what waits for it."""
+_TIME_RATE = 10.0
+"""Hz of wall time at which clients are told the time."""
+_STRING = "std_msgs/msg/String"
+_TOLD = 500
+
+Report = Callable[[Diagnostic], None]
+Assets = Callable[[str], bytes | None]
+
+
+class FoxgloveBridge:
+    """Makes topics, services and parameters of a graph those of a Foxglove server.
+
+    Everything is lazy: a topic is read while a client reads it. One thread packs and sends;
+    the simulation's only leaves its messages. A client that takes nothing costs memory, up to
+    its backlog, and nobody else anything.
+
+    Args:
+        graph: Of the simulation.
+        name: What clients show.
+        host: Address to listen on.
+        port: 0 takes any that is free.
+        controls: Of time.
+        assets: The content of a mesh or texture by its URI; None where there is none.
+        time_range: Of a run that has an end, in ns: clients may then hold and resume it.
+        report: Takes what the user should know, from any thread.
+
+    Raises:
+        CartwheelError: The package foxglove-sdk is missing.
+    """
+
+    def __init__(
+        self,
+        graph: Graph,
+        *,
+        name: str,
+        controls: Controls,
+        host: str = "127.0.0.1",
+        port: int = PORT,
+        assets: Assets = lambda _: None,
+        time_range: tuple[int, int] | None = None,
+        report: Report = lambda _: None,
+    ) -> None:
+        require()
+        self._graph = graph
+        self._name, self._host, self._port = name, host, port
+        self._controls = controls
+        self._assets = assets
+        self._time_range = time_range
+        self._report = report
+        self._server: Any = None
+        self._context: Any = None
+        self._publications: dict[str, Publication] = {}
+        self._by_channel: dict[int, Publication] = {}
+        self._services: dict[str, Service] = {}
+        self._descriptions: dict[str, str] = {}
+        self._watched: dict[str, Subscription] = {}
+        self._jobs: queue.SimpleQueue[Callable[[], None] | None] = queue.SimpleQueue()
+        self._pending: set[str] = set()
+        self._surveying = False
+        self._told: set[str] = set()
+        self._closed = False
+        self._incoming = Incoming(graph, self._warn)
+        self._values = Values(
+            graph, controls=controls, descriptions=self._descriptions, tell=self._warn
+        )
+        self._thread = threading.Thread(target=self._run, name="foxglove", daemon=True)
+
+    @property
+    def port(self) -> int:
+        """Where it listens."""
+        return int(self._server.port)
+
+    @property
+    def url(self) -> str:
+        """Where clients reach it."""
+        host = "127.0.0.1" if self._host in ("0.0.0.0", "") else self._host  # noqa: S104
+        return f"ws://{host}:{self.port}"
+
+    def start(self) -> None:
+        """Listens.
+
+        Raises:
+            CartwheelError: The address cannot be had.
+        """
+        import foxglove
+        from foxglove.websocket import Capability
+
+        capabilities = [
+            Capability.ClientPublish,
+            Capability.Parameters,
+            Capability.Services,
+            Capability.ConnectionGraph,
+            Capability.Time,
+        ]
+        if self._time_range is not None:
+            capabilities.append(Capability.PlaybackControl)
+        # What it says of clients that leave is not for the terminal.
+        logging.getLogger("foxglove").addHandler(logging.NullHandler())
+        self._context = foxglove.Context()
+        listener = Listener(
+            incoming=self._incoming,
+            values=self._values,
+            controls=self._controls,
+            subscribed=self._subscribed,
+            tell=self._warn,
+        )
+        try:
+            self._server = foxglove.start_server(
+                name=self._name,
+                host=self._host,
+                port=self._port,
+                capabilities=capabilities,
+                server_listener=listener,
+                supported_encodings=ENCODINGS,
+                asset_handler=self._assets,
+                context=self._context,
+                playback_time_range=self._time_range,
+                message_backlog_size=BACKLOG,
+            )
+        except Exception as error:  # whatever the library has for it
+            raise CartwheelError(
+                f"the Foxglove server cannot listen on {self._host}:{self._port}: {error}",
+                hint="Choose another port with --foxglove-port.",
+            ) from error
+        self._mirror()
+        self._graph.on_change.append(self._changed)
+        self._thread.start()
+
+    def close(self) -> None:
+        """Sends all clients away."""
+        if self._closed:
+            return
+        self._closed = True
+        if self._changed in self._graph.on_change:
+            self._graph.on_change.remove(self._changed)
+        self._jobs.put(None)
+        if self._thread.is_alive():
+            self._thread.join(timeout=5.0)
+        for subscription in self._watched.values():
+            subscription.close()
+        for publication in self._publications.values():
+            publication.close()
+        if self._server is not None:
+            self._server.stop()
+
+    # -- from other threads
+
+    def _changed(self) -> None:
+        """The graph is locked."""
+        if not self._surveying:
+            self._surveying = True
+            self._jobs.put(self._mirror)
+
+    def _subscribed(self, channel: int, joins: bool) -> None:
+        """On a thread of the server's."""
+
+        def note() -> None:
+            publication = self._by_channel.get(channel)
+            if publication is not None:
+                (publication.join if joins else publication.leave)()
+
+        self._jobs.put(note)
+
+    def _wake(self, topic: str) -> None:
+        """On the simulation's thread."""
+        if topic not in self._pending:
+            self._pending.add(topic)
+            self._jobs.put(lambda: self._send(topic))
+
+    # -- on our thread
+
+    def _run(self) -> None:
+        due = time.monotonic()
+        while not self._closed:
+            try:
+                job = self._jobs.get(timeout=max(0.0, due - time.monotonic()))
+            except queue.Empty:
+                job = self._tell_time
+                due = time.monotonic() + 1.0 / _TIME_RATE
+            if job is None:
+                return
+            try:
+                job()
+            except CartwheelError as error:
+                self._warn(error.message)
+            except Exception as error:  # noqa: BLE001 - one topic must not end the others
+                self._warn(f"a fault of the bridge: {type(error).__name__}: {error}")
+
+    def _tell_time(self) -> None:
+        self._server.broadcast_time(self._controls.state().time_ns)
+
+    def _send(self, topic: str) -> None:
+        self._pending.discard(topic)
+        publication = self._publications.get(topic)
+        if publication is not None:
+            publication.send()
+
+    def _mirror(self) -> None:
+        """Makes the server offer what the graph does."""
+        self._surveying = False
+        topics = {
+            info.name: info
+            for info in self._graph.topics()
+            if info.publishers or set(info.subscribers) - {READER}
+        }
+        services = {service.name: service for service in self._graph.services()}
+        self._mirror_topics(topics)
+        self._mirror_descriptions(topics)
+        self._mirror_services(services)
+        self._tell_connections(topics, services)
+
+    def _mirror_topics(self, topics: dict[str, TopicInfo]) -> None:
+        for name, publication in list(self._publications.items()):
+            if name not in topics or topics[name].type != publication.info.type:
+                del self._publications[name]
+                del self._by_channel[publication.channel.id()]
+                publication.close()
+            else:
+                publication.latched = topics[name].qos == "latched"
+        for name, info in topics.items():
+            if name not in self._publications:
+                publication = Publication(
+                    self._graph,
+                    info,
+                    context=self._context,
+                    time_ns=lambda: self._controls.state().time_ns,
+                    wake=lambda name=name: self._wake(name),  # type: ignore[misc]
+                    tell=self._warn,
+                )
+                self._publications[name] = publication
+                self._by_channel[publication.channel.id()] = publication
+
+    def _mirror_descriptions(self, topics: dict[str, TopicInfo]) -> None:
+        described = {
+            name
+            for name, info in topics.items()
+            if info.type == _STRING and name.endswith("robot_description") and info.publishers
+        }
+        for name in set(self._watched) - described:
+            self._watched.pop(name).close()
+            self._descriptions.pop(name, None)
+        for name in described - set(self._watched):
+            self._watched[name] = self._graph.subscribe(name, self._describer(name), node=READER)
+
+    def _describer(self, name: str) -> Callable[[Any], None]:
+        def take(message: Any) -> None:
+            self._descriptions[name] = message.data
+            self._jobs.put(lambda: self._server.publish_parameter_values(self._values.get([name])))
+
+        return take
+
+    def _mirror_services(self, services: dict[str, Service]) -> None:
+        gone = [name for name, one in self._services.items() if services.get(name) is not one]
+        if gone:
+            self._server.remove_services(gone)
+            for name in gone:
+                del self._services[name]
+        for name, service in services.items():
+            if name not in self._services:
+                try:
+                    self._server.add_services([offered(self._graph, service)])
+                except CartwheelError as error:
+                    self._warn(f"service {name} is left out: {error.message}")
+                self._services[name] = service
+
+    def _tell_connections(self, topics: dict[str, TopicInfo], services: dict[str, Service]) -> None:
+        import foxglove
+
+        graph = foxglove.ConnectionGraph()
+        for info in topics.values():
+            if info.publishers:
+                graph.set_published_topic(info.name, sorted(set(info.publishers)))
+            if info.subscribers:
+                graph.set_subscribed_topic(info.name, sorted(set(info.subscribers)))
+        for service in services.values():
+            graph.set_advertised_service(service.name, [service.node])
+        self._server.publish_connection_graph(graph)
+
+    def _warn(self, text: str) -> None:
+        """Once for each text, to the user and to clients."""
+        if text in self._told or len(self._told) >= _TOLD:
+            return
+        self._told.add(text)
+        self._report(Diagnostic(severity="warning", message=f"Foxglove: {text}"))
+        if self._server is not None and not self._closed:
+            from foxglove import StatusLevel
+
+            self._server.publish_status(text, StatusLevel.Warning)
+
+
+def require() -> None:
+    """Sees that the extra is there.
+
+    Raises:
+        CartwheelError: It is not.
+    """
+    try:
+        import foxglove  # noqa: F401
+    except ImportError as error:
+        raise CartwheelError(
+            f"--foxglove needs the package foxglove-sdk: {error}",
+            hint='pip install "cartwheel[foxglove]"',
+        ) from None

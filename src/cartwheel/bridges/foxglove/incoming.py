@@ -1,0 +1,131 @@
+"""What clients send: messages, requests, values of parameters."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from typing import Any
+
+from cartwheel.errors import CartwheelError, GraphError
+from cartwheel.graph import Graph, Service
+from cartwheel.messages import (
+    decode_cdr,
+    encode_cdr,
+    from_dict,
+    service_classes,
+    to_dict,
+    type_name,
+)
+from cartwheel.messages.ros1 import decode_ros1
+from cartwheel.messages.ros2 import ros2_definition
+
+ENCODINGS = ["cdr", "ros1", "json"]
+"""Of messages that clients may send."""
+_BACKLOG = 1000
+"""Messages that the simulation has not taken yet."""
+_CALL = 120.0
+"""s that the simulation may take to answer a service."""
+
+
+def decode(data: bytes, encoding: str, kind: str) -> Any:
+    """A message of bytes that anyone may have sent.
+
+    Raises:
+        CartwheelError: They are none.
+    """
+    if encoding == "cdr":
+        return decode_cdr(data, kind)
+    if encoding == "ros1":
+        return decode_ros1(data, kind)
+    if encoding != "json":
+        raise GraphError(f'messages cannot be sent as "{encoding}"')
+    try:
+        return from_dict(kind, json.loads(data))
+    except ValueError as error:
+        raise GraphError(f"that is no JSON: {error}") from None
+
+
+class Incoming:
+    """Messages of clients on their way into the graph.
+
+    Args:
+        graph: Where they go.
+        tell: Takes a warning, for clients and the user.
+    """
+
+    def __init__(self, graph: Graph, tell: Callable[[str], None]) -> None:
+        self._graph = graph
+        self._tell = tell
+        self._channels: dict[tuple[int, int], tuple[str, str, str]] = {}
+        """Topic, encoding and type by client and channel."""
+        self._waiting = 0
+
+    def advertise(self, client: int, channel: int, topic: str, encoding: str, kind: str) -> None:
+        """A client will send messages on a channel."""
+        self._channels[client, channel] = (topic, encoding, type_name(kind))
+
+    def unadvertise(self, client: int, channel: int) -> None:
+        """It will not any more."""
+        self._channels.pop((client, channel), None)
+
+    def take(self, client: int, channel: int, data: bytes) -> None:
+        """A message."""
+        known = self._channels.get((client, channel))
+        if known is None:
+            return
+        topic, encoding, kind = known
+        if self._waiting >= _BACKLOG:
+            self._tell("the simulation does not keep up with what clients send: it is dropped")
+            return
+        try:
+            if topic not in {info.name for info in self._graph.topics()}:
+                self._tell(f"nobody reads {topic}: what a client sends there is lost")
+                return
+            message = decode(data, encoding, kind)
+            self._waiting += 1
+            self._graph.publish(topic, kind, message)
+            self._graph.post(self._taken)
+        except CartwheelError as error:
+            self._tell(f"{topic}: {error.message}")
+
+    def _taken(self) -> None:
+        self._waiting -= 1
+
+
+def offered(graph: Graph, service: Service) -> Any:
+    """A service of the graph as the server takes it; it is called on threads of the server.
+
+    Raises:
+        UnknownNameError: Its type is not known.
+    """
+    import foxglove
+
+    request_class, response_class = service_classes(service.type)
+
+    def schema(made: Any) -> Any:
+        kind = made.__msgtype__
+        text = ros2_definition(kind).encode()
+        return foxglove.MessageSchema(
+            encoding="cdr", schema=foxglove.Schema(name=kind, encoding="ros2msg", data=text)
+        )
+
+    def handle(request: Any) -> bytes:
+        # What is raised is what the client is told.
+        message = decode(bytes(request.payload), request.encoding, request_class.__msgtype__)
+        future = graph.call(service.name, message)
+        try:
+            response = future.result(_CALL)
+        except TimeoutError:
+            future.cancel()
+            raise GraphError(f"the simulation did not answer within {_CALL:g} s") from None
+        if request.encoding == "json":
+            return json.dumps(to_dict(response)).encode()
+        return encode_cdr(response)
+
+    return foxglove.Service(
+        service.name,
+        schema=foxglove.ServiceSchema(
+            service.type, request=schema(request_class), response=schema(response_class)
+        ),
+        handler=handle,
+    )

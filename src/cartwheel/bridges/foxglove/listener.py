@@ -1,0 +1,98 @@
+"""What the server calls, on threads of its own: notes for the bridge, and answers."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+from cartwheel.bridges.foxglove.controls import Controls
+from cartwheel.bridges.foxglove.incoming import Incoming
+from cartwheel.bridges.foxglove.values import Values
+from cartwheel.errors import CartwheelError
+
+
+class Listener:
+    """Takes what clients ask for; nothing here waits for the simulation.
+
+    Args:
+        incoming: Takes their messages.
+        values: The parameters.
+        controls: Of time.
+        subscribed: Told of each channel that a client begins or ceases to read.
+        tell: Takes a warning.
+    """
+
+    def __init__(
+        self,
+        *,
+        incoming: Incoming,
+        values: Values,
+        controls: Controls,
+        subscribed: Callable[[int, bool], None],
+        tell: Callable[[str], None],
+    ) -> None:
+        self._incoming = incoming
+        self._values = values
+        self._controls = controls
+        self._subscribed = subscribed
+        self._tell = tell
+
+    def on_subscribe(self, _: Any, channel: Any) -> None:
+        self._subscribed(channel.id, True)
+
+    def on_unsubscribe(self, _: Any, channel: Any) -> None:
+        self._subscribed(channel.id, False)
+
+    def on_client_advertise(self, client: Any, channel: Any) -> None:
+        self._incoming.advertise(
+            client.id, channel.id, channel.topic, channel.encoding, channel.schema_name
+        )
+
+    def on_client_unadvertise(self, client: Any, channel: int) -> None:
+        self._incoming.unadvertise(client.id, channel)
+
+    def on_message_data(self, client: Any, channel: int, data: bytes) -> None:
+        # A copy: the message's arrays are views of it.
+        self._incoming.take(client.id, channel, bytes(data))
+
+    def on_get_parameters(self, _: Any, names: list[str], __: str | None = None) -> list[Any]:
+        return self._values.get(names)
+
+    def on_set_parameters(self, _: Any, values: list[Any], __: str | None = None) -> list[Any]:
+        return self._values.set(values)
+
+    def on_parameters_subscribe(self, names: list[str]) -> None:
+        """What is subscribed to is told when it changes."""
+
+    def on_parameters_unsubscribe(self, names: list[str]) -> None:
+        """Nothing to do."""
+
+    def on_connection_graph_subscribe(self) -> None:
+        """The server sends the last one by itself."""
+
+    def on_connection_graph_unsubscribe(self) -> None:
+        """Nothing to do."""
+
+    def on_playback_control_request(self, request: Any) -> Any:
+        from foxglove.websocket import PlaybackCommand, PlaybackState, PlaybackStatus
+
+        controls = self._controls
+        try:
+            if request.seek_time is not None:
+                controls.seek(request.seek_time)
+            speed = float(request.playback_speed)
+            if math.isfinite(speed) and speed > 0 and controls.state().speed != speed:
+                controls.set_speed(speed)
+            play = request.playback_command == PlaybackCommand.Play
+            (controls.resume if play else controls.pause)()
+        except CartwheelError as error:
+            self._tell(error.message)
+        state = controls.state()
+        return PlaybackState(
+            status=PlaybackStatus.Paused if state.paused else PlaybackStatus.Playing,
+            current_time=state.time_ns,
+            playback_speed=state.speed or 0.0,
+            did_seek=request.seek_time is not None,
+            request_id=request.request_id,
+        )

@@ -1,0 +1,109 @@
+"""A topic on the wire, read from the graph while a client reads it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from cartwheel.graph import Graph, Mailbox, Subscription, TopicInfo
+from cartwheel.messages import encode_cdr
+from cartwheel.messages.ros2 import ros2_definition
+
+READER = "foxglove"
+"""Our name in the graph."""
+_LARGE = {"sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage", "sensor_msgs/msg/PointCloud2"}
+_WAITING, _LARGE_WAITING = 200, 5
+"""Messages that may wait between the simulation's thread and ours."""
+
+
+class Publication:
+    """One channel; its methods run on the bridge's thread, but for `_take`.
+
+    Args:
+        graph: Where the topic is.
+        info: The topic.
+        context: foxglove's, of the server.
+        time_ns: Simulation time.
+        wake: Lets the bridge call `send` soon; from any thread.
+        tell: Takes a warning.
+    """
+
+    def __init__(
+        self,
+        graph: Graph,
+        info: TopicInfo,
+        *,
+        context: Any,
+        time_ns: Callable[[], int],
+        wake: Callable[[], None],
+        tell: Callable[[str], None],
+    ) -> None:
+        import foxglove
+
+        self.info = info
+        self._graph = graph
+        self._time_ns = time_ns
+        self._wake = wake
+        self._tell = tell
+        schema = foxglove.Schema(
+            name=info.type, encoding="ros2msg", data=ros2_definition(info.type).encode()
+        )
+        self.channel = foxglove.Channel(
+            info.name, message_encoding="cdr", schema=schema, context=context
+        )
+        self.latched = info.qos == "latched"
+        size = _LARGE_WAITING if info.type in _LARGE else _WAITING
+        self._box = Mailbox(size)
+        self._subscription: Subscription | None = None
+        self._readers = 0
+        self._last: tuple[int, bytes] | None = None
+        self._told = False
+
+    def join(self) -> None:
+        """A client reads it from now on."""
+        self._readers += 1
+        if self._subscription is None:
+            self._subscription = self._graph.subscribe(
+                self.info.name, self._take, type_name=self.info.type, node=READER
+            )
+        elif self.latched and self._last is not None:
+            time_ns, data = self._last
+            self.channel.log(data, log_time=time_ns)
+
+    def leave(self) -> None:
+        """A client reads it no longer."""
+        self._readers = max(0, self._readers - 1)
+        if not self._readers:
+            self._end()
+
+    def send(self) -> None:
+        """Sends what waits."""
+        for time_ns, message in self._box.drain():
+            if not self._readers:
+                return
+            data = encode_cdr(message)
+            if self.latched:
+                self._last = (time_ns, data)
+            self.channel.log(data, log_time=time_ns)
+        if self._box.dropped and not self._told:
+            self._told = True
+            self._tell(
+                f"{self.info.name} is published faster than it can be sent: messages are dropped"
+            )
+
+    def close(self) -> None:
+        """Takes the channel off the wire."""
+        self._end()
+        self.channel.close()
+
+    def _end(self) -> None:
+        if self._subscription is not None:
+            self._subscription.close()
+            self._subscription = None
+        self._last = None
+        self._box.drain()
+
+    def _take(self, message: Any) -> None:
+        """On the simulation's thread."""
+        self._box.put((self._time_ns(), message))
+        self._wake()

@@ -1,0 +1,86 @@
+"""Parameters as clients see them: those of the graph, the robots, and time."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any
+
+from cartwheel.bridges.foxglove.controls import Controls
+from cartwheel.errors import CartwheelError, GraphError
+from cartwheel.graph import Graph
+
+PAUSED, SPEED = "/cartwheel/paused", "/cartwheel/speed"
+"""Whether time is held, and how fast it goes; a speed of 0 is as fast as it can."""
+
+
+class Values:
+    """Reads and sets parameters; on any thread.
+
+    Args:
+        graph: Whose parameters.
+        controls: Of time.
+        descriptions: The robots' descriptions by topic.
+        tell: Takes a warning.
+    """
+
+    def __init__(
+        self,
+        graph: Graph,
+        *,
+        controls: Controls,
+        descriptions: Mapping[str, str],
+        tell: Callable[[str], None],
+    ) -> None:
+        self._graph = graph
+        self._controls = controls
+        self._descriptions = descriptions
+        self._tell = tell
+
+    def get(self, names: list[str]) -> list[Any]:
+        """The parameters of those names; all where none is given."""
+        from foxglove import Parameter
+
+        found = dict(self._all())
+        wanted = names or sorted(found)
+        return [Parameter(name, value=found[name]) for name in wanted if name in found]
+
+    def set(self, values: list[Any]) -> list[Any]:
+        """Sets parameters; returns what they are then."""
+        for value in values:
+            try:
+                self._set_one(value.name, value.get_value())
+            except CartwheelError as error:
+                self._tell(f"{value.name}: {error.message}")
+        return self.get([value.name for value in values])
+
+    def _set_one(self, name: str, value: Any) -> None:
+        controls = self._controls
+        if name == PAUSED:
+            if not isinstance(value, bool):
+                raise GraphError("it is true or false")
+            (controls.pause if value else controls.resume)()
+        elif name == SPEED:
+            number = isinstance(value, int | float) and not isinstance(value, bool)
+            if not number or not 0 <= value < math.inf:
+                raise GraphError("it is a number of at least 0")
+            controls.set_speed(float(value) or None)
+        elif name in self._descriptions:
+            raise GraphError("the description of a robot that stands there cannot be changed")
+        else:
+            self._graph.parameters.set(name, value)
+
+    def _all(self) -> Iterator[tuple[str, Any]]:
+        yield from _flat("", self._graph.parameters.everything())
+        yield from self._descriptions.items()
+        state = self._controls.state()
+        yield PAUSED, state.paused
+        yield SPEED, float(state.speed or 0.0)
+
+
+def _flat(prefix: str, tree: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
+    for name, value in tree.items():
+        if isinstance(value, Mapping):
+            yield from _flat(f"{prefix}/{name}", value)
+        elif value is not None:
+            yield f"{prefix}/{name}", value

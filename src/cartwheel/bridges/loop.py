@@ -1,0 +1,131 @@
+"""The one thread on which all connections of a bridge live."""
+
+from __future__ import annotations
+
+import contextlib
+import heapq
+import itertools
+import selectors
+import socket
+import threading
+import time
+from collections import deque
+from collections.abc import Callable
+from concurrent.futures import Future
+from typing import TypeVar
+
+READ, WRITE = selectors.EVENT_READ, selectors.EVENT_WRITE
+
+T = TypeVar("T")
+Ready = Callable[[int], None]
+
+
+class Loop:
+    """Waits for sockets, functions from other threads, and times.
+
+    Args:
+        on_fault: Told of what a function raised; the loop goes on.
+        name: Of the thread.
+    """
+
+    def __init__(self, on_fault: Callable[[Exception], None], *, name: str) -> None:
+        self._on_fault = on_fault
+        self._selector = selectors.DefaultSelector()
+        self._functions: deque[Callable[[], None]] = deque()
+        self._timers: list[tuple[float, int, Callable[[], None]]] = []
+        self._order = itertools.count()
+        self._inner, self._outer = socket.socketpair()
+        self._inner.setblocking(False)
+        self._outer.setblocking(False)
+        self._woken = False
+        self._running = True
+        self._selector.register(self._inner, READ, self._rouse)
+        self._thread = threading.Thread(target=self._run, name=name, daemon=True)
+
+    def start(self) -> None:
+        """Begins to work."""
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Ends the thread, soon; from any thread."""
+
+        def end() -> None:
+            self._running = False
+
+        self.post(end)
+        if self._thread.is_alive() and threading.current_thread() is not self._thread:
+            self._thread.join(1.0)
+
+    # -- from any thread
+
+    def post(self, function: Callable[[], None]) -> None:
+        """Runs a function on the loop's thread; never waits."""
+        self._functions.append(function)
+        if not self._woken:
+            self._woken = True
+            # It is full of such bytes, or the loop has ended.
+            with contextlib.suppress(OSError):
+                self._outer.send(b"\0")
+
+    def call(self, function: Callable[[], T]) -> Future[T]:
+        """Like `post`, with the result or the error."""
+        future: Future[T] = Future()
+
+        def run() -> None:
+            try:
+                future.set_result(function())
+            except Exception as error:  # noqa: BLE001 - it is the caller's to handle
+                future.set_exception(error)
+
+        self.post(run)
+        return future
+
+    # -- on the loop's thread
+
+    def after(self, seconds: float, function: Callable[[], None]) -> None:
+        """Runs a function later."""
+        heapq.heappush(self._timers, (time.monotonic() + seconds, next(self._order), function))
+
+    def watch(self, sock: socket.socket, events: int, ready: Ready) -> None:
+        """Calls `ready` with those of `events` that a socket is ready for."""
+        try:
+            self._selector.modify(sock, events, ready)
+        except KeyError:
+            self._selector.register(sock, events, ready)
+
+    def forget(self, sock: socket.socket) -> None:
+        """Watches a socket no longer."""
+        with contextlib.suppress(KeyError, ValueError):
+            self._selector.unregister(sock)
+
+    def _run(self) -> None:
+        while self._running:
+            for key, events in self._selector.select(self._patience()):
+                self._guarded(lambda ready=key.data, events=events: ready(events))  # type: ignore[misc]
+            self._woken = False
+            for _ in range(len(self._functions)):
+                self._guarded(self._functions.popleft())
+            now = time.monotonic()
+            while self._timers and self._timers[0][0] <= now:
+                self._guarded(heapq.heappop(self._timers)[2])
+        for key in list(self._selector.get_map().values()):
+            key.fileobj.close()  # type: ignore[union-attr]
+        self._selector.close()
+        self._outer.close()
+
+    def _patience(self) -> float | None:
+        if self._functions:
+            return 0.0
+        if self._timers:
+            return max(0.0, self._timers[0][0] - time.monotonic())
+        return None
+
+    def _guarded(self, function: Callable[[], None]) -> None:
+        try:
+            function()
+        except Exception as error:  # noqa: BLE001 - one connection must not end the others
+            self._on_fault(error)
+
+    def _rouse(self, _: int) -> None:
+        with contextlib.suppress(BlockingIOError):
+            self._inner.recv(4096)

@@ -1,0 +1,82 @@
+"""What of a graph a bridge offers to others, and what it asks them for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+from typing import Any
+
+from cartwheel.errors import CartwheelError
+from cartwheel.graph import Graph, TopicInfo
+
+BRIDGES = frozenset({"ros1", "ros2"})
+"""What bridges are called as nodes of the graph."""
+ONLOOKERS = frozenset({"viewer", "cartwheel topic", "recorder", "foxglove"})
+"""Nodes of the graph that read what it publishes, and expect nothing of other publishers."""
+_BACKLOG = 1000
+"""Messages from outside that the simulation has not taken yet."""
+
+
+@dataclass(slots=True)
+class Survey:
+    """Topics by the names that others know."""
+
+    sent: dict[str, TopicInfo] = field(default_factory=dict)
+    """What somebody here publishes."""
+    read: dict[str, TopicInfo] = field(default_factory=dict)
+    """What somebody here wants to hear from outside."""
+
+
+def survey(
+    topics: Iterable[TopicInfo],
+    *,
+    outer: Callable[[str], str] = lambda name: name,
+    known: Callable[[TopicInfo], bool] = lambda _: True,
+) -> Survey:
+    """Sorts topics of the graph.
+
+    Args:
+        topics: All of them.
+        outer: Gives the name outside.
+        known: Whether the type exists outside.
+    """
+    found = Survey()
+    for info in topics:
+        if not known(info):
+            continue
+        name = outer(info.name)
+        if info.publishers:
+            found.sent.setdefault(name, info)
+        readers = set(info.subscribers) - BRIDGES
+        if readers and (not info.publishers or readers - ONLOOKERS):
+            found.read.setdefault(name, info)
+    return found
+
+
+class Arrivals:
+    """Messages from outside on their way into the graph; they are not sent back.
+
+    Args:
+        graph: Where they go.
+        tell: Takes a warning.
+    """
+
+    def __init__(self, graph: Graph, tell: Callable[[str], None]) -> None:
+        self._graph = graph
+        self._tell = tell
+        self._under_way: dict[int, Any] = {}
+
+    def __contains__(self, message: object) -> bool:
+        return id(message) in self._under_way
+
+    def deliver(self, topic: str, type_name: str, message: Any) -> None:
+        """Publishes a message in the graph; from any thread."""
+        if len(self._under_way) >= _BACKLOG:
+            self._tell("the simulation does not keep up with what ROS sends: it is dropped")
+            return
+        self._under_way[id(message)] = message
+        try:
+            self._graph.publish(topic, type_name, message)
+        except CartwheelError as error:
+            self._tell(f"{topic}: {error}")
+        self._graph.post(lambda: self._under_way.pop(id(message), None) and None)

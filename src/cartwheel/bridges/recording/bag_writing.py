@@ -1,0 +1,191 @@
+"""ROS 1's bags, version 2.0. Source: wiki.ros.org/Bags/Format/2.0."""
+
+from __future__ import annotations
+
+import struct
+from contextlib import suppress
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from cartwheel.bridges.recording.encoding import Schema, codec
+from cartwheel.bridges.recording.sink import Sink
+
+MAGIC = b"#ROSBAG V2.0\n"
+CHUNK = 768 << 10
+"""Bytes of messages that are written together, but for a message that is larger."""
+_HEADER_SIZE = 4096
+"""Bytes of the first record without its two lengths, as ROS's tools write it in place."""
+_EARLIEST = 1
+"""ns: what is earlier than ROS 1's first moment, rosbag does not play."""
+
+BAG_HEADER, CHUNK_OP, CONNECTION, MESSAGE, INDEX, CHUNK_INFO = 3, 5, 7, 2, 4, 6
+
+
+@dataclass(slots=True)
+class _Connection:
+    number: int
+    topic: str
+    latched: bool
+    schema: Schema
+    count: int = 0
+    index: list[tuple[bytes, int]] = field(default_factory=list)
+    """Time and place of its messages in the chunk at hand."""
+
+    @property
+    def record(self) -> bytes:
+        about = {
+            "topic": self.topic,
+            "type": self.schema.name,
+            "md5sum": self.schema.hash,
+            "message_definition": self.schema.text,
+            "callerid": "/cartwheel",
+            "latching": str(int(self.latched)),
+        }
+        data = header({key: value.encode() for key, value in about.items()})
+        head = {"op": bytes([CONNECTION]), "conn": _u32(self.number), "topic": self.topic.encode()}
+        return record(head, data)
+
+
+class BagWriter:
+    """Writes a bag in chunks without compression, which every ROS 1 reads.
+
+    One whose end is missing has no index yet: ``rosbag reindex`` makes it.
+
+    Args:
+        path: Made anew.
+
+    Raises:
+        OSError: The file cannot be written.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.kept_ns = 0
+        self._codec = codec("ros1")
+        self._connections: list[_Connection] = []
+        self._stated: set[int] = set()
+        self._chunk = bytearray()
+        self._span: tuple[int, int] | None = None
+        self._infos: list[bytes] = []
+        self._sink = Sink(path)
+        self._sink.write(MAGIC + self._bag_header(0))
+
+    def add(self, topic: str, type_name: str, *, latched: bool) -> int:
+        schema = self._codec.schema(type_name)
+        number = len(self._connections)
+        self._connections.append(_Connection(number, topic, latched, schema))
+        return number
+
+    def write(self, channel: int, time_ns: int, message: Any) -> int:
+        into = self._connections[channel]
+        data = self._codec.encode(message, into.count + 1)
+        if self._chunk and len(self._chunk) + len(data) > CHUNK:
+            self.flush()
+        if into.number not in self._stated:
+            self._stated.add(into.number)
+            self._chunk += into.record
+        time_ns = max(time_ns, _EARLIEST)
+        time = _time(time_ns)
+        into.count += 1
+        into.index.append((time, len(self._chunk)))
+        head = {"op": bytes([MESSAGE]), "conn": _u32(into.number), "time": time}
+        self._chunk += record(head, data)
+        first, last = self._span or (time_ns, time_ns)
+        self._span = (min(first, time_ns), max(last, time_ns))
+        return len(data)
+
+    def attach(self, name: str, media_type: str, data: bytes, time_ns: int) -> None:
+        """A bag has no place for it."""
+
+    def flush(self) -> None:
+        if self._span is None:
+            return
+        begin = self._sink.position
+        size = _u32(len(self._chunk))
+        head = {"op": bytes([CHUNK_OP]), "compression": b"none", "size": size}
+        made = bytearray(record(head, bytes(self._chunk)))
+        counts = bytearray()
+        filled = [each for each in self._connections if each.index]
+        for each in filled:
+            entries = b"".join(time + _u32(place) for time, place in each.index)
+            head = {
+                "op": bytes([INDEX]),
+                "ver": _u32(1),
+                "conn": _u32(each.number),
+                "count": _u32(len(each.index)),
+            }
+            made += record(head, entries)
+            counts += _u32(each.number) + _u32(len(each.index))
+        self._sink.write(made)
+        first, last = self._span
+        head = {
+            "op": bytes([CHUNK_INFO]),
+            "ver": _u32(1),
+            "chunk_pos": struct.pack("<Q", begin),
+            "start_time": _time(first),
+            "end_time": _time(last),
+            "count": _u32(len(filled)),
+        }
+        self._infos.append(record(head, bytes(counts)))
+        self.kept_ns = last
+        self._forget_chunk()
+
+    def close(self) -> None:
+        self.flush()
+        begin = self._sink.position
+        stated = [each.record for each in self._connections if each.number in self._stated]
+        self._sink.write(b"".join([*stated, *self._infos]))
+        self._sink.rewrite(len(MAGIC), self._bag_header(begin))
+        self._sink.close()
+
+    def abandon(self) -> None:
+        self._forget_chunk()
+        whole = self._sink.position
+        with suppress(OSError):
+            # What was cut off may have left room for the index.
+            self.close()
+            return
+        with suppress(OSError):
+            self._sink.cut(whole)
+        self._sink.close()
+
+    def _forget_chunk(self) -> None:
+        for each in self._connections:
+            each.index.clear()
+        self._chunk = bytearray()
+        self._span = None
+
+    def _bag_header(self, index: int) -> bytes:
+        head = header(
+            {
+                "op": bytes([BAG_HEADER]),
+                "index_pos": struct.pack("<Q", index),
+                "conn_count": _u32(len(self._stated)),
+                "chunk_count": _u32(len(self._infos)),
+            }
+        )
+        padding = b" " * (_HEADER_SIZE - len(head))
+        return _u32(len(head)) + head + _u32(len(padding)) + padding
+
+
+def header(fields: dict[str, bytes]) -> bytes:
+    """Named values, as records begin with."""
+    return b"".join(
+        _u32(len(name) + 1 + len(value)) + name.encode() + b"=" + value
+        for name, value in fields.items()
+    )
+
+
+def record(fields: dict[str, bytes], data: bytes) -> bytes:
+    """A whole record."""
+    head = header(fields)
+    return b"".join((_u32(len(head)), head, _u32(len(data)), data))
+
+
+def _u32(value: int) -> bytes:
+    return struct.pack("<I", value)
+
+
+def _time(time_ns: int) -> bytes:
+    return struct.pack("<II", *divmod(time_ns, 1_000_000_000))

@@ -1,0 +1,104 @@
+"""ROS 2's bags in SQLite, of all versions of their tables."""
+
+from __future__ import annotations
+
+import sqlite3
+from collections.abc import Callable, Collection, Iterator, Mapping
+from pathlib import Path
+
+from cartwheel.bridges.recording.reading import Recorded, RecordedTopic, is_latched
+from cartwheel.errors import RecordingError
+from cartwheel.messages import type_name
+
+
+class Db3Recording:
+    """One SQLite file.
+
+    Args:
+        path: Of it.
+        unpack: Of each message's bytes, for bags that are compressed by message.
+
+    Raises:
+        RecordingError: It is no bag of ROS 2.
+    """
+
+    form = "bag of ROS 2, SQLite"
+
+    def __init__(self, path: Path, *, unpack: Callable[[bytes], bytes] = lambda data: data) -> None:
+        self.path = path
+        self.size = path.stat().st_size
+        self.topics: list[RecordedTopic] = []
+        self.notes: Mapping[str, str] = {}
+        self.attachments: dict[str, int] = {}
+        self._unpack = unpack
+        self._numbers: dict[int, int] = {}
+        try:
+            self._base = self._connect()
+            self._survey()
+        except sqlite3.Error as error:
+            raise RecordingError(f'"{path}" is no bag of ROS 2: {error}') from error
+
+    def messages(
+        self, *, start_ns: int = 0, topics: Collection[int] | None = None
+    ) -> Iterator[Recorded]:
+        wanted = [own for own, n in self._numbers.items() if topics is None or n in topics]
+        marks = ", ".join("?" * len(wanted))
+        rows = self._base.execute(
+            "SELECT timestamp, topic_id, data FROM messages WHERE timestamp >= ?"  # noqa: S608
+            f" AND topic_id IN ({marks}) ORDER BY timestamp, id",
+            (start_ns, *wanted),
+        )
+        try:
+            for time_ns, own, data in rows:
+                yield Recorded(time_ns, self._numbers[own], self._unpack(data))
+        except sqlite3.Error as error:
+            raise RecordingError(f'"{self.path}" is damaged: {error}') from error
+
+    def close(self) -> None:
+        self._base.close()
+
+    def _connect(self) -> sqlite3.Connection:
+        quoted = self.path.resolve().as_uri()
+        base = sqlite3.connect(f"{quoted}?mode=ro", uri=True, check_same_thread=False)
+        try:
+            base.execute("SELECT count(*) FROM topics")
+        except sqlite3.OperationalError:
+            # Its writer was killed: what it had begun must be taken back first.
+            base.close()
+            base = sqlite3.connect(f"{quoted}?mode=rw", uri=True, check_same_thread=False)
+            base.execute("SELECT count(*) FROM topics")
+        return base
+
+    def _survey(self) -> None:
+        base = self._base
+        columns = {row[1] for row in base.execute("PRAGMA table_info(topics)")}
+        tables = {row[0] for row in base.execute("SELECT name FROM sqlite_master")}
+        texts = {}
+        if "message_definitions" in tables:
+            query = "SELECT topic_type, encoding, encoded_message_definition"
+            for kind, schema, text in base.execute(f"{query} FROM message_definitions"):
+                texts[kind] = (schema, text)
+        profiles = "offered_qos_profiles" if "offered_qos_profiles" in columns else "''"
+        query = f"SELECT id, name, type, serialization_format, {profiles} FROM topics ORDER BY id"  # noqa: S608
+        for own, name, kind, encoding, profile in base.execute(query):
+            schema, text = texts.get(kind, ("", ""))
+            self._numbers[own] = len(self.topics)
+            self.topics.append(
+                RecordedTopic(
+                    name=name,
+                    type=type_name(kind),
+                    encoding=encoding,
+                    schema=schema,
+                    definition=text,
+                    latched=is_latched(profile),
+                )
+            )
+        query = "SELECT topic_id, count(*), min(timestamp), max(timestamp) FROM messages"
+        for own, count, first, last in base.execute(f"{query} GROUP BY topic_id"):
+            if own in self._numbers:
+                topic = self.topics[self._numbers[own]]
+                topic.count, topic.first_ns, topic.last_ns = count, first, last
+        # Since the fourth version the metadata is written at the end; before, beside it.
+        self.complete = "metadata" not in tables or bool(
+            base.execute("SELECT count(*) FROM metadata").fetchone()[0]
+        )

@@ -1,0 +1,136 @@
+"""ROS 2's bags in SQLite: one file with all that it needs. Source: rosbag2_storage_sqlite3."""
+
+from __future__ import annotations
+
+import sqlite3
+from collections.abc import Mapping
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+from cartwheel.bridges.recording.encoding import codec
+from cartwheel.bridges.recording.qos import qos_text
+from cartwheel.bridges.recording.rosbag2_metadata import TopicCount, as_yaml, metadata
+
+_TABLES = """
+CREATE TABLE schema(schema_version INTEGER PRIMARY KEY, ros_distro TEXT NOT NULL);
+CREATE TABLE metadata(
+    id INTEGER PRIMARY KEY, metadata_version INTEGER NOT NULL, metadata TEXT NOT NULL);
+CREATE TABLE topics(
+    id INTEGER PRIMARY KEY, name TEXT NOT NULL, type TEXT NOT NULL,
+    serialization_format TEXT NOT NULL, offered_qos_profiles TEXT NOT NULL,
+    type_description_hash TEXT NOT NULL);
+CREATE TABLE message_definitions(
+    id INTEGER PRIMARY KEY, topic_type TEXT NOT NULL, encoding TEXT NOT NULL,
+    encoded_message_definition TEXT NOT NULL, type_description_hash TEXT NOT NULL);
+CREATE TABLE messages(
+    id INTEGER PRIMARY KEY, topic_id INTEGER NOT NULL, timestamp INTEGER NOT NULL,
+    data BLOB NOT NULL);
+CREATE INDEX timestamp_idx ON messages (timestamp ASC);
+INSERT INTO schema(schema_version, ros_distro) VALUES (4, 'jazzy');
+"""
+_TRANSACTION = 1 << 20
+"""Bytes of messages that are written together."""
+
+
+class Db3Writer:
+    """Writes one SQLite file; what was flushed survives a crash of the process.
+
+    Args:
+        path: Made anew.
+        notes: Kept among its metadata.
+
+    Raises:
+        OSError: The file cannot be written.
+    """
+
+    def __init__(self, path: Path, *, notes: Mapping[str, str]) -> None:
+        self.path = path
+        self.kept_ns = 0
+        self._notes = notes
+        self._codec = codec("ros2")
+        self._topics: list[TopicCount] = []
+        self._types: set[str] = set()
+        self._span: tuple[int, int] | None = None
+        self._open_size = 0
+        """Bytes of messages that a rollback would take."""
+        for old in (path, path.with_name(f"{path.name}-journal")):
+            old.unlink(missing_ok=True)
+        # Says itself why it cannot be made, which SQLite does not.
+        path.touch()
+        self._base = sqlite3.connect(path, check_same_thread=False, isolation_level=None)
+        # The operating system keeps what it was given; only power failures need more.
+        self._run("PRAGMA synchronous=OFF")
+        self._run("PRAGMA page_size=65536")
+        try:
+            self._base.executescript(_TABLES)
+        except sqlite3.Error as error:
+            raise OSError(None, str(error)) from error
+        self._run("BEGIN")
+
+    def add(self, topic: str, type_name: str, *, latched: bool) -> int:
+        schema = self._codec.schema(type_name)
+        number = len(self._topics) + 1
+        if schema.name not in self._types:
+            self._types.add(schema.name)
+            self._run(
+                "INSERT INTO message_definitions(topic_type, encoding,"
+                " encoded_message_definition, type_description_hash) VALUES(?, ?, ?, ?)",
+                (schema.name, "ros2msg", schema.text, schema.hash),
+            )
+        self._run(
+            "INSERT INTO topics VALUES(?, ?, ?, ?, ?, ?)",
+            (number, topic, schema.name, "cdr", qos_text(latched=latched), schema.hash),
+        )
+        self._topics.append(TopicCount(topic, schema.name, schema.hash, latched))
+        return number - 1
+
+    def write(self, channel: int, time_ns: int, message: Any) -> int:
+        data = self._codec.encode(message, 0)
+        self._run(
+            "INSERT INTO messages(topic_id, timestamp, data) VALUES(?, ?, ?)",
+            (channel + 1, time_ns, data),
+        )
+        self._topics[channel].count += 1
+        self._open_size += len(data)
+        if self._open_size > _TRANSACTION:
+            self.flush()
+        first, last = self._span or (time_ns, time_ns)
+        self._span = (min(first, time_ns), max(last, time_ns))
+        return len(data)
+
+    def attach(self, name: str, media_type: str, data: bytes, time_ns: int) -> None:
+        """rosbag2 has no place for it."""
+
+    def flush(self) -> None:
+        self._open_size = 0
+        self._run("COMMIT")
+        self.kept_ns = self._span[1] if self._span else 0
+        self._run("BEGIN")
+
+    def close(self) -> None:
+        about = metadata(
+            self._topics,
+            storage="sqlite3",
+            file=self.path.name,
+            span=self._span,
+            notes=self._notes,
+        )
+        self._run(
+            "INSERT INTO metadata(metadata_version, metadata) VALUES(9, ?)", (as_yaml(about),)
+        )
+        self._run("COMMIT")
+        self.kept_ns = self._span[1] if self._span else 0
+        self._base.close()
+
+    def abandon(self) -> None:
+        with suppress(sqlite3.Error):
+            self._base.execute("ROLLBACK")
+        with suppress(sqlite3.Error):
+            self._base.close()
+
+    def _run(self, statement: str, values: tuple[Any, ...] = ()) -> None:
+        try:
+            self._base.execute(statement, values)
+        except sqlite3.Error as error:
+            raise OSError(None, str(error)) from error

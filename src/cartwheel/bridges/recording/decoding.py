@@ -1,0 +1,78 @@
+"""Recorded bytes as messages of the graph, of types that the recording itself may define."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from cartwheel.bridges.recording.reading import RecordedTopic
+from cartwheel.errors import CartwheelError, RecordingError
+from cartwheel.messages import decode_cdr, store
+from cartwheel.messages.ros1 import decode_ros1, ros1_type
+from cartwheel.messages.ros1_types import ros1_store
+
+Decode = Callable[[bytes], Any]
+
+
+def decoder(topic: RecordedTopic) -> Decode:
+    """What makes messages of a topic's bytes; a type that is not known yet becomes it.
+
+    Raises:
+        RecordingError: They are no messages of ROS, or of a type that has our type's name and
+            other fields.
+    """
+    if topic.encoding not in ("cdr", "ros1"):
+        raise RecordingError(f"{topic.name} holds {topic.encoding or 'bytes'}, not ROS's messages")
+    kind = topic.type
+    try:
+        _learn(topic)
+        if topic.encoding == "ros1":
+            known = ros1_type(kind)
+            if topic.md5 not in ("", "*", known.md5):
+                raise RecordingError(f"{topic.name}: {kind} has other fields than the one known")
+            return lambda data: decode_ros1(data, kind)
+        if kind not in store().types:
+            raise RecordingError(f"{topic.name}: the type {kind} is neither known nor defined")
+    except RecordingError:
+        raise
+    except CartwheelError as error:
+        raise RecordingError(f"{topic.name}: {error.message}") from error
+    return lambda data: decode_cdr(data, kind)
+
+
+def _learn(topic: RecordedTopic) -> None:
+    if not topic.definition or topic.schema not in ("ros1msg", "ros2msg", "ros2idl"):
+        return
+    types = _parsed(topic)
+    ours = store()
+    if topic.encoding == "cdr":
+        for name, (_, fields) in types.items():
+            if name in ours.fielddefs and _plain(ours.fielddefs[name][1]) != _plain(fields):
+                raise RecordingError(f"{topic.name}: {name} has other fields than the one known")
+    new = {name: fields for name, fields in types.items() if name not in ours.fielddefs}
+    if new:
+        ours.register(new)
+    if topic.encoding == "ros1":
+        known = ros1_store().fielddefs
+        known.update({name: fields for name, fields in types.items() if name not in known})
+
+
+def _parsed(topic: RecordedTopic) -> dict[str, Any]:
+    from rosbags.typesys import get_types_from_idl, get_types_from_msg
+
+    try:
+        if topic.schema == "ros2idl":
+            return dict(get_types_from_idl(topic.definition))
+        return dict(get_types_from_msg(topic.definition, topic.type))
+    except Exception as error:  # whatever the parser meets
+        raise RecordingError(f"{topic.name}: its definition cannot be read: {error}") from error
+
+
+def _plain(fields: Any) -> Any:
+    """Fields as nested lists: parsers differ in tuples and lists, and in empty types."""
+    found = [_nested(field) for field in fields]
+    return [field for field in found if field[0] != "structure_needs_at_least_one_member"]
+
+
+def _nested(value: Any) -> Any:
+    return [_nested(item) for item in value] if isinstance(value, list | tuple) else value

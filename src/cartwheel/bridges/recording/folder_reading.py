@@ -1,0 +1,102 @@
+"""ROS 2's bags as folders, of one file or several."""
+
+from __future__ import annotations
+
+import heapq
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from cartwheel.bridges.recording.compression import decompress
+from cartwheel.bridges.recording.db3_reading import Db3Recording
+from cartwheel.bridges.recording.reading import Recorded, RecordedTopic, Recording, open_recording
+from cartwheel.errors import RecordingError
+
+
+class FolderRecording:
+    """Several files as one recording."""
+
+    def __init__(self, files: Sequence[Recording], *, complete: bool) -> None:
+        self.form = "bag of ROS 2"
+        self.size = sum(file.size for file in files)
+        self.complete = complete and all(file.complete for file in files)
+        self.topics: list[RecordedTopic] = []
+        self.notes: Mapping[str, str] = {k: v for file in files for k, v in file.notes.items()}
+        self.attachments: dict[str, int] = {
+            k: v for file in files for k, v in file.attachments.items()
+        }
+        self._files = files
+        self._numbers: list[list[int]] = []
+        known: dict[tuple[str, str, str], int] = {}
+        for file in files:
+            numbers = []
+            for topic in file.topics:
+                key = (topic.name, topic.type, topic.encoding)
+                if key in known:
+                    self.topics[known[key]].join(topic)
+                else:
+                    known[key] = len(self.topics)
+                    self.topics.append(topic)
+                numbers.append(known[key])
+            self._numbers.append(numbers)
+
+    def messages(
+        self, *, start_ns: int = 0, topics: Collection[int] | None = None
+    ) -> Iterator[Recorded]:
+        return heapq.merge(
+            *(
+                self._of(file, numbers, start_ns, topics)
+                for file, numbers in zip(self._files, self._numbers, strict=True)
+            ),
+            key=lambda message: message.time_ns,
+        )
+
+    def close(self) -> None:
+        for file in self._files:
+            file.close()
+
+    @staticmethod
+    def _of(
+        file: Recording, numbers: list[int], start_ns: int, topics: Collection[int] | None
+    ) -> Iterator[Recorded]:
+        wanted = None if topics is None else {i for i, n in enumerate(numbers) if n in topics}
+        for message in file.messages(start_ns=start_ns, topics=wanted):
+            yield message._replace(number=numbers[message.number])
+
+
+def open_folder(path: Path) -> Recording:
+    """Opens the files of a folder.
+
+    Raises:
+        RecordingError: There are none, or they cannot be read.
+    """
+    about = _metadata(path)
+    named = [path / name for name in about.get("relative_file_paths", []) if isinstance(name, str)]
+    # A bag that was moved may name folders that are no more.
+    files = [file if file.is_file() else path / file.name for file in named]
+    files = files or sorted([*path.glob("*.mcap"), *path.glob("*.db3")])
+    if not files:
+        raise RecordingError(f'"{path}" is no recording: it holds neither .mcap nor .db3')
+    unpack: Callable[[bytes], bytes] = lambda data: data  # noqa: E731
+    if str(about.get("compression_mode", "")).upper() == "MESSAGE":
+        kind = str(about.get("compression_format", "zstd"))
+        unpack = lambda data: decompress(data, kind)  # noqa: E731
+    opened = [
+        Db3Recording(file, unpack=unpack) if file.suffix == ".db3" else open_recording(file)
+        for file in files
+    ]
+    return FolderRecording(opened, complete=bool(about))
+
+
+def _metadata(path: Path) -> dict[str, Any]:
+    import yaml
+
+    file = path / "metadata.yaml"
+    if not file.exists():
+        return {}
+    try:
+        read = yaml.safe_load(file.read_text(errors="replace"))
+    except yaml.YAMLError as error:
+        raise RecordingError(f'"{file}" is no YAML: {error}') from error
+    about = read.get("rosbag2_bagfile_information") if isinstance(read, dict) else None
+    return about if isinstance(about, dict) else {}

@@ -1,0 +1,80 @@
+"""ROS 2's bags as a folder: an MCAP file and what rosbag2 wants to know about it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+from cartwheel.bridges.recording.encoding import codec
+from cartwheel.bridges.recording.mcap_writing import McapWriter
+from cartwheel.bridges.recording.rosbag2_metadata import TopicCount, as_yaml, metadata
+
+
+class FolderWriter:
+    """Writes the folder; its ``metadata.yaml`` is renewed at each flush.
+
+    Args:
+        path: Made anew.
+        notes: Kept among its metadata.
+
+    Raises:
+        OSError: It cannot be written.
+    """
+
+    def __init__(self, path: Path, *, notes: Mapping[str, str]) -> None:
+        self.path = path
+        path.unlink(missing_ok=True)
+        path.mkdir()
+        self._notes = notes
+        self._file = path / f"{path.name}_0.mcap"
+        self._mcap = McapWriter(self._file, "ros2", notes=notes)
+        self._topics: list[TopicCount] = []
+        self._span: tuple[int, int] | None = None
+        self._tell()
+
+    @property
+    def kept_ns(self) -> int:
+        """Time of the last message that the operating system has."""
+        return self._mcap.kept_ns
+
+    def add(self, topic: str, type_name: str, *, latched: bool) -> int:
+        schema = codec("ros2").schema(type_name)
+        self._topics.append(TopicCount(topic, schema.name, schema.hash, latched))
+        return self._mcap.add(topic, type_name, latched=latched)
+
+    def write(self, channel: int, time_ns: int, message: Any) -> int:
+        size = self._mcap.write(channel, time_ns, message)
+        self._topics[channel].count += 1
+        first, last = self._span or (time_ns, time_ns)
+        self._span = (min(first, time_ns), max(last, time_ns))
+        return size
+
+    def attach(self, name: str, media_type: str, data: bytes, time_ns: int) -> None:
+        self._mcap.attach(name, media_type, data, time_ns)
+
+    def flush(self) -> None:
+        self._mcap.flush()
+        self._tell()
+
+    def close(self) -> None:
+        self._mcap.close()
+        self._tell()
+
+    def abandon(self) -> None:
+        self._mcap.abandon()
+        with suppress(OSError):
+            self._tell()
+
+    def _tell(self) -> None:
+        about = metadata(
+            self._topics,
+            storage="mcap",
+            file=self._file.name,
+            span=self._span,
+            notes=self._notes,
+        )
+        new = self.path / "metadata.new.yaml"
+        new.write_text(as_yaml({"rosbag2_bagfile_information": about}))
+        new.replace(self.path / "metadata.yaml")

@@ -1,0 +1,245 @@
+"""MCAP files."""
+
+from __future__ import annotations
+
+import struct
+import zlib
+from collections.abc import Mapping
+from contextlib import suppress
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from cartwheel.bridges.recording.encoding import codec
+from cartwheel.bridges.recording.formats import Encoding
+from cartwheel.bridges.recording.mcap_format import (
+    MAGIC,
+    MESSAGE,
+    RECORD,
+    Op,
+    blob,
+    mapping,
+    record,
+    text,
+)
+from cartwheel.bridges.recording.qos import qos_text
+from cartwheel.bridges.recording.sink import Sink
+
+CHUNK = 1 << 20
+"""Bytes of messages that are compressed together at most, but for a message that is larger."""
+_LEVEL = 1
+"""Of zstd: images of a simulation shrink well at any."""
+
+
+@dataclass(slots=True)
+class _Channel:
+    number: int
+    schema: bytes
+    record: bytes
+    count: int = 0
+    index: list[tuple[int, int]] = field(default_factory=list)
+    """Time and place of its messages in the chunk at hand."""
+
+
+class McapWriter:
+    """Writes an MCAP file in compressed chunks, each of them whole on the disk or not there.
+
+    A file whose end is missing is read up to its last chunk by what reads MCAP as a stream,
+    and made complete by ``mcap recover``.
+
+    Args:
+        path: Made anew.
+        encoding: Of the messages.
+        notes: Kept as the metadata ``cartwheel``.
+
+    Raises:
+        OSError: The file cannot be written.
+    """
+
+    def __init__(self, path: Path, encoding: Encoding, *, notes: Mapping[str, str]) -> None:
+        self.path = path
+        self.kept_ns = 0
+        self._codec = codec(encoding)
+        self._profile = encoding
+        self._channels: list[_Channel] = []
+        self._schemas: dict[str, tuple[int, bytes]] = {}
+        self._stated: set[int] = set()
+        """Channels whose records are in the file."""
+        self._chunk = bytearray()
+        self._span: tuple[int, int] | None = None
+        """Times of the first and last message of the chunk at hand."""
+        self._whole: tuple[int, int] | None = None
+        self._indexes: list[bytes] = []
+        """Of chunks, attachments and metadata, for the end of the file."""
+        self._counts = {Op.ATTACHMENT_INDEX: 0, Op.METADATA_INDEX: 0, Op.CHUNK_INDEX: 0}
+        self._sink = Sink(path)
+        self._sink.write(MAGIC + record(Op.HEADER, text(encoding), text("cartwheel")))
+        if notes:
+            self._note("cartwheel", notes)
+
+    def add(self, topic: str, type_name: str, *, latched: bool) -> int:
+        schema = self._codec.schema(type_name)
+        known = self._schemas.get(schema.name)
+        if known is None:
+            number = len(self._schemas) + 1
+            parts = (text(schema.name), text(self._codec.schemas), blob(schema.text.encode()))
+            known = (number, record(Op.SCHEMA, struct.pack("<H", number), *parts))
+            self._schemas[schema.name] = known
+        if self._profile == "ros2":
+            about = {"offered_qos_profiles": qos_text(latched=latched)}
+            if schema.hash:
+                about["topic_type_hash"] = schema.hash
+        else:
+            about = {"md5sum": schema.hash, "latching": str(int(latched)), "topic": topic}
+        number = len(self._channels) + 1
+        made = record(
+            Op.CHANNEL,
+            struct.pack("<HH", number, known[0]),
+            text(topic),
+            text(self._codec.messages),
+            mapping(about),
+        )
+        self._channels.append(_Channel(number, known[1], made))
+        return number - 1
+
+    def write(self, channel: int, time_ns: int, message: Any) -> int:
+        into = self._channels[channel]
+        data = self._codec.encode(message, into.count + 1)
+        if self._chunk and len(self._chunk) + len(data) > CHUNK:
+            self.flush()
+        if into.number not in self._stated:
+            self._stated.add(into.number)
+            self._chunk += into.schema + into.record
+        into.count += 1
+        into.index.append((time_ns, len(self._chunk)))
+        self._chunk += RECORD.pack(Op.MESSAGE, MESSAGE.size + len(data))
+        self._chunk += MESSAGE.pack(into.number, into.count & 0xFFFFFFFF, time_ns, time_ns)
+        self._chunk += data
+        first, last = self._span or (time_ns, time_ns)
+        self._span = (min(first, time_ns), max(last, time_ns))
+        return len(data)
+
+    def attach(self, name: str, media_type: str, data: bytes, time_ns: int) -> None:
+        times = struct.pack("<QQ", time_ns, time_ns)
+        body = times + text(name) + text(media_type) + struct.pack("<Q", len(data)) + data
+        made = record(Op.ATTACHMENT, body, struct.pack("<I", zlib.crc32(body)))
+        begin = self._sink.position
+        self._sink.write(made)
+        self._index(
+            Op.ATTACHMENT_INDEX,
+            struct.pack("<QQ", begin, len(made)),
+            times,
+            struct.pack("<Q", len(data)),
+            text(name),
+            text(media_type),
+        )
+
+    def flush(self) -> None:
+        if not self._chunk or self._span is None:
+            return
+        from cartwheel.bridges.recording.compression import compress
+
+        first, last = self._span
+        packed = compress(self._chunk, level=_LEVEL)
+        chunk = record(
+            Op.CHUNK,
+            struct.pack("<QQQI", first, last, len(self._chunk), zlib.crc32(self._chunk)),
+            text("zstd"),
+            struct.pack("<Q", len(packed)),
+            packed,
+        )
+        begin = self._sink.position
+        offsets, indexes = [], bytearray()
+        for channel in self._channels:
+            if channel.index:
+                place = begin + len(chunk) + len(indexes)
+                offsets.append(struct.pack("<HQ", channel.number, place))
+                entries = b"".join(struct.pack("<QQ", *entry) for entry in channel.index)
+                indexes += record(
+                    Op.MESSAGE_INDEX, struct.pack("<H", channel.number), blob(entries)
+                )
+        self._sink.write(chunk + indexes)
+        self._index(
+            Op.CHUNK_INDEX,
+            struct.pack("<QQQQ", first, last, begin, len(chunk)),
+            blob(b"".join(offsets)),
+            struct.pack("<Q", len(indexes)),
+            text("zstd"),
+            struct.pack("<QQ", len(packed), len(self._chunk)),
+        )
+        begun, ended = self._whole or self._span
+        self._whole = (min(begun, first), max(ended, last))
+        self.kept_ns = self._whole[1]
+        self._forget_chunk()
+
+    def close(self) -> None:
+        self.flush()
+        self._sink.write(record(Op.DATA_END, struct.pack("<I", 0)))
+        begin = self._sink.position
+        summary, offsets = bytearray(), bytearray()
+        stated = [channel for channel in self._channels if channel.number in self._stated]
+        groups = (
+            (Op.SCHEMA, list(dict.fromkeys(channel.schema for channel in stated))),
+            (Op.CHANNEL, [channel.record for channel in stated]),
+            (Op.STATISTICS, [self._statistics(stated)]),
+            *((op, [one for one in self._indexes if one[0] == op]) for op in self._counts),
+        )
+        for op, records in groups:
+            if records:
+                place = struct.pack("<BQQ", op, begin + len(summary), sum(map(len, records)))
+                offsets += record(Op.SUMMARY_OFFSET, place)
+                summary += b"".join(records)
+        foot = struct.pack("<QQ", begin, begin + len(summary))
+        head = RECORD.pack(Op.FOOTER, len(foot) + 4)
+        crc = zlib.crc32(bytes(summary + offsets) + head + foot)
+        self._sink.write(summary + offsets + head + foot + struct.pack("<I", crc) + MAGIC)
+        self._sink.close()
+
+    def abandon(self) -> None:
+        for channel in self._channels:
+            channel.count -= len(channel.index)
+        self._forget_chunk()
+        whole = self._sink.position
+        with suppress(OSError):
+            # What was cut off may have left room for the end.
+            self.close()
+            return
+        with suppress(OSError):
+            self._sink.cut(whole)
+        self._sink.close()
+
+    def _forget_chunk(self) -> None:
+        for channel in self._channels:
+            channel.index.clear()
+        self._chunk = bytearray()
+        self._span = None
+
+    def _note(self, name: str, values: Mapping[str, str]) -> None:
+        made = record(Op.METADATA, text(name), mapping(values))
+        begin = self._sink.position
+        self._sink.write(made)
+        self._index(Op.METADATA_INDEX, struct.pack("<QQ", begin, len(made)), text(name))
+
+    def _index(self, op: Op, *parts: bytes) -> None:
+        self._indexes.append(record(op, *parts))
+        self._counts[op] += 1
+
+    def _statistics(self, stated: list[_Channel]) -> bytes:
+        counts = b"".join(struct.pack("<HQ", one.number, one.count) for one in stated)
+        first, last = self._whole or (0, 0)
+        schemas = len({channel.schema for channel in stated})
+        return record(
+            Op.STATISTICS,
+            struct.pack(
+                "<QHIIIIQQ",
+                sum(channel.count for channel in stated),
+                schemas,
+                len(stated),
+                self._counts[Op.ATTACHMENT_INDEX],
+                self._counts[Op.METADATA_INDEX],
+                self._counts[Op.CHUNK_INDEX],
+                first,
+                last,
+            ),
+            blob(counts),
+        )

@@ -1,0 +1,61 @@
+"""Which topics are meant."""
+
+from __future__ import annotations
+
+import fnmatch
+import re
+from collections.abc import Sequence
+
+from cartwheel.errors import RecordingError
+
+_REGULAR = "re:"
+
+
+class Patterns:
+    """Topics by name, ``*`` and ``?``, or ``re:`` and a regular expression of the whole name.
+
+    A pattern after ``!`` leaves out what it matches. Without any other pattern, all are meant.
+
+    Args:
+        patterns: As the user wrote them.
+
+    Raises:
+        RecordingError: One is no regular expression, or empty.
+    """
+
+    def __init__(self, patterns: Sequence[str] = ()) -> None:
+        self._wanted: dict[str, re.Pattern[str]] = {}
+        self._unwanted: list[re.Pattern[str]] = []
+        self._matched: set[str] = set()
+        for pattern in patterns:
+            if pattern.startswith("!"):
+                self._unwanted.append(_compiled(pattern[1:]))
+            else:
+                self._wanted[pattern] = _compiled(pattern)
+
+    def match(self, topic: str) -> bool:
+        """Whether a topic is meant."""
+        if any(pattern.fullmatch(topic) for pattern in self._unwanted):
+            return False
+        if not self._wanted:
+            return True
+        found = [name for name, pattern in self._wanted.items() if pattern.fullmatch(topic)]
+        self._matched.update(found)
+        return bool(found)
+
+    @property
+    def unmatched(self) -> list[str]:
+        """Patterns that no topic has matched so far."""
+        return [name for name in self._wanted if name not in self._matched]
+
+
+def _compiled(pattern: str) -> re.Pattern[str]:
+    if pattern.startswith(_REGULAR):
+        try:
+            return re.compile(pattern.removeprefix(_REGULAR))
+        except re.error as error:
+            raise RecordingError(f'"{pattern}" is no regular expression: {error}') from None
+    if not pattern:
+        raise RecordingError("an empty pattern matches no topic")
+    name = pattern if pattern[0] in "/*?[" else f"/{pattern}"
+    return re.compile(fnmatch.translate(name))

@@ -1,0 +1,350 @@
+"""Records the topics of a graph."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from cartwheel.bridges.recording.backlog import Backlog, Item
+from cartwheel.bridges.recording.formats import (
+    Encoding,
+    Writer,
+    check_writable,
+    encoding_for,
+    open_writer,
+    reason_of,
+)
+from cartwheel.bridges.recording.patterns import Patterns
+from cartwheel.errors import (
+    CartwheelError,
+    Diagnostic,
+    GraphError,
+    RecordingError,
+    UnknownNameError,
+)
+from cartwheel.graph import Graph, Subscription, TopicInfo
+
+READER = "recorder"
+"""Our name in the graph."""
+FLUSH = 1.0
+"""s of wall time after which what was recorded is handed to the operating system."""
+_TELLING = 1.0
+"""s that the simulation may have waited before that is told."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Summary:
+    """What was recorded."""
+
+    files: tuple[Path, ...]
+    messages: int
+    topics: int
+    size: int
+    """Bytes of the messages."""
+    waited: float
+    """s of wall time that the simulation has waited for the disk."""
+
+
+class _Tap:
+    """The subscription of one topic."""
+
+    def __init__(self, recorder: Recorder, graph: Graph, info: TopicInfo) -> None:
+        self.type = info.type
+        self.latched = info.qos == "latched"
+        self.topic = info.name
+        self.last: Any = None
+        self._recorder = recorder
+        self._subscription: Subscription = graph.subscribe(
+            info.name, self._take, type_name=info.type, node=READER
+        )
+
+    def _take(self, message: Any) -> None:
+        if self.latched:
+            self.last = message
+        self._recorder.take(self, message)
+
+    def close(self) -> None:
+        """Ends it."""
+        self._subscription.close()
+
+
+class Recorder:
+    """Writes every message of some topics to a file, in order, at the simulation's times.
+
+    Nothing is dropped: where the file takes less than is published, the simulation waits.
+    What is recorded is what a subscriber sees, so a camera renders while it is recorded, and
+    the latched messages come first. Topics that come later are recorded from then on. Where
+    time goes back, as after a reset, a new file begins.
+
+    Args:
+        graph: Whose topics.
+        path: ``.mcap``, ``.bag``, ``.db3``, or a folder for a ROS 2 bag.
+        time_ns: Simulation time.
+        topics: Patterns; all topics where there are none.
+        encoding: Of the messages; None is what is usual for the form.
+        overwrite: Whether to replace what is there.
+        notes: To be kept with the recording.
+        report: Takes what the user should know, from any thread.
+        on_failure: Told when recording has ended because it could not go on; another thread.
+
+    Raises:
+        RecordingError: There can be no such recording.
+    """
+
+    def __init__(
+        self,
+        graph: Graph,
+        path: Path | str,
+        *,
+        time_ns: Callable[[], int],
+        topics: Sequence[str] = (),
+        encoding: Encoding | None = None,
+        overwrite: bool = False,
+        notes: Mapping[str, str] | None = None,
+        report: Callable[[Diagnostic], None] = lambda _: None,
+        on_failure: Callable[[RecordingError], None] = lambda _: None,
+    ) -> None:
+        self.path = Path(path)
+        self._graph = graph
+        self._time_ns = time_ns
+        self._patterns = Patterns(topics)
+        self._encoding: Encoding = encoding_for(self.path, encoding)
+        self._overwrite = overwrite
+        self._notes = dict(notes or {})
+        self._report = report
+        self._on_failure = on_failure
+        self._backlog = Backlog()
+        self._taps: dict[str, _Tap] = {}
+        self._survey_due = False
+        self._surveyor: int | None = None
+        self._time = -1
+        self._files: list[Path] = []
+        self._writer: Writer | None = None
+        self._channels: dict[str, int] = {}
+        self._refused: set[str] = set()
+        self._messages = 0
+        self._size = 0
+        self._topics: set[str] = set()
+        self._told_wait = False
+        self.failure: RecordingError | None = None
+        """Why it ended, where it could not go on."""
+        self._thread = threading.Thread(target=self._run, name="recorder", daemon=True)
+        check_writable(self.path, overwrite=overwrite)
+
+    def start(self) -> None:
+        """Begins; on the owner's thread.
+
+        Raises:
+            RecordingError: The file cannot be written.
+        """
+        self._begin(self.path)
+        self._graph.on_change.append(self._changed)
+        self._survey()
+        self._thread.start()
+
+    def close(self) -> Summary:
+        """Ends, and makes the file complete; on the owner's thread.
+
+        Raises:
+            RecordingError: It had ended before, because it could not go on.
+        """
+        if self._changed in self._graph.on_change:
+            self._graph.on_change.remove(self._changed)
+        for tap in self._taps.values():
+            tap.close()
+        self._taps.clear()
+        self._backlog.close()
+        if self._thread.is_alive():
+            self._thread.join()
+        if self.failure is not None:
+            raise self.failure
+        for pattern in self._patterns.unmatched:
+            self._warn(f'no topic matched "{pattern}"')
+        return self.summary
+
+    @property
+    def summary(self) -> Summary:
+        """What was recorded so far."""
+        return Summary(
+            files=tuple(self._files),
+            messages=self._messages,
+            topics=len(self._topics),
+            size=self._size,
+            waited=self._backlog.waited,
+        )
+
+    # -- on the owner's thread
+
+    def take(self, tap: _Tap, message: Any) -> None:
+        """Takes a message; waits where too many are not yet written."""
+        time_ns = self._time_ns()
+        begins = time_ns < self._time
+        self._time = time_ns
+        if begins:
+            for other in self._taps.values():
+                if other.last is not None and other is not tap:
+                    self._put(other, time_ns, other.last, begins=begins)
+                    begins = False
+        self._put(tap, time_ns, message, begins=begins)
+
+    def _put(self, tap: _Tap, time_ns: int, message: Any, *, begins: bool) -> None:
+        self._backlog.put(Item(tap.topic, tap.type, tap.latched, time_ns, message, begins))
+        if self._backlog.waited > _TELLING and not self._told_wait:
+            self._told_wait = True
+            self._warn(
+                "the disk is slower than the simulation, which waits for it: nothing is lost"
+            )
+
+    def _changed(self) -> None:
+        """On any thread, the graph locked."""
+        if threading.get_ident() == self._surveyor:
+            return  # our own subscriptions
+        if not self._survey_due:
+            self._survey_due = True
+            self._graph.post(self._survey)
+
+    def _survey(self) -> None:
+        self._survey_due = False
+        if not self._backlog.is_open:
+            return
+        self._surveyor = threading.get_ident()
+        try:
+            self._mirror()
+        finally:
+            self._surveyor = None
+
+    def _mirror(self) -> None:
+        topics = {
+            info.name: info
+            for info in self._graph.topics()
+            if info.publishers or set(info.subscribers) - {READER}
+        }
+        for name, tap in list(self._taps.items()):
+            if name not in topics or topics[name].type != tap.type:
+                del self._taps[name]
+                tap.close()
+            else:
+                tap.latched = topics[name].qos == "latched"
+        for name, info in topics.items():
+            if name not in self._taps and self._patterns.match(name):
+                self._taps[name] = _Tap(self, self._graph, info)
+
+    # -- on the recorder's thread
+
+    def _run(self) -> None:
+        due = time.monotonic() + FLUSH
+        try:
+            while True:
+                was_open = self._backlog.is_open
+                items = self._backlog.get(max(0.0, due - time.monotonic()))
+                for item in items:
+                    self._write(item)
+                    if time.monotonic() >= due:
+                        self._flush()
+                        due = time.monotonic() + FLUSH
+                self._backlog.done(items)
+                if not items and time.monotonic() >= due:
+                    self._flush()
+                    due = time.monotonic() + FLUSH
+                if not was_open and not items:
+                    break
+            if self._writer is not None:
+                self._writer.close()
+        except OSError as error:
+            self._fail(RecordingError(self._broken(reason_of(error)), hint=_HINT))
+        except CartwheelError as error:
+            self._fail(RecordingError(self._broken(str(error))))
+        except Exception as error:  # noqa: BLE001 - the simulation must not wait for ever
+            self._fail(RecordingError(self._broken(f"{type(error).__name__}: {error}")))
+
+    def _broken(self, why: str) -> str:
+        path = self._files[-1]
+        kept = self._writer.kept_ns if self._writer else 0
+        return f'the recording "{path}" broke off at {kept / 1e9:.3f} s: {why}'
+
+    def _fail(self, failure: RecordingError) -> None:
+        self.failure = failure
+        self._backlog.close()
+        writer = self._writer
+        if writer is not None:
+            with suppress(OSError):
+                writer.abandon()
+        self._on_failure(failure)
+
+    def _flush(self) -> None:
+        if self._writer is not None:
+            self._writer.flush()
+
+    def _write(self, item: Item) -> None:
+        if item.begins:
+            self._begin_next()
+        writer = self._writer
+        assert writer is not None
+        channel = self._channel(writer, item)
+        if channel is None:
+            return
+        try:
+            size = writer.write(channel, item.time_ns, item.message)
+        except GraphError as error:
+            if item.topic not in self._refused:
+                self._refused.add(item.topic)
+                self._warn(f"messages of {item.topic} are left out: {error}")
+            return
+        self._messages += 1
+        self._size += size
+        self._topics.add(item.topic)
+        if item.topic.endswith("robot_description") and item.type == "std_msgs/msg/String":
+            name = f"{item.topic.strip('/').replace('/', '.')}.xml"
+            writer.attach(name, "application/xml", item.message.data.encode(), item.time_ns)
+
+    def _channel(self, writer: Writer, item: Item) -> int | None:
+        key = f"{item.topic} {item.type}"
+        if key in self._channels:
+            return self._channels[key]
+        if key in self._refused:
+            return None
+        try:
+            made = writer.add(item.topic, item.type, latched=item.latched)
+        except UnknownNameError:
+            self._refused.add(key)
+            self._warn(f"{item.topic} is left out: ROS 1 has no type {item.type}")
+            return None
+        self._channels[key] = made
+        return made
+
+    def _begin_next(self) -> None:
+        """Time went back: what comes now would lie among what was before."""
+        if self._writer is not None:
+            self._writer.close()
+            self._writer = None
+        number = len(self._files)
+        while True:
+            path = self.path.with_name(f"{self.path.stem}_{number}{self.path.suffix}")
+            if self._overwrite or not path.exists():
+                break
+            number += 1
+        self._begin(path)
+        self._report(
+            Diagnostic(
+                severity="info",
+                message=f'recording: time went back to {self._time / 1e9:.3f} s: on in "{path}"',
+            )
+        )
+
+    def _begin(self, path: Path) -> None:
+        self._channels.clear()
+        self._writer = open_writer(
+            path, self._encoding, overwrite=self._overwrite, notes=self._notes
+        )
+        self._files.append(path)
+
+    def _warn(self, text: str) -> None:
+        self._report(Diagnostic(severity="warning", message=f"recording: {text}"))
+
+
+_HINT = "What was written before can be read; cartwheel info shows it."

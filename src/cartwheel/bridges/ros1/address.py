@@ -1,0 +1,104 @@
+"""Where the master is, and by which address other nodes reach this one."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import socket
+from collections.abc import Mapping
+from urllib.parse import urlsplit
+
+from cartwheel.errors import CartwheelError
+
+MASTER_URI = "http://localhost:11311"
+"""Where ``ROS_MASTER_URI`` is not set."""
+_LOOPBACK = ("localhost", "::1")
+
+
+def master_uri(special: Mapping[str, str]) -> str:
+    """The master's URI: of ``__master:=`` or the environment.
+
+    Raises:
+        CartwheelError: It is none.
+    """
+    uri = special.get("__master") or os.environ.get("ROS_MASTER_URI") or MASTER_URI
+    host_and_port(uri)
+    return uri
+
+
+def host_and_port(uri: str) -> tuple[str, int]:
+    """Of ``http://host:port/``.
+
+    Raises:
+        CartwheelError: It is no such URI.
+    """
+    try:
+        parts = urlsplit(uri)
+        if parts.scheme in ("http", "rosrpc") and parts.hostname and parts.port:
+            return parts.hostname, parts.port
+    except ValueError:
+        pass
+    raise CartwheelError(
+        f'"{uri}" is no address of a ROS node', hint=f"It looks like {MASTER_URI}."
+    )
+
+
+def own_host(special: Mapping[str, str], master: str) -> str:
+    """The name or address that goes into our URIs.
+
+    As in rospy: ``__hostname``, ``__ip``, ``ROS_HOSTNAME``, ``ROS_IP``, then this computer's
+    name, unless that leads nowhere.
+    """
+    given = (
+        special.get("__hostname")
+        or special.get("__ip")
+        or os.environ.get("ROS_HOSTNAME")
+        or os.environ.get("ROS_IP")
+    )
+    if given:
+        return given
+    name = socket.gethostname()
+    if name and not is_loopback(name):
+        with contextlib.suppress(OSError):
+            socket.gethostbyname(name)
+            return name
+    return _address_towards(*host_and_port(master))
+
+
+def bind_address(host: str) -> str:
+    """What to listen on: this computer alone where our own name means just that."""
+    return "127.0.0.1" if is_loopback(host) else ""
+
+
+def is_loopback(host: str) -> bool:
+    """Whether a name means the computer itself, whichever it is."""
+    return host in _LOOPBACK or host.startswith("127.")
+
+
+def is_local(host: str) -> bool:
+    """Whether a name or address is this computer's."""
+    if is_loopback(host) or host == socket.gethostname():
+        return True
+    try:
+        address = socket.gethostbyname(host)
+    except OSError:
+        return False
+    if is_loopback(address):
+        return True
+    # Only an own address can be bound.
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        try:
+            probe.bind((address, 0))
+        except OSError:
+            return False
+    return True
+
+
+def _address_towards(host: str, port: int) -> str:
+    """The own address from which a host is reached; nothing is sent."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        try:
+            probe.connect((host, port))
+        except OSError:
+            return "127.0.0.1"
+        return str(probe.getsockname()[0])

@@ -1,0 +1,370 @@
+"""The graph of a simulation as a node of ROS 1."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from cartwheel.bridges.loop import Loop
+from cartwheel.bridges.mirror import Arrivals, survey
+from cartwheel.bridges.ros1.address import (
+    bind_address,
+    host_and_port,
+    is_local,
+    master_uri,
+    own_host,
+)
+from cartwheel.bridges.ros1.core import OwnCore
+from cartwheel.bridges.ros1.log import Log
+from cartwheel.bridges.ros1.master import MasterParameters
+from cartwheel.bridges.ros1.names import Arguments, NodeNames
+from cartwheel.bridges.ros1.node import Node
+from cartwheel.bridges.ros1.publication import GraphPublication
+from cartwheel.bridges.ros1.registrar import Entry, Registrar
+from cartwheel.bridges.ros1.rpc import Peer, RpcError, UnreachableError
+from cartwheel.bridges.ros1.service import OfferedService
+from cartwheel.bridges.ros1.subscription import TopicSubscription
+from cartwheel.errors import CartwheelError, Diagnostic, UnknownNameError
+from cartwheel.graph import Graph, Service, TopicInfo
+from cartwheel.messages.ros1 import ros1_service, ros1_type
+from cartwheel.messages.store import is_ros2_only
+
+READER = "ros1"
+"""Our name in the graph."""
+_FIRST_ANSWER = 3.0
+"""s that the master may take at the start."""
+_CALL = 120.0
+"""s that the simulation may take to answer a service."""
+
+_TOLD = 500
+"""Different warnings; they name nodes, of which any number may come."""
+
+Report = Callable[[Diagnostic], None]
+
+
+class Ros1Bridge:
+    """Makes topics, services and parameters of a graph those of a ROS 1 node, and back.
+
+    Everything is lazy: the graph is subscribed to while a node is connected. The protocols
+    (TCPROS, the XML-RPC interfaces) are spoken here, so no part of ROS needs to be installed;
+    where no master answers, ROS's own is started.
+
+    Args:
+        graph: Of the simulation.
+        node: Name of the node, where ``__name:=`` gives no other.
+        arguments: ``name:=value`` as ROS's nodes take them.
+        report: Takes what the user should know, from any thread.
+        time_ns: Simulation time, for the stamps of ``/rosout``.
+        on_end: Told why another node or user has ended this one; from another thread.
+
+    Raises:
+        CartwheelError: A name or URI is none.
+    """
+
+    def __init__(
+        self,
+        graph: Graph,
+        *,
+        node: str = "gazebo",
+        arguments: Sequence[str] = (),
+        report: Report = lambda _: None,
+        time_ns: Callable[[], int] = lambda: 0,
+        on_end: Callable[[str], None] = lambda _: None,
+    ) -> None:
+        self._graph = graph
+        self._report = report
+        self._on_end = on_end
+        self._arguments = Arguments.parse(arguments)
+        self._names = NodeNames(node, self._arguments)
+        self.master_uri = master_uri(self._arguments.special)
+        host = own_host(self._arguments.special, self.master_uri)
+        self._core: OwnCore | None = None
+        self._told: set[str] = set()
+        self._closed = False
+        self._arrivals = Arrivals(graph, self._warn)
+        self._loop = Loop(self._fault, name="ros1")
+        self._node = Node(
+            self._loop,
+            name=self._names.node,
+            host=host,
+            address=bind_address(host),
+            master_uri=self.master_uri,
+            on_shutdown=self._shut_down,
+        )
+        self._log = Log(self._loop, node=self.name, time_ns=time_ns, tell=self._warn)
+        self._parameters = MasterParameters(
+            self.master_uri, node=self.name, outer=self._names.parameter, wake=self._wake
+        )
+        self._registrar = Registrar(
+            master_uri=self.master_uri,
+            node=self.name,
+            uri=self._node.uri,
+            service_uri=self._node.service_uri,
+            parameters=self._parameters,
+            survey=self._survey,
+            on_publishers=self._found_publishers,
+            on_lost=self._lost_master,
+            on_found=self._found_master,
+            on_taken=self._taken,
+            on_fault=self._fault,
+        )
+        self._lost = False
+
+    @property
+    def name(self) -> str:
+        """The node's name with its namespace."""
+        return self._names.node
+
+    @property
+    def has_own_master(self) -> bool:
+        """Whether the master was started here, and ends with us."""
+        return self._core is not None
+
+    @property
+    def uri(self) -> str:
+        """Of the node's XML-RPC interface."""
+        return self._node.uri
+
+    def start(self) -> None:
+        """Joins the master, or starts one; the rest follows on other threads.
+
+        Raises:
+            CartwheelError: There is no master and none can be started.
+        """
+        self._join()
+        self._graph.parameters.server = self._parameters
+        for name, value in self._arguments.parameters.items():
+            self._parameters.set(self._names.private(name), value)
+        self._use_sim_time()
+        self._loop.start()
+        self._graph.on_change.append(self._registrar.wake)
+        self._registrar.start()
+
+    def log(self, diagnostic: Diagnostic) -> None:
+        """Says something on ``/rosout``; from any thread."""
+        self._log.write(diagnostic)
+
+    def close(self) -> None:
+        """Leaves the master and all nodes; takes no longer than an instant."""
+        if self._closed:
+            return
+        self._closed = True
+        if self._registrar.wake in self._graph.on_change:
+            self._graph.on_change.remove(self._registrar.wake)
+        if self._graph.parameters.server is self._parameters:
+            self._graph.parameters.server = None
+        self._registrar.stop()
+        self._loop.post(self._node.close)
+        self._loop.stop()
+        if self._core is not None:
+            self._core.stop()
+
+    # -- the master
+
+    def _join(self) -> None:
+        try:
+            Peer(self.master_uri, timeout=_FIRST_ANSWER).call("getPid", self.name)
+        except UnreachableError as error:
+            host, _ = host_and_port(self.master_uri)
+            if is_local(host) and error.silent:
+                raise CartwheelError(
+                    f"no ROS master: {error}",
+                    hint="Something listens on its port: a roscore that hangs, or another program.",
+                ) from None
+            if not is_local(host):
+                raise CartwheelError(
+                    f"no ROS master: {error}",
+                    hint="ROS_MASTER_URI names another computer: is its roscore running?",
+                ) from None
+            self._core = OwnCore(self.master_uri)
+            self._core.start()
+        except RpcError as error:
+            raise CartwheelError(f"{self.master_uri} is no ROS master: {error}") from None
+
+    def _use_sim_time(self) -> None:
+        if self._parameters.get("/use_sim_time") is None:
+            self._parameters.set("/use_sim_time", True)
+
+    def _lost_master(self, reason: str) -> None:
+        if not self._lost:
+            self._lost = True
+            self._warn(
+                f"the ROS master is gone: {reason}. The simulation goes on, and joins the next"
+                " master there"
+            )
+        if self._core is not None and self._core.dead and not self._closed:
+            try:
+                self._core.start()
+            except CartwheelError as error:
+                self._warn(str(error))
+
+    def _found_master(self) -> None:
+        self._lost = False
+        self._tell("info", "a ROS master answers again: registered anew")
+
+    def _taken(self, uri: str) -> None:
+        self._finish(f"another ROS node took the name {self.name}: {uri}")
+
+    def _shut_down(self, reason: str) -> None:
+        self._finish(f"ROS ended the node {self.name}: {reason or 'no reason given'}")
+
+    def _finish(self, reason: str) -> None:
+        if not self._closed:
+            self._on_end(reason)
+
+    def _wake(self) -> None:
+        self._registrar.wake()
+
+    # -- the graph
+
+    def _survey(self) -> list[Entry]:
+        """Makes the node offer what the graph does; on the registrar's thread."""
+        topics, services = self._graph.topics(), self._graph.services()
+        return self._loop.call(lambda: self._mirror(topics, services)).result()
+
+    def _mirror(self, topics: Sequence[TopicInfo], services: Sequence[Service]) -> list[Entry]:
+        node = self._node
+        found = survey(topics, outer=self._names.outer, known=self._is_known)
+        self._mirror_publications(found.sent)
+        self._mirror_subscriptions(found.read)
+        self._mirror_services({self._names.outer(one.name): one for one in services})
+        return [
+            *(Entry("Publisher", name, one.type.name) for name, one in node.publications.items()),
+            *(Entry("Subscriber", name, one.type.name) for name, one in node.subscriptions.items()),
+            *(Entry("Service", name, one.type.name) for name, one in node.services.items()),
+        ]
+
+    def _mirror_publications(self, sent: dict[str, TopicInfo]) -> None:
+        known = self._node.publications
+        known.setdefault(self._log.publication.topic, self._log.publication)
+        for name, publication in list(known.items()):
+            if isinstance(publication, GraphPublication):
+                info = sent.get(name)
+                if info is None or info.type != publication.type_name:
+                    del known[name]
+                    publication.close()
+                else:
+                    publication.latched = info.qos == "latched"
+        for name, info in sent.items():
+            if name not in known:
+                known[name] = GraphPublication(
+                    self._loop,
+                    self._graph,
+                    source=info.name,
+                    type_name=info.type,
+                    reader=READER,
+                    ignored=lambda message: message in self._arrivals,
+                    topic=name,
+                    type_=ros1_type(info.type),
+                    latched=info.qos == "latched",
+                    node=self.name,
+                    tell=self._warn,
+                )
+
+    def _mirror_subscriptions(self, read: dict[str, TopicInfo]) -> None:
+        known = self._node.subscriptions
+        for name, subscription in list(known.items()):
+            if name not in read or read[name].type != subscription.type_name:
+                del known[name]
+                subscription.close()
+        for name, info in read.items():
+            if name not in known:
+                known[name] = TopicSubscription(
+                    self._loop,
+                    topic=name,
+                    type_name=info.type,
+                    type_=ros1_type(info.type),
+                    node=self.name,
+                    own_uri=self._node.uri,
+                    deliver=self._deliverer(info.name, info.type),
+                    tell=self._warn,
+                )
+
+    def _mirror_services(self, offered: dict[str, Service]) -> None:
+        known = self._node.services
+        own = {
+            self._names.private("get_loggers"): ("roscpp/GetLoggers", self._log.get_loggers),
+            self._names.private("set_logger_level"): (
+                "roscpp/SetLoggerLevel",
+                self._log.set_logger_level,
+            ),
+        }
+        wanted = {
+            name: (one.type, self._caller(one.name))
+            for name, one in offered.items()
+            if self._is_known_service(one.type, one.name)
+        } | own
+        for name, service in list(known.items()):
+            if name not in wanted or ros1_service(wanted[name][0]) != service.type:
+                del known[name]
+                service.close()
+        for name, (type_name, answer) in wanted.items():
+            if name not in known:
+                known[name] = OfferedService(
+                    self._loop,
+                    name=name,
+                    type_=ros1_service(type_name),
+                    answer=answer,
+                    node=self.name,
+                )
+
+    def _caller(self, name: str) -> Callable[[Any], Any]:
+        def call(request: Any) -> Any:
+            future = self._graph.call(name, request)
+            try:
+                return future.result(_CALL)
+            except TimeoutError:
+                future.cancel()
+                raise CartwheelError(
+                    f"the simulation did not answer {name} within {_CALL:g} s"
+                ) from None
+
+        return call
+
+    def _deliverer(self, topic: str, type_name: str) -> Callable[[Any], None]:
+        return lambda message: self._arrivals.deliver(topic, type_name, message)
+
+    def _found_publishers(self, topic: str, uris: list[str]) -> None:
+        def update() -> None:
+            subscription = self._node.subscriptions.get(topic)
+            if subscription is not None:
+                # A master that has just begun does not know yet whom we are connected to.
+                subscription.update(uris, drop=False)
+
+        self._loop.post(update)
+
+    # -- what the user should know
+
+    def _is_known(self, info: TopicInfo) -> bool:
+        try:
+            ros1_type(info.type)
+        except UnknownNameError:
+            self._warn(
+                f"topic {info.name} has type {info.type}, which ROS 1 does not have: it is left out"
+            )
+            return False
+        return True
+
+    def _is_known_service(self, type_name: str, name: str) -> bool:
+        if is_ros2_only(type_name):
+            return False
+        try:
+            ros1_service(type_name)
+        except UnknownNameError:
+            self._warn(
+                f"service {name} has type {type_name}, which ROS 1 does not have: it is left out"
+            )
+            return False
+        return True
+
+    def _warn(self, text: str) -> None:
+        self._tell("warning", text)
+
+    def _tell(self, severity: Any, text: str) -> None:
+        """Once for each text."""
+        if severity == "info" or (text not in self._told and len(self._told) < _TOLD):
+            self._told.add(text)
+            self._report(Diagnostic(severity=severity, message=f"ROS: {text}"))
+
+    def _fault(self, error: Exception) -> None:
+        self._warn(f"a fault of the bridge: {type(error).__name__}: {error}")

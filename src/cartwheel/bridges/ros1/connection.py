@@ -1,0 +1,237 @@
+"""A TCP connection that carries blocks with their length in front, as TCPROS does."""
+
+from __future__ import annotations
+
+import contextlib
+import socket
+import struct
+from collections import deque
+from collections.abc import Callable
+
+from cartwheel.bridges.loop import READ, WRITE, Loop
+from cartwheel.bridges.ros1 import header
+
+_LENGTH = struct.Struct("<I")
+_CHUNK = 1 << 18
+HANDSHAKE = 10.0
+"""s within which a connection must have told what it is for."""
+LARGEST = 64 << 20
+"""Bytes of a message or request that is taken from others."""
+QUEUE_COUNT = 100
+QUEUE_BYTES = 8 << 20
+"""What waits at most for a peer that reads too slowly, whichever comes first."""
+_LEAST = 2
+"""Messages that wait at most in any case, however large they are."""
+
+
+class Connection:
+    """One peer; on the loop's thread.
+
+    Args:
+        loop: Watches it.
+        sock: Connected.
+        on_block: Called with each block but the first.
+        on_header: Called with the fields of the first block.
+        on_close: Called once, when the connection is over.
+    """
+
+    def __init__(
+        self,
+        loop: Loop,
+        sock: socket.socket,
+        *,
+        on_header: Callable[[Connection, dict[str, str]], None],
+    ) -> None:
+        self._loop = loop
+        self._sock = sock
+        self._on_header: Callable[[Connection, dict[str, str]], None] | None = on_header
+        self.on_block: Callable[[bytes], None] = lambda _: None
+        self.on_close: Callable[[], None] = lambda: None
+        self.on_drop: Callable[[], None] = lambda: None
+        self.peer = ""
+        """The name of the node at the other end."""
+        self.sent = 0
+        """Bytes."""
+        self.dropped = 0
+        """Messages that the peer was too slow for."""
+        self.closed = False
+        self._received = bytearray()
+        self._queue: deque[memoryview] = deque()
+        self._queued = 0
+        self._begun = False
+        """Whether a part of the first message in the queue is sent."""
+        self._closing = False
+        sock.setblocking(False)
+        with contextlib.suppress(OSError):
+            sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+            sock.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)
+        loop.watch(sock, READ, self._ready)
+        loop.after(HANDSHAKE, self._lose_patience)
+
+    def send(self, data: bytes) -> None:
+        """Sends a block, its length in front; drops the oldest that waits if need be."""
+        if self.closed:
+            return
+        view = memoryview(data)
+        if not self._queue:
+            view = self._write(view)
+            if not view or self.closed:
+                return
+            self._begun = len(view) < len(data)
+            self._loop.watch(self._sock, READ | WRITE, self._ready)
+        self._queue.append(view)
+        self._queued += len(view)
+        self._shed()
+
+    def refuse(self, reason: str) -> None:
+        """Tells the peer why it gets nothing, and ends the connection."""
+        self.send(header.encode_header({"error": reason}))
+        self.finish()
+
+    def finish(self) -> None:
+        """Ends the connection when all is sent."""
+        if self._queue:
+            self._closing = True
+        else:
+            self.close()
+
+    def close(self) -> None:
+        """Ends the connection now."""
+        if self.closed:
+            return
+        self.closed = True
+        self._loop.forget(self._sock)
+        self._sock.close()
+        self._queue.clear()
+        self._received.clear()
+        self.on_close()
+
+    def _shed(self) -> None:
+        while len(self._queue) > _LEAST and (
+            len(self._queue) > QUEUE_COUNT or self._queued > QUEUE_BYTES
+        ):
+            oldest = 1 if self._begun else 0
+            self._queued -= len(self._queue[oldest])
+            del self._queue[oldest]
+            self.dropped += 1
+            if self.dropped == 1:
+                self.on_drop()
+
+    def _ready(self, events: int) -> None:
+        if events & WRITE and not self.closed:
+            self._flush()
+        if events & READ and not self.closed:
+            self._read()
+
+    def _write(self, view: memoryview) -> memoryview:
+        """Sends what the system takes; returns the rest."""
+        while view:
+            try:
+                count = self._sock.send(view)
+            except BlockingIOError:
+                break
+            except OSError:
+                self.close()
+                break
+            self.sent += count
+            view = view[count:]
+        return view
+
+    def _flush(self) -> None:
+        while self._queue:
+            first = self._queue[0]
+            rest = self._write(first)
+            if self.closed:
+                return
+            self._queued -= len(first) - len(rest)
+            if rest:
+                self._begun = self._begun or len(rest) < len(first)
+                self._queue[0] = rest
+                return
+            self._queue.popleft()
+            self._begun = False
+        if self._closing:
+            self.close()
+        else:
+            self._loop.watch(self._sock, READ, self._ready)
+
+    def _read(self) -> None:
+        try:
+            data = self._sock.recv(_CHUNK)
+        except BlockingIOError:
+            return
+        except OSError:
+            data = b""
+        if not data:
+            self.close()
+            return
+        if self._closing:
+            return
+        self._received += data
+        self._take_blocks()
+
+    def _take_blocks(self) -> None:
+        received = self._received
+        start = 0
+        while not self.closed and not self._closing and len(received) - start >= 4:
+            (length,) = _LENGTH.unpack_from(received, start)
+            if length > (header.LIMIT if self._on_header else LARGEST):
+                self.close()
+                return
+            end = start + 4 + length
+            if len(received) < end:
+                break
+            block = bytes(memoryview(received)[start + 4 : end])
+            start = end
+            self._block(block)
+        if start and not self.closed:
+            del received[:start]
+
+    def _block(self, block: bytes) -> None:
+        if self._on_header is None:
+            self.on_block(block)
+            return
+        begin, self._on_header = self._on_header, None
+        try:
+            fields = header.decode_header(block)
+        except header.HeaderError:
+            self.close()
+            return
+        self.peer = fields.get("callerid", "")
+        begin(self, fields)
+
+    def _lose_patience(self) -> None:
+        if self._on_header is not None:
+            self.close()
+
+
+class Listener:
+    """Takes connections on a port of its own; on the loop's thread.
+
+    Args:
+        loop: Watches it.
+        address: To listen on; all of this computer's where empty.
+        on_socket: Gets each connection.
+    """
+
+    def __init__(
+        self, loop: Loop, address: str, on_socket: Callable[[socket.socket], None]
+    ) -> None:
+        self._loop = loop
+        self._on_socket = on_socket
+        self._sock = socket.create_server((address, 0), backlog=128)
+        self._sock.setblocking(False)
+        self.port: int = self._sock.getsockname()[1]
+        loop.post(lambda: loop.watch(self._sock, READ, self._accept))
+
+    def _accept(self, _: int) -> None:
+        try:
+            sock, _address = self._sock.accept()
+        except BlockingIOError:
+            return
+        except OSError:
+            # Out of file descriptors, say: look again later, not at once and for ever.
+            self._loop.forget(self._sock)
+            self._loop.after(0.5, lambda: self._loop.watch(self._sock, READ, self._accept))
+            return
+        self._on_socket(sock)

@@ -1,0 +1,49 @@
+"""The fields with which a TCPROS connection begins."""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Mapping
+
+_LENGTH = struct.Struct("<I")
+
+LIMIT = 1 << 20
+"""Bytes; a definition with all its parts takes some ten thousand."""
+
+
+class HeaderError(ValueError):
+    """Bytes that are no header."""
+
+
+def encode_header(fields: Mapping[str, str]) -> bytes:
+    """The header with its length in front."""
+    parts = []
+    for name, value in fields.items():
+        field = f"{name}={value}".encode()
+        parts += [_LENGTH.pack(len(field)), field]
+    body = b"".join(parts)
+    return _LENGTH.pack(len(body)) + body
+
+
+def decode_header(body: bytes | memoryview) -> dict[str, str]:
+    """The fields of a header without its length.
+
+    Raises:
+        HeaderError: It is none.
+    """
+    fields = {}
+    data = bytes(body)
+    offset = 0
+    while offset < len(data):
+        if offset + 4 > len(data):
+            raise HeaderError("a field is cut off")
+        (length,) = _LENGTH.unpack_from(data, offset)
+        offset += 4
+        if offset + length > len(data):
+            raise HeaderError(f"a field of {length} bytes where {len(data) - offset} are left")
+        name, sign, value = data[offset : offset + length].partition(b"=")
+        if not sign:
+            raise HeaderError("a field without =")
+        fields[name.decode(errors="replace")] = value.decode(errors="replace")
+        offset += length
+    return fields

@@ -1,0 +1,107 @@
+"""``/rosout``: what this node has to say, at its level."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable
+from typing import Any, Literal
+
+from cartwheel.bridges.loop import Loop
+from cartwheel.bridges.ros1.publication import Publication
+from cartwheel.errors import CartwheelError, Diagnostic
+from cartwheel.messages import header, message_class, service_classes
+from cartwheel.messages.ros1 import ros1_type
+
+TOPIC, TYPE = "/rosout", "rosgraph_msgs/msg/Log"
+LOGGER = "ros.cartwheel"
+_LEVELS = {"debug": 1, "info": 2, "warn": 4, "error": 8, "fatal": 16}
+_OF: dict[Literal["info", "warning", "error"], str] = {
+    "info": "info",
+    "warning": "warn",
+    "error": "error",
+}
+_KEPT = 50
+"""Lines for the first who listens: they are said before anybody can be connected."""
+
+
+class Log:
+    """Publishes diagnostics.
+
+    Args:
+        loop: Runs it.
+        node: Our name.
+        time_ns: Simulation time.
+        tell: Takes a warning about a subscriber.
+    """
+
+    def __init__(
+        self, loop: Loop, *, node: str, time_ns: Callable[[], int], tell: Callable[[str], None]
+    ) -> None:
+        self._loop = loop
+        self._node = node
+        self._time_ns = time_ns
+        self._level = "info"
+        self._early: deque[Any] = deque(maxlen=_KEPT)
+        self._heard = False
+        self.publication = _LogPublication(
+            loop,
+            topic=TOPIC,
+            type_=ros1_type(TYPE),
+            latched=False,
+            node=node,
+            tell=tell,
+        )
+        self.publication.on_first = self._catch_up
+
+    def write(self, diagnostic: Diagnostic) -> None:
+        """Says something; from any thread."""
+        level = _LEVELS[_OF[diagnostic.severity]]
+        if level < _LEVELS[self._level]:
+            return
+        origin = diagnostic.origin
+        message = message_class(TYPE)(
+            header=header(self._time_ns(), ""),
+            level=level,
+            name=self._node,
+            msg=diagnostic.message,
+            file=origin.file if origin else "",
+            function="",
+            line=origin.line if origin else 0,
+            topics=[],
+        )
+        self._loop.post(lambda: self._send(message))
+
+    def get_loggers(self, _: Any) -> Any:
+        """``roscpp/GetLoggers``."""
+        _request, response = service_classes("roscpp/GetLoggers")
+        logger = message_class("roscpp/msg/Logger")
+        return response(loggers=[logger(name=LOGGER, level=self._level)])
+
+    def set_logger_level(self, request: Any) -> Any:
+        """``roscpp/SetLoggerLevel``."""
+        level = request.level.lower()
+        if level not in _LEVELS:
+            raise CartwheelError(f'"{request.level}" is no level: there are {", ".join(_LEVELS)}')
+        self._level = level
+        _request, response = service_classes("roscpp/SetLoggerLevel")
+        return response(structure_needs_at_least_one_member=0)
+
+    def _send(self, message: Any) -> None:
+        if self._heard:
+            self.publication.send(message)
+        else:
+            self._early.append(message)
+
+    def _catch_up(self) -> None:
+        self._heard = True
+        while self._early:
+            self.publication.send(self._early.popleft())
+
+
+class _LogPublication(Publication):
+    """Tells when the first subscriber comes."""
+
+    on_first: Callable[[], None]
+
+    def begin(self) -> None:
+        self.on_first()

@@ -1,0 +1,180 @@
+"""A topic that this node publishes: from the graph to everybody who is connected."""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Callable
+from typing import Any
+
+from cartwheel.bridges.loop import Loop
+from cartwheel.bridges.ros1.connection import Connection
+from cartwheel.bridges.ros1.header import encode_header
+from cartwheel.bridges.tap import Tap
+from cartwheel.errors import GraphError
+from cartwheel.graph import Graph
+from cartwheel.messages.ros1 import Ros1Type, write_ros1
+
+_LENGTH = struct.Struct("<I")
+
+
+class Publication:
+    """One topic; on the loop's thread.
+
+    While a node is connected, the graph is subscribed to, and only then.
+
+    Args:
+        loop: Runs it.
+        topic: ROS's name.
+        type_: Of its messages.
+        latched: Whether who comes later gets the last message.
+        node: Our name.
+        tell: Takes a warning.
+    """
+
+    def __init__(
+        self,
+        loop: Loop,
+        *,
+        topic: str,
+        type_: Ros1Type,
+        latched: bool,
+        node: str,
+        tell: Callable[[str], None],
+    ) -> None:
+        self._loop = loop
+        self.topic = topic
+        self.type = type_
+        self.latched = latched
+        self.links: list[Connection] = []
+        self._tell = tell
+        self._header = encode_header(
+            {
+                "callerid": node,
+                "latching": str(int(latched)),
+                "md5sum": type_.md5,
+                "message_definition": type_.definition,
+                "topic": topic,
+                "type": type_.name,
+            }
+        )
+        self._last: bytes | None = None
+        self._seq = 0
+        self._faulty = False
+
+    def join(self, link: Connection, fields: dict[str, str]) -> None:
+        """Takes a subscriber that has told what it expects."""
+        wanted = (fields.get("type", "*"), fields.get("md5sum", "*"))
+        for word, own in zip(wanted, (self.type.name, self.type.md5), strict=True):
+            if word not in ("*", own):
+                link.refuse(
+                    f"topic {self.topic} has type {self.type.name} with md5 sum {self.type.md5},"
+                    f" not {wanted[0]} with {wanted[1]}"
+                )
+                self._tell(
+                    f"{link.peer} expects {wanted[0]} ({wanted[1]}) on {self.topic}, which is"
+                    f" {self.type.name} ({self.type.md5}): it gets nothing"
+                )
+                return
+        link.send(self._header)
+        if link.closed:
+            return
+        link.on_close = lambda: self._leave(link)
+        link.on_drop = lambda: self._tell(
+            f"{link.peer or 'a node'} reads {self.topic} too slowly: messages to it are dropped"
+        )
+        if self._last is not None:
+            link.send(self._last)
+        if not link.closed:
+            self.links.append(link)
+            if len(self.links) == 1:
+                self.begin()
+
+    def begin(self) -> None:
+        """The first subscriber is there."""
+
+    def end(self) -> None:
+        """The last one has gone."""
+
+    def send(self, message: Any) -> None:
+        """Sends a message of the graph to all, serialised once."""
+        self._seq += 1
+        try:
+            parts = write_ros1(message, seq=self._seq)
+        except GraphError as error:
+            if not self._faulty:
+                self._faulty = True
+                self._tell(f"{self.topic}: {error}")
+            return
+        data = b"".join([_LENGTH.pack(sum(map(_size, parts))), *parts])
+        if self.latched:
+            self._last = data
+        for link in self.links[:]:
+            link.send(data)
+
+    def close(self) -> None:
+        """Ends all of its connections."""
+        for link in self.links[:]:
+            link.close()
+
+    def _leave(self, link: Connection) -> None:
+        if link in self.links:
+            self.links.remove(link)
+            if not self.links:
+                self.end()
+
+
+class GraphPublication(Publication):
+    """A topic of the graph.
+
+    Args:
+        graph: Where it is.
+        source: Its name there.
+        node: By which we subscribe there.
+        ignored: Whether a message came from ROS in the first place.
+        rest: As for `Publication`.
+    """
+
+    def __init__(
+        self,
+        loop: Loop,
+        graph: Graph,
+        *,
+        source: str,
+        type_name: str,
+        reader: str,
+        ignored: Callable[[Any], bool],
+        topic: str,
+        type_: Ros1Type,
+        latched: bool,
+        node: str,
+        tell: Callable[[str], None],
+    ) -> None:
+        super().__init__(loop, topic=topic, type_=type_, latched=latched, node=node, tell=tell)
+        self.type_name = type_name
+        self._tap = Tap(
+            loop,
+            graph,
+            topic=source,
+            type_name=type_name,
+            reader=reader,
+            ignored=ignored,
+            take=self._pass_on,
+            tell=tell,
+        )
+
+    def begin(self) -> None:
+        """Subscribes in the graph."""
+        self._tap.open()
+
+    def end(self) -> None:
+        """Leaves the graph, so that nothing is made for nobody."""
+        self._tap.close()
+        self._last = None
+
+    def _pass_on(self, message: Any) -> None:
+        if self.links:
+            self.send(message)
+
+
+def _size(part: bytes | memoryview) -> int:
+    return part.nbytes if isinstance(part, memoryview) else len(part)

@@ -1,0 +1,113 @@
+"""A service that this node offers."""
+
+from __future__ import annotations
+
+import struct
+import threading
+from collections.abc import Callable
+from concurrent.futures import CancelledError
+from typing import Any
+
+from cartwheel.bridges.loop import Loop
+from cartwheel.bridges.ros1.connection import Connection
+from cartwheel.bridges.ros1.header import encode_header
+from cartwheel.errors import CartwheelError
+from cartwheel.messages.ros1 import Ros1Service, decode_ros1, encode_ros1
+
+_LENGTH = struct.Struct("<I")
+_MOST = 32
+"""Calls at a time."""
+
+Answer = Callable[[Any], Any]
+
+
+class OfferedService:
+    """One service; on the loop's thread, but for each call, which has one of its own.
+
+    Args:
+        loop: Runs it.
+        name: ROS's.
+        type_: Of its requests and responses.
+        answer: Takes a request and returns the response; may take long, and raise.
+        node: Our name.
+    """
+
+    def __init__(
+        self, loop: Loop, *, name: str, type_: Ros1Service, answer: Answer, node: str
+    ) -> None:
+        self._loop = loop
+        self.name = name
+        self.type = type_
+        self._answer = answer
+        self._links: list[Connection] = []
+        self._running = 0
+        self._header = encode_header(
+            {
+                "callerid": node,
+                "md5sum": type_.md5,
+                "request_type": f"{type_.name}Request",
+                "response_type": f"{type_.name}Response",
+                "service": name,
+                "type": type_.name,
+            }
+        )
+
+    def join(self, link: Connection, fields: dict[str, str]) -> None:
+        """Takes a client that has told what it expects."""
+        if fields.get("md5sum", "*") not in ("*", self.type.md5):
+            link.refuse(
+                f"service {self.name} has type {self.type.name} with md5 sum {self.type.md5},"
+                f" not {fields['md5sum']}"
+            )
+            return
+        persistent = fields.get("persistent", "0").lower() in ("1", "true")
+        self._links.append(link)
+        link.on_close = lambda: self._links.remove(link)
+        link.on_block = lambda data: self._call(link, data, persistent)
+        link.send(self._header)
+
+    def probe(self, link: Connection) -> None:
+        """Tells what it is to one who does not want to call it."""
+        link.send(self._header)
+        link.finish()
+
+    def close(self) -> None:
+        """Ends all of its connections."""
+        for link in self._links[:]:
+            link.close()
+
+    def _call(self, link: Connection, data: bytes, persistent: bool) -> None:
+        if self._running >= _MOST:
+            self._respond(link, _failure("too many calls at a time"), persistent)
+            return
+        self._running += 1
+        threading.Thread(
+            target=self._work, args=(link, data, persistent), name="ros1 service", daemon=True
+        ).start()
+
+    def _work(self, link: Connection, data: bytes, persistent: bool) -> None:
+        try:
+            response = self._answer(decode_ros1(data, self.type.request))
+            body = encode_ros1(response)
+            reply = b"\1" + _LENGTH.pack(len(body)) + body
+        except (CartwheelError, CancelledError) as error:
+            reply = _failure(str(error))
+        except Exception as error:  # noqa: BLE001 - the caller is told, whatever it was
+            reply = _failure(f"{type(error).__name__}: {error}")
+
+        def done() -> None:
+            self._running -= 1
+            self._respond(link, reply, persistent)
+
+        self._loop.post(done)
+
+    @staticmethod
+    def _respond(link: Connection, reply: bytes, persistent: bool) -> None:
+        link.send(reply)
+        if not persistent:
+            link.finish()
+
+
+def _failure(reason: str) -> bytes:
+    text = reason.encode(errors="replace")
+    return b"\0" + _LENGTH.pack(len(text)) + text

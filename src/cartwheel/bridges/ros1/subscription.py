@@ -1,0 +1,181 @@
+"""A topic that this node subscribes to: from every publisher to the graph."""
+
+from __future__ import annotations
+
+import contextlib
+import socket
+import threading
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from cartwheel.bridges.loop import Loop
+from cartwheel.bridges.ros1.connection import Connection
+from cartwheel.bridges.ros1.header import encode_header
+from cartwheel.bridges.ros1.rpc import TIMEOUT, Peer
+from cartwheel.errors import CartwheelError
+from cartwheel.messages.ros1 import Ros1Type, decode_ros1
+
+_AGAIN = (0.2, 1.0, 2.0, 5.0)
+"""s until the next attempt to reach a publisher, the last one for all further attempts."""
+
+
+class _Link:
+    """A publisher and the way to it."""
+
+    def __init__(self, uri: str) -> None:
+        self.uri = uri
+        self.connection: Connection | None = None
+        self.attempts = 0
+        self.wanted = True
+
+
+class TopicSubscription:
+    """One topic; on the loop's thread, but for reaching publishers.
+
+    Args:
+        loop: Runs it.
+        topic: ROS's name.
+        type_name: The graph's name of its type.
+        type_: ROS's.
+        node: Our name.
+        own_uri: Ours, which is not subscribed to.
+        deliver: Takes each message.
+        tell: Takes a warning.
+    """
+
+    def __init__(
+        self,
+        loop: Loop,
+        *,
+        topic: str,
+        type_name: str,
+        type_: Ros1Type,
+        node: str,
+        own_uri: str,
+        deliver: Callable[[Any], None],
+        tell: Callable[[str], None],
+    ) -> None:
+        self._loop = loop
+        self.topic = topic
+        self.type_name = type_name
+        self.type = type_
+        self._node = node
+        self._own_uri = own_uri
+        self._deliver = deliver
+        self._tell = tell
+        self._links: dict[str, _Link] = {}
+        self._told: set[str] = set()
+
+    @property
+    def connections(self) -> list[tuple[str, Connection]]:
+        """Publishers by their URI, as far as they are connected."""
+        return [(link.uri, link.connection) for link in self._links.values() if link.connection]
+
+    def update(self, uris: Sequence[str], *, drop: bool = True) -> None:
+        """Connects to these publishers.
+
+        Args:
+            uris: Of the nodes that publish.
+            drop: Leave those that are not named.
+        """
+        named = {uri for uri in uris if uri != self._own_uri}
+        for uri in set(self._links) - named if drop else ():
+            self._drop(self._links.pop(uri))
+        for uri in named - set(self._links):
+            link = self._links[uri] = _Link(uri)
+            self._reach(link)
+
+    def close(self) -> None:
+        """Leaves all publishers."""
+        for link in self._links.values():
+            self._drop(link)
+        self._links.clear()
+
+    @staticmethod
+    def _drop(link: _Link) -> None:
+        link.wanted = False
+        if link.connection is not None:
+            link.connection.close()
+
+    def _reach(self, link: _Link) -> None:
+        if link.wanted and link.connection is None:
+            threading.Thread(
+                target=self._negotiate, args=(link,), name="ros1 connect", daemon=True
+            ).start()
+
+    def _negotiate(self, link: _Link) -> None:
+        """Asks a publisher for its port and connects; on a thread of its own."""
+        try:
+            answer = Peer(link.uri).call("requestTopic", self._node, self.topic, [["TCPROS"]])
+            protocol, host, port = answer[:3]
+            if protocol != "TCPROS":
+                raise ValueError(protocol)
+            sock = socket.create_connection((str(host), int(port)), timeout=TIMEOUT)
+        except (CartwheelError, OSError, ValueError, TypeError, IndexError, OverflowError):
+            self._loop.post(lambda: self._retry(link))
+            return
+        self._loop.post(lambda: self._connected(link, sock))
+
+    def _retry(self, link: _Link) -> None:
+        if link.wanted:
+            wait = _AGAIN[min(link.attempts, len(_AGAIN) - 1)]
+            link.attempts += 1
+            self._loop.after(wait, lambda: self._reach(link))
+
+    def _connected(self, link: _Link, sock: socket.socket) -> None:
+        if not link.wanted:
+            with contextlib.suppress(OSError):
+                sock.close()
+            return
+        connection = Connection(self._loop, sock, on_header=self._begun)
+        link.connection = connection
+        connection.peer = link.uri
+
+        def lost() -> None:
+            link.connection = None
+            self._retry(link)
+
+        def take(data: bytes) -> None:
+            link.attempts = 0
+            self._take(connection, data)
+
+        connection.on_close = lost
+        connection.on_block = take
+        connection.send(
+            encode_header(
+                {
+                    "callerid": self._node,
+                    "md5sum": self.type.md5,
+                    "message_definition": self.type.definition,
+                    "tcp_nodelay": "1",
+                    "topic": self.topic,
+                    "type": self.type.name,
+                }
+            )
+        )
+
+    def _begun(self, connection: Connection, fields: dict[str, str]) -> None:
+        refused = fields.get("error")
+        theirs = fields.get("md5sum", "*")
+        if refused is None and theirs not in ("*", self.type.md5):
+            refused = f"it sends {fields.get('type')} with md5 sum {theirs}"
+        if refused is not None:
+            self._warn(
+                f"{self.topic} is {self.type.name} ({self.type.md5}) here, and a publisher"
+                f" does not fit: {refused}"
+            )
+            connection.close()
+
+    def _take(self, connection: Connection, data: bytes) -> None:
+        try:
+            message = decode_ros1(data, self.type_name)
+        except CartwheelError as error:
+            self._warn(f"{self.topic}: {connection.peer} sends nonsense: {error}")
+            connection.close()
+            return
+        self._deliver(message)
+
+    def _warn(self, text: str) -> None:
+        if text not in self._told:
+            self._told.add(text)
+            self._tell(text)

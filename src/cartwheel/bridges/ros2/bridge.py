@@ -1,0 +1,388 @@
+"""The graph of a simulation as a node of ROS 2."""
+
+from __future__ import annotations
+
+import re
+import threading
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any, Literal
+
+from cartwheel.bridges.loop import Loop
+from cartwheel.bridges.mirror import Arrivals, survey
+from cartwheel.bridges.ros2.log import Log
+from cartwheel.bridges.ros2.middleware import (
+    DEFAULT,
+    Closable,
+    Middleware,
+    Outlet,
+    Reply,
+    profile_of,
+)
+from cartwheel.bridges.ros2.parameters import NodeParameters, Parameter
+from cartwheel.bridges.tap import Tap
+from cartwheel.errors import CartwheelError, Diagnostic, GraphError, UnknownNameError
+from cartwheel.graph import Graph, Service, TopicInfo
+from cartwheel.messages import decode_cdr, encode_cdr, service_classes, zero
+from cartwheel.messages.ros2_types import is_ros1_only, ros2_service, ros2_type
+
+READER = "ros2"
+"""Our name in the graph."""
+Rmw = Literal["dds", "zenoh"]
+_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*\Z")
+_CALL = 120.0
+"""s that the simulation may take to answer a service."""
+_MOST_CALLS = 32
+"""At a time."""
+_TOLD = 500
+"""Different warnings; they name nodes, of which any number may come."""
+_CLOSING = 2.0
+
+Report = Callable[[Diagnostic], None]
+
+
+class Ros2Bridge:
+    """Makes topics and services of a graph those of a ROS 2 node, and back.
+
+    Everything is lazy: the graph is subscribed to while another node reads. No part of ROS needs
+    to be installed.
+
+    Args:
+        graph: Of the simulation.
+        node: Name of the node.
+        rmw: Which middleware the others use.
+        parameters: Of the node.
+        report: Takes what the user should know, from any thread.
+        time_ns: Simulation time, for stamps.
+
+    Raises:
+        CartwheelError: A name or a variable of ROS makes no sense, or something is not installed.
+    """
+
+    def __init__(
+        self,
+        graph: Graph,
+        *,
+        node: str = "gazebo",
+        rmw: Rmw = "dds",
+        parameters: Iterable[Parameter] = (),
+        report: Report = lambda _: None,
+        time_ns: Callable[[], int] = lambda: 0,
+    ) -> None:
+        if not _NAME.match(node):
+            raise CartwheelError(
+                f'"{node}" is no name for a ROS 2 node',
+                hint="It holds letters, digits and _, and does not begin with a digit.",
+            )
+        self._graph = graph
+        self._report = report
+        self._told: set[str] = set()
+        self.name = f"/{node}"
+        self._loop = Loop(self._fault, name="ros2")
+        self.middleware = _middleware(rmw, self._loop, node, self._warn)
+        self._arrivals = Arrivals(graph, self._warn)
+        self._log = Log(self._loop, node=node, time_ns=time_ns)
+        self._parameters = NodeParameters(self.name, parameters, time_ns=time_ns)
+        self._publications: dict[str, _Publication] = {}
+        self._subscriptions: dict[str, _Subscription] = {}
+        self._services: dict[str, _Offered] = {}
+        self._due = False
+        self._closed = False
+        self._calls = 0
+
+    @property
+    def description(self) -> str:
+        """Of the middleware."""
+        return self.middleware.description
+
+    def start(self) -> None:
+        """Joins ROS; the rest follows on another thread.
+
+        Raises:
+            CartwheelError: It cannot be joined.
+        """
+        self._loop.start()
+        self._loop.call(self._begin).result()
+        self._graph.on_change.append(self._wake)
+        self._wake()
+
+    def close(self) -> None:
+        """Leaves; takes no longer than an instant."""
+        if self._closed:
+            return
+        self._closed = True
+        if self._wake in self._graph.on_change:
+            self._graph.on_change.remove(self._wake)
+
+        def end() -> None:
+            for publication in self._publications.values():
+                publication.tap.close()
+            self.middleware.close()
+
+        self._loop.call(end).result(_CLOSING)
+        self._loop.stop()
+
+    def log(self, diagnostic: Diagnostic) -> None:
+        """Says something on ``/rosout``; from any thread."""
+        self._log.write(diagnostic)
+
+    def watch_others(self, topic: str, told: Callable[[bool], None]) -> None:
+        """Tells from then on whether another node publishes a topic; on the loop's thread."""
+
+        def look() -> None:
+            told(self.middleware.has_other_publisher(topic))
+
+        self.middleware.on_others = look
+        self._loop.post(look)
+
+    @property
+    def dropped(self) -> int:
+        """Messages that were published faster than they could be sent."""
+        return sum(publication.tap.dropped for publication in self._publications.values())
+
+    # -- on the loop's thread
+
+    def _begin(self) -> None:
+        self.middleware.start()
+        self._log.begin(self.middleware)
+        self._parameters.begin(self.middleware, self._offer)
+
+    def _wake(self) -> None:
+        """The graph has changed; on any thread, the graph locked."""
+        if not self._due:
+            self._due = True
+            self._loop.post(self._mirror)
+
+    def _mirror(self) -> None:
+        self._due = False
+        if self._closed:
+            return
+        found = survey(self._graph.topics(), known=self._is_known)
+        self._mirror_publications(found.sent)
+        self._mirror_subscriptions(found.read)
+        self._mirror_services(
+            {one.name: one for one in self._graph.services() if self._is_known_service(one)}
+        )
+
+    def _mirror_publications(self, sent: Mapping[str, TopicInfo]) -> None:
+        known = self._publications
+        for name, publication in list(known.items()):
+            info = sent.get(name)
+            if info is None or (info.type, info.qos) != (publication.type, publication.qos):
+                known.pop(name).close()
+        for name, info in sent.items():
+            if name not in known:
+                known[name] = _Publication(self, info)
+
+    def _mirror_subscriptions(self, read: Mapping[str, TopicInfo]) -> None:
+        known = self._subscriptions
+        for name, subscription in list(known.items()):
+            if name not in read or read[name].type != subscription.type:
+                known.pop(name).inlet.close()
+        for name, info in read.items():
+            if name not in known:
+                known[name] = _Subscription(self, info)
+
+    def _mirror_services(self, offered: Mapping[str, Service]) -> None:
+        known = self._services
+        for name, service in list(known.items()):
+            if name not in offered or offered[name].type != service.type:
+                known.pop(name).closable.close()
+        for name, one in offered.items():
+            if name not in known:
+                known[name] = _Offered(
+                    one.type, self._offer(name, one.type, self._caller(name), threaded=True)
+                )
+
+    def _offer(
+        self, name: str, type_name: str, handler: Callable[[Any], Any], *, threaded: bool = False
+    ) -> Closable:
+        """Offers a service whose handler may take long, if it is `threaded`."""
+        type_ = ros2_service(type_name)
+
+        def fits(data: bytes) -> bool:
+            try:
+                again = encode_cdr(decode_cdr(data, type_.request))
+            except GraphError:
+                return False
+            return data[:4] != b"\0\1\0\0" or (
+                data.startswith(again) and len(data) - len(again) < 4
+            )
+
+        def answer(data: bytes, reply: Reply) -> None:
+            try:
+                request = decode_cdr(data, type_.request)
+            except GraphError as error:
+                self._warn(f"{name} was called with nonsense: {error}")
+                return
+            if threaded:
+                self._in_thread(lambda: respond(request, reply), name)
+            else:
+                respond(request, reply)
+
+        def respond(request: Any, reply: Reply) -> None:
+            try:
+                response = handler(request)
+                data = encode_cdr(response)
+            except CartwheelError as error:
+                data = encode_cdr(self._failure(name, type_name, str(error)))
+            except Exception as error:  # noqa: BLE001 - who asks waits for an answer
+                text = f"{type(error).__name__}: {error}"
+                data = encode_cdr(self._failure(name, type_name, text))
+            self._loop.post(lambda: reply(data))
+
+        return self.middleware.serve(name, type_, answer, fits)
+
+    def _in_thread(self, function: Callable[[], None], name: str) -> None:
+        if self._calls >= _MOST_CALLS:
+            self._warn(f"more than {_MOST_CALLS} calls at a time: one of {name} is not answered")
+            return
+        self._calls += 1
+
+        def run() -> None:
+            try:
+                function()
+            finally:
+                self._loop.post(done)
+
+        def done() -> None:
+            self._calls -= 1
+
+        threading.Thread(target=run, name=f"ros2 call {name}", daemon=True).start()
+
+    def _failure(self, name: str, type_name: str, text: str) -> Any:
+        """ROS 2 knows no errors of services: where the response can say it, it does."""
+        response = zero(service_classes(type_name)[1].__msgtype__)
+        for field in ("status_message", "message"):
+            if isinstance(getattr(response, field, None), str):
+                setattr(response, field, text)
+                return response
+        self._warn(f"{name} failed: {text}")
+        return response
+
+    def _caller(self, name: str) -> Callable[[Any], Any]:
+        def call(request: Any) -> Any:
+            future = self._graph.call(name, request)
+            try:
+                return future.result(_CALL)
+            except TimeoutError:
+                future.cancel()
+                raise CartwheelError(
+                    f"the simulation did not answer {name} within {_CALL:g} s"
+                ) from None
+
+        return call
+
+    # -- what the user should know
+
+    def _is_known(self, info: TopicInfo) -> bool:
+        if is_ros1_only(info.type):
+            return False
+        try:
+            ros2_type(info.type)
+        except UnknownNameError:
+            self._warn(f"topic {info.name} has type {info.type}, which ROS 2 does not have")
+            return False
+        return True
+
+    def _is_known_service(self, service: Service) -> bool:
+        if is_ros1_only(service.type):
+            return False
+        try:
+            ros2_service(service.type)
+        except UnknownNameError:
+            self._warn(f"service {service.name} has type {service.type}, which ROS 2 does not have")
+            return False
+        return True
+
+    def _warn(self, text: str) -> None:
+        """Once for each text."""
+        if text not in self._told and len(self._told) < _TOLD:
+            self._told.add(text)
+            self._report(Diagnostic(severity="warning", message=f"ROS 2: {text}"))
+
+    def _fault(self, error: Exception) -> None:
+        self._warn(f"a fault of the bridge: {type(error).__name__}: {error}")
+
+
+class _Publication:
+    """A topic from the graph to ROS."""
+
+    def __init__(self, bridge: Ros2Bridge, info: TopicInfo) -> None:
+        self.type = info.type
+        self.qos = info.qos
+        self._bridge = bridge
+        self._name = info.name
+        self._faulty = False
+        self.tap = Tap(
+            bridge._loop,
+            bridge._graph,
+            topic=info.name,
+            type_name=info.type,
+            reader=READER,
+            ignored=lambda message: message in bridge._arrivals,
+            take=self._send,
+            tell=bridge._warn,
+        )
+        self._outlet: Outlet | None = None
+        self._outlet = bridge.middleware.publish(
+            info.name, ros2_type(info.type), profile_of(info.name, info.qos), self._found_readers
+        )
+
+    def close(self) -> None:
+        self.tap.close()
+        if self._outlet is not None:
+            self._outlet.close()
+
+    def _found_readers(self, there: bool) -> None:
+        if there:
+            self.tap.open()
+        else:
+            self.tap.close()
+
+    def _send(self, message: Any) -> None:
+        if self._outlet is None:
+            return
+        try:
+            self._outlet.send(encode_cdr(message))
+        except Exception as error:  # noqa: BLE001 - rosbags lets whatever it meets through
+            if not self._faulty:
+                self._faulty = True
+                self._bridge._warn(f"{self._name}: a message that is none: {error}")
+
+
+class _Subscription:
+    """A topic from ROS to the graph."""
+
+    def __init__(self, bridge: Ros2Bridge, info: TopicInfo) -> None:
+        self.type = info.type
+        self._bridge = bridge
+        self._name = info.name
+        self.inlet = bridge.middleware.subscribe(
+            info.name, ros2_type(info.type), DEFAULT, self._take
+        )
+
+    def _take(self, data: bytes) -> None:
+        try:
+            message = decode_cdr(data, self.type)
+        except GraphError as error:
+            self._bridge._warn(f"{self._name}: somebody sends nonsense: {error}")
+            return
+        self._bridge._arrivals.deliver(self._name, self.type, message)
+
+
+class _Offered:
+    """A service of the graph."""
+
+    def __init__(self, type_name: str, closable: Closable) -> None:
+        self.type = type_name
+        self.closable = closable
+
+
+def _middleware(rmw: Rmw, loop: Loop, node: str, tell: Callable[[str], None]) -> Middleware:
+    if rmw == "zenoh":
+        from cartwheel.bridges.ros2.zenoh import Zenoh
+
+        return Zenoh(loop, node=node, namespace="/", tell=tell)
+    from cartwheel.bridges.ros2.dds import Dds
+
+    return Dds(loop, node=node, namespace="/", tell=tell)

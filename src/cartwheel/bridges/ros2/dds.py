@@ -1,0 +1,285 @@
+"""ROS 2 over DDS: how topics, services and nodes are written down there.
+
+Source: the design article on topic and service name mapping, rmw_dds_common, rmw_fastrtps,
+rmw_cyclonedds.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+
+import numpy as np
+
+from cartwheel.bridges.loop import Loop
+from cartwheel.bridges.ros2.middleware import Answer, Profile
+from cartwheel.bridges.ros2.rtps import discovery, wire
+from cartwheel.bridges.ros2.rtps.discovery import EndpointQos
+from cartwheel.bridges.ros2.rtps.network import Reach, domain_id
+from cartwheel.bridges.ros2.rtps.participant import Participant
+from cartwheel.bridges.ros2.rtps.reader import Reader, Taken
+from cartwheel.bridges.ros2.rtps.wire import Guid
+from cartwheel.bridges.ros2.rtps.writer import Writer
+from cartwheel.messages import encode_cdr, message_class
+from cartwheel.messages.ros2_types import Ros2Service, Ros2Type, ros2_type
+
+_NODES = "ros_discovery_info"
+_ENTITIES = "rmw_dds_common/msg/ParticipantEntitiesInfo"
+_SOON = 0.03
+"""s in which changes of our endpoints are gathered."""
+_HEADER = 16
+"""Bytes before a request's and a response's fields in rmw_cyclonedds: who asks, and which."""
+_PATIENCE, _PAUSE = 2.0, 0.02
+"""s that a response waits for the reader of it to be found."""
+_CALLS = EndpointQos(depth=100)
+
+
+class Dds:
+    """A participant with one node.
+
+    Args:
+        loop: Runs it.
+        node: Its name.
+        namespace: Of the node.
+        tell: Takes a warning.
+
+    Raises:
+        CartwheelError: A variable of ROS makes no sense, or no port is free.
+    """
+
+    def __init__(
+        self, loop: Loop, *, node: str, namespace: str, tell: Callable[[str], None]
+    ) -> None:
+        self.loop = loop
+        self._tell = tell
+        self._node = node
+        self._namespace = namespace
+        self._domain = domain_id()
+        self._reach = Reach.of()
+        self.participant = Participant(
+            loop,
+            domain=self._domain,
+            reach=self._reach,
+            name=f"{namespace.rstrip('/')}/{node}",
+            user_data=b"enclave=/;",
+            tell=tell,
+        )
+        self.on_others: Callable[[], None] = lambda: None
+        self._endpoints: list[Writer | Reader] = []
+        self._info: Writer | None = None
+        self._due = False
+        self._closed = False
+
+    @property
+    def description(self) -> str:
+        """What and where it is."""
+        where = {"OFF": "nobody", "LOCALHOST": "this computer", "SUBNET": "the network"}
+        return f"DDS domain {self._domain}, seen by {where[self._reach.range]}"
+
+    def start(self) -> None:
+        """Joins."""
+        self.participant.on_endpoints = self._found_others
+        self.participant.start()
+        type_ = ros2_type(_ENTITIES)
+        self._info = self.participant.writer(
+            _NODES,
+            type_.dds,
+            EndpointQos(transient_local=True, depth=1),
+            user_data=_hash(type_.hash),
+        )
+        self._changed()
+
+    def close(self) -> None:
+        """Leaves."""
+        self._closed = True
+        self.participant.close()
+
+    def publish(
+        self, topic: str, type_: Ros2Type, profile: Profile, on_readers: Callable[[bool], None]
+    ) -> _Outlet:
+        """See `Middleware`."""
+        writer = self.participant.writer(
+            f"rt{topic}", type_.dds, _qos(profile), user_data=_hash(type_.hash)
+        )
+        writer.on_readers = lambda: on_readers(bool(writer.proxies))
+        writer.on_drop = lambda: self._tell(
+            f"a node reads {topic} too slowly: messages to it are dropped"
+        )
+        if writer.proxies:
+            on_readers(True)
+        self._add(writer)
+        return _Outlet(self, writer)
+
+    def subscribe(
+        self, topic: str, type_: Ros2Type, profile: Profile, take: Callable[[bytes], None]
+    ) -> _Inlet:
+        """See `Middleware`."""
+        reader = self.participant.reader(
+            f"rt{topic}",
+            type_.dds,
+            _qos(profile),
+            lambda taken: take(taken.payload),
+            user_data=_hash(type_.hash),
+        )
+        self._add(reader)
+        return _Inlet(self, reader)
+
+    def serve(
+        self, name: str, type_: Ros2Service, answer: Answer, fits: Callable[[bytes], bool]
+    ) -> _Service:
+        """See `Middleware`."""
+        return _Service(self, name, type_, answer=answer, fits=fits)
+
+    def has_other_publisher(self, topic: str) -> bool:
+        """See `Middleware`."""
+        writers, _ = self.participant.others()
+        # Not another simulation's: the two would make way for each other, in turns.
+        return any(
+            writer.topic == f"rt{topic}" and not writer.guid.startswith(wire.VENDOR)
+            for writer in writers
+        )
+
+    def _found_others(self) -> None:
+        self.on_others()
+
+    def _add(self, *endpoints: Writer | Reader) -> None:
+        self._endpoints += endpoints
+        self._changed()
+
+    def _remove(self, *endpoints: Writer | Reader) -> None:
+        for endpoint in endpoints:
+            if endpoint in self._endpoints:
+                self._endpoints.remove(endpoint)
+                self.participant.remove(endpoint)
+        self._changed()
+
+    def _changed(self) -> None:
+        if not self._due:
+            self._due = True
+            self.loop.after(_SOON, self._tell_entities)
+
+    def _tell_entities(self) -> None:
+        """What belongs to the node, for ``ros2 node info``."""
+        self._due = False
+        if self._info is None or self._closed:
+            return
+        node = message_class("rmw_dds_common/msg/NodeEntitiesInfo")(
+            node_namespace=self._namespace,
+            node_name=self._node,
+            reader_gid_seq=[
+                _gid(one.endpoint.guid) for one in self._endpoints if isinstance(one, Reader)
+            ],
+            writer_gid_seq=[
+                _gid(one.endpoint.guid) for one in self._endpoints if isinstance(one, Writer)
+            ],
+        )
+        info = message_class(_ENTITIES)(
+            gid=_gid(self.participant.prefix + discovery.PARTICIPANT),
+            node_entities_info_seq=[node],
+        )
+        self._info.write(encode_cdr(info))
+
+
+class _Outlet:
+    """See `middleware.Outlet`."""
+
+    def __init__(self, dds: Dds, writer: Writer) -> None:
+        self._dds = dds
+        self.writer = writer
+
+    def send(self, payload: bytes) -> None:
+        self.writer.write(payload)
+
+    def close(self) -> None:
+        self._dds._remove(self.writer)
+
+
+class _Inlet:
+    """See `middleware.Closable`."""
+
+    def __init__(self, dds: Dds, reader: Reader) -> None:
+        self._dds = dds
+        self.reader = reader
+
+    def close(self) -> None:
+        self._dds._remove(self.reader)
+
+
+class _Service:
+    """A service: requests in, responses out to whom asked.
+
+    Which request a response answers is told in two ways: rmw_fastrtps does it beside the
+    payload, rmw_cyclonedds within. Each client is answered in its own.
+    """
+
+    def __init__(
+        self,
+        dds: Dds,
+        name: str,
+        type_: Ros2Service,
+        *,
+        answer: Answer,
+        fits: Callable[[bytes], bool],
+    ) -> None:
+        self._dds = dds
+        self._loop = dds.loop
+        self._answer = answer
+        self._fits = fits
+        identity = ".".join(f"{byte:02x}" for byte in os.urandom(16))
+        user_data = f"serviceid={identity};".encode() + _hash(type_.hash)
+        self._writer = dds.participant.writer(
+            f"rr{name}Reply", type_.dds_response, _CALLS, user_data=user_data
+        )
+        self._reader = dds.participant.reader(
+            f"rq{name}Request", type_.dds_request, _CALLS, self._take, user_data=user_data
+        )
+        dds._add(self._writer, self._reader)
+
+    def close(self) -> None:
+        self._dds._remove(self._writer, self._reader)
+
+    def _take(self, taken: Taken) -> None:
+        payload = taken.payload
+        related = taken.inline.get(discovery.RELATED) or taken.inline.get(discovery.RELATED_FASTDDS)
+        bare = payload[:4] + payload[4 + _HEADER :]
+        # Some tell it in both ways, so that the fields themselves must say which one it is.
+        within = len(payload) >= 4 + _HEADER and (
+            taken.vendor == wire.CYCLONE or (not self._fits(payload) and self._fits(bare))
+        )
+        head = b""
+        if within:
+            head, payload = payload[4 : 4 + _HEADER], bare
+        asker: Guid = taken.writer
+        if related is not None and len(related) >= 16 and any(related[:16]):
+            # Fast DDS names the reader of the response.
+            asker = related[:16]
+        inline = b"" if within else discovery.related(asker, taken.number)
+
+        def reply(response: bytes) -> None:
+            data = response[:4] + head + response[4:]
+            self._send(data, inline, taken.writer[:12], _PATIENCE)
+
+        self._answer(payload, reply)
+
+    def _send(self, data: bytes, inline: bytes, to: bytes, patience: float) -> None:
+        if any(guid[:12] == to for guid in self._writer.proxies) or patience <= 0:
+            self._writer.write(data, inline=inline, to=to)
+        else:
+            # The reader of the response may be found after the writer of the request.
+            self._loop.after(_PAUSE, lambda: self._send(data, inline, to, patience - _PAUSE))
+
+
+def _qos(profile: Profile) -> EndpointQos:
+    return EndpointQos(
+        reliable=profile.reliable,
+        transient_local=profile.transient_local,
+        depth=profile.depth,
+    )
+
+
+def _hash(value: str) -> bytes:
+    return f"typehash={value};".encode()
+
+
+def _gid(guid: Guid) -> object:
+    return message_class("rmw_dds_common/msg/Gid")(data=np.frombuffer(guid, np.uint8))

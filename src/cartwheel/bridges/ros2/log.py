@@ -1,0 +1,55 @@
+"""``/rosout``: what this node has to say."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from cartwheel.bridges.loop import Loop
+from cartwheel.bridges.ros2.middleware import Middleware, Outlet, profile_of
+from cartwheel.errors import Diagnostic
+from cartwheel.messages import encode_cdr, message_class, stamp
+from cartwheel.messages.ros2_types import ros2_type
+
+TOPIC, TYPE = "/rosout", "rcl_interfaces/msg/Log"
+_LEVELS = {"info": 20, "warning": 30, "error": 40}
+
+
+class Log:
+    """Publishes diagnostics; who comes later hears them as well.
+
+    Args:
+        loop: Runs it.
+        node: Our name.
+        time_ns: Simulation time.
+    """
+
+    def __init__(self, loop: Loop, *, node: str, time_ns: Callable[[], int]) -> None:
+        self._loop = loop
+        self._node = node
+        self._time_ns = time_ns
+        self._outlet: Outlet | None = None
+
+    def begin(self, middleware: Middleware) -> None:
+        """Offers the topic; on the loop's thread."""
+        self._outlet = middleware.publish(
+            TOPIC, ros2_type(TYPE), profile_of(TOPIC, "latched"), lambda _: None
+        )
+
+    def write(self, diagnostic: Diagnostic) -> None:
+        """Says something; from any thread."""
+        origin = diagnostic.origin
+        message: Any = message_class(TYPE)(
+            stamp=stamp(self._time_ns()),
+            level=_LEVELS[diagnostic.severity],
+            name=self._node,
+            msg=diagnostic.message,
+            file=origin.file if origin else "",
+            function="",
+            line=origin.line if origin else 0,
+        )
+        self._loop.post(lambda: self._send(message))
+
+    def _send(self, message: Any) -> None:
+        if self._outlet is not None:
+            self._outlet.send(encode_cdr(message))

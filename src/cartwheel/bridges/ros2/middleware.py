@@ -1,0 +1,99 @@
+"""What the bridge needs of a middleware of ROS 2."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol
+
+from cartwheel.graph import Qos
+from cartwheel.messages.ros2_types import Ros2Service, Ros2Type
+
+Reply = Callable[[bytes], None]
+"""Sends a response: CDR with its encapsulation."""
+Answer = Callable[[bytes, Reply], None]
+"""Takes a request's CDR; replies at once or later, on the loop's thread."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Profile:
+    """ROS 2's quality of service, as far as it differs among our topics."""
+
+    reliable: bool = True
+    transient_local: bool = False
+    depth: int = 10
+
+
+LATCHED = Profile(transient_local=True, depth=1)
+SENSOR = Profile(reliable=False, depth=5)
+DEFAULT = Profile()
+_BY_TOPIC = {
+    "/tf": Profile(depth=100),
+    "/tf_static": LATCHED,
+    "/robot_description": LATCHED,
+    "/rosout": Profile(transient_local=True, depth=1000),
+    "/parameter_events": Profile(depth=1000),
+}
+
+
+def profile_of(topic: str, qos: Qos) -> Profile:
+    """How a topic of the graph is sent.
+
+    Source: rmw's ``qos_profile_sensor_data``, tf2_ros, robot_state_publisher, rcl's rosout.
+    """
+    found = _BY_TOPIC.get(topic)
+    if found is not None:
+        return found
+    return {"latched": LATCHED, "sensor": SENSOR, "default": DEFAULT}[qos]
+
+
+class Outlet(Protocol):
+    """A topic that we publish."""
+
+    def send(self, payload: bytes) -> None:
+        """Sends a message's CDR to all readers."""
+
+    def close(self) -> None:
+        """Takes it off."""
+
+
+class Closable(Protocol):
+    """A subscription or service of ours."""
+
+    def close(self) -> None:
+        """Takes it off."""
+
+
+class Middleware(Protocol):
+    """DDS or Zenoh; on the loop's thread."""
+
+    @property
+    def description(self) -> str:
+        """What and where it is, for the user."""
+
+    def start(self) -> None:
+        """Joins."""
+
+    def close(self) -> None:
+        """Leaves."""
+
+    def publish(
+        self, topic: str, type_: Ros2Type, profile: Profile, on_readers: Callable[[bool], None]
+    ) -> Outlet:
+        """Offers a topic; `on_readers` is told when the first reader comes and the last goes."""
+
+    def subscribe(
+        self, topic: str, type_: Ros2Type, profile: Profile, take: Callable[[bytes], None]
+    ) -> Closable:
+        """Reads a topic."""
+
+    def serve(
+        self, name: str, type_: Ros2Service, answer: Answer, fits: Callable[[bytes], bool]
+    ) -> Closable:
+        """Offers a service; `fits` tells whether bytes can be a request."""
+
+    def has_other_publisher(self, topic: str) -> bool:
+        """Whether another node publishes a topic."""
+
+    on_others: Callable[[], None]
+    """Told when what other nodes offer has changed."""

@@ -1,0 +1,186 @@
+"""A node's parameters: the six services that every ROS 2 node has, and ``/parameter_events``."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from cartwheel.bridges.ros2.middleware import Closable, Middleware, Outlet, profile_of
+from cartwheel.errors import CartwheelError
+from cartwheel.messages import encode_cdr, message_class, service_classes, stamp, zero
+from cartwheel.messages.ros2_types import ros2_type
+
+Value = bool | int | float | str
+Offer = Callable[[str, str, Callable[[Any], Any]], Closable]
+"""Offers a service: name, type, handler."""
+
+EVENTS, EVENT = "/parameter_events", "rcl_interfaces/msg/ParameterEvent"
+_TYPES: dict[type, int] = {bool: 1, int: 2, float: 3, str: 4}
+_FIELDS = {1: "bool_value", 2: "integer_value", 3: "double_value", 4: "string_value"}
+_NAMES = {1: "bool", 2: "integer", 3: "double", 4: "string"}
+_NOT_SET = 0
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Parameter:
+    """One parameter; `get` and `set` are called on the bridge's thread and must not wait."""
+
+    name: str
+    description: str
+    get: Callable[[], Value]
+    set: Callable[[Any], None] | None = None
+    """Raises a CartwheelError where the value makes no sense; None is read-only."""
+
+
+class NodeParameters:
+    """Serves the parameters of a node.
+
+    Args:
+        node: Its name with its namespace.
+        parameters: All of them.
+        time_ns: Simulation time, for events.
+    """
+
+    def __init__(
+        self, node: str, parameters: Iterable[Parameter], *, time_ns: Callable[[], int]
+    ) -> None:
+        self._node = node
+        self._time_ns = time_ns
+        self._parameters = {one.name: one for one in parameters}
+        self._events: Outlet | None = None
+
+    def begin(self, middleware: Middleware, offer: Offer) -> None:
+        """Offers everything; on the loop's thread."""
+        self._events = middleware.publish(
+            EVENTS, ros2_type(EVENT), profile_of(EVENTS, "default"), lambda _: None
+        )
+        for name, type_name, handler in (
+            ("describe_parameters", "DescribeParameters", self._describe),
+            ("get_parameter_types", "GetParameterTypes", self._types),
+            ("get_parameters", "GetParameters", self._get),
+            ("list_parameters", "ListParameters", self._list),
+            ("set_parameters", "SetParameters", self._set),
+            ("set_parameters_atomically", "SetParametersAtomically", self._set_atomically),
+        ):
+            offer(f"{self._node}/{name}", f"rcl_interfaces/srv/{type_name}", handler)
+
+    def _describe(self, request: Any) -> Any:
+        descriptors = []
+        for name in request.names:
+            descriptor = zero("rcl_interfaces/msg/ParameterDescriptor")
+            descriptor.name = name
+            known = self._parameters.get(name)
+            if known is not None:
+                descriptor.type = _type_of(known.get())
+                descriptor.description = known.description
+                descriptor.read_only = known.set is None
+            descriptors.append(descriptor)
+        return _response("DescribeParameters", descriptors=descriptors)
+
+    def _types(self, request: Any) -> Any:
+        types = [
+            _type_of(self._parameters[name].get()) if name in self._parameters else _NOT_SET
+            for name in request.names
+        ]
+        return _response("GetParameterTypes", types=np.array(types, np.uint8))
+
+    def _get(self, request: Any) -> Any:
+        values = [
+            _value(self._parameters[name].get() if name in self._parameters else None)
+            for name in request.names
+        ]
+        return _response("GetParameters", values=values)
+
+    def _list(self, request: Any) -> Any:
+        prefixes, depth = list(request.prefixes), int(request.depth)
+        names, folders = [], set()
+        for name in sorted(self._parameters):
+            rest = _below(name, prefixes)
+            if rest is None or (depth and rest.count(".") >= depth):
+                continue
+            names.append(name)
+            if "." in name:
+                folders.add(name.rpartition(".")[0])
+        result = message_class("rcl_interfaces/msg/ListParametersResult")(
+            names=names, prefixes=sorted(folders)
+        )
+        return _response("ListParameters", result=result)
+
+    def _set(self, request: Any) -> Any:
+        results = [self._change([each]) for each in request.parameters]
+        return _response("SetParameters", results=results)
+
+    def _set_atomically(self, request: Any) -> Any:
+        return _response("SetParametersAtomically", result=self._change(request.parameters))
+
+    def _change(self, given: Sequence[Any]) -> Any:
+        result = message_class("rcl_interfaces/msg/SetParametersResult")
+        undo: list[tuple[Parameter, Value]] = []
+        try:
+            checked = [self._checked(each) for each in given]
+            for known, value in checked:
+                before = known.get()
+                assert known.set is not None
+                known.set(value)
+                undo.append((known, before))
+        except CartwheelError as error:
+            for known, before in reversed(undo):
+                assert known.set is not None
+                known.set(before)
+            return result(successful=False, reason=error.message)
+        self._tell(given)
+        return result(successful=True, reason="")
+
+    def _checked(self, given: Any) -> tuple[Parameter, Value]:
+        known = self._parameters.get(given.name)
+        if known is None:
+            raise CartwheelError(f'parameter "{given.name}" has not been declared')
+        if known.set is None:
+            raise CartwheelError(f'parameter "{given.name}" is read-only')
+        wanted, found = _type_of(known.get()), int(given.value.type)
+        if found == wanted:
+            return known, getattr(given.value, _FIELDS[found])
+        if (wanted, found) == (3, 2):
+            # What a shell's 2 is meant to be.
+            return known, float(given.value.integer_value)
+        raise CartwheelError(f'parameter "{given.name}" is of type {_NAMES[wanted]}')
+
+    def _tell(self, changed: Sequence[Any]) -> None:
+        if self._events is None:
+            return
+        event = zero(EVENT)
+        event.stamp = stamp(self._time_ns())
+        event.node = self._node
+        event.changed_parameters = list(changed)
+        self._events.send(encode_cdr(event))
+
+
+def _below(name: str, prefixes: Sequence[str]) -> str | None:
+    """What of a name comes below one of the prefixes; all of it where there are none."""
+    if not prefixes:
+        return name
+    for prefix in prefixes:
+        if name == prefix:
+            return ""
+        if name.startswith(f"{prefix}."):
+            return name[len(prefix) + 1 :]
+    return None
+
+
+def _type_of(value: Value) -> int:
+    return _TYPES[type(value)]
+
+
+def _value(value: Value | None) -> Any:
+    made = zero("rcl_interfaces/msg/ParameterValue")
+    if value is not None:
+        made.type = _type_of(value)
+        setattr(made, _FIELDS[made.type], value)
+    return made
+
+
+def _response(name: str, **fields: Any) -> Any:
+    return service_classes(f"rcl_interfaces/srv/{name}")[1](**fields)

@@ -1,0 +1,274 @@
+"""What participants and endpoints tell of themselves."""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from cartwheel.bridges.ros2.rtps.wire import VENDOR, VERSION, Guid, MalformedError, Prefix
+
+PARTICIPANT = b"\x00\x00\x01\xc1"
+SPDP_WRITER, SPDP_READER = b"\x00\x01\x00\xc2", b"\x00\x01\x00\xc7"
+PUBLICATIONS_WRITER, PUBLICATIONS_READER = b"\x00\x00\x03\xc2", b"\x00\x00\x03\xc7"
+SUBSCRIPTIONS_WRITER, SUBSCRIPTIONS_READER = b"\x00\x00\x04\xc2", b"\x00\x00\x04\xc7"
+ENDPOINTS = 0x3F
+"""Announcer and detector of participants, publications and subscriptions."""
+
+_SENTINEL, _LEASE, _TOPIC, _TYPE = 0x01, 0x02, 0x05, 0x07
+_DOMAIN, _VERSION, _VENDOR, _RELIABILITY, _LIVELINESS = 0x0F, 0x15, 0x16, 0x1A, 0x1B
+_DURABILITY, _USER_DATA, _USER_LOCATOR, _META_LOCATOR = 0x1D, 0x2C, 0x31, 0x32
+_ENDPOINT_LOCATOR, _HISTORY, _PARTICIPANT_GUID, _ENDPOINTS = 0x2F, 0x40, 0x50, 0x58
+_ENDPOINT_GUID, _ENTITY_NAME, _KEY_HASH, _STATUS, _REPRESENTATION = 0x5A, 0x62, 0x70, 0x71, 0x73
+RELATED, RELATED_FASTDDS = 0x0083, 0x800F
+"""Which sample another one answers: the standard's parameter, and Fast DDS's own."""
+_FOREVER = struct.pack("<iI", 0x7FFFFFFF, 0xFFFFFFFF)
+_UDP4 = 1
+
+Address = tuple[str, int]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class EndpointQos:
+    """What an endpoint offers or asks for."""
+
+    reliable: bool = True
+    transient_local: bool = False
+    depth: int = 10
+    """Samples kept of each writer."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Endpoint:
+    """A writer or a reader."""
+
+    guid: Guid
+    topic: str
+    type: str
+    qos: EndpointQos
+    user_data: bytes = b""
+    locators: tuple[Address, ...] = ()
+    """Its own, where it does not share the participant's."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ParticipantData:
+    """A participant."""
+
+    prefix: Prefix
+    meta: tuple[Address, ...]
+    """Where discovery is sent to."""
+    user: tuple[Address, ...]
+    lease: float = 20.0
+    """s without a sign of life after which it is taken for gone."""
+    vendor: bytes = VENDOR
+    name: str = ""
+    user_data: bytes = b""
+
+
+# -- writing
+
+
+def encode_participant(data: ParticipantData, *, domain: int) -> bytes:
+    """What SPDP sends."""
+    return _list(
+        (_VERSION, VERSION + b"\0\0"),
+        (_VENDOR, data.vendor + b"\0\0"),
+        (_PARTICIPANT_GUID, data.prefix + PARTICIPANT),
+        (_DOMAIN, struct.pack("<I", domain)),
+        *((_META_LOCATOR, _locator(address)) for address in data.meta),
+        *((_USER_LOCATOR, _locator(address)) for address in data.user),
+        (_LEASE, struct.pack("<iI", int(data.lease), 0)),
+        (_ENDPOINTS, struct.pack("<I", ENDPOINTS)),
+        (_ENTITY_NAME, _string(data.name)),
+        (_USER_DATA, _octets(data.user_data)),
+    )
+
+
+def encode_endpoint(data: Endpoint) -> bytes:
+    """What SEDP sends of a writer or reader."""
+    qos = data.qos
+    # Reliability's 1 and 2 are the wire's; so is the time a writer may wait, which it never does.
+    reliability = struct.pack("<IiI", 2 if qos.reliable else 1, 0, 0x19999999)
+    return _list(
+        (_ENDPOINT_GUID, data.guid),
+        (_PARTICIPANT_GUID, data.guid[:12] + PARTICIPANT),
+        (_VERSION, VERSION + b"\0\0"),
+        (_VENDOR, VENDOR + b"\0\0"),
+        (_TOPIC, _string(data.topic)),
+        (_TYPE, _string(data.type)),
+        (_RELIABILITY, reliability),
+        (_DURABILITY, struct.pack("<I", int(qos.transient_local))),
+        (_HISTORY, struct.pack("<II", 0, qos.depth)),
+        (_LIVELINESS, struct.pack("<I", 0) + _FOREVER),
+        (_REPRESENTATION, struct.pack("<IhH", 1, 0, 0)),
+        (_USER_DATA, _octets(data.user_data)),
+    )
+
+
+def encode_key(guid: Guid, *, participant: bool = False) -> bytes:
+    """The key of a participant or endpoint that is disposed of."""
+    return _list((_PARTICIPANT_GUID if participant else _ENDPOINT_GUID, guid))
+
+
+def disposed(guid: Guid) -> bytes:
+    """The inline parameters that say so."""
+    return inline((_KEY_HASH, guid), (_STATUS, b"\0\0\0\x03"))
+
+
+def inline(*pairs: tuple[int, bytes]) -> bytes:
+    """Parameters before a payload."""
+    return _parameters(pairs)
+
+
+def related(guid: Guid, number: int) -> bytes:
+    """The inline parameters that name the request that a sample answers."""
+    identity = guid + struct.pack("<iI", number >> 32, number & 0xFFFFFFFF)
+    return inline((RELATED, identity), (RELATED_FASTDDS, identity))
+
+
+def _list(*pairs: tuple[int, bytes]) -> bytes:
+    return b"\x00\x03\x00\x00" + _parameters(pairs)
+
+
+def _parameters(pairs: Iterable[tuple[int, bytes]]) -> bytes:
+    parts = []
+    for name, value in pairs:
+        padded = value + b"\0" * (-len(value) % 4)
+        parts.append(struct.pack("<HH", name, len(padded)) + padded)
+    return b"".join((*parts, struct.pack("<HH", _SENTINEL, 0)))
+
+
+def _string(text: str) -> bytes:
+    data = text.encode() + b"\0"
+    return struct.pack("<I", len(data)) + data
+
+
+def _octets(data: bytes) -> bytes:
+    return struct.pack("<I", len(data)) + data
+
+
+def _locator(address: Address) -> bytes:
+    host, port = address
+    return struct.pack("<II", _UDP4, port) + bytes(12) + bytes(map(int, host.split(".")))
+
+
+# -- reading
+
+
+def is_disposal(parameters: dict[int, bytes]) -> bool:
+    """Whether a sample's inline parameters say that its subject is gone."""
+    return bool(parameters.get(_STATUS, b"\0\0\0\0")[3:4] > b"\0")
+
+
+def key_of(parameters: dict[int, bytes], payload: bytes) -> Guid | None:
+    """Whom a disposal is about."""
+    if len(parameters.get(_KEY_HASH, b"")) >= 16:
+        return parameters[_KEY_HASH][:16]
+    found = _decode(payload) if payload else {}
+    for name in (_ENDPOINT_GUID, _PARTICIPANT_GUID):
+        if found.get(name):
+            return found[name][0][:16]
+    return None
+
+
+def decode_participant(payload: bytes) -> ParticipantData:
+    """What SPDP received.
+
+    Raises:
+        MalformedError: It is none.
+    """
+    found = _decode(payload)
+    order = _order(payload)
+    guid = _first(found, _PARTICIPANT_GUID, 16)
+    lease = 100.0
+    if _LEASE in found and len(found[_LEASE][0]) >= 8:
+        seconds, fraction = struct.unpack_from(f"{order}iI", found[_LEASE][0])
+        lease = seconds + fraction / 2**32
+    return ParticipantData(
+        prefix=guid[:12],
+        meta=_locators(found.get(_META_LOCATOR, []), order),
+        user=_locators(found.get(_USER_LOCATOR, []), order),
+        lease=max(1.0, lease),
+        vendor=found.get(_VENDOR, [b"\0\0"])[0][:2],
+    )
+
+
+def domain_of(payload: bytes) -> int | None:
+    """The domain that a participant says it is in."""
+    value = _decode(payload).get(_DOMAIN, [b""])[0]
+    return struct.unpack_from(f"{_order(payload)}I", value)[0] if len(value) >= 4 else None
+
+
+def decode_endpoint(payload: bytes, *, writer: bool) -> Endpoint:
+    """What SEDP received, of a writer or a reader, whose reliability has different defaults.
+
+    Raises:
+        MalformedError: It is none.
+    """
+    found = _decode(payload)
+    order = _order(payload)
+    try:
+        kinds = [
+            struct.unpack_from(f"{order}I", found[name][0])[0] if name in found else default
+            for name, default in ((_RELIABILITY, 2 if writer else 1), (_DURABILITY, 0))
+        ]
+        topic, type_ = (_text(_first(found, name, 5), order) for name in (_TOPIC, _TYPE))
+    except (struct.error, UnicodeDecodeError) as error:
+        raise MalformedError(str(error)) from None
+    user_data = found.get(_USER_DATA, [b"\0\0\0\0"])[0]
+    length = int.from_bytes(user_data[:4], "little" if order == "<" else "big")
+    return Endpoint(
+        guid=_first(found, _ENDPOINT_GUID, 16),
+        topic=topic,
+        type=type_,
+        qos=EndpointQos(reliable=kinds[0] >= 2, transient_local=kinds[1] >= 1),
+        user_data=user_data[4 : 4 + length],
+        locators=_locators(found.get(_ENDPOINT_LOCATOR, []), order),
+    )
+
+
+def _order(payload: bytes) -> str:
+    return "<" if payload[1:2] == b"\x03" else ">"
+
+
+def _decode(payload: bytes) -> dict[int, list[bytes]]:
+    if payload[:2] not in (b"\x00\x03", b"\x00\x02"):
+        raise MalformedError("no list of parameters")
+    order, at = _order(payload), 4
+    found: dict[int, list[bytes]] = {}
+    while at + 4 <= len(payload):
+        name, length = struct.unpack_from(f"{order}HH", payload, at)
+        at += 4
+        if name == _SENTINEL:
+            break
+        if at + length > len(payload):
+            raise MalformedError("a parameter is cut off")
+        found.setdefault(name & 0x3FFF if name < 0x8000 else name, []).append(
+            payload[at : at + length]
+        )
+        at += length
+    return found
+
+
+def _first(found: dict[int, list[bytes]], name: int, length: int) -> bytes:
+    if name not in found or len(found[name][0]) < length:
+        raise MalformedError(f"parameter {name:#x} is missing")
+    value = found[name][0]
+    return value[:16] if name in (_ENDPOINT_GUID, _PARTICIPANT_GUID) else value
+
+
+def _text(value: bytes, order: str) -> str:
+    (length,) = struct.unpack_from(f"{order}I", value)
+    return value[4 : 4 + max(0, length - 1)].decode()
+
+
+def _locators(values: Iterable[bytes], order: str) -> tuple[Address, ...]:
+    found = []
+    for value in values:
+        if len(value) < 24:
+            continue
+        kind, port = struct.unpack_from(f"{order}iI", value)
+        if kind == _UDP4 and 0 < port < 65536:
+            found.append((".".join(map(str, value[20:24])), port))
+    return tuple(found[:8])

@@ -1,0 +1,209 @@
+"""Sockets, ports and how far discovery reaches."""
+
+from __future__ import annotations
+
+import contextlib
+import fcntl
+import os
+import socket
+import struct
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+from cartwheel.bridges.ros2.rtps.discovery import Address
+from cartwheel.errors import CartwheelError
+
+GROUP = "239.255.0.1"
+LOOPBACK = "127.0.0.1"
+_BASE, _PER_DOMAIN, _PER_PARTICIPANT, _UNICAST = 7400, 250, 2, 10
+_LAST_DOMAIN = 232
+_PARTICIPANTS = 120
+_PEERS = 32
+"""Participants on a computer that are looked for one by one."""
+_BUFFER = 8 << 20
+_SIOCGIFADDR = 0x8915
+
+Range = Literal["OFF", "LOCALHOST", "SUBNET"]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Reach:
+    """How far discovery goes."""
+
+    range: Range = "LOCALHOST"
+    peers: tuple[str, ...] = ()
+    """Hosts that are told of us one by one."""
+
+    @classmethod
+    def of(cls, environment: Mapping[str, str] = os.environ) -> Reach:
+        """What ROS's variables say; this computer alone where they say nothing.
+
+        Source: REP 2017's ``ROS_AUTOMATIC_DISCOVERY_RANGE`` and ``ROS_STATIC_PEERS``, and the
+        older ``ROS_LOCALHOST_ONLY``.
+
+        Raises:
+            CartwheelError: A value is none of ROS's.
+        """
+        peers = tuple(
+            peer.strip() for peer in environment.get("ROS_STATIC_PEERS", "").split(";") if peer
+        )
+        only = environment.get("ROS_LOCALHOST_ONLY", "")
+        given = environment.get("ROS_AUTOMATIC_DISCOVERY_RANGE", "").upper()
+        if only == "1":
+            return cls(range="LOCALHOST")
+        if not given:
+            return cls(range="SUBNET" if only == "0" else "LOCALHOST", peers=peers)
+        if given == "OFF":
+            return cls(range="OFF")
+        if given == "LOCALHOST":
+            return cls(range="LOCALHOST", peers=peers)
+        if given in ("SUBNET", "SYSTEM_DEFAULT"):
+            return cls(range="SUBNET", peers=peers)
+        raise CartwheelError(
+            f'ROS_AUTOMATIC_DISCOVERY_RANGE is "{given}"',
+            hint="It can be OFF, LOCALHOST, SUBNET or SYSTEM_DEFAULT.",
+        )
+
+
+def domain_id(environment: Mapping[str, str] = os.environ) -> int:
+    """``ROS_DOMAIN_ID``; 0 where there is none.
+
+    Raises:
+        CartwheelError: It is no domain.
+    """
+    given = environment.get("ROS_DOMAIN_ID", "").strip() or "0"
+    if not given.isdigit() or int(given) > _LAST_DOMAIN:
+        raise CartwheelError(
+            f'ROS_DOMAIN_ID is "{given}"', hint=f"It is a number from 0 to {_LAST_DOMAIN}."
+        )
+    return int(given)
+
+
+def own_addresses() -> dict[str, str]:
+    """IPv4 addresses of this computer by its interfaces' names."""
+    found: dict[str, str] = {}
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        for _, name in socket.if_nameindex():
+            request = struct.pack("256s", name.encode()[:15])
+            # One without an address.
+            with contextlib.suppress(OSError):
+                answer = fcntl.ioctl(probe.fileno(), _SIOCGIFADDR, request)
+                found[name] = socket.inet_ntoa(answer[20:24])
+    return found
+
+
+class Network:
+    """A participant's sockets.
+
+    Args:
+        domain: See `domain_id`.
+        reach: How far others are looked for and heard.
+
+    Raises:
+        CartwheelError: No port is free.
+    """
+
+    def __init__(self, domain: int, reach: Reach) -> None:
+        self.reach = reach
+        base = _BASE + _PER_DOMAIN * domain
+        self._own = {LOOPBACK, *own_addresses().values()}
+        outer = tuple(sorted(address for address in self._own if not address.startswith("127.")))
+        local = reach.range != "SUBNET" and not reach.peers
+        self.unicast, port = self._open(base, LOOPBACK if local else "")
+        self.locators: tuple[Address, ...] = tuple(
+            (host, port) for host in ((LOOPBACK,) if local or not outer else outer)
+        )
+        """Where others reach us."""
+        self.multicast: socket.socket | None = None
+        self.announce: list[Address] = []
+        """Where our existence is told, beside the group."""
+        self._casters: list[socket.socket] = []
+        self._group = (GROUP, base)
+        if reach.range == "OFF":
+            return
+        self.announce = [
+            (host, base + _UNICAST + _PER_PARTICIPANT * number)
+            for host in (LOOPBACK, *self._resolved(reach.peers))
+            for number in range(_PEERS)
+        ]
+        with contextlib.suppress(OSError):
+            self.multicast = self._join(base)
+        for address in sorted(self._own) if reach.range == "SUBNET" else [LOOPBACK]:
+            # An interface without multicast: those behind it must look for us.
+            with contextlib.suppress(OSError):
+                self._casters.append(self._caster(address))
+
+    def hears(self, host: str) -> bool:
+        """Whether datagrams of that host are for us."""
+        return self.reach.range == "SUBNET" or host in self._own or host in self.reach.peers
+
+    def is_own(self, host: str) -> bool:
+        """Whether a host is this computer."""
+        return host in self._own
+
+    def cast(self, data: bytes) -> None:
+        """Sends to everybody in reach."""
+        for caster in self._casters:
+            with contextlib.suppress(OSError):
+                caster.sendto(data, self._group)
+        for address in self.announce:
+            with contextlib.suppress(OSError):
+                self.unicast.sendto(data, address)
+
+    def close(self) -> None:
+        """Closes all sockets."""
+        for sock in (self.unicast, self.multicast, *self._casters):
+            if sock is not None:
+                sock.close()
+
+    def _open(self, base: int, host: str) -> tuple[socket.socket, int]:
+        sock = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        sock.setblocking(False)
+        for option in (socket.SO_RCVBUF, socket.SO_SNDBUF):
+            sock.setsockopt(socket.SOL_SOCKET, option, _BUFFER)
+        for number in range(_PARTICIPANTS):
+            port = base + _UNICAST + _PER_PARTICIPANT * number
+            try:
+                sock.bind((host, port))
+            except OSError:
+                continue
+            return sock, port
+        sock.close()
+        raise CartwheelError(
+            "no port is free for another participant of this ROS domain",
+            hint="Choose another with ROS_DOMAIN_ID.",
+        )
+
+    def _join(self, port: int) -> socket.socket:
+        sock = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        sock.setblocking(False)
+        sock.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        sock.bind((GROUP, port))
+        # All interfaces: programs of this computer may announce themselves on any.
+        for address in self._own:
+            with contextlib.suppress(OSError):
+                sock.setsockopt(
+                    socket.IPPROTO_IP,
+                    socket.IP_ADD_MEMBERSHIP,
+                    socket.inet_aton(GROUP) + socket.inet_aton(address),
+                )
+        return sock
+
+    @staticmethod
+    def _caster(address: str) -> socket.socket:
+        sock = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        sock.setblocking(False)
+        sock.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, socket.inet_aton(address))
+        sock.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, 1)
+        return sock
+
+    @staticmethod
+    def _resolved(peers: tuple[str, ...]) -> list[str]:
+        found = []
+        for peer in peers:
+            try:
+                found.append(socket.gethostbyname(peer))
+            except OSError:
+                raise CartwheelError(f'ROS_STATIC_PEERS names "{peer}", which is no host') from None
+        return found

@@ -1,0 +1,413 @@
+"""A participant of DDS: finds others, and connects its writers and readers with theirs."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import socket
+import struct
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+
+from cartwheel.bridges.loop import READ, Loop
+from cartwheel.bridges.ros2.rtps import discovery, wire
+from cartwheel.bridges.ros2.rtps.discovery import (
+    Address,
+    Endpoint,
+    EndpointQos,
+    ParticipantData,
+    decode_endpoint,
+    decode_participant,
+)
+from cartwheel.bridges.ros2.rtps.network import Network, Reach
+from cartwheel.bridges.ros2.rtps.reader import Reader, Taken
+from cartwheel.bridges.ros2.rtps.wire import Guid, MalformedError, Prefix, Received
+from cartwheel.bridges.ros2.rtps.writer import Writer
+
+_ANNOUNCE_FIRST, _ANNOUNCE = (0.0, 0.1, 0.3, 0.6, 1.0), 3.0
+"""s after the start, and between further announcements."""
+_TICK = 0.05
+_PARTICIPANTS = 256
+_ENDPOINTS = 2000
+"""Of one participant: what no ROS program comes near to."""
+_AT_ONCE = 64
+"""Datagrams taken before anything else is done."""
+_BUILTIN = EndpointQos(reliable=True, transient_local=True, depth=5000)
+
+
+@dataclass(slots=True)
+class _Remote:
+    """Another participant."""
+
+    data: ParticipantData
+    address: Address
+    heard: float
+    writers: dict[Guid, Endpoint] = field(default_factory=dict)
+    readers: dict[Guid, Endpoint] = field(default_factory=dict)
+
+
+class Participant:
+    """One participant; on the loop's thread but where said otherwise.
+
+    Args:
+        loop: Runs it.
+        domain: Of ROS.
+        reach: How far others are looked for.
+        name: For those who list participants.
+        user_data: Of the participant.
+        tell: Takes a warning.
+
+    Raises:
+        CartwheelError: No port is free.
+    """
+
+    def __init__(
+        self,
+        loop: Loop,
+        *,
+        domain: int,
+        reach: Reach,
+        name: str,
+        user_data: bytes,
+        tell: Callable[[str], None],
+    ) -> None:
+        self._loop = loop
+        self._domain = domain
+        self._tell = tell
+        self._network = Network(domain, reach)
+        # Vendor, host, process, and a random part as several may be in one process.
+        self.prefix: Prefix = (
+            wire.VENDOR + os.urandom(2) + struct.pack("<I", os.getpid()) + os.urandom(4)
+        )
+        self.on_endpoints: Callable[[], None] = lambda: None
+        """Told when others' writers or readers come or go."""
+        self._data = ParticipantData(
+            prefix=self.prefix,
+            meta=self._network.locators,
+            user=self._network.locators,
+            name=name,
+            user_data=user_data,
+        )
+        self._announcement = wire.message(
+            self.prefix,
+            *self._sample_of_self(discovery.encode_participant(self._data, domain=domain)),
+        )
+        self._remotes: dict[Prefix, _Remote] = {}
+        self._writers: dict[bytes, Writer] = {}
+        self._readers: dict[bytes, Reader] = {}
+        self._next_entity = 1
+        self._closed = False
+        self.malformed = 0
+        """Datagrams that were no RTPS."""
+        self._publications = self._builtin_writer(discovery.PUBLICATIONS_WRITER)
+        self._subscriptions = self._builtin_writer(discovery.SUBSCRIPTIONS_WRITER)
+        self._builtin_reader(discovery.PUBLICATIONS_READER, self._found_writer)
+        self._builtin_reader(discovery.SUBSCRIPTIONS_READER, self._found_reader)
+
+    def start(self) -> None:
+        """Begins; on the loop's thread."""
+        for sock in (self._network.unicast, self._network.multicast):
+            if sock is not None:
+                self._loop.watch(sock, READ, lambda _, sock=sock: self._receive(sock))  # type: ignore[misc]
+        for wait in _ANNOUNCE_FIRST:
+            self._loop.after(wait, self._announce)
+        self._loop.after(_ANNOUNCE, self._keep_announcing)
+        self._tick()
+
+    def close(self) -> None:
+        """Says good-bye and closes the sockets."""
+        if self._closed:
+            return
+        self._closed = True
+        key = discovery.encode_key(self.prefix + discovery.PARTICIPANT, participant=True)
+        bye = wire.message(
+            self.prefix,
+            *self._sample_of_self(
+                key, inline=discovery.disposed(self.prefix + discovery.PARTICIPANT)
+            ),
+        )
+        self._network.cast(bye)
+        for remote in self._remotes.values():
+            self._send((bye,), remote.address)
+        for sock in (self._network.unicast, self._network.multicast):
+            if sock is not None:
+                self._loop.forget(sock)
+        self._network.close()
+
+    # -- endpoints
+
+    def writer(self, topic: str, type_: str, qos: EndpointQos, *, user_data: bytes = b"") -> Writer:
+        """A new writer."""
+        endpoint = self._endpoint(b"\x03", topic, type_, qos, user_data)
+        writer = self._writers[endpoint.guid[12:]] = Writer(endpoint, self._send)
+        self._publications.write(discovery.encode_endpoint(endpoint))
+        for remote in self._remotes.values():
+            for other in remote.readers.values():
+                self._match_reader(writer, other, remote)
+        return writer
+
+    def reader(
+        self,
+        topic: str,
+        type_: str,
+        qos: EndpointQos,
+        take: Callable[[Taken], None],
+        *,
+        user_data: bytes = b"",
+    ) -> Reader:
+        """A new reader."""
+        endpoint = self._endpoint(b"\x04", topic, type_, qos, user_data)
+        reader = self._readers[endpoint.guid[12:]] = Reader(endpoint, self._send, take)
+        self._subscriptions.write(discovery.encode_endpoint(endpoint))
+        for remote in self._remotes.values():
+            for other in remote.writers.values():
+                self._match_writer(reader, other, remote)
+        return reader
+
+    def remove(self, endpoint: Writer | Reader) -> None:
+        """Takes a writer or reader away."""
+        guid = endpoint.endpoint.guid
+        known = self._writers if isinstance(endpoint, Writer) else self._readers
+        teller = self._publications if isinstance(endpoint, Writer) else self._subscriptions
+        if known.pop(guid[12:], None) is not None and not self._closed:
+            teller.write(discovery.encode_key(guid), inline=discovery.disposed(guid), keyed=True)
+
+    def others(self) -> tuple[list[Endpoint], list[Endpoint]]:
+        """All writers and all readers of other participants."""
+        remotes = self._remotes.values()
+        return (
+            [one for remote in remotes for one in remote.writers.values()],
+            [one for remote in remotes for one in remote.readers.values()],
+        )
+
+    def _endpoint(
+        self, kind: bytes, topic: str, type_: str, qos: EndpointQos, user_data: bytes
+    ) -> Endpoint:
+        entity = self._next_entity.to_bytes(3, "big") + kind
+        self._next_entity += 1
+        return Endpoint(
+            guid=self.prefix + entity, topic=topic, type=type_, qos=qos, user_data=user_data
+        )
+
+    def _builtin_writer(self, entity: bytes) -> Writer:
+        endpoint = Endpoint(guid=self.prefix + entity, topic="", type="", qos=_BUILTIN)
+        writer = self._writers[entity] = Writer(endpoint, self._send)
+        return writer
+
+    def _builtin_reader(self, entity: bytes, take: Callable[[Taken], None]) -> None:
+        endpoint = Endpoint(guid=self.prefix + entity, topic="", type="", qos=_BUILTIN)
+        self._readers[entity] = Reader(endpoint, self._send, take)
+
+    # -- time
+
+    def _announce(self) -> None:
+        if not self._closed:
+            self._network.cast(self._announcement)
+
+    def _keep_announcing(self) -> None:
+        if self._closed:
+            return
+        self._announce()
+        now = time.monotonic()
+        for prefix, remote in list(self._remotes.items()):
+            if now - remote.heard > remote.data.lease:
+                self._lose(prefix)
+            else:
+                # It may be where no announcement gets.
+                self._send((self._announcement,), remote.address)
+        for reader in self._readers.values():
+            reader.give_up(now)
+        self._loop.after(_ANNOUNCE, self._keep_announcing)
+
+    def _tick(self) -> None:
+        if self._closed:
+            return
+        now = time.monotonic()
+        for writer in self._writers.values():
+            writer.remind(now)
+        self._loop.after(_TICK, self._tick)
+
+    # -- datagrams
+
+    def _send(self, parts: Sequence[bytes | memoryview], address: Address) -> None:
+        # A full buffer or a network that is down: reliability mends it, if anything does.
+        with contextlib.suppress(OSError):
+            self._network.unicast.sendmsg(parts, (), 0, address)
+
+    def _receive(self, sock: socket.socket) -> None:
+        for _ in range(_AT_ONCE):
+            try:
+                data, (host, _port) = sock.recvfrom(65536)
+            except OSError:
+                return
+            if not self._network.hears(host):
+                continue
+            try:
+                for received in wire.read(memoryview(data)):
+                    if received.prefix != self.prefix and received.to in (None, self.prefix):
+                        self._take(received, host)
+            except MalformedError:
+                self.malformed += 1
+
+    def _take(self, received: Received, host: str) -> None:
+        remote = self._remotes.get(received.prefix)
+        if remote is not None:
+            remote.heard = time.monotonic()
+        content = received.content
+        if isinstance(content, wire.Data):
+            if content.writer == discovery.SPDP_WRITER:
+                self._found_participant(content, received.prefix, host)
+                return
+            guid = received.prefix + content.writer
+            for reader in self._addressed(content.reader, guid):
+                reader.take_data(guid, received.vendor, content)
+        elif isinstance(content, wire.Heartbeat):
+            guid = received.prefix + content.writer
+            for reader in self._addressed(content.reader, guid):
+                reader.take_heartbeat(guid, content)
+        elif isinstance(content, wire.Gap):
+            guid = received.prefix + content.writer
+            for reader in self._addressed(content.reader, guid):
+                reader.take_gap(guid, content)
+        else:
+            writer = self._writers.get(content.writer)
+            if writer is None:
+                return
+            if isinstance(content, wire.Acknack):
+                writer.take_acknack(received.prefix + content.reader, content)
+            else:
+                writer.take_nack_frag(received.prefix + content.reader, content)
+
+    def _addressed(self, entity: bytes, writer: Guid) -> list[Reader]:
+        if entity != wire.UNKNOWN:
+            reader = self._readers.get(entity)
+            return [reader] if reader is not None else []
+        return [reader for reader in self._readers.values() if writer in reader.proxies]
+
+    # -- others
+
+    def _sample_of_self(self, payload: bytes, *, inline: bytes = b"") -> tuple[bytes, bytes]:
+        head = wire.data_head(
+            reader=wire.UNKNOWN if not inline else discovery.SPDP_READER,
+            writer=discovery.SPDP_WRITER,
+            # A farewell is news; an announcement is the same one again.
+            number=2 if inline else 1,
+            inline=inline,
+            size=len(payload),
+            keyed=bool(inline),
+        )
+        return head, payload
+
+    def _found_participant(self, data: wire.Data, prefix: Prefix, host: str) -> None:
+        if discovery.is_disposal(data.inline):
+            guid = discovery.key_of(data.inline, data.payload)
+            self._lose(guid[:12] if guid else prefix)
+            return
+        told = decode_participant(data.payload)
+        if told.prefix == self.prefix or not told.meta:
+            return
+        domain = discovery.domain_of(data.payload)
+        if domain is not None and domain != self._domain:
+            return
+        known = self._remotes.get(told.prefix)
+        if known is not None:
+            known.heard = time.monotonic()
+            return
+        if len(self._remotes) >= _PARTICIPANTS:
+            self._tell(f"more than {_PARTICIPANTS} other participants: the rest is not served")
+            return
+        remote = _Remote(told, self._nearest(told.meta, host), time.monotonic())
+        remote.data = replace(told, user=told.user or told.meta)
+        self._remotes[told.prefix] = remote
+        # Before what follows, so that it knows whose that is.
+        self._send((self._announcement,), remote.address)
+        self._greet(remote)
+
+    def _greet(self, remote: _Remote) -> None:
+        """Connects the endpoints by which both tell of their endpoints."""
+        for entity, other in (
+            (discovery.PUBLICATIONS_WRITER, discovery.PUBLICATIONS_READER),
+            (discovery.SUBSCRIPTIONS_WRITER, discovery.SUBSCRIPTIONS_READER),
+        ):
+            guid = remote.data.prefix
+            theirs = Endpoint(guid=guid + other, topic="", type="", qos=_BUILTIN)
+            self._writers[entity].match(theirs, remote.address)
+            theirs = Endpoint(guid=guid + entity, topic="", type="", qos=_BUILTIN)
+            self._readers[other].match(theirs, remote.address)
+
+    def _lose(self, prefix: Prefix) -> None:
+        remote = self._remotes.pop(prefix, None)
+        if remote is None:
+            return
+        for writer in self._writers.values():
+            for guid in [one for one in writer.proxies if one[:12] == prefix]:
+                writer.unmatch(guid)
+        for reader in self._readers.values():
+            for guid in [one for one in reader.proxies if one[:12] == prefix]:
+                reader.unmatch(guid)
+        self.on_endpoints()
+
+    def _nearest(self, addresses: Sequence[Address], host: str) -> Address:
+        """Where its datagrams come from, if that is among a participant's addresses."""
+        for address in addresses:
+            if address[0] == host:
+                return address
+        if self._network.is_own(host):
+            for address in addresses:
+                if self._network.is_own(address[0]):
+                    return address
+        return addresses[0]
+
+    def _found_writer(self, taken: Taken) -> None:
+        self._found(taken, are_writers=True)
+
+    def _found_reader(self, taken: Taken) -> None:
+        self._found(taken, are_writers=False)
+
+    def _found(self, taken: Taken, *, are_writers: bool) -> None:
+        remote = self._remotes.get(taken.writer[:12])
+        if remote is None:
+            return
+        known = remote.writers if are_writers else remote.readers
+        try:
+            if taken.keyed or discovery.is_disposal(taken.inline):
+                guid = discovery.key_of(taken.inline, taken.payload)
+                if guid is not None and known.pop(guid, None) is not None:
+                    for one in (self._readers if are_writers else self._writers).values():
+                        one.unmatch(guid)
+                    self.on_endpoints()
+                return
+            endpoint = decode_endpoint(taken.payload, writer=are_writers)
+        except MalformedError:
+            self.malformed += 1
+            return
+        if endpoint.guid[:12] != remote.data.prefix or len(known) >= _ENDPOINTS:
+            return
+        known[endpoint.guid] = endpoint
+        if are_writers:
+            for reader in list(self._readers.values()):
+                self._match_writer(reader, endpoint, remote)
+        else:
+            for writer in list(self._writers.values()):
+                self._match_reader(writer, endpoint, remote)
+        self.on_endpoints()
+
+    def _match_reader(self, writer: Writer, other: Endpoint, remote: _Remote) -> None:
+        if self._fit(writer.endpoint, other, offered=writer.endpoint.qos, asked=other.qos):
+            writer.match(other, self._address(other, remote))
+
+    def _match_writer(self, reader: Reader, other: Endpoint, remote: _Remote) -> None:
+        if self._fit(reader.endpoint, other, offered=other.qos, asked=reader.endpoint.qos):
+            reader.match(other, self._address(other, remote))
+
+    def _address(self, endpoint: Endpoint, remote: _Remote) -> Address:
+        return self._nearest(endpoint.locators or remote.data.user, remote.address[0])
+
+    @staticmethod
+    def _fit(ours: Endpoint, other: Endpoint, *, offered: EndpointQos, asked: EndpointQos) -> bool:
+        if not ours.topic or (ours.topic, ours.type) != (other.topic, other.type):
+            return False
+        return (offered.reliable or not asked.reliable) and (
+            offered.transient_local or not asked.transient_local
+        )

@@ -1,0 +1,308 @@
+"""A writer: sends samples to its readers, and keeps those that may be asked for again."""
+
+from __future__ import annotations
+
+import time
+from collections import OrderedDict
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from cartwheel.bridges.ros2.rtps import wire
+from cartwheel.bridges.ros2.rtps.discovery import Address, Endpoint
+from cartwheel.bridges.ros2.rtps.wire import UNKNOWN, Guid, Prefix
+
+Send = Callable[[Sequence[bytes | memoryview], Address], None]
+"""Sends one datagram; never waits long, and may lose it."""
+
+_FIRST_AGAIN, _LAST_AGAIN = 0.1, 2.0
+"""s between two reminders to a reader that does not answer."""
+_BURST = 2
+"""Full datagrams in a row; a receiver of default settings has room for three."""
+_PAUSE = 0.0003
+"""s that a receiver gets to make room."""
+_KEPT_BYTES = 64 << 20
+"""Of all kept samples of a writer."""
+
+
+@dataclass(frozen=True, slots=True)
+class Sample:
+    """What was written once."""
+
+    payload: bytes
+    inline: bytes
+    to: Prefix | None
+    """The only participant it is for."""
+    written: bytes
+    """Its timestamp's submessage."""
+    keyed: bool = False
+
+
+class ReaderProxy:
+    """A reader as its writer knows it."""
+
+    def __init__(self, endpoint: Endpoint, address: Address, *, start: int) -> None:
+        self.guid = endpoint.guid
+        self.reliable = endpoint.qos.reliable
+        self.address = address
+        self.start = start
+        """The first sample that it is to get."""
+        self.acked = start - 1
+        self.patience = _FIRST_AGAIN
+        self.remind_at = 0.0
+        self.last_count = -1
+
+
+class Writer:
+    """One writer; on the loop's thread.
+
+    A reliable one keeps as many samples as its depth says, whoever has them yet: nobody can
+    make it wait, and who is slower than that misses some.
+
+    Args:
+        endpoint: Ours.
+        send: See `Send`.
+        clock: Gives the time of a sample, in ns since 1970.
+    """
+
+    def __init__(
+        self, endpoint: Endpoint, send: Send, *, clock: Callable[[], int] = time.time_ns
+    ) -> None:
+        self.endpoint = endpoint
+        self.proxies: dict[Guid, ReaderProxy] = {}
+        self.dropped = 0
+        """Samples that a reader asked for in vain."""
+        self.on_readers: Callable[[], None] = lambda: None
+        """Told when readers come or go."""
+        self.on_drop: Callable[[], None] = lambda: None
+        """Told when `dropped` has grown."""
+        self._prefix, self._entity = endpoint.guid[:12], endpoint.guid[12:]
+        self._send = send
+        self._clock = clock
+        self._last = 0
+        self._kept: OrderedDict[int, Sample] = OrderedDict()
+        self._kept_bytes = 0
+        self._count = 0
+
+    @property
+    def _keeps(self) -> bool:
+        return self.endpoint.qos.reliable
+
+    # -- readers
+
+    def match(self, endpoint: Endpoint, address: Address) -> None:
+        """A reader is there."""
+        known = self.proxies.get(endpoint.guid)
+        if known is not None:
+            known.address = address
+            return
+        qos = self.endpoint.qos
+        history = qos.transient_local and endpoint.qos.transient_local
+        first = next(iter(self._kept), self._last + 1)
+        proxy = ReaderProxy(endpoint, address, start=first if history else self._last + 1)
+        if not qos.reliable:
+            proxy.reliable = False
+        self.proxies[endpoint.guid] = proxy
+        if history:
+            for number, sample in self._kept.items():
+                self._send_sample(number, sample, proxy, endpoint.guid[12:])
+        if proxy.reliable:
+            self._heartbeat(proxy, final=False)
+        if len(self.proxies) == 1:
+            self.on_readers()
+
+    def unmatch(self, guid: Guid) -> None:
+        """A reader is gone."""
+        if self.proxies.pop(guid, None) is not None and not self.proxies:
+            self.on_readers()
+            if not self.endpoint.qos.transient_local:
+                self._kept.clear()
+                self._kept_bytes = 0
+
+    # -- samples
+
+    def write(
+        self,
+        payload: bytes,
+        *,
+        inline: bytes = b"",
+        to: Prefix | None = None,
+        keyed: bool = False,
+    ) -> None:
+        """Sends a sample: CDR with its encapsulation.
+
+        Args:
+            payload: Its bytes.
+            inline: Parameters before it.
+            to: The only participant to get it; None for all.
+            keyed: The payload is a key.
+        """
+        payload += b"\0" * (-len(payload) % 4)
+        now = self._clock()
+        stamp = wire.timestamp(now // 10**9, (now % 10**9 << 32) // 10**9)
+        sample = Sample(payload, inline, to, stamp, keyed)
+        self._last += 1
+        if self._keeps and (self.proxies or self.endpoint.qos.transient_local):
+            self._keep(self._last, sample)
+        reached: set[Prefix] = set()
+        for proxy in self.proxies.values():
+            prefix = proxy.guid[:12]
+            if to is not None and prefix != to:
+                self._pass_over(proxy, self._last)
+            elif prefix not in reached:
+                # One datagram serves all readers of a participant.
+                reached.add(prefix)
+                self._send_sample(self._last, sample, proxy, UNKNOWN)
+            if proxy.reliable and not proxy.remind_at:
+                proxy.remind_at = time.monotonic() + proxy.patience
+
+    def remind(self, now: float) -> None:
+        """Tells readers that lack something what there is; several times a second."""
+        for proxy in self.proxies.values():
+            if proxy.reliable and proxy.remind_at and now >= proxy.remind_at:
+                if proxy.acked >= self._last:
+                    proxy.remind_at = 0.0
+                    continue
+                proxy.patience = min(2 * proxy.patience, _LAST_AGAIN)
+                proxy.remind_at = now + proxy.patience
+                self._heartbeat(proxy, final=False)
+
+    def take_acknack(self, guid: Guid, told: wire.Acknack) -> None:
+        """A reader says what it has and lacks."""
+        proxy = self.proxies.get(guid)
+        if proxy is None or not proxy.reliable:
+            return
+        if 0 <= proxy.last_count - told.count < 1000:
+            return
+        proxy.last_count = told.count
+        proxy.patience = _FIRST_AGAIN
+        proxy.acked = max(proxy.acked, min(told.base - 1, self._last))
+        if proxy.acked < self._last:
+            proxy.remind_at = time.monotonic() + proxy.patience
+        lost: list[int] = []
+        for number in told.missing:
+            if number > self._last:
+                break
+            sample = self._kept.get(number)
+            ours = sample is not None and sample.to in (None, guid[:12])
+            if sample is not None and ours and number >= proxy.start:
+                self._send_sample(number, sample, proxy, guid[12:])
+            else:
+                lost.append(number)
+                if number >= proxy.start and sample is None:
+                    self.dropped += 1
+                    self.on_drop()
+        for start, end in _ranges(lost):
+            self._post(
+                proxy,
+                wire.gap(reader=guid[12:], writer=self._entity, start=start, end=end),
+            )
+        if told.missing or not told.final:
+            self._heartbeat(proxy, final=True)
+
+    def take_nack_frag(self, guid: Guid, told: wire.NackFrag) -> None:
+        """A reader lacks parts of a sample."""
+        proxy = self.proxies.get(guid)
+        sample = self._kept.get(told.number)
+        if proxy is not None and sample is not None and proxy.reliable:
+            self._send_fragments(told.number, sample, proxy, guid[12:], told.missing)
+
+    def _keep(self, number: int, sample: Sample) -> None:
+        self._kept[number] = sample
+        self._kept_bytes += len(sample.payload)
+        while len(self._kept) > self.endpoint.qos.depth or (
+            self._kept_bytes > _KEPT_BYTES and len(self._kept) > 1
+        ):
+            _, oldest = self._kept.popitem(last=False)
+            self._kept_bytes -= len(oldest.payload)
+
+    # -- datagrams
+
+    def _post(self, proxy: ReaderProxy, *submessages: bytes) -> None:
+        head = wire.message(self._prefix, *submessages, to=proxy.guid[:12])
+        self._send((head,), proxy.address)
+
+    def _pass_over(self, proxy: ReaderProxy, number: int) -> None:
+        if proxy.reliable:
+            gap = wire.gap(
+                reader=proxy.guid[12:], writer=self._entity, start=number, end=number + 1
+            )
+            self._post(proxy, gap)
+
+    def _heartbeat(self, proxy: ReaderProxy, *, final: bool) -> None:
+        self._post(proxy, self._heartbeat_of(proxy, final=final))
+
+    def _heartbeat_of(self, proxy: ReaderProxy, *, final: bool) -> bytes:
+        self._count += 1
+        first = max(next(iter(self._kept), self._last + 1), proxy.start)
+        return wire.heartbeat(
+            reader=proxy.guid[12:],
+            writer=self._entity,
+            first=first,
+            last=self._last,
+            count=self._count,
+            final=final,
+        )
+
+    def _send_sample(self, number: int, sample: Sample, proxy: ReaderProxy, reader: bytes) -> None:
+        if len(sample.payload) > wire.LARGEST:
+            count = -(-len(sample.payload) // wire.LARGEST)
+            self._send_fragments(number, sample, proxy, reader, range(1, count + 1))
+            return
+        head = wire.message(
+            self._prefix,
+            sample.written,
+            wire.data_head(
+                reader=reader,
+                writer=self._entity,
+                number=number,
+                inline=sample.inline,
+                size=len(sample.payload),
+                keyed=sample.keyed,
+            ),
+            to=proxy.guid[:12],
+        )
+        self._send((head, sample.payload), proxy.address)
+
+    def _send_fragments(
+        self,
+        number: int,
+        sample: Sample,
+        proxy: ReaderProxy,
+        reader: bytes,
+        fragments: Sequence[int],
+    ) -> None:
+        whole = memoryview(sample.payload)
+        sent = 0
+        for fragment in fragments:
+            part = whole[(fragment - 1) * wire.LARGEST : fragment * wire.LARGEST]
+            if not part:
+                continue
+            head = wire.message(
+                self._prefix,
+                sample.written,
+                wire.fragment_head(
+                    reader=reader,
+                    writer=self._entity,
+                    number=number,
+                    inline=sample.inline,
+                    fragment=fragment,
+                    length=len(part),
+                    size=len(whole),
+                ),
+                to=proxy.guid[:12],
+            )
+            self._send((head, part), proxy.address)
+            sent += 1
+            if sent % _BURST == 0:
+                time.sleep(_PAUSE)
+
+
+def _ranges(numbers: Sequence[int]) -> list[tuple[int, int]]:
+    """Numbers in order as ranges, ends excluded."""
+    found: list[tuple[int, int]] = []
+    for number in numbers:
+        if found and found[-1][1] == number:
+            found[-1] = (found[-1][0], number + 1)
+        else:
+            found.append((number, number + 1))
+    return found

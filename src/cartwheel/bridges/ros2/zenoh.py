@@ -1,0 +1,341 @@
+"""ROS 2 over Zenoh, as rmw_zenoh has it: keys, liveliness tokens, attachments, queryables.
+
+Source: rmw_zenoh's design document.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import itertools
+import json
+import os
+import socket
+import struct
+import time
+from collections.abc import Callable
+from typing import Any
+
+from cartwheel.bridges.loop import Loop
+from cartwheel.bridges.ros2.middleware import Answer, Profile
+from cartwheel.bridges.ros2.rtps.network import Reach, domain_id
+from cartwheel.errors import CartwheelError
+from cartwheel.messages.ros2_types import Ros2Service, Ros2Type
+
+PORT = 7447
+"""Where a Zenoh router is looked for, and opened where there is none."""
+_INSTALL = "pip install 'cartwheel[ros2]'"
+_NOTICE = 0.5
+"""s that a router may take to answer."""
+
+
+class Zenoh:
+    """A session with one node. Where no router answers, the session is one.
+
+    Args:
+        loop: Runs it.
+        node: Its name.
+        namespace: Of the node.
+        tell: Takes a warning.
+
+    Raises:
+        CartwheelError: Zenoh is not installed, or a variable makes no sense.
+    """
+
+    def __init__(
+        self, loop: Loop, *, node: str, namespace: str, tell: Callable[[str], None]
+    ) -> None:
+        try:
+            import zenoh
+            import zenoh.ext
+        except ImportError:
+            raise CartwheelError(
+                "--rmw zenoh needs Zenoh, which is not installed", hint=_INSTALL
+            ) from None
+        self._zenoh = zenoh
+        self.loop = loop
+        self._node = node
+        self._namespace = namespace
+        self._tell = tell
+        self._domain = domain_id()
+        self._reach = Reach.of()
+        self._is_router = False
+        self._session: Any = None
+        self._zid = ""
+        self._entities = itertools.count(1)
+        self._kept: list[Any] = []
+        self._others: dict[str, str] = {}
+        """Topics that others publish, by their tokens."""
+        self.on_others: Callable[[], None] = lambda: None
+
+    @property
+    def description(self) -> str:
+        """What and where it is."""
+        place = f"router of its own, port {PORT}" if self._is_router else "a router's"
+        return f"Zenoh domain {self._domain}, {place}"
+
+    def start(self) -> None:
+        """Joins.
+
+        Raises:
+            CartwheelError: No session can be opened.
+        """
+        zenoh = self._zenoh
+        try:
+            self._session = zenoh.open(self._configuration())
+        except zenoh.ZError as error:
+            raise CartwheelError(f"no Zenoh session can be opened: {error}") from None
+        self._zid = str(self._session.zid())
+        node = f"@ros2_lv/{self._domain}/{self._zid}/0/0/NN/%/{self._mangled_node}"
+        self._kept.append(self._session.liveliness().declare_token(node))
+        self._kept.append(
+            self._session.liveliness().declare_subscriber(
+                f"@ros2_lv/{self._domain}/**", self._seen, history=True
+            )
+        )
+
+    def close(self) -> None:
+        """Leaves."""
+        if self._session is not None:
+            with contextlib.suppress(self._zenoh.ZError):
+                self._session.close()
+
+    def publish(
+        self, topic: str, type_: Ros2Type, profile: Profile, on_readers: Callable[[bool], None]
+    ) -> _Outlet:
+        """See `Middleware`."""
+        return _Outlet(self, topic, type_, profile, on_readers)
+
+    def subscribe(
+        self, topic: str, type_: Ros2Type, profile: Profile, take: Callable[[bytes], None]
+    ) -> _Declared:
+        """See `Middleware`."""
+
+        def taken(sample: Any) -> None:
+            data = sample.payload.to_bytes()
+            self.loop.post(lambda: take(data))
+
+        token, _ = self.token("MS", topic, type_.dds, type_.hash, profile)
+        key = self.key(topic, type_.dds, type_.hash)
+        if profile.transient_local:
+            subscriber: Any = self._zenoh.ext.declare_advanced_subscriber(
+                self._session,
+                key,
+                taken,
+                history=self._zenoh.ext.HistoryConfig(detect_late_publishers=True),
+            )
+        else:
+            subscriber = self._session.declare_subscriber(key, taken)
+        return _Declared(token, subscriber)
+
+    def serve(
+        self, name: str, type_: Ros2Service, answer: Answer, fits: Callable[[bytes], bool]
+    ) -> _Service:
+        """See `Middleware`."""
+        del fits
+        return _Service(self, name, type_, answer)
+
+    def has_other_publisher(self, topic: str) -> bool:
+        """See `Middleware`."""
+        return topic in self._others.values()
+
+    # -- names
+
+    @property
+    def _mangled_node(self) -> str:
+        return f"{_mangled(self._namespace)}/{self._node}"
+
+    def key(self, name: str, dds: str, hash_: str) -> str:
+        """Under which a topic's or service's data goes."""
+        return f"{self._domain}/{name.strip('/')}/{dds}/{hash_}"
+
+    def token(
+        self, kind: str, name: str, dds: str, hash_: str, profile: Profile
+    ) -> tuple[Any, bytes]:
+        """Tells others of an endpoint; its token, and what it is known by."""
+        key = (
+            f"@ros2_lv/{self._domain}/{self._zid}/0/{next(self._entities)}/{kind}/%/"
+            f"{self._mangled_node}/{_mangled(name)}/{dds}/{hash_}/{_qos(profile)}"
+        )
+        identity = hashlib.md5(key.encode(), usedforsecurity=False).digest()
+        return self._session.liveliness().declare_token(key), identity
+
+    def _seen(self, sample: Any) -> None:
+        """A token came or went; on one of Zenoh's threads."""
+        key = str(sample.key_expr)
+        parts = key.split("/")
+        if len(parts) < 10 or parts[2] == self._zid or parts[5] != "MP":
+            return
+        if parts[8] == self._node:
+            # Another simulation: the two would make way for each other, in turns.
+            return
+        topic = parts[9].replace("%", "/")
+        there = sample.kind == self._zenoh.SampleKind.PUT
+
+        def change() -> None:
+            if there:
+                self._others[key] = topic
+            else:
+                self._others.pop(key, None)
+            self.on_others()
+
+        self.loop.post(change)
+
+    # -- the session
+
+    def _configuration(self) -> Any:
+        uri = os.environ.get("ZENOH_SESSION_CONFIG_URI")
+        if uri:
+            try:
+                made = self._zenoh.Config.from_file(uri)
+            except self._zenoh.ZError as error:
+                raise CartwheelError(f"ZENOH_SESSION_CONFIG_URI: {uri}: {error}") from None
+        else:
+            made = self._own_configuration()
+        for pair in os.environ.get("ZENOH_CONFIG_OVERRIDE", "").split(";"):
+            if not pair.strip():
+                continue
+            name, _, value = pair.partition("=")
+            try:
+                made.insert_json5(name.strip(), value.strip())
+            except self._zenoh.ZError as error:
+                raise CartwheelError(f"ZENOH_CONFIG_OVERRIDE: {pair}: {error}") from None
+        return made
+
+    def _own_configuration(self) -> Any:
+        made = self._zenoh.Config()
+        self._is_router = not _answers(PORT)
+        if self._is_router:
+            host = "[::]" if self._reach.range == "SUBNET" else "127.0.0.1"
+            settings: dict[str, Any] = {
+                "mode": "router",
+                "listen/endpoints": [f"tcp/{host}:{PORT}"],
+                "connect/endpoints": [f"tcp/{peer}:{PORT}" for peer in self._reach.peers],
+            }
+        else:
+            settings = {
+                "mode": "peer",
+                "listen/endpoints": ["tcp/127.0.0.1:0"],
+                "connect/endpoints": [f"tcp/127.0.0.1:{PORT}"],
+            }
+        settings["scouting/multicast/enabled"] = False
+        settings["timestamping/enabled"] = True
+        for name, value in settings.items():
+            made.insert_json5(name, json.dumps(value))
+        return made
+
+
+class _Declared:
+    """What ends with its token."""
+
+    def __init__(self, *declared: Any) -> None:
+        self._declared = declared
+
+    def close(self) -> None:
+        for one in self._declared:
+            one.undeclare()
+
+
+class _Outlet:
+    """See `middleware.Outlet`."""
+
+    def __init__(
+        self,
+        zenoh: Zenoh,
+        topic: str,
+        type_: Ros2Type,
+        profile: Profile,
+        on_readers: Callable[[bool], None],
+    ) -> None:
+        self._loop = zenoh.loop
+        self._numbers = itertools.count(1)
+        self._token, self._identity = zenoh.token("MP", topic, type_.dds, type_.hash, profile)
+        key = zenoh.key(topic, type_.dds, type_.hash)
+        api, session = zenoh._zenoh, zenoh._session
+        # Nobody can make us wait: what a reader does not take is dropped.
+        drop = api.CongestionControl.DROP
+        self._closed = False
+        if profile.transient_local:
+            self._publisher = api.ext.declare_advanced_publisher(
+                session,
+                key,
+                congestion_control=drop,
+                cache=api.ext.CacheConfig(max_samples=profile.depth),
+                publisher_detection=True,
+            )
+            # Who comes late asks the cache, which must have something.
+            on_readers(True)
+            return
+        self._publisher = session.declare_publisher(key, congestion_control=drop)
+
+        def matched(status: Any) -> None:
+            there = bool(status.matching)
+            self._loop.post(lambda: None if self._closed else on_readers(there))
+
+        self._listener = self._publisher.declare_matching_listener(matched)
+        if self._publisher.matching_status.matching:
+            on_readers(True)
+
+    def send(self, payload: bytes) -> None:
+        if not self._closed:
+            stamp = struct.pack("<qqB", next(self._numbers), time.time_ns(), 16)
+            self._publisher.put(payload, attachment=stamp + self._identity)
+
+    def close(self) -> None:
+        self._closed = True
+        self._publisher.undeclare()
+        self._token.undeclare()
+
+
+class _Service:
+    """A queryable."""
+
+    def __init__(self, zenoh: Zenoh, name: str, type_: Ros2Service, answer: Answer) -> None:
+        self._zenoh = zenoh
+        self._answer = answer
+        self._token, _ = zenoh.token("SS", name, type_.dds, type_.hash, Profile())
+        self._queryable = zenoh._session.declare_queryable(
+            zenoh.key(name, type_.dds, type_.hash), self._asked, complete=True
+        )
+
+    def close(self) -> None:
+        self._queryable.undeclare()
+        self._token.undeclare()
+
+    def _asked(self, query: Any) -> None:
+        """On one of Zenoh's threads."""
+        data = query.payload.to_bytes() if query.payload is not None else b""
+        stamp = query.attachment.to_bytes() if query.attachment is not None else b""
+        self._zenoh.loop.post(lambda: self._take(query, data, stamp))
+
+    def _take(self, query: Any, data: bytes, stamp: bytes) -> None:
+        if len(stamp) < 16:
+            query.drop()
+            return
+        (number,) = struct.unpack_from("<q", stamp)
+
+        def reply(response: bytes) -> None:
+            attachment = struct.pack("<qq", number, time.time_ns()) + stamp[16:]
+            query.reply(query.key_expr, response, attachment=attachment)
+            query.drop()
+
+        self._answer(data, reply)
+
+
+def _mangled(name: str) -> str:
+    return name.replace("/", "%") or "%"
+
+
+def _qos(profile: Profile) -> str:
+    """A profile as rmw_zenoh writes it: what is as usual is left out."""
+    reliability = "" if profile.reliable else "2"
+    durability = "1" if profile.transient_local else ""
+    return f"{reliability}:{durability}:,{profile.depth}:,:,:,,"
+
+
+def _answers(port: int) -> bool:
+    try:
+        with socket.create_connection(("127.0.0.1", port), _NOTICE):
+            return True
+    except OSError:
+        return False

@@ -1,0 +1,108 @@
+"""Wrenches on links and efforts on joints."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from cartwheel.errors import CartwheelError, GraphError
+from cartwheel.gazebo.entities import INERTIAL, Entities
+from cartwheel.gazebo.requests import STRONGEST, Answer, Offer, nanoseconds, number, vector
+from cartwheel.geometry import rotate
+from cartwheel.simulation import Simulation
+
+
+class Pushes:
+    """apply_body_wrench, clear_body_wrenches, apply_joint_effort and clear_joint_forces.
+
+    A wrench is turned into the world's axes when it is asked for, and does not turn with the
+    body. In the world's frame and in the body's own, the reference point counts from the body's
+    centre of mass; in any other it is that point. Source: gazebo_ros, ``applyBodyWrench``.
+    """
+
+    def __init__(
+        self, simulation: Simulation, entities: Entities, report: Callable[[str], None]
+    ) -> None:
+        self._simulation = simulation
+        self._entities = entities
+        self._report = report
+
+    def offers(self) -> list[Offer]:
+        """The services."""
+        package = "gazebo_msgs/srv"
+        return [
+            Offer("apply_body_wrench", f"{package}/ApplyBodyWrench", self.apply_body_wrench),
+            Offer("clear_body_wrenches", f"{package}/BodyRequest", self.clear_body_wrenches),
+            Offer("apply_joint_effort", f"{package}/ApplyJointEffort", self.apply_joint_effort),
+            Offer("clear_joint_forces", f"{package}/JointRequest", self.clear_joint_forces),
+        ]
+
+    def apply_body_wrench(self, request: Any) -> Answer:
+        simulation = self._simulation
+        model, link = self._entities.link(request.body_name)
+        force = vector(request.wrench.force, "wrench.force", most=STRONGEST)
+        torque = vector(request.wrench.torque, "wrench.torque", most=STRONGEST)
+        point = vector(request.reference_point, "reference_point")
+        simulation.refresh()
+        body = simulation.engine.body_id(model, link.name)
+        if simulation.model.body_treeid[body] < 0:
+            raise GraphError(f'link "{link.name}" of "{model}" is fixed in the world')
+        frame = self._entities.frame(request.reference_frame).pose
+        own = self._entities.link_motion(model, link.name).pose
+        turned = rotate(frame.orientation, force)
+        if request.reference_frame in INERTIAL or frame == own:
+            arm = np.array(rotate(frame.orientation, point))
+        else:
+            arm = np.subtract(frame.apply(point), simulation.data.xipos[body])
+        moment = np.add(rotate(frame.orientation, torque), np.cross(arm, turned))
+        x, y, z = moment.tolist()
+        start, duration = _span(request)
+        simulation.forces.wrench(
+            model, link.name, force=turned, torque=(x, y, z), start_ns=start, duration_ns=duration
+        )
+        return Answer("ApplyBodyWrench: wrench set")
+
+    def clear_body_wrenches(self, request: Any) -> Answer:
+        try:
+            model, link = self._entities.link(request.body_name)
+        except CartwheelError as error:
+            self._report(f"/gazebo/clear_body_wrenches: {error.message}. {error.hint or ''}")
+        else:
+            self._simulation.forces.clear_wrenches(model, link.name)
+        return Answer()
+
+    def apply_joint_effort(self, request: Any) -> Answer:
+        model, joint = self._entities.joint(request.joint_name)
+        effort = number(request.effort, "effort", most=STRONGEST)
+        if (model, joint.name) not in self._simulation.scene.joints:
+            raise GraphError(
+                f'joint "{joint.name}" of "{model}" is {joint.type} or its model is static: '
+                "no effort moves it"
+            )
+        notes: tuple[str, ...] = ()
+        limit = joint.axis.effort
+        if limit is not None and 0 < limit < abs(effort):
+            effort = float(np.copysign(limit, effort))
+            notes = (f"the joint's limit leaves {effort:g} of the effort",)
+        start, duration = _span(request)
+        self._simulation.forces.effort(
+            model, joint.name, effort, start_ns=start, duration_ns=duration
+        )
+        return Answer("ApplyJointEffort: effort set", notes=notes)
+
+    def clear_joint_forces(self, request: Any) -> Answer:
+        try:
+            model, joint = self._entities.joint(request.joint_name)
+        except CartwheelError as error:
+            self._report(f"/gazebo/clear_joint_forces: {error.message}. {error.hint or ''}")
+        else:
+            self._simulation.forces.clear_efforts(model, joint.name)
+        return Answer()
+
+
+def _span(request: Any) -> tuple[int, int | None]:
+    """When it begins and how long it lasts, ns; None is without end."""
+    duration = nanoseconds(request.duration)
+    return nanoseconds(request.start_time), None if duration < 0 else duration

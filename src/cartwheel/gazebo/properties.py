@@ -1,0 +1,295 @@
+"""Properties of links, joints, models, lights and the world."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from cartwheel.description.inertia import impossibility, principal_moments
+from cartwheel.description.model import Inertial, Joint, Light, RobotDescription
+from cartwheel.errors import GraphError, WorldError
+from cartwheel.gazebo.entities import Entities
+from cartwheel.gazebo.requests import (
+    STRONGEST,
+    Answer,
+    Offer,
+    number,
+    pose,
+    pose_message,
+    vector,
+)
+from cartwheel.messages import message_class
+from cartwheel.simulation import Simulation
+
+_JOINT_TYPES = {
+    "revolute": 0,
+    "continuous": 1,
+    "prismatic": 2,
+    "fixed": 3,
+    "ball": 4,
+    "universal": 5,
+}
+_NO_TYPE = 255
+_HEAVIEST = 1e9
+"""kg, kg m², N m s/rad."""
+
+
+class Properties:
+    """``get_`` and ``set_`` of properties.
+
+    What is set becomes part of the model's description: it outlasts what is spawned and deleted
+    later, and a reset. Source: gazebo_ros, gazebo_ros_api_plugin.
+    """
+
+    def __init__(self, simulation: Simulation, entities: Entities) -> None:
+        self._simulation = simulation
+        self._entities = entities
+
+    def offers(self) -> list[Offer]:
+        """The services."""
+        package = "gazebo_msgs/srv"
+        return [
+            Offer(
+                "get_model_properties", f"{package}/GetModelProperties", self.get_model_properties
+            ),
+            Offer(
+                "get_world_properties", f"{package}/GetWorldProperties", self.get_world_properties
+            ),
+            Offer("get_link_properties", f"{package}/GetLinkProperties", self.get_link_properties),
+            Offer("set_link_properties", f"{package}/SetLinkProperties", self.set_link_properties),
+            Offer(
+                "get_joint_properties", f"{package}/GetJointProperties", self.get_joint_properties
+            ),
+            Offer(
+                "set_joint_properties", f"{package}/SetJointProperties", self.set_joint_properties
+            ),
+            Offer(
+                "get_light_properties", f"{package}/GetLightProperties", self.get_light_properties
+            ),
+            Offer(
+                "set_light_properties", f"{package}/SetLightProperties", self.set_light_properties
+            ),
+        ]
+
+    def get_model_properties(self, request: Any) -> Answer:
+        description = self._entities.model(request.model_name)
+        links = description.links
+        fields = {
+            "parent_model_name": "",
+            "canonical_body_name": description.canonical_link,
+            "body_names": [link.name for link in links],
+            "geom_names": [collision.name for link in links for collision in link.collisions],
+            "joint_names": [joint.name for joint in description.joints],
+            "child_model_names": _nested(description),
+            "is_static": description.static,
+        }
+        return Answer("GetModelProperties: got properties", fields)
+
+    def get_world_properties(self, request: Any) -> Answer:  # noqa: ARG002 - it is empty
+        fields = {
+            "sim_time": self._simulation.time_ns / 1e9,
+            "model_names": list(self._simulation.models),
+            "rendering_enabled": True,
+        }
+        return Answer("GetWorldProperties: got properties", fields)
+
+    # -- links
+
+    def get_link_properties(self, request: Any) -> Answer:
+        _, link = self._entities.link(request.link_name)
+        fields: dict[str, Any] = {"gravity_mode": link.gravity}
+        inertial = link.inertial
+        if inertial is None:
+            fields["com"] = pose_message(
+                Inertial(mass=0, ixx=0, iyy=0, izz=0, origin=link.origin).pose
+            )
+            return Answer("GetLinkProperties: got properties", fields, ("the link has no mass",))
+        fields |= {
+            name: getattr(inertial, name)
+            for name in ("mass", "ixx", "ixy", "ixz", "iyy", "iyz", "izz")
+        }
+        fields["com"] = pose_message(inertial.pose)
+        return Answer("GetLinkProperties: got properties", fields)
+
+    def set_link_properties(self, request: Any) -> Answer:
+        model, link = self._entities.link(request.link_name)
+        values = {
+            name: number(getattr(request, name), name, most=_HEAVIEST)
+            for name in ("mass", "ixx", "ixy", "ixz", "iyy", "iyz", "izz")
+        }
+        com = pose(request.com, "com")
+        inertial = None
+        if link.inertial is not None or any(values.values()):
+            if values["mass"] <= 0:
+                raise GraphError(f"the mass must be above 0, but is {values['mass']:g}")
+            moments = principal_moments(
+                (values["ixx"], values["iyy"], values["izz"]),
+                (values["ixy"], values["ixz"], values["iyz"]),
+            )
+            if (reason := impossibility(moments)) is not None:
+                raise GraphError(reason[0], hint=reason[1])
+            inertial = Inertial(pose=com, origin=link.origin, **values)
+        changed = dataclasses.replace(link, inertial=inertial, gravity=bool(request.gravity_mode))
+        description = self._entities.model(model)
+        if changed != link:
+            links = tuple(changed if each is link else each for each in description.links)
+            self._simulation.redescribe(model, dataclasses.replace(description, links=links))
+        notes = ("the model is static: nothing moves it",) if description.static else ()
+        return Answer("SetLinkProperties: properties set", notes=notes)
+
+    # -- joints
+
+    def get_joint_properties(self, request: Any) -> Answer:
+        model, joint = self._entities.joint(request.joint_name)
+        positions, rates = self._simulation.engine.joint_state(model, joint.name)
+        axes = [joint.axis] if joint.axis2 is None else [joint.axis, joint.axis2]
+        fields = {
+            "type": _JOINT_TYPES.get(joint.type, _NO_TYPE),
+            "damping": [axis.damping for axis in axes] if positions else [],
+            "position": positions,
+            "rate": rates,
+        }
+        notes: tuple[str, ...] = ()
+        if joint.type not in _JOINT_TYPES:
+            notes = (f"a {joint.type} joint has no number in this message",)
+        return Answer("GetJointProperties: got properties", fields, notes)
+
+    def set_joint_properties(self, request: Any) -> Answer:
+        model, joint = self._entities.joint(request.joint_name)
+        config = request.ode_joint_config
+        given = {
+            field: [
+                number(v, f"ode_joint_config.{field}", most=1e308) for v in getattr(config, field)
+            ]
+            for field in (
+                "damping",
+                "hiStop",
+                "loStop",
+                "erp",
+                "cfm",
+                "stop_erp",
+                "stop_cfm",
+                "fudge_factor",
+                "fmax",
+                "vel",
+            )
+        }
+        changed, notes = _joint_with(joint, given)
+        driven = {field: given[field][0] for field in ("fmax", "vel") if given[field]}
+        for field, value in driven.items():
+            number(value, f"ode_joint_config.{field}", most=STRONGEST)
+        if driven.get("fmax", 0.0) < 0:
+            raise GraphError(f"fmax is {driven['fmax']:g}, but must not be below 0")
+        if changed != joint:
+            description = self._entities.model(model)
+            joints = tuple(changed if each is joint else each for each in description.joints)
+            self._simulation.redescribe(model, dataclasses.replace(description, joints=joints))
+        if driven:
+            notes += self._drive(model, joint, driven)
+        return Answer("SetJointProperties: properties set", notes=tuple(notes))
+
+    def _drive(self, model: str, joint: Joint, driven: Mapping[str, float]) -> list[str]:
+        """ODE's motor of a joint: fmax at most to reach vel. Returns what has no effect."""
+        if (model, joint.name) not in self._simulation.scene.joints:
+            return ["fmax and vel have no effect: the joint does not move, or has no single axis"]
+        try:
+            self._simulation.drive(
+                model, joint.name, velocity=driven.get("vel"), max_effort=driven.get("fmax")
+            )
+        except WorldError as error:
+            return [f"fmax and vel have no effect: {error.message}"]
+        if driven.get("vel") and not self._simulation.driven(model, joint.name):
+            return ["vel has no effect: a plugin drives the joint, or fmax is 0"]
+        return []
+
+    # -- lights
+
+    def get_light_properties(self, request: Any) -> Answer:
+        light = self._entities.light(request.light_name)
+        constant, linear, quadratic = light.attenuation
+        fields = {
+            "diffuse": message_class("std_msgs/msg/ColorRGBA")(*light.diffuse),
+            "attenuation_constant": constant,
+            "attenuation_linear": linear,
+            "attenuation_quadratic": quadratic,
+        }
+        return Answer("GetLightProperties: got properties", fields)
+
+    def set_light_properties(self, request: Any) -> Answer:
+        light = self._entities.light(request.light_name)
+        where = pose(request.pose, "pose")
+        direction = vector(request.direction, "direction")
+        notes = []
+        if not any(direction):
+            direction = light.direction
+        if request.cast_shadows:
+            notes.append("no shadows are drawn")
+        changed = Light(
+            name=light.name,
+            type=light.type,
+            pose=where,
+            diffuse=_colour(request.diffuse, "diffuse"),
+            specular=_colour(request.specular, "specular"),
+            direction=direction,
+            range=light.range,
+            attenuation=(
+                number(request.attenuation_constant, "attenuation_constant"),
+                number(request.attenuation_linear, "attenuation_linear"),
+                number(request.attenuation_quadratic, "attenuation_quadratic"),
+            ),
+            spot_angle=light.spot_angle,
+            cast_shadows=bool(request.cast_shadows),
+            origin=light.origin,
+        )
+        if changed != light:
+            world = self._simulation.world
+            lights = tuple(changed if each is light else each for each in world.lights)
+            self._simulation.change_world(dataclasses.replace(world, lights=lights))
+        return Answer("SetLightProperties: properties set", notes=tuple(notes))
+
+
+def _nested(description: RobotDescription) -> list[str]:
+    """Names of the models within, whose links are scoped by them."""
+    names = (link.name.partition("::") for link in description.links)
+    return list(dict.fromkeys(model for model, separator, _ in names if separator))
+
+
+def _colour(value: Any, name: str) -> tuple[float, float, float, float]:
+    r, g, b, a = (number(part, name) for part in (value.r, value.g, value.b, value.a))
+    return (r, g, b, a)
+
+
+def _joint_with(joint: Joint, given: Mapping[str, Sequence[float]]) -> tuple[Joint, list[str]]:
+    """A joint with the properties that were given, and what of them has no effect."""
+    notes: list[str] = []
+    axes = [joint.axis] if joint.axis2 is None else [joint.axis, joint.axis2]
+    if joint.type in ("fixed", "ball"):
+        return joint, [f"a {joint.type} joint has no axis: nothing was set"]
+    for index, axis in enumerate(axes):
+        changes: dict[str, float | None] = {}
+        if index < len(given["damping"]):
+            damping = given["damping"][index]
+            if damping < 0 or damping > _HEAVIEST:
+                raise GraphError(f"damping is {damping:g}, but must be from 0 to {_HEAVIEST:g}")
+            changes["damping"] = damping
+        for field, bound in (("hiStop", "upper"), ("loStop", "lower")):
+            if index < len(given[field]):
+                value = given[field][index]
+                # Gazebo's number for no stop is 1e16.
+                changes[bound] = value if abs(value) < 1e10 else None
+        axes[index] = dataclasses.replace(axis, **changes)  # type: ignore[arg-type]
+        lower, upper = axes[index].lower, axes[index].upper
+        if lower is not None and upper is not None and lower > upper:
+            raise GraphError(f"loStop {lower:g} is above hiStop {upper:g}")
+    if joint.type == "continuous" and (given["hiStop"] or given["loStop"]):
+        notes.append("a continuous joint has no stops: hiStop and loStop have no effect")
+    without = [
+        field
+        for field in ("erp", "cfm", "stop_erp", "stop_cfm", "fudge_factor")
+        if any(given[field])
+    ]
+    if without:
+        notes.append(f"{', '.join(without)} {'have' if len(without) > 1 else 'has'} no effect")
+    axis2 = axes[1] if len(axes) > 1 else None
+    return dataclasses.replace(joint, axis=axes[0], axis2=axis2), notes

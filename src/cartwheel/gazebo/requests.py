@@ -1,0 +1,108 @@
+"""What a request says, as checked numbers, and what an answer is made of."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+from cartwheel.errors import GraphError
+from cartwheel.geometry import IDENTITY, Pose, Vec3, quat_normalize
+from cartwheel.messages import message_class
+
+FARTHEST = 1e6
+"""m, m/s or rad/s: beyond it, a state is what the engine takes for diverged."""
+STRONGEST = 1e10
+"""N or N m."""
+_SECOND = 1_000_000_000
+
+
+@dataclass(frozen=True, slots=True)
+class Answer:
+    """A success: what Gazebo's status message says of it, and the response's fields."""
+
+    status: str = ""
+    fields: dict[str, Any] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
+    """What of the request has no effect, sentences for the status message."""
+
+
+Handler = Callable[[Any], Answer]
+
+
+@dataclass(frozen=True, slots=True)
+class Offer:
+    """A service of the API."""
+
+    name: str
+    """Without ``/gazebo/``."""
+    type: str
+    handler: Handler
+    threaded: bool = False
+
+
+def number(value: float, name: str, *, most: float = FARTHEST) -> float:
+    """A finite number.
+
+    Raises:
+        GraphError: It is not finite, or beyond what can be simulated.
+    """
+    value = float(value)
+    if not math.isfinite(value):
+        raise GraphError(f"{name} is {value}, which is no number to work with")
+    if abs(value) > most:
+        raise GraphError(f"{name} is {value:g}, beyond the {most:g} that can be simulated")
+    return value
+
+
+def vector(value: Any, name: str, *, most: float = FARTHEST) -> Vec3:
+    """``geometry_msgs/Vector3`` or ``Point``."""
+    return (
+        number(value.x, f"{name}.x", most=most),
+        number(value.y, f"{name}.y", most=most),
+        number(value.z, f"{name}.z", most=most),
+    )
+
+
+def pose(value: Any, name: str) -> Pose:
+    """``geometry_msgs/Pose``; an orientation of zeros, which nobody set, is none, as in Gazebo.
+
+    Raises:
+        GraphError: A number is not finite, or the orientation is no rotation.
+    """
+    position = vector(value.position, f"{name}.position")
+    q = value.orientation
+    parts = tuple(
+        number(part, f"{name}.orientation.{axis}")
+        for part, axis in zip((q.x, q.y, q.z, q.w), "xyzw", strict=True)
+    )
+    if not any(parts):
+        return Pose(position, IDENTITY)
+    try:
+        return Pose(position, quat_normalize(parts))
+    except ValueError as error:
+        raise GraphError(f"{name}.orientation: {error}") from None
+
+
+def nanoseconds(value: Any) -> int:
+    """``builtin_interfaces/Time`` or ``Duration``."""
+    return int(value.sec) * _SECOND + int(value.nanosec)
+
+
+def pose_message(where: Pose) -> Any:
+    """``geometry_msgs/Pose``."""
+    Pose_, Point = message_class("geometry_msgs/msg/Pose"), message_class("geometry_msgs/msg/Point")
+    Quaternion = message_class("geometry_msgs/msg/Quaternion")
+    return Pose_(Point(*where.position), Quaternion(*where.orientation))
+
+
+def vector_message(value: Vec3) -> Any:
+    """``geometry_msgs/Vector3``."""
+    return message_class("geometry_msgs/msg/Vector3")(*value)
+
+
+def twist_message(linear: Vec3, angular: Vec3) -> Any:
+    """``geometry_msgs/Twist``."""
+    Twist = message_class("geometry_msgs/msg/Twist")
+    return Twist(vector_message(linear), vector_message(angular))

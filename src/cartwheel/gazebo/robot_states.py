@@ -1,0 +1,207 @@
+"""robot_state_publisher's work, where nobody else does it: ``/robot_description`` and ``/tf``."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from typing import Any
+
+from cartwheel.description.kinematics import link_poses
+from cartwheel.description.model import Joint, RobotDescription
+from cartwheel.errors import Diagnostic
+from cartwheel.geometry import Pose
+from cartwheel.graph import Graph, Publisher, StaticTransforms, resolve_frame
+from cartwheel.messages import header, message_class
+from cartwheel.plugins.robot_descriptions import RobotDescriptions, is_robot
+from cartwheel.simulation import Simulation
+
+NODE = "robot_state_publisher"
+RATE = 50.0
+"""Hz of simulation time at which moving joints are told."""
+_LOOK = 10.0
+"""Hz of simulation time at which new models are looked for."""
+_ONE_AXIS = ("revolute", "continuous", "prismatic", "screw")
+
+
+@dataclass(frozen=True, slots=True)
+class _Told:
+    """A robot whose links' frames are told."""
+
+    description: RobotDescription
+    prefix: str
+    moving: tuple[Joint, ...]
+    children: frozenset[str]
+
+
+class RobotStates:
+    """Tells where each link of each robot is in its parent link.
+
+    Fixed joints go to ``/tf_static``, the others to ``/tf``. What a plugin tells is left to
+    it: wheels whose drive publishes their transforms. So is the root: it is the drive's, in
+    ``odom``. Two robots with the same frames need a namespace or prefix: the second one's are
+    left out, and reported. For the owner's thread. Source: robot_state_publisher.
+
+    Args:
+        simulation: Whose robots.
+        graph: To publish on.
+    """
+
+    def __init__(self, simulation: Simulation, graph: Graph) -> None:
+        self._simulation = simulation
+        self._graph = graph
+        self._descriptions: RobotDescriptions | None = None
+        self._publisher: Publisher | None = None
+        self._told: dict[str, _Told] = {}
+        self._version = -1
+        self._warned: set[str] = set()
+        self._looking = simulation.schedule(_LOOK, before=self._look, active=self._is_active)
+        self._telling = simulation.schedule(RATE, after=self._publish, active=self._wanted)
+        self.activate()
+
+    def activate(self) -> None:
+        """Does the work, from now on."""
+        if self._publisher is None:
+            self._publisher = self._graph.advertise(
+                "/tf", "tf2_msgs/msg/TFMessage", node=NODE, rate=RATE
+            )
+            self._descriptions = RobotDescriptions(self._simulation, self._graph)
+            self._version = -1
+            self._look()
+
+    def deactivate(self) -> None:
+        """Leaves the work to another."""
+        if self._publisher is None:
+            return
+        for name in self._told:
+            StaticTransforms.of(self._graph).remove((NODE, name))
+        self._told.clear()
+        self._publisher.close()
+        self._publisher = None
+        if self._descriptions is not None:
+            self._descriptions.close()
+            self._descriptions = None
+
+    def close(self) -> None:
+        """Ends it."""
+        self.deactivate()
+        self._simulation.unschedule(self._looking)
+        self._simulation.unschedule(self._telling)
+
+    def _is_active(self) -> bool:
+        return self._publisher is not None and self._version != self._simulation.scene.version
+
+    def _wanted(self) -> bool:
+        return self._publisher is not None and self._publisher.wanted and bool(self._told)
+
+    def _look(self) -> None:
+        scene = self._simulation.scene
+        self._version = scene.version
+        robots = {one.name: one.description for one in scene.models if is_robot(one.description)}
+        static = StaticTransforms.of(self._graph)
+        for name in list(self._told):
+            if robots.get(name) is not self._told[name].description:
+                del self._told[name]
+                static.remove((NODE, name))
+        for name, description in robots.items():
+            if name in self._told:
+                continue
+            prefix = self._simulation.frame_prefix(name)
+            joints = _tree(description)
+            children = frozenset(resolve_frame(joint.child, prefix) for joint in joints)
+            if self._are_anothers(name, children):
+                continue
+            by_plugins = _told_by_plugins(description)
+            moving = tuple(
+                joint
+                for joint in joints
+                if joint.type in _ONE_AXIS and joint.name not in by_plugins
+            )
+            self._told[name] = _Told(description, prefix, moving, children)
+            fixed = [joint for joint in joints if joint.type == "fixed"]
+            if fixed:
+                poses = link_poses(description, {})
+                static.put((NODE, name), _transforms(0, fixed, poses, prefix))
+
+    def _are_anothers(self, name: str, children: frozenset[str]) -> bool:
+        for other, told in self._told.items():
+            shared = sorted(told.children & children)
+            if not shared:
+                continue
+            if name not in self._warned:
+                self._warned.add(name)
+                self._simulation.engine.report(
+                    Diagnostic(
+                        severity="warning",
+                        message=f'"{name}" has frames of the same names as "{other}", such as'
+                        f" {shared[0]}: its links are left out of /tf",
+                    )
+                )
+            return True
+        return False
+
+    def _publish(self) -> None:
+        assert self._publisher is not None
+        simulation = self._simulation
+        placed = set(simulation.scene.joints)
+        transforms: list[Any] = []
+        for name, told in self._told.items():
+            if not told.moving or name not in simulation.models:
+                continue
+            positions = {
+                joint.name: simulation.joint_position(name, joint.name)
+                for joint in told.description.joints
+                if (name, joint.name) in placed
+            }
+            poses = link_poses(told.description, positions)
+            transforms += _transforms(simulation.time_ns, told.moving, poses, told.prefix)
+        if transforms:
+            self._publisher.publish(message_class("tf2_msgs/msg/TFMessage")(transforms))
+
+
+def follow(states: RobotStates, simulation: Simulation) -> Callable[[bool], None]:
+    """A function for any thread: told whether another does the work, it makes way or steps in."""
+
+    def told(another: bool) -> None:
+        simulation.post(states.deactivate if another else states.activate)
+
+    return told
+
+
+def _tree(description: RobotDescription) -> list[Joint]:
+    """The joints that make the tree of links, one for each link but the root."""
+    inbound: dict[str, Joint] = {}
+    for joint in description.joints:
+        if joint.parent != "world":
+            inbound.setdefault(joint.child, joint)
+    return list(inbound.values())
+
+
+def _told_by_plugins(description: RobotDescription) -> set[str]:
+    """Joints whose transforms a plugin publishes, as its tag says."""
+    names = {joint.name for joint in description.joints}
+    found: set[str] = set()
+    for tag in description.plugins:
+        says = (tag.element.find(word) for word in ("publishWheelTF", "publish_wheel_tf"))
+        if any(one is not None and one.text.strip().lower() in ("true", "1") for one in says):
+            found |= {each.text.strip() for each in tag.element.children} & names
+    return found
+
+
+def _transforms(
+    time_ns: int, joints: Iterable[Joint], poses: dict[str, Pose], prefix: str
+) -> list[Any]:
+    Stamped, Transform, Vector3, Quaternion = (
+        message_class(f"geometry_msgs/msg/{name}")
+        for name in ("TransformStamped", "Transform", "Vector3", "Quaternion")
+    )
+    made = []
+    for joint in joints:
+        pose = poses[joint.parent].inverse() @ poses[joint.child]
+        made.append(
+            Stamped(
+                header(time_ns, resolve_frame(joint.parent, prefix)),
+                resolve_frame(joint.child, prefix),
+                Transform(Vector3(*pose.position), Quaternion(*pose.orientation)),
+            )
+        )
+    return made

@@ -1,0 +1,197 @@
+"""Models in and out, and lights out."""
+
+from __future__ import annotations
+
+import dataclasses
+import itertools
+import re
+import threading
+from collections.abc import Callable, Sequence
+from concurrent.futures import Future
+from concurrent.futures import TimeoutError as NotYet
+from pathlib import Path
+from typing import Any, TypeVar
+
+from cartwheel.description import load_text
+from cartwheel.description.model import Light, RobotDescription, WorldDescription
+from cartwheel.errors import CartwheelError, DescriptionError, WorldError
+from cartwheel.gazebo.entities import Entities
+from cartwheel.gazebo.requests import Answer, Offer, number, pose
+from cartwheel.geometry import Pose
+from cartwheel.session import Session
+from cartwheel.simulation import RunState
+
+T = TypeVar("T")
+_ASIDE = r"(?:\s|<\?(?:(?!\?>).)*\?>|<!--(?:(?!-->).)*-->)*"
+_LIGHT = re.compile(
+    rf"({_ASIDE}<sdf\b[^>]*>)({_ASIDE}<light\b.*</light>{_ASIDE})(</sdf>{_ASIDE})\Z", re.DOTALL
+)
+"""A document of one light: its head, the light, and its end."""
+_LOOK = 0.2
+"""s between two looks whether a simulation that does not answer has ended."""
+
+
+class Spawning:
+    """The services that put models into the world and take them out.
+
+    Source: gazebo_ros, gazebo_ros_api_plugin: a text's root element says what it is, whichever
+    of the two services it is given to.
+    """
+
+    def __init__(self, session: Session, entities: Entities, package_path: Sequence[Path]) -> None:
+        self._session = session
+        self._simulation = session.simulation
+        self._entities = entities
+        self._package_path = tuple(package_path)
+
+    def offers(self) -> list[Offer]:
+        """The services."""
+        spawn, kind = self.spawn_model, "gazebo_msgs/srv/SpawnModel"
+        return [
+            Offer("spawn_urdf_model", kind, spawn, threaded=True),
+            Offer("spawn_sdf_model", kind, spawn, threaded=True),
+            Offer("delete_model", "gazebo_msgs/srv/DeleteModel", self.delete_model),
+            Offer("delete_light", "gazebo_msgs/srv/DeleteLight", self.delete_light),
+        ]
+
+    def spawn_model(self, request: Any) -> Answer:
+        """Reads the text on the caller's thread; the owner's alone spawns."""
+        where = pose(request.initial_pose, "initial_pose")
+        name = request.model_name.strip()
+        found = self.read(name, request.model_xml)
+        if isinstance(found, Light):
+            light = found
+            return self.on_owner(lambda: self._light(light, name, where, request.reference_frame))
+        self.spawn(
+            found,
+            name=name,
+            where=where,
+            reference_frame=request.reference_frame,
+            namespace=request.robot_namespace,
+        )
+        return Answer("SpawnModel: Successfully spawned entity")
+
+    def spawn(
+        self,
+        description: RobotDescription,
+        *,
+        name: str,
+        where: Pose,
+        reference_frame: str,
+        namespace: str,
+        rename: bool = False,
+    ) -> str:
+        """Puts a model into the world; from any thread.
+
+        Args:
+            description: Of the model.
+            name: In this world; the description's own where it is empty.
+            where: Its pose in the frame.
+            reference_frame: Of the world, a model or a link.
+            namespace: Of its topics and services.
+            rename: Find a free name where that is taken.
+
+        Returns:
+            The name.
+
+        Raises:
+            CartwheelError: It cannot be; nothing has changed.
+        """
+        namespace = namespace.strip()
+        prefix = self._session.graph.parameters.search("tf_prefix", namespace)
+        frame_prefix = prefix if isinstance(prefix, str) else ""
+
+        def spawn() -> str:
+            taken = self._simulation.models
+            wanted = name or description.name
+            if wanted in taken:
+                free = next(
+                    other
+                    for count in itertools.count(1)
+                    if (other := f"{wanted}_{count}") not in taken
+                )
+                if not rename:
+                    raise WorldError(
+                        f'Failure - model name "{wanted}" already exists',
+                        hint=f'Delete that model first, or give another name, such as "{free}".',
+                    )
+                wanted = free
+            self._simulation.refresh()
+            frame = self._entities.frame(reference_frame).pose
+            placed = frame @ where @ description.pose
+            for value in placed.position:
+                number(value, "the place in the world")
+            return self._session.spawn(
+                description,
+                name=wanted,
+                pose=placed,
+                namespace=namespace,
+                frame_prefix=frame_prefix,
+            )
+
+        return self.on_owner(spawn)
+
+    def _light(self, light: Light, name: str, where: Pose, reference: str) -> Answer:
+        """Adds a light to the world."""
+        wanted = name or light.name
+        world = self._simulation.world
+        if any(other.name == wanted for other in world.lights):
+            raise WorldError(
+                f'Failure - light "{wanted}" already exists', hint="Delete that light first."
+            )
+        self._simulation.refresh()
+        placed = self._entities.frame(reference).pose @ where @ light.pose
+        added = dataclasses.replace(light, name=wanted, pose=placed)
+        self._simulation.change_world(dataclasses.replace(world, lights=(*world.lights, added)))
+        return Answer("SpawnModel: Successfully spawned entity")
+
+    def read(self, name: str, text: str) -> RobotDescription | Light:
+        """What a text describes.
+
+        Raises:
+            DescriptionError: It is no model and no light.
+        """
+        if not text.strip():
+            raise DescriptionError("Failure - model_xml is empty")
+        alone = _LIGHT.match(text)
+        if alone is not None:
+            # SDF knows lights in worlds and links; the lines stay what they are.
+            text = f'{alone[1]}<world name="of the light">{alone[2]}</world>{alone[3]}'
+        found = load_text(
+            text, file=f"<model_xml of {name or 'the model'}>", package_path=self._package_path
+        )
+        if isinstance(found, WorldDescription) and alone is not None and len(found.lights) == 1:
+            return found.lights[0]
+        if isinstance(found, WorldDescription):
+            if len(found.models) == 1:
+                # What gazebo_ros's spawn_model makes of -database: a world that includes a model.
+                return found.models[0]
+            raise DescriptionError(
+                f'Failure - model_xml describes the world "{found.name}", not a model',
+                hint="Start the simulation with it, and spawn models into it.",
+            )
+        return found
+
+    def on_owner(self, function: Callable[[], T]) -> T:
+        """Runs a function on the owner's thread and waits for it, as long as there is an owner."""
+        if threading.get_ident() == self._simulation.owner:
+            return function()
+        future: Future[T] = self._simulation.call(function)
+        while True:
+            try:
+                return future.result(timeout=_LOOK)
+            except NotYet:
+                ended = self._simulation.run_state is RunState.STOPPED
+                if not future.done() and ended and future.cancel():
+                    raise CartwheelError("the simulation has ended") from None
+
+    def delete_model(self, request: Any) -> Answer:
+        self._simulation.delete(request.model_name)
+        return Answer("DeleteModel: successfully deleted model")
+
+    def delete_light(self, request: Any) -> Answer:
+        light = self._entities.light(request.light_name)
+        world = self._simulation.world
+        rest = tuple(other for other in world.lights if other is not light)
+        self._simulation.change_world(dataclasses.replace(world, lights=rest))
+        return Answer("DeleteLight: successfully deleted light")

@@ -1,0 +1,275 @@
+"""Where models and links are and how they move: told, and set."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from cartwheel.errors import CartwheelError
+from cartwheel.gazebo.entities import Entities, Motion
+from cartwheel.gazebo.requests import (
+    Answer,
+    Offer,
+    number,
+    pose,
+    pose_message,
+    twist_message,
+    vector,
+)
+from cartwheel.geometry import Pose, from_wxyz, rotate
+from cartwheel.graph import Graph, Subscription
+from cartwheel.messages import header, message_class
+from cartwheel.simulation import Simulation
+from cartwheel.world.entry import scoped
+
+
+class States:
+    """``get_`` and ``set_`` of model_state and link_state, and set_model_configuration.
+
+    A model that is put somewhere goes on as one body: its joints keep their positions and
+    stand. Source: gazebo_ros, gazebo_ros_api_plugin.
+    """
+
+    def __init__(self, simulation: Simulation, entities: Entities) -> None:
+        self._simulation = simulation
+        self._entities = entities
+
+    def offers(self) -> list[Offer]:
+        """The services."""
+        package = "gazebo_msgs/srv"
+        return [
+            Offer("get_model_state", f"{package}/GetModelState", self.get_model_state),
+            Offer("set_model_state", f"{package}/SetModelState", self.set_model_state),
+            Offer("get_link_state", f"{package}/GetLinkState", self.get_link_state),
+            Offer("set_link_state", f"{package}/SetLinkState", self.set_link_state),
+            Offer(
+                "set_model_configuration",
+                f"{package}/SetModelConfiguration",
+                self.set_model_configuration,
+            ),
+        ]
+
+    def get_model_state(self, request: Any) -> Answer:
+        self._entities.model(request.model_name)
+        self._simulation.refresh()
+        frame = self._entities.frame(request.relative_entity_name)
+        seen = self._entities.model_motion(request.model_name).seen_from(frame)
+        fields = {
+            "header": header(self._simulation.time_ns, request.relative_entity_name),
+            "pose": pose_message(seen.pose),
+            "twist": twist_message(seen.linear, seen.angular),
+        }
+        return Answer("GetModelState: got properties", fields)
+
+    def get_link_state(self, request: Any) -> Answer:
+        model, link = self._entities.link(request.link_name)
+        self._simulation.refresh()
+        frame = self._entities.frame(request.reference_frame)
+        seen = self._entities.link_motion(model, link.name).seen_from(frame)
+        state = message_class("gazebo_msgs/msg/LinkState")(
+            request.link_name,
+            pose_message(seen.pose),
+            twist_message(seen.linear, seen.angular),
+            request.reference_frame,
+        )
+        return Answer("GetLinkState: got state", {"link_state": state})
+
+    def set_model_state(self, request: Any) -> Answer:
+        state = request.model_state
+        self._entities.model(state.model_name)
+        target = self._target(state)
+        notes = self._put(state.model_name, target)
+        return Answer("SetModelState: set model state done", notes=notes)
+
+    def set_link_state(self, request: Any) -> Answer:
+        """The model is moved so that the link has the pose and twist."""
+        state = request.link_state
+        model, link = self._entities.link(state.link_name)
+        target = self._target(state)
+        frame = self._entities.model_motion(model).pose
+        offset = self._entities.link_motion(model, link.name).pose.inverse() @ frame
+        notes = self._put(model, target.carried(offset))
+        return Answer("SetLinkState: success", notes=notes)
+
+    def _target(self, state: Any) -> Motion:
+        """What a ModelState or LinkState asks for, in the world.
+
+        Source: gazebo_ros: a twist is given in the frame's axes, against the world.
+        """
+        where = pose(state.pose, "pose")
+        linear = vector(state.twist.linear, "twist.linear")
+        angular = vector(state.twist.angular, "twist.angular")
+        self._simulation.refresh()
+        frame = self._entities.frame(state.reference_frame).pose
+        turn = frame.orientation
+        return Motion(frame @ where, rotate(turn, linear), rotate(turn, angular))
+
+    def _put(self, model: str, target: Motion) -> tuple[str, ...]:
+        for value in target.pose.position:
+            number(value, "the place in the world")
+        self._simulation.set_state(model, target.pose, linear=target.linear, angular=target.angular)
+        if not self._simulation.moves(model) and any((*target.linear, *target.angular)):
+            return (f'model "{model}" is fixed in the world: its twist has no effect',)
+        return ()
+
+    def set_model_configuration(self, request: Any) -> Answer:
+        description = self._entities.model(request.model_name)
+        names, positions = list(request.joint_names), list(request.joint_positions)
+        if len(names) != len(positions):
+            raise CartwheelError(
+                f"joint name and position list have different lengths: {len(names)} names, "
+                f"{len(positions)} positions"
+            )
+        wanted: dict[str, float] = {}
+        notes = []
+        for name, position in zip(names, positions, strict=True):
+            own = name.removeprefix(f"{request.model_name}::")
+            value = number(position, f'the position of "{name}"')
+            joint = description.joint(own)
+            if joint is not None and joint.type == "fixed":
+                notes.append(f'joint "{own}" is fixed')
+                continue
+            if joint is not None and joint.type in ("revolute", "prismatic"):
+                lower = -np.inf if joint.axis.lower is None else joint.axis.lower
+                upper = np.inf if joint.axis.upper is None else joint.axis.upper
+                bounded = min(max(value, lower), upper) if lower < upper else value
+                if bounded != value:
+                    notes.append(f'joint "{own}" stops at its limit of {bounded:g}')
+                    value = float(bounded)
+            wanted[own] = value
+        self._simulation.set_joint_positions(request.model_name, wanted)
+        return Answer("SetModelConfiguration: success", notes=tuple(notes))
+
+
+class StateTopics:
+    """``model_states`` and ``link_states``, told at every step while somebody reads them."""
+
+    def __init__(
+        self, simulation: Simulation, graph: Graph, node: str, *, prefix: str = "/gazebo"
+    ) -> None:
+        self._simulation = simulation
+        rate = 1e9 / simulation.step_ns
+        self._models = graph.advertise(
+            f"{prefix}/model_states", "gazebo_msgs/msg/ModelStates", node=node, rate=rate
+        )
+        self._links = graph.advertise(
+            f"{prefix}/link_states", "gazebo_msgs/msg/LinkStates", node=node, rate=rate
+        )
+        self._open = True
+        self._version = -1
+        self._Pose = message_class("geometry_msgs/msg/Pose")
+        self._Point = message_class("geometry_msgs/msg/Point")
+        self._Quaternion = message_class("geometry_msgs/msg/Quaternion")
+        self._Twist = message_class("geometry_msgs/msg/Twist")
+        self._Vector3 = message_class("geometry_msgs/msg/Vector3")
+        self._ModelStates = message_class("gazebo_msgs/msg/ModelStates")
+        self._LinkStates = message_class("gazebo_msgs/msg/LinkStates")
+        simulation.schedule(0, after=self._publish, active=self._wanted)
+
+    def close(self) -> None:
+        """Takes the topics off the graph."""
+        self._open = False
+        self._models.close()
+        self._links.close()
+
+    def _wanted(self) -> bool:
+        return self._open and (self._models.wanted or self._links.wanted)
+
+    def _publish(self) -> None:
+        if self._version != self._simulation.scene.version:
+            self._resolve()
+        data = self._simulation.data
+        bodies = self._bodies
+        # MuJoCo keeps a body's velocity as that of the point at its model's centre of mass.
+        arms = data.xpos[bodies] - data.subtree_com[self._roots]
+        spatial = data.cvel[bodies]
+        positions = data.xpos[bodies].tolist()
+        quaternions = data.xquat[bodies].tolist()
+        linear = (spatial[:, 3:] + np.cross(spatial[:, :3], arms)).tolist()
+        angular = spatial[:, :3].tolist()
+        if self._links.wanted:
+            poses = [
+                self._pose(position, quaternion)
+                for position, quaternion in zip(positions, quaternions, strict=True)
+            ]
+            twists = [
+                self._twist(moving, turning)
+                for moving, turning in zip(linear, angular, strict=True)
+            ]
+            self._links.publish(self._LinkStates(self._link_names, poses, twists))
+        if self._models.wanted:
+            poses, twists = [], []
+            for row, offset in self._canonical:
+                if offset is None:
+                    poses.append(self._pose(positions[row], quaternions[row]))
+                    twists.append(self._twist(linear[row], angular[row]))
+                    continue
+                place = Pose(tuple(positions[row]), from_wxyz(quaternions[row]))
+                link = Motion(place, tuple(linear[row]), tuple(angular[row]))
+                motion = link.carried(offset)
+                poses.append(pose_message(motion.pose))
+                twists.append(twist_message(motion.linear, motion.angular))
+            self._models.publish(self._ModelStates(self._model_names, poses, twists))
+
+    def _pose(self, position: list[float], quaternion: list[float]) -> Any:
+        qw, qx, qy, qz = quaternion
+        return self._Pose(self._Point(*position), self._Quaternion(qx, qy, qz, qw))
+
+    def _twist(self, linear: list[float], angular: list[float]) -> Any:
+        return self._Twist(self._Vector3(*linear), self._Vector3(*angular))
+
+    def _resolve(self) -> None:
+        simulation = self._simulation
+        scene = simulation.scene
+        self._version = scene.version
+        self._bodies = [simulation.engine.body_id(*names) for names in scene.links]
+        self._roots = simulation.model.body_rootid[self._bodies]
+        self._link_names = [scoped(*names) for names in scene.links]
+        self._model_names = [placed.name for placed in scene.models]
+        self._canonical: list[tuple[int, Pose | None]] = []
+        for placed in scene.models:
+            description = placed.description
+            row = scene.links.index((placed.name, description.canonical_link))
+            offset = description.canonical_pose.inverse()
+            self._canonical.append((row, None if offset == Pose() else offset))
+
+
+class StateCommands:
+    """``set_model_state`` and ``set_link_state`` as topics."""
+
+    def __init__(
+        self, states: States, graph: Graph, node: str, report: Callable[[str], None]
+    ) -> None:
+        self._report = report
+        self._subscriptions: list[Subscription] = []
+        for name, kind, field, handler in (
+            ("set_model_state", "ModelState", "model_state", states.set_model_state),
+            ("set_link_state", "LinkState", "link_state", states.set_link_state),
+        ):
+            request = message_class(f"gazebo_msgs/srv/Set{kind}_Request")
+            self._subscriptions.append(
+                graph.subscribe(
+                    f"/gazebo/{name}",
+                    self._callback(name, field, request, handler),
+                    type_name=f"gazebo_msgs/msg/{kind}",
+                    node=node,
+                )
+            )
+
+    def close(self) -> None:
+        """Ends both."""
+        for subscription in self._subscriptions:
+            subscription.close()
+
+    def _callback(
+        self, name: str, field: str, request: Any, handler: Callable[[Any], Answer]
+    ) -> Callable[[Any], None]:
+        def take(message: Any) -> None:
+            try:
+                handler(request(**{field: message}))
+            except CartwheelError as error:
+                self._report(f"/gazebo/{name}: {error.message}. {error.hint or ''}".strip())
+
+        return take

@@ -1,0 +1,357 @@
+"""Time of a recording: it runs, holds, jumps, and messages come as it passes them."""
+
+from __future__ import annotations
+
+import queue
+import threading
+import time
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Future
+from pathlib import Path
+from typing import Any, TypeVar
+
+from cartwheel.bridges.recording.decoding import Decode, decoder
+from cartwheel.bridges.recording.reading import Recorded, RecordedTopic, Recording, span_of
+from cartwheel.description.model import WorldDescription
+from cartwheel.errors import CartwheelError, Diagnostic, RecordingError
+from cartwheel.geometry import Pose
+from cartwheel.graph import Graph, Publisher
+from cartwheel.playback.scene import STATE, STRING, PlayedScene
+from cartwheel.simulation.snapshot import RunState, Scene, Snapshot
+
+T = TypeVar("T")
+_LOOK_BACK_NS = 2_000_000_000
+"""Before the place of a jump: what was said last is said again."""
+_STEP_NS = 33_333_333
+_LONGEST = 0.02
+"""s of wall time of one turn."""
+
+
+class Player:
+    """Publishes a recording's messages; to clients it is what a `Simulation` is.
+
+    One thread, that which calls `run`, owns it. A message is decoded only where somebody
+    reads its topic, or where it moves what is shown.
+
+    Args:
+        recording: To play.
+        graph: To publish on.
+        world: Things to show around the robots.
+        package_path: Where meshes are looked for first.
+        loop: Begin again at the end.
+        hold: At the end hold time, instead of ending.
+
+    Raises:
+        RecordingError: There is nothing to play.
+    """
+
+    def __init__(
+        self,
+        recording: Recording,
+        graph: Graph,
+        *,
+        world: WorldDescription,
+        package_path: Sequence[Path] = (),
+        loop: bool = False,
+        hold: bool = True,
+    ) -> None:
+        span = span_of(recording)
+        if span is None:
+            raise RecordingError("the recording holds no messages")
+        self.start_ns, self.end_ns = span
+        self.time_ns = self.start_ns
+        self.run_state = RunState.RUNNING
+        self.speed: float | None = 1.0
+        self.real_time_factor = 0.0
+        self.steps_allowed: int | None = None
+        self.step_ns = _STEP_NS
+        self.world = world
+        self.commands: queue.SimpleQueue[Callable[[], None]] = queue.SimpleQueue()
+        self.on_reset: list[Callable[[], None]] = []
+        self.owner: int | None = None
+        self._recording = recording
+        self._graph = graph
+        self._loop = loop
+        self._hold = hold
+        self._listeners: list[tuple[Callable[[Snapshot], None], float]] = []
+        self._due: list[float] = []
+        self._played = PlayedScene(world, package_path)
+        self._notes: list[Diagnostic] = []
+        self._decoders: dict[int, Decode] = {}
+        self._latched = self._read_latched()
+        self._publishers = self._advertise()
+        self._upcoming: Iterator[Recorded] = iter(())
+        self._next: Recorded | None = None
+        graph.post = self.post
+        self.seek(self.start_ns)
+
+    # -- what a simulation has
+
+    @property
+    def diagnostics(self) -> list[Diagnostic]:
+        return [*self._notes, *self._played.diagnostics]
+
+    @property
+    def scene(self) -> Scene:
+        return self._played.scene
+
+    @property
+    def models(self) -> tuple[str, ...]:
+        return tuple(model.name for model in self.scene.models)
+
+    def pose(self, name: str) -> Pose:
+        """Where a model is."""
+        return self._played.pose(name)
+
+    def pause(self) -> None:
+        """Holds time."""
+        if self.run_state is RunState.RUNNING:
+            self.run_state = RunState.PAUSED
+
+    def resume(self) -> None:
+        """Lets time go on; from the start where it had come to the end."""
+        if self.run_state is RunState.PAUSED:
+            if self._next is None:
+                self.seek(self.start_ns)
+            self.run_state = RunState.RUNNING
+
+    def step(self, count: int = 1) -> None:
+        """Goes on by thirtieths of a second, and holds time."""
+        self.pause()
+        self._play_until(min(self.time_ns + count * _STEP_NS, self.end_ns))
+
+    def stop(self) -> None:
+        """Ends the run."""
+        self.run_state = RunState.STOPPED
+
+    def set_speed(self, speed: float | None) -> None:
+        """Recorded time in wall time; None is as fast as it can."""
+        self.speed = speed
+
+    def reset(self) -> None:
+        """Back to the start."""
+        self.seek(self.start_ns)
+        for callback in self.on_reset:
+            callback()
+
+    def delete(self, name: str) -> None:
+        """Refuses.
+
+        Raises:
+            RecordingError: Always.
+        """
+        raise RecordingError(f'"{name}" was recorded: it cannot be deleted')
+
+    def post(self, function: Callable[[], None]) -> None:
+        """Runs a function on the owner's thread, soon; from any thread."""
+        self.commands.put(function)
+
+    def call(self, function: Callable[[], T]) -> Future[T]:
+        """Like `post`, with the result or the error."""
+        future: Future[T] = Future()
+
+        def run() -> None:
+            if not future.set_running_or_notify_cancel():
+                return
+            try:
+                future.set_result(function())
+            except Exception as error:  # noqa: BLE001 - it is the caller's to handle
+                future.set_exception(error)
+
+        self.post(run)
+        return future
+
+    def snapshot(self) -> Snapshot:
+        """What is shown now."""
+        return self._played.snapshot(
+            self.time_ns, self.run_state, self.speed, self.real_time_factor
+        )
+
+    def add_listener(self, listener: Callable[[Snapshot], None], *, rate: float = 30.0) -> None:
+        """Calls `listener` with a snapshot at `rate` Hz of wall time."""
+        self._listeners.append((listener, 1.0 / rate))
+        self._due.append(0.0)
+
+    # -- time
+
+    def seek(self, time_ns: int) -> None:
+        """Jumps: what was last said before is said again, and from there it goes on."""
+        time_ns = min(max(time_ns, self.start_ns), self.end_ns)
+        if time_ns < self.time_ns:
+            self._played.forget()
+        self.time_ns = time_ns
+        for number, messages in self._latched.items():
+            held = [message for message in messages if message.time_ns <= time_ns] or messages[:1]
+            for message in held:
+                self._publish(message, always=number)
+        last: dict[int, Recorded] = {}
+        for message in self._recording.messages(start_ns=time_ns - _LOOK_BACK_NS):
+            if message.time_ns > time_ns:
+                break
+            if message.number in self._latched:
+                continue
+            if self._recording.topics[message.number].type in STATE:
+                self._publish(message)
+            else:
+                last[message.number] = message
+        for message in sorted(last.values()):
+            self._publish(message)
+        self._upcoming = self._recording.messages(start_ns=time_ns + 1)
+        self._next = next(self._upcoming, None)
+
+    def run(self) -> None:
+        """Plays until it is stopped, or the end."""
+        self.owner = threading.get_ident()
+        last = time.perf_counter()
+        while True:
+            self._drain()
+            now = time.perf_counter()
+            passed, last = now - last, now
+            if self.run_state is RunState.STOPPED:
+                return
+            if self.run_state is RunState.RUNNING:
+                if self._next is None and self.time_ns >= self.end_ns:
+                    if not self._end():
+                        return
+                else:
+                    self._go_on(min(passed, 0.25))
+            else:
+                self.real_time_factor = 0.0
+            self._show(time.perf_counter())
+            self._wait()
+
+    def _go_on(self, passed: float) -> None:
+        if self.speed is None:
+            limit = time.perf_counter() + _LONGEST
+            while self._next is not None and time.perf_counter() < limit:
+                self._play_until(self._next.time_ns)
+            if self._next is None:
+                self.time_ns = self.end_ns
+            self.real_time_factor = 0.0
+            return
+        self.real_time_factor = self.speed
+        self._play_until(min(self.time_ns + int(passed * self.speed * 1e9), self.end_ns))
+
+    def _play_until(self, time_ns: int) -> None:
+        while self._next is not None and self._next.time_ns <= time_ns:
+            message = self._next
+            self.time_ns = message.time_ns
+            self._publish(message)
+            self._next = next(self._upcoming, None)
+        self.time_ns = max(self.time_ns, time_ns)
+
+    def _end(self) -> bool:
+        """What happens at the end; returns whether it goes on."""
+        if self._loop:
+            self.reset()
+            return True
+        if self._hold:
+            self.run_state = RunState.PAUSED
+            return True
+        self.run_state = RunState.STOPPED
+        return False
+
+    def _drain(self) -> None:
+        while not self.commands.empty():
+            self.commands.get()()
+
+    def _wait(self) -> None:
+        if self.speed is None and self.run_state is RunState.RUNNING:
+            return
+        wait = _LONGEST
+        if self.run_state is RunState.RUNNING and self._next is not None:
+            ahead = (self._next.time_ns - self.time_ns) / 1e9 / (self.speed or 1.0)
+            wait = min(wait, max(ahead, 0.0005))
+        try:
+            command = self.commands.get(timeout=wait)
+        except queue.Empty:
+            return
+        command()
+
+    def _show(self, now: float) -> None:
+        snapshot = None
+        for index, (listener, period) in enumerate(self._listeners):
+            if now >= self._due[index]:
+                self._due[index] = now + period
+                snapshot = snapshot or self.snapshot()
+                listener(snapshot)
+
+    # -- messages
+
+    def _read_latched(self) -> dict[int, list[Recorded]]:
+        numbers = {i for i, topic in enumerate(self._recording.topics) if _is_kept(topic)}
+        found: dict[int, list[Recorded]] = {number: [] for number in numbers}
+        if numbers:
+            for message in self._recording.messages(topics=numbers):
+                found[message.number].append(message)
+        return {number: messages for number, messages in found.items() if messages}
+
+    def _advertise(self) -> dict[int, Publisher]:
+        topics = self._recording.topics
+        for number, topic in enumerate(topics):
+            try:
+                self._decoders[number] = decoder(topic)
+            except RecordingError as error:
+                self._note(f"left out: {error.message}")
+        for number, messages in self._latched.items():
+            # Robots first: the other topics belong to them.
+            self._describe(topics[number], number, messages[-1])
+        publishers = {}
+        for number in self._decoders:
+            topic = topics[number]
+            try:
+                publishers[number] = self._graph.advertise(
+                    topic.name,
+                    topic.type,
+                    node=self._played.robot_near(topic.name) or "recording",
+                    rate=topic.rate,
+                    qos="latched" if number in self._latched else "default",
+                )
+            except CartwheelError as error:
+                self._note(f"left out: {error.message}")
+        return publishers
+
+    def _describe(self, topic: RecordedTopic, number: int, message: Recorded) -> None:
+        if topic.type == STRING and topic.name.endswith("robot_description"):
+            made = self._decoded(number, message)
+            if made is not None:
+                self._played.describe(topic.name, made.data)
+
+    def _publish(self, message: Recorded, *, always: int | None = None) -> None:
+        number = message.number
+        publisher = self._publishers.get(number)
+        if publisher is None:
+            return
+        topic = self._recording.topics[number]
+        moves = topic.type in STATE
+        if not (publisher.wanted or moves or number == always):
+            return
+        made = self._decoded(number, message)
+        if made is None:
+            return
+        if moves:
+            self._played.take(topic.name, made)
+        elif number in self._latched:
+            self._describe(topic, number, message)
+        publisher.publish(made)
+
+    def _decoded(self, number: int, message: Recorded) -> Any | None:
+        decode = self._decoders.get(number)
+        if decode is None:
+            return None
+        try:
+            return decode(message.data)
+        except CartwheelError as error:
+            name = self._recording.topics[number].name
+            self._note(f"{name} is left out from {message.time_ns / 1e9:.3f} s on: {error.message}")
+            del self._decoders[number]
+            return None
+
+    def _note(self, text: str) -> None:
+        self._notes.append(Diagnostic(severity="warning", message=text))
+
+
+def _is_kept(topic: RecordedTopic) -> bool:
+    """Whether a topic's last message holds until the next one, whatever its recorder said."""
+    described = topic.type == STRING and topic.name.endswith("robot_description")
+    return topic.latched or described or topic.name == "/tf_static"
