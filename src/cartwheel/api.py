@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+import contextlib
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from cartwheel import description as descriptions
 from cartwheel.description.model import RobotDescription, WorldDescription
@@ -16,6 +17,9 @@ from cartwheel.messages import from_dict, type_name
 from cartwheel.messages.fields import fields as fields_of
 from cartwheel.session import Session
 from cartwheel.simulation.clock import NANOSECONDS, to_ns
+
+if TYPE_CHECKING:
+    from cartwheel.bridges.recording import Encoding, Recorder
 
 
 class Model:
@@ -70,6 +74,7 @@ class World:
         if not isinstance(world, WorldDescription):
             world = descriptions.load_world(world)
         self.session = Session(world, seed=seed, strict=strict)
+        self.session.simulation.drain()  # this thread is the owner
 
     def __enter__(self) -> World:
         return self
@@ -115,6 +120,7 @@ class World:
         yaw: float = 0.0,
         arguments: Mapping[str, str] | None = None,
         package_path: Sequence[Path] = (),
+        controllers: Sequence[str | Path] = (),
     ) -> Model:
         """Puts a model in the world.
 
@@ -129,16 +135,19 @@ class World:
             yaw: rad.
             arguments: Of the xacro file.
             package_path: Folders in which packages are looked for first.
+            controllers: YAML files of ros_control or ros2_control: their controllers start.
 
         Raises:
             DescriptionError: The file cannot be used.
             WorldError: The name is taken, or the model cannot be built.
+            PluginError: It has no manager of controllers, or their file makes no sense.
         """
         if not isinstance(robot, RobotDescription):
             robot = descriptions.load_robot(robot, arguments=arguments, package_path=package_path)
         given = any((x, y, z, roll, pitch, yaw))
         pose = Pose.from_xyz_rpy((x, y, z), (roll, pitch, yaw)) if given else None
-        return Model(self, self.session.spawn(robot, name=name, pose=pose))
+        files = [Path(file) for file in controllers]
+        return Model(self, self.session.spawn(robot, name=name, pose=pose, controllers=files))
 
     def model(self, name: str) -> Model:
         """A model that stands in the world.
@@ -186,6 +195,52 @@ class World:
     def mailbox(self, topic: str, *, size: int = 1000) -> Mailbox:
         """Keeps the topic's messages to be read after `run`."""
         return self.graph.mailbox(topic, size=size)
+
+    @contextlib.contextmanager
+    def record(
+        self,
+        file: str | Path,
+        *,
+        topics: Sequence[str] = (),
+        encoding: Encoding | None = None,
+        overwrite: bool = False,
+    ) -> Iterator[Recorder]:
+        """Records what is published within a ``with`` block.
+
+        Args:
+            file: ``.mcap``, ``.bag``, ``.db3``, or a folder for a ROS 2 bag.
+            topics: Patterns such as ``/camera/*``, ``re:/imu|/odom``, ``!/tf``; all where empty.
+            encoding: Of the messages in a ``.mcap``: ``ros2`` or ``ros1``.
+            overwrite: Replace what is there.
+
+        Raises:
+            RecordingError: It cannot be written; at the end also where it broke off.
+        """
+        from cartwheel.bridges.recording import Recorder
+        from cartwheel.plugins.robot_descriptions import RobotDescriptions
+
+        simulation = self.session.simulation
+        recorder = Recorder(
+            self.graph,
+            file,
+            time_ns=lambda: simulation.time_ns,
+            topics=topics,
+            encoding=encoding,
+            overwrite=overwrite,
+            notes=self.session.notes,
+            report=lambda found: simulation.post(lambda: simulation.engine.report(found)),
+        )
+        robots = RobotDescriptions(simulation, self.graph)
+        try:
+            recorder.start()
+            simulation.drain()
+            try:
+                yield recorder
+            finally:
+                recorder.close()
+        finally:
+            simulation.drain()
+            robots.close()
 
     def reset(self) -> None:
         """Takes time and every model back to the start."""

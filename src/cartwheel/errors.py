@@ -83,8 +83,16 @@ class GraphError(CartwheelError):
     """A topic, service or message that does not fit."""
 
 
+class RecordingError(CartwheelError):
+    """A recording that cannot be written or read."""
+
+
 class ControlError(CartwheelError):
     """A running simulation that cannot be reached or refuses a request."""
+
+
+class StaticModelError(PluginError):
+    """A plugin would drive a joint of a model that is static."""
 
 
 class UnknownNameError(CartwheelError):

@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from pathlib import Path
 from typing import Any
 
 from cartwheel.description.model import RobotDescription, WorldDescription
-from cartwheel.errors import CartwheelError, Diagnostic
+from cartwheel.errors import CartwheelError, Diagnostic, PluginError
 from cartwheel.geometry import Pose
 from cartwheel.graph import Graph
 from cartwheel.messages import message_class, stamp
+from cartwheel.plugins.control.files import ControllerFiles
 from cartwheel.plugins.registry import attach
+from cartwheel.plugins.world_plugins import world_plugin_notes
 from cartwheel.simulation import Simulation
+from cartwheel.simulation.clock import Task
 from cartwheel.simulation.pacing import Pacer
 
 CLOCK_RATE = 100.0
@@ -30,21 +35,55 @@ class Session:
         self.graph = Graph()
         self.strict = strict
         self.simulation = Simulation(world, attach=lambda part: attach(part, self.graph), seed=seed)
+        for note in world_plugin_notes(world):
+            self.simulation.engine.report(note)
         self.graph.post = self.simulation.post
         self._clock = self.graph.advertise(
             "/clock", "rosgraph_msgs/msg/Clock", node="cartwheel", rate=CLOCK_RATE
         )
-        self.simulation.schedule(
-            CLOCK_RATE, after=self._publish_clock, active=lambda: self._clock.wanted
-        )
+        self._clock_task = self._schedule_clock(CLOCK_RATE)
         self._check(0)
 
     def spawn(
-        self, description: RobotDescription, *, name: str | None = None, pose: Pose | None = None
+        self,
+        description: RobotDescription,
+        *,
+        name: str | None = None,
+        pose: Pose | None = None,
+        namespace: str = "",
+        frame_prefix: str = "",
+        controllers: Sequence[Path] = (),
     ) -> str:
-        """`Simulation.spawn`, strict where the session is; on the owner's thread."""
+        """`Simulation.spawn`, strict where the session is; on the owner's thread.
+
+        Args:
+            description: Of the model.
+            name: In this world; the description's own when None.
+            pose: Of its root link; the description's own when None.
+            namespace: Of its topics and services, where a plugin names none.
+            frame_prefix: Of its frames.
+            controllers: YAML files whose controllers its manager starts by itself.
+
+        Raises:
+            PluginError: It has no manager of controllers to start them.
+        """
         before = len(self.simulation.diagnostics)
-        spawned = self.simulation.spawn(description, name=name, pose=pose)
+        files = ControllerFiles.of(self.graph)
+        files.paths = tuple(controllers)
+        try:
+            spawned = self.simulation.spawn(
+                description, name=name, pose=pose, namespace=namespace, frame_prefix=frame_prefix
+            )
+        finally:
+            left = files.take()
+        if left:
+            self.simulation.delete(spawned)
+            raise PluginError(
+                f'model "{spawned}" has no controllers to start',
+                origin=description.origin,
+                hint="They need the plugin libgazebo_ros_control.so, libgazebo_ros2_control.so "
+                "or gz_ros2_control-system in a <gazebo> tag.",
+            )
         try:
             self._check(before)
         except CartwheelError:
@@ -52,10 +91,33 @@ class Session:
             raise
         return spawned
 
+    def set_clock_rate(self, rate: float) -> None:
+        """Tells the time `rate` times a second of it; on the owner's thread.
+
+        Args:
+            rate: Hz of simulation time; 0 or more than there are steps is every step.
+        """
+        self.simulation.unschedule(self._clock_task)
+        self._clock_task = self._schedule_clock(rate)
+
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
         """All that was reported so far."""
         return tuple(self.simulation.diagnostics)
+
+    @property
+    def notes(self) -> dict[str, str]:
+        """What made this simulation, for those who keep its messages."""
+        import cartwheel
+
+        simulation = self.simulation
+        return {
+            "version": cartwheel.__version__,
+            "world": simulation.world.name,
+            "seed": str(simulation.engine.seed),
+            "step_ns": str(simulation.step_ns),
+            "models": ", ".join(simulation.models),
+        }
 
     def pacer(self, *, until_ns: int | None = None) -> Pacer:
         """Runs the session against the wall clock."""
@@ -75,6 +137,11 @@ class Session:
                     origin=diagnostic.origin,
                     hint="--strict makes every warning an error.",
                 )
+
+    def _schedule_clock(self, rate: float) -> Task:
+        return self.simulation.schedule(
+            rate, after=self._publish_clock, active=lambda: self._clock.wanted
+        )
 
     def _publish_clock(self) -> None:
         message: Any = message_class("rosgraph_msgs/msg/Clock")(

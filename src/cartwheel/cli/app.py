@@ -6,7 +6,18 @@ from typing import Annotated
 
 import typer
 
-from cartwheel.cli import control, files, model, run, service, teleop, topic
+from cartwheel.cli import (
+    check,
+    control,
+    files,
+    info,
+    model,
+    play,
+    run,
+    service,
+    teleop,
+    topic,
+)
 
 app = typer.Typer(
     name="cartwheel",
@@ -39,6 +50,9 @@ def options(
 
 run.add_to(app)
 files.add_to(app)
+check.add_to(app)
+info.add_to(app)
+play.add_to(app)
 model.add_to(app)
 control.add_to(app)
 teleop.add_to(app)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 import typer
 
@@ -69,6 +69,31 @@ def split(words: Sequence[str] | None) -> tuple[str | None, dict[str, str]]:
                 hint=f"An argument of a xacro file is written {word.partition('=')[0]}:=value.",
             )
     return file, values
+
+
+def split_ros1(words: Sequence[str] | None) -> tuple[list[str], list[str]]:
+    """The words of a command without ROS 1's, and ROS 1's: ``__name:=``, ``_param:=``, ``/a:=b``.
+
+    What may be an argument of a xacro file or a remapping stays among the first.
+    """
+    ours: list[str] = []
+    ros: list[str] = []
+    for word in words or ():
+        (ros if ":=" in word and word[0] in "_/~" else ours).append(word)
+    return ours, ros
+
+
+def rmw(name: str) -> Literal["dds", "zenoh"]:
+    """The middleware by our name or by that of ROS's implementation.
+
+    Raises:
+        CartwheelError: There is none of that name.
+    """
+    if name in ("dds", "rmw_fastrtps_cpp", "rmw_cyclonedds_cpp"):
+        return "dds"
+    if name in ("zenoh", "rmw_zenoh_cpp"):
+        return "zenoh"
+    raise CartwheelError(f"--rmw {name} is no middleware", hint="It can be dds or zenoh.")
 
 
 def needed(file: str | None) -> str:

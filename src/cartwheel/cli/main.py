@@ -10,7 +10,7 @@ import os
 import sys
 import traceback
 
-from cartwheel.cli import interrupts
+from cartwheel.cli import gazebo, interrupts
 from cartwheel.cli.console import print_error
 from cartwheel.errors import CartwheelError
 
@@ -28,6 +28,9 @@ def main() -> None:
 def run() -> int:
     """Runs the command that the arguments name; returns the status."""
     try:
+        if gazebo.is_program(name := (sys.argv[1:2] or [""])[0]):
+            gazebo.start(name, sys.argv[2:])
+            return 0
         # The rest is imported only now, so that a signal meanwhile finds its handler.
         from cartwheel.cli.app import app
 

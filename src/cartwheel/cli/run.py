@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -44,6 +45,57 @@ def run(
     yaw: arguments.Yaw = None,
     model: arguments.Model = None,
     package_path: arguments.PackagePath = None,
+    controllers: Annotated[
+        list[Path] | None,
+        typer.Option(
+            "--controllers",
+            metavar="FILE",
+            help="YAML of ros_control or ros2_control, whose controllers start; may be repeated.",
+        ),
+    ] = None,
+    ros1: Annotated[
+        bool,
+        typer.Option("--ros1", help="Be a node of ROS 1, with Gazebo's topics and services."),
+    ] = False,
+    ros1_node: Annotated[
+        str, typer.Option("--ros1-node", metavar="NAME", help="Its name; also __name:=NAME.")
+    ] = "gazebo",
+    ros2: Annotated[
+        bool,
+        typer.Option("--ros2", help="Be a node of ROS 2, with Gazebo's topics and services."),
+    ] = False,
+    ros2_node: Annotated[
+        str, typer.Option("--ros2-node", metavar="NAME", help="Its name.")
+    ] = "gazebo",
+    rmw: Annotated[
+        str, typer.Option("--rmw", metavar="dds|zenoh", help="Which middleware ROS 2 uses.")
+    ] = "dds",
+    record: Annotated[
+        Path | None,
+        typer.Option("--record", metavar="FILE", help="Record: .mcap, .bag, .db3 or a folder."),
+    ] = None,
+    record_topics: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--record-topics",
+            metavar="PATTERN",
+            help="What to record: /camera/*, re:EXPRESSION, !PATTERN to leave out. May be"
+            " given again; all topics without it, images too.",
+        ),
+    ] = None,
+    record_encoding: Annotated[
+        str | None,
+        typer.Option("--record-encoding", metavar="ros1|ros2", help="Of a .mcap's messages."),
+    ] = None,
+    overwrite: Annotated[
+        bool, typer.Option("--overwrite", help="Replace a recording of that name.")
+    ] = False,
+    foxglove: Annotated[
+        bool, typer.Option("--foxglove", help="Serve Foxglove and Lichtblick, on --host.")
+    ] = False,
+    foxglove_port: Annotated[
+        int, typer.Option("--foxglove-port", min=0, max=65535, help="0 takes any.")
+    ] = 8765,
     verbose: Annotated[
         bool, typer.Option("--verbose", help="Also say what is merely worth knowing.")
     ] = False,
@@ -51,10 +103,15 @@ def run(
     """Simulate a robot: FILE is a xacro, URDF or SDF; the shipped cart where none is given.
 
     FILE may also be a world, which then stands alone. NAME:=VALUE sets an argument of the
-    xacro file; world:=FILE is the same as --world.
+    xacro file; world:=FILE is the same as --world. With --ros1, what ROS's nodes take is
+    taken as well: __name:=NAME, _PARAMETER:=VALUE, /TOPIC:=OTHER, and TOPIC:=OTHER beside a
+    world.
     """
     from cartwheel.cli.commands.run import Options, simulate
 
+    ros1_arguments: list[str] = []
+    if ros1:
+        words, ros1_arguments = arguments.split_ros1(words)
     file, values = arguments.split(words)
     simulate(
         Options(
@@ -73,6 +130,16 @@ def run(
             place=arguments.pose(x=x, y=y, z=z, roll=roll, pitch=pitch, yaw=yaw),
             model=model,
             package_path=tuple(package_path or ()),
+            controllers=tuple(controllers or ()),
+            ros1_node=ros1_node if ros1 else None,
+            ros2_node=ros2_node if ros2 else None,
+            rmw=arguments.rmw(rmw),
+            ros1_arguments=tuple(ros1_arguments),
+            record=record,
+            record_topics=tuple(word for text in record_topics or () for word in text.split()),
+            record_encoding=record_encoding,
+            overwrite=overwrite,
+            foxglove_port=foxglove_port if foxglove else None,
             verbose=verbose,
         )
     )

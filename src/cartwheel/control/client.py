@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import socket
 import time
 from collections.abc import Iterator, Mapping
@@ -66,6 +67,11 @@ class ControlClient:
                 simulation has ended.
         """
         return _ask(self._connection, name, parameters, payload)
+
+    def wait_for_end(self) -> None:
+        """Returns when the simulation has ended; nothing is asked meanwhile."""
+        with contextlib.suppress(OSError, ControlError):
+            self._connection.receive()
 
     def subscribe(self, topic: str, *, data: bool = True, queue: int | None = None) -> Subscription:
         """The messages of a topic, over a connection of their own.

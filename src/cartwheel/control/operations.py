@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import Future
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -15,7 +16,7 @@ from cartwheel.control.parameters import Parameters
 from cartwheel.control.place import AXES, placed
 from cartwheel.control.protocol import PATIENCE
 from cartwheel.description.model import RobotDescription
-from cartwheel.errors import ControlError, GraphError, UnknownNameError
+from cartwheel.errors import ControlError, UnknownNameError
 from cartwheel.graph import TopicInfo, resolve_name
 from cartwheel.messages import decode_cdr, from_dict, service_classes, to_dict, type_name
 from cartwheel.session import Session
@@ -40,6 +41,8 @@ class Operations:
         self._simulation = session.simulation
         self._graph = session.graph
         self._load = load
+        self.show_page: Callable[[], str] | None = None
+        """Brings the viewer up and tells its URL; None where there is none to bring up."""
         self._by_name: dict[str, Callable[[Parameters, bytes], Answer]] = {
             "status": self.status,
             "pause": self.pause,
@@ -55,6 +58,7 @@ class Operations:
             "publish": self.publish,
             "services": self.services,
             "call": self.call,
+            "page": self.page,
         }
 
     def run(self, name: str, parameters: Parameters, payload: bytes) -> Answer:
@@ -223,20 +227,21 @@ class Operations:
         service = self._graph.service(resolve_name(parameters.text("service")))
         request_class, _response_class = service_classes(service.type)
         request = from_dict(request_class.__msgtype__, parameters.value("request") or {})
-        response = self._on_simulation(lambda: service.handler(request))
-        if response is None:
-            raise GraphError(f'service "{service.name}" gave no answer')
+        response = _in_time(self._graph.call(service.name, request))
         return {"response": to_dict(response), "type": response.__msgtype__}
+
+    # -- the viewer
+
+    def page(self, _: Parameters, __: bytes) -> Answer:
+        """The URL of the viewer, which is brought up where it is not."""
+        if self.show_page is None:
+            raise ControlError("this simulation has no page to show")
+        return {"url": self.show_page()}
 
     # -- the simulation's thread
 
     def _on_simulation(self, function: Callable[[], T]) -> T:
-        future = self._simulation.call(function)
-        try:
-            return future.result(PATIENCE)
-        except TimeoutError as error:
-            future.cancel()
-            raise ControlError(f"the simulation did not answer in {PATIENCE:.0f} s") from error
+        return _in_time(self._simulation.call(function))
 
     def _then_time(self, function: Callable[[], None]) -> Answer:
         def run() -> Answer:
@@ -245,6 +250,14 @@ class Operations:
             return {"time": simulation.time_ns / 1e9, "state": simulation.run_state.value}
 
         return self._on_simulation(run)
+
+
+def _in_time(future: Future[T]) -> T:
+    try:
+        return future.result(PATIENCE)
+    except TimeoutError as error:
+        future.cancel()
+        raise ControlError(f"the simulation did not answer in {PATIENCE:.0f} s") from error
 
 
 def _described(topic: TopicInfo) -> Answer:

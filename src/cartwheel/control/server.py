@@ -6,6 +6,7 @@ import contextlib
 import logging
 import os
 import threading
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
@@ -55,9 +56,20 @@ class ControlServer:
 
     def announce(self, *, url: str | None, port: int | None) -> None:
         """Tells where the viewer is."""
-        self.entry = replace(self.entry, url=url, port=port)
+        self._announce(replace(self.entry, url=url, port=port))
+
+    def announce_ros(self, master: str) -> None:
+        """Tells of which ROS 1 master the simulation is known to."""
+        self._announce(replace(self.entry, ros_master=master))
+
+    def _announce(self, entry: Running) -> None:
+        self.entry = entry
         if not self._closed.is_set():
             registry.announce(self.entry)
+
+    def offer_page(self, show: Callable[[], str]) -> None:
+        """Lets clients ask for the viewer: `show` brings it up and tells its URL."""
+        self._operations.show_page = show
 
     def close(self) -> None:
         """Sends all clients away and removes the socket."""

@@ -21,6 +21,7 @@ from cartwheel.viewer.panels.notes import NotesPanel
 from cartwheel.viewer.panels.topics import TopicsPanel
 from cartwheel.viewer.panels.view import ViewPanel
 from cartwheel.viewer.panels.world import WorldPanel
+from cartwheel.viewer.scans import Scans
 from cartwheel.viewer.scene_view import SceneView
 
 
@@ -41,8 +42,7 @@ class Desk:
         """The model that the camera follows and that things are inserted in front of."""
         self.scene = SceneView(page)
         self.overlays = Overlays(self)
-        self._panels = self._build()
-        self.scene.selected = self._world.select
+        self._panels = self.build()
         self._graph_changed = -1
         self._watched = False
         page.on_clients = self._clients_changed
@@ -76,7 +76,8 @@ class Desk:
         for panel in self._panels:
             (panel.watch if watched else panel.leave)()
 
-    def _build(self) -> list[Panel]:
+    def build(self) -> list[Panel]:
+        """Makes the panels."""
         gui, icons = self.page.gui, self.page.viser.Icon
         gui.main_panel.dock_right()
         gui.main_panel.set_width(320)
@@ -90,8 +91,9 @@ class Desk:
         left = gui.add_panel()
         tab: Any = left.add_tab("World", icons.WORLD)
         with tab:
-            self._world = WorldPanel(self, tab)
-            panels.append(self._world)
+            world = WorldPanel(self, tab)
+            self.scene.selected = world.select
+            panels.append(world)
         with left.add_tab("Insert", icons.PLUS):
             panels.append(InsertPanel(self))
         with left.add_tab("View", icons.EYE):
@@ -107,6 +109,7 @@ class Desk:
         with lower.add_tab("Warnings", icons.ALERT_TRIANGLE):
             panels.append(NotesPanel(self))
         lower.dock_below(left)
+        panels.append(Scans(self))
         return panels
 
 

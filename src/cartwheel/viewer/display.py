@@ -24,6 +24,10 @@ class Display:
     """Where the robot has been."""
     camera: bool = True
     """What the cameras see, as a pyramid with the image at its end."""
+    scans: bool = True
+    """Where the rays of laser scanners end."""
+    clouds: bool = False
+    """Point clouds, which cost more to measure and to send."""
     contacts: bool = False
     """Points and forces that the bumpers report."""
     follow: bool = False

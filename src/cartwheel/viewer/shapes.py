@@ -11,6 +11,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
+from cartwheel.description import outline
 from cartwheel.description.meshes import load_mesh
 from cartwheel.description.model import (
     Box,
@@ -29,6 +30,7 @@ from cartwheel.description.model import (
     Sphere,
     Visual,
 )
+from cartwheel.description.terrain import heights_of
 from cartwheel.geometry import Pose, matrix_from_quat, quat_between
 
 Floats = NDArray[np.float32]
@@ -174,8 +176,8 @@ def triangles_of(shape: Shape) -> tuple[Floats, Ints]:
             return place(pose, corners), np.array([(0, 1, 2), (0, 2, 3)], dtype=np.int32)
         case Heightmap():
             return _heightmap(shape)
-        case Polyline(points=points, height=height):
-            return _prism(points, height)
+        case Polyline():
+            return outline.solid(shape)
     raise TypeError(f"{type(shape).__name__} has no triangles")
 
 
@@ -236,63 +238,14 @@ def _round(radius: float, length: float) -> tuple[Floats, Ints]:
 
 
 def _heightmap(shape: Heightmap) -> tuple[Floats, Ints]:
-    from PIL import Image
-
-    with Image.open(shape.path) as image:
-        side = min(129, *image.size)
-        heights = np.asarray(image.convert("F").resize((side, side)), dtype=np.float64)
-    top = max(255.0, float(heights.max()))
-    x, y = np.meshgrid(np.linspace(-0.5, 0.5, side), np.linspace(0.5, -0.5, side))
-    points = np.stack([x, y, heights / top], axis=-1).reshape(-1, 3) * np.asarray(shape.size)
+    heights = heights_of(shape, most=129)
+    rows, columns = heights.shape
+    x, y = np.meshgrid(np.linspace(-0.5, 0.5, columns), np.linspace(0.5, -0.5, rows))
+    points = np.stack([x * shape.size[0], y * shape.size[1], heights], axis=-1).reshape(-1, 3)
     points += np.asarray(shape.position)
-    corner = (np.arange(side - 1)[:, None] * side + np.arange(side - 1)[None, :]).reshape(-1)
-    right, below = corner + 1, corner + side
+    corner = np.arange(rows * columns).reshape(rows, columns)[:-1, :-1].reshape(-1)
+    right, below = corner + 1, corner + columns
     faces = np.concatenate(
         [np.stack([corner, below, right], axis=1), np.stack([right, below, below + 1], axis=1)]
     )
     return points.astype(np.float32), faces.astype(np.int32)
-
-
-def _prism(points: tuple[tuple[float, float], ...], height: float) -> tuple[Floats, Ints]:
-    outline = list(points[:-1] if points[0] == points[-1] else points)
-    area = sum(
-        a[0] * b[1] - b[0] * a[1] for a, b in zip(outline, outline[1:] + outline[:1], strict=True)
-    )
-    if area < 0:
-        outline.reverse()
-    flat = _ears(outline)
-    n = len(outline)
-    vertices = [(x, y, z) for z in (0.0, height) for x, y in outline]
-    faces = [(c, b, a) for a, b, c in flat] + [(a + n, b + n, c + n) for a, b, c in flat]
-    for i in range(n):
-        (x0, y0), (x1, y1) = outline[i], outline[(i + 1) % n]
-        start = len(vertices)
-        vertices += [(x0, y0, 0.0), (x1, y1, 0.0), (x1, y1, height), (x0, y0, height)]
-        faces += [(start, start + 1, start + 2), (start, start + 2, start + 3)]
-    return np.array(vertices, dtype=np.float32), np.array(faces, dtype=np.int32)
-
-
-def _ears(outline: list[tuple[float, float]]) -> list[tuple[int, int, int]]:
-    """Triangles of a simple counter-clockwise polygon, by cutting its ears."""
-
-    def side(a: int, b: int, c: int) -> float:
-        (ax, ay), (bx, by), (cx, cy) = outline[a], outline[b], outline[c]
-        return (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
-
-    left = list(range(len(outline)))
-    triangles = []
-    while len(left) > 3:
-        for i in range(len(left)):
-            a, b, c = left[i - 1], left[i], left[(i + 1) % len(left)]
-            inside = (
-                p not in (a, b, c) and min(side(a, b, p), side(b, c, p), side(c, a, p)) > 0
-                for p in left
-            )
-            if side(a, b, c) > 0 and not any(inside):
-                triangles.append((a, b, c))
-                left.pop(i)
-                break
-        else:
-            break  # crosses itself: what is left is drawn as a fan
-    triangles += [(left[0], left[i], left[i + 1]) for i in range(1, len(left) - 1)]
-    return triangles

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import threading
-from typing import Any
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
 
 from cartwheel.errors import ControlError
 from cartwheel.session import Session
@@ -11,6 +12,9 @@ from cartwheel.simulation.pacing import Pacer
 from cartwheel.simulation.snapshot import Snapshot
 from cartwheel.viewer.page import Page, check_port
 from cartwheel.viewer.teleop import KEYS
+
+if TYPE_CHECKING:
+    from cartwheel.viewer.desk import Desk
 
 RATE = 30.0
 """Hz of wall time at which the scene follows the simulation."""
@@ -26,14 +30,23 @@ class Viewer:
         session: To show.
         host: Address to listen on; only this computer by default.
         port: 0 takes any that is free.
+        desk: Makes the panels; None makes those of a simulation.
 
     Raises:
         ControlError: The port cannot be had.
     """
 
-    def __init__(self, session: Session, *, host: str = "127.0.0.1", port: int = 8080) -> None:
+    def __init__(
+        self,
+        session: Session,
+        *,
+        host: str = "127.0.0.1",
+        port: int = 8080,
+        desk: Callable[[Page, Session], Desk] | None = None,
+    ) -> None:
         check_port(host, port)
         self._session = session
+        self._make_desk = desk
         self._host, self._port = host, port
         self._slot: Snapshot | None = None
         self._page: Page | None = None
@@ -86,7 +99,7 @@ class Viewer:
             from cartwheel.viewer.desk import Desk
 
             page = Page(self._host, self._port, title="Cartwheel", keys=KEYS)
-            self._desk: Any = Desk(page, self._session)
+            self._desk: Any = (self._make_desk or Desk)(page, self._session)
             self._page = page
         except BaseException as error:  # noqa: BLE001 - `url` raises it
             self._failure = error

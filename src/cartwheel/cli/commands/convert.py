@@ -6,6 +6,7 @@ import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from cartwheel.cli.commands.grouping import grouped
 from cartwheel.cli.console import note, print_warning
 from cartwheel.errors import CartwheelError
 
@@ -49,7 +50,7 @@ def _mjcf(file: str, values: Mapping[str, str], package_path: Sequence[Path]) ->
         world, models = found, found.models
     else:
         world, models = WorldDescription(name=found.name), (found,)
-    for diagnostic in found.diagnostics:
+    for diagnostic in grouped(found.diagnostics):
         if diagnostic.severity != "info":
             print_warning(str(diagnostic).replace("warning: ", "", 1))
     entries = [ModelEntry(name=model.name, description=model, pose=model.pose) for model in models]

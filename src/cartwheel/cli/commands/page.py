@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import os
-import sys
 import threading
 
+from cartwheel.cli.commands.desktop import is_desktop
 from cartwheel.cli.commands.report import Report
 from cartwheel.control.server import ControlServer
 from cartwheel.errors import CartwheelError
@@ -38,7 +37,7 @@ class Page:
     ) -> None:
         self._session = session
         self._server = server
-        self._open = _is_desktop() if open_browser is None else open_browser
+        self._open = is_desktop() if open_browser is None else open_browser
         self._report = report
         self._viewer = Viewer(session, host=host, port=port)
         self._failure: CartwheelError | None = None
@@ -71,12 +70,3 @@ class Page:
             import webbrowser
 
             webbrowser.open(url)
-
-
-def _is_desktop() -> bool:
-    """Whether a browser can be expected to show up before the user."""
-    if not sys.stdout.isatty() or "SSH_CONNECTION" in os.environ:
-        return False
-    return sys.platform == "darwin" or bool(
-        os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
-    )

@@ -6,7 +6,9 @@ import errno
 import socket
 
 from cartwheel.control import running
-from cartwheel.errors import CartwheelError
+from cartwheel.errors import CartwheelError, ControlError
+
+_NEAR = 50
 
 
 def refuse_taken(host: str, port: int) -> None:
@@ -20,7 +22,7 @@ def refuse_taken(host: str, port: int) -> None:
         return
     if problem.errno not in (errno.EADDRINUSE, None):
         raise CartwheelError(f"the viewer cannot listen on {host}:{port}: {problem.strerror}")
-    free = next((p for p in range(port + 1, min(port + 50, 65536)) if not _problem(host, p)), 0)
+    free = next((p for p in range(port + 1, min(port + _NEAR, 65536)) if not _problem(host, p)), 0)
     other = f"Use another one: --port {free}"
     for entry in running():
         if entry.port == port:
@@ -29,6 +31,18 @@ def refuse_taken(host: str, port: int) -> None:
                 hint=f"{other}; or end that one: kill {entry.pid}",
             )
     raise CartwheelError(f"port {port} is used by another program", hint=f"{other}.")
+
+
+def free_port(host: str, port: int) -> int:
+    """The first port from `port` on that can be listened on.
+
+    Raises:
+        ControlError: There is none near.
+    """
+    for candidate in range(port, min(port + _NEAR, 65536)):
+        if not _problem(host, candidate):
+            return candidate
+    raise ControlError(f"the ports {port} to {port + _NEAR - 1} of {host} are all taken")
 
 
 def _problem(host: str, port: int) -> OSError | None:

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
-from pathlib import PurePath
+from pathlib import Path, PurePath
 from typing import TYPE_CHECKING
 
-from cartwheel.cli.console import is_terminal, note, paint, print_warning, say, table
+from cartwheel.cli.commands.grouping import grouped
+from cartwheel.cli.console import is_terminal, note, paint, print_error, print_warning, say, table
 from cartwheel.control.registry import Running
+from cartwheel.plugins.control.files import ControllerFiles
 
 if TYPE_CHECKING:
     from cartwheel.description.model import WorldDescription
@@ -24,6 +26,15 @@ def world_title(world: WorldDescription) -> str:
     if world.name not in ("default", "world", ""):
         return world.name
     return PurePath(world.origin.file).stem.strip("<>")
+
+
+def size_text(size: int) -> str:
+    """Bytes as people read them."""
+    if size < 1000:
+        return f"{size} B"
+    if size < 1_000_000:
+        return f"{size / 1e3:.1f} kB"
+    return f"{size / 1e6:.1f} MB" if size < 1_000_000_000 else f"{size / 1e9:.2f} GB"
 
 
 class Report:
@@ -44,8 +55,14 @@ class Report:
             + "\n".join(f"    {entry}" for entry in others)
         )
 
-    def loaded(self, session: Session, name: str | None) -> None:
-        """What stands in the world, what is to be known about it, and what to try."""
+    def loaded(self, session: Session, name: str | None, *, ros: bool = False) -> None:
+        """What stands in the world, what is to be known about it, and what to try.
+
+        Args:
+            session: What was loaded.
+            name: Of the robot.
+            ros: Whether ROS is there to do what the launch files do.
+        """
         simulation = session.simulation
         self._line("world", f"{world_title(simulation.world)}{self._inhabitants(session, name)}")
         for placed in simulation.scene.models:
@@ -53,7 +70,13 @@ class Report:
                 description = placed.description
                 parts = f"{len(description.links)} links, {len(description.joints)} joints"
                 self._line("robot", f"{name}, {description.mass:.4g} kg, {parts}")
-        for diagnostic in session.diagnostics:
+        started = ControllerFiles.of(session.graph).started
+        if started:
+            self._line("control", ", ".join(started))
+        elif name is not None and not ros:
+            self._controllers(session, name)
+        told = session.diagnostics if self._verbose else grouped(session.diagnostics)
+        for diagnostic in told:
             self.diagnostic(diagnostic)
         simulation.engine.on_diagnostic.append(self.diagnostic)
         self._topics(session)
@@ -63,6 +86,31 @@ class Report:
         self._line("viewer", paint(url, "bold", "cyan"))
         if self._decorated:
             say(paint("\nCtrl-C ends.", "dim"))
+
+    def failed(self, error: Exception) -> None:
+        """Why something did not come up."""
+        print_error(str(error))
+
+    def joined(self, node: str, master: str, *, own: bool) -> None:
+        """Which node of ROS 1 this is, and of which master."""
+        self._line("ros 1", f"{node} at {master}{', a master of our own' if own else ''}")
+
+    def foxglove(self, url: str) -> None:
+        """Where Foxglove's protocol is spoken."""
+        self._line("foxglove", paint(url, "bold", "cyan"))
+
+    def recording(self, path: PurePath) -> None:
+        """Where a recording goes."""
+        self._line("record", str(path))
+
+    def recorded(self, files: Sequence[PurePath], messages: int, topics: int, size: int) -> None:
+        """What a recording holds."""
+        names = ", ".join(map(str, files))
+        say(f"recorded {messages} messages of {topics} topics, {size_text(size)}, in {names}")
+
+    def joined_ros2(self, node: str, where: str) -> None:
+        """Which node of ROS 2 this is, and where."""
+        self._line("ros 2", f"{node} on {where}")
 
     def diagnostic(self, diagnostic: Diagnostic) -> None:
         """Something about a file."""
@@ -77,6 +125,22 @@ class Report:
         seconds = session.simulation.time_ns / 1e9
         factor = f", {seconds / wall:.1f} times real time" if wall > 0 else ""
         say(f"simulated {seconds:.3f} s in {wall:.3f} s{factor}")
+
+    def _controllers(self, session: Session, name: str) -> None:
+        """How to start a robot's controllers, which in ROS a launch file does."""
+        offers = (service.name for service in session.graph.services())
+        if not any(offer.endswith("/controller_manager/load_controller") for offer in offers):
+            return
+        from cartwheel.plugins.control.suggestion import files_for
+
+        description = next(
+            each.description for each in session.simulation.scene.models if each.name == name
+        )
+        joints = [joint.name for joint in description.joints if joint.type != "fixed"]
+        files = files_for(Path(description.origin.file), joints)
+        self._line("control", "no controller runs: in ROS, launch files start them")
+        words = " ".join(f"--controllers {file}" for file in files) or "--controllers FILE.yaml"
+        self._line("try", words)
 
     def _inhabitants(self, session: Session, name: str | None) -> str:
         others = [model for model in session.simulation.models if model != name]

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import contextlib
 import gc
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from cartwheel.cli import interrupts
 from cartwheel.cli.commands.ports import refuse_taken
+from cartwheel.cli.commands.recording import check_recording, recorded
 from cartwheel.cli.commands.report import Report, world_title
 from cartwheel.control import running
 from cartwheel.errors import CartwheelError
@@ -37,6 +39,8 @@ class Options:
     """Real-time factor; None is as fast as it can."""
     seconds: float | None = None
     """Of simulated time; None is endless."""
+    steps: int | None = None
+    """To make, instead of `seconds`."""
     paused: bool = False
     seed: int = 0
     strict: bool = False
@@ -47,6 +51,22 @@ class Options:
     """Some of x, y, z, roll, pitch, yaw."""
     model: str | None = None
     package_path: tuple[Path, ...] = ()
+    controllers: tuple[Path, ...] = ()
+    """YAML files whose controllers start."""
+    ros1_node: str | None = None
+    """Name of the ROS 1 node; None is to be none."""
+    ros1_arguments: tuple[str, ...] = ()
+    ros2_node: str | None = None
+    """Name of the ROS 2 node; None is to be none."""
+    rmw: Literal["dds", "zenoh"] = "dds"
+    record: Path | None = None
+    """File or folder to record to."""
+    record_topics: tuple[str, ...] = ()
+    """Patterns; all topics where there are none."""
+    record_encoding: str | None = None
+    overwrite: bool = False
+    foxglove_port: int | None = None
+    """To serve Foxglove's protocol on; None is not to."""
     verbose: bool = False
 
 
@@ -58,14 +78,20 @@ def simulate(options: Options) -> None:
     """
     if options.seconds is not None and not 0 < options.seconds < 1e9:
         raise CartwheelError(f"--for {options.seconds:g} is no time to run")
+    if options.record is not None:
+        check_recording(options)
+    if options.foxglove_port is not None:
+        from cartwheel.bridges.foxglove.bridge import require
+
+        require()
     # What is loaded stays: looking through it for garbage costs a tenth of the start, and of
     # the speed later where a reader keeps many messages.
     gc.disable()
     others = running()
+    report = Report(verbose=options.verbose)
+    world, robot, remappings = _read(options)
     if not options.headless:
         refuse_taken(options.host, options.port)
-    report = Report(verbose=options.verbose)
-    world, robot = _read(options)
     # The engine is imported while the files are known to be right, and not before.
     from cartwheel.control.place import placed
     from cartwheel.control.server import ControlServer
@@ -73,20 +99,115 @@ def simulate(options: Options) -> None:
 
     session = Session(world, seed=options.seed, strict=options.strict)
     name = None
+    if robot is None and options.controllers:
+        raise CartwheelError(
+            "--controllers is for a robot, and this is a world", hint="Name the robot's file."
+        )
     if robot is not None:
         pose = placed(robot.pose, options.place or {})
-        name = session.spawn(robot, name=options.model, pose=pose)
+        name = session.spawn(robot, name=options.model, pose=pose, controllers=options.controllers)
     where = world_title(world)
     title = f"{name} in {where}" if name else where
-    server = ControlServer(session, title=title, load=_load_robot)
-    with interrupts.finally_do(server.close):
-        if others:
-            report.others(others)
-        report.loaded(session, name)
-        _run(session, server, options, report)
+    # Ctrl-C is how an endless run is meant to end, so it is no failure; a run that was to
+    # last a certain time has failed when it is ended before.
+    endless = options.seconds is None and options.steps is None
+    # From the moment on at which others can see that it runs.
+    with interrupts.handled_by(lambda: _stop(session), status=0 if endless else None):
+        server = ControlServer(session, title=title, load=_load_robot)
+        with interrupts.finally_do(server.close):
+            if others:
+                report.others(others)
+            report.loaded(session, name, ros=options.ros1_node is not None)
+            with (
+                _joined_to_ros1(session, server, options, remappings, report),
+                _joined_to_ros2(session, options, report),
+                _described(session, options),
+                _shown_by_foxglove(session, options, report),
+                recorded(session, options, report, lambda: _stop(session)),
+            ):
+                _run(session, server, options, report)
 
 
-def _read(options: Options) -> tuple[WorldDescription, RobotDescription | None]:
+@contextlib.contextmanager
+def _joined_to_ros1(
+    session: Session,
+    server: ControlServer,
+    options: Options,
+    remappings: Sequence[str],
+    report: Report,
+) -> Iterator[None]:
+    if options.ros1_node is None:
+        yield
+        return
+    from cartwheel.cli.commands.ros1 import Ros1
+
+    ros1 = Ros1(
+        session,
+        node=options.ros1_node,
+        arguments=(*options.ros1_arguments, *remappings),
+        package_path=options.package_path,
+        report=report,
+        end=lambda: _stop(session),
+    )
+    with interrupts.finally_do(ros1.close):
+        ros1.start()
+        server.announce_ros(ros1.master_uri)
+        yield
+
+
+@contextlib.contextmanager
+def _joined_to_ros2(session: Session, options: Options, report: Report) -> Iterator[None]:
+    if options.ros2_node is None:
+        yield
+        return
+    from cartwheel.cli.commands.ros2 import Ros2
+
+    ros2 = Ros2(
+        session,
+        node=options.ros2_node,
+        rmw=options.rmw,
+        package_path=options.package_path,
+        report=report,
+    )
+    with interrupts.finally_do(ros2.close):
+        ros2.start()
+        yield
+
+
+@contextlib.contextmanager
+def _shown_by_foxglove(session: Session, options: Options, report: Report) -> Iterator[None]:
+    if options.foxglove_port is None:
+        yield
+        return
+    from cartwheel.cli.commands.foxglove import shown_by_foxglove
+
+    with shown_by_foxglove(session, options, options.foxglove_port, report):
+        yield
+
+
+@contextlib.contextmanager
+def _described(session: Session, options: Options) -> Iterator[None]:
+    """Publishes what the robots are, where somebody shows them elsewhere."""
+    if options.record is None and options.foxglove_port is None:
+        yield
+        return
+    from cartwheel.plugins.robot_descriptions import RobotDescriptions
+
+    RobotDescriptions(session.simulation, session.graph)
+    yield
+
+
+def _stop(session: Session) -> None:
+    """Ends the run; from any thread."""
+    session.simulation.stop()
+    # Wakes it where it sleeps until the next step.
+    session.simulation.post(lambda: None)
+
+
+def _read(
+    options: Options,
+) -> tuple[WorldDescription, RobotDescription | None, tuple[str, ...]]:
+    """The world, the robot if there is one, and ROS's remappings among the arguments."""
     from cartwheel.description import load, load_world
     from cartwheel.description.model import WorldDescription
 
@@ -103,9 +224,14 @@ def _read(options: Options) -> tuple[WorldDescription, RobotDescription | None]:
                 f'"{file}" is a world, which has no place and no name',
                 hint="Name a robot, and the world with --world.",
             )
-        return found, None
+        remappings: tuple[str, ...] = ()
+        if options.ros1_node is not None and values:
+            # There is no xacro for them to be arguments of.
+            remappings = tuple(f"{name}:={value}" for name, value in values.items())
+            found = load_world(file, package_path=options.package_path)
+        return found, None, remappings
     fallback = WORLD if options.file is None else "empty"
-    return load_world(named or fallback, package_path=options.package_path), found
+    return load_world(named or fallback, package_path=options.package_path), found, ()
 
 
 def _load_robot(
@@ -122,9 +248,16 @@ def _run(session: Session, server: ControlServer, options: Options, report: Repo
     if options.paused:
         simulation.pause()
     until = None if options.seconds is None else round(options.seconds * 1e9)
+    if options.steps is not None:
+        until = options.steps * simulation.step_ns
     pacer = session.pacer(until_ns=until)
     page = None
-    if not options.headless:
+    if options.headless:
+        from cartwheel.cli.commands.page_on_demand import PageOnDemand
+
+        demanded = PageOnDemand(session, server, pacer, host=options.host, port=options.port)
+        server.offer_page(demanded.show)
+    else:
         from cartwheel.cli.commands.page import Page
 
         page = Page(
@@ -136,23 +269,14 @@ def _run(session: Session, server: ControlServer, options: Options, report: Repo
             open_browser=options.open_browser,
         )
 
-    def stop() -> None:
-        simulation.stop()
-        # Wakes it where it sleeps until the next step.
-        simulation.post(lambda: None)
-
     gc.freeze()
     gc.enable()
     began = time.perf_counter()
-    # Ctrl-C is how an endless run is meant to end, so it is no failure; a run that was to
-    # last a certain time has failed when it is ended before.
-    endless = options.seconds is None
-    with interrupts.handled_by(stop, status=0 if endless else None):
-        if page is not None:
-            page.start(pacer)
-        pacer.run()
+    if page is not None:
+        page.start(pacer)
+    pacer.run()
     report.ended(session, time.perf_counter() - began)
     if page is not None:
         page.raise_failure()
-    if not endless and until is not None and simulation.time_ns < until:
+    if until is not None and simulation.time_ns < until:
         raise interrupts.Interrupted(interrupts.last_signal())

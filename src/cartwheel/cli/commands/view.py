@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from cartwheel.cli import interrupts
+from cartwheel.cli.commands.grouping import grouped
 from cartwheel.cli.commands.ports import refuse_taken
 from cartwheel.cli.console import paint, print_warning, say
 
@@ -20,12 +21,12 @@ def view(
     port: int,
 ) -> None:
     """Shows a robot until Ctrl-C."""
-    refuse_taken(host, port)
     from cartwheel.description import load_robot
     from cartwheel.viewer import DescriptionViewer
 
     description = load_robot(file, arguments=values, package_path=package_path)
-    for diagnostic in description.diagnostics:
+    refuse_taken(host, port)
+    for diagnostic in grouped(description.diagnostics):
         if diagnostic.severity != "info":
             print_warning(str(diagnostic).replace("warning: ", "", 1))
     stopped = threading.Event()

@@ -19,7 +19,26 @@ IMAGE = "sensor_msgs/msg/Image"
 _NONE = "no camera"
 _RATE = 15.0
 """Hz of wall time: more is not seen, and each image is compressed for the way."""
-_CHANNELS = {"rgb8": 3, "bgr8": 3, "mono8": 1, "rgba8": 4, "bgra8": 4}
+_LAYOUTS = {
+    "rgb8": ("u1", 3),
+    "bgr8": ("u1", 3),
+    "rgba8": ("u1", 4),
+    "bgra8": ("u1", 4),
+    "mono8": ("u1", 1),
+    "mono16": ("u2", 1),
+    "rgb16": ("u2", 3),
+    "bgr16": ("u2", 3),
+    "bayer_rggb8": ("u1", 1),
+    "bayer_bggr8": ("u1", 1),
+    "bayer_gbrg8": ("u1", 1),
+    "bayer_grbg8": ("u1", 1),
+    "32FC1": ("f4", 1),
+    "16UC1": ("u2", 1),
+}
+"""Of each encoding: the kind of its numbers, and how many a pixel has."""
+_DEPTHS = ("32FC1", "16UC1")
+_DARKEST = 30
+"""Brightness of the furthest depth: what is black is none."""
 
 
 class Tap:
@@ -73,7 +92,8 @@ class CameraPanel(Panel):
             self._tap = None
 
     def show_topics(self, topics: Sequence[TopicInfo]) -> None:
-        found = tuple(of_type(topics, IMAGE))
+        # Colours first: they are what one looks for.
+        found = tuple(sorted(of_type(topics, IMAGE), key=lambda name: "depth" in name))
         if found == self._topics:
             return
         self._topics = found
@@ -138,19 +158,56 @@ class CameraPanel(Panel):
 
 
 def pixels_of(message: Any) -> NDArray[np.uint8] | None:
-    """An image message as RGB, shape (height, width, 3); None for an encoding without colours."""
-    channels = _CHANNELS.get(message.encoding)
-    if channels is None or not message.height or not message.width:
+    """An image message as RGB, shape (height, width, 3); None for an encoding without a picture.
+
+    Depths are grey, the nearest the brightest; where there is none it is black.
+    """
+    layout = _LAYOUTS.get(message.encoding)
+    if layout is None or not message.height or not message.width:
         return None
+    kind, channels = layout
+    dtype = np.dtype(kind).newbyteorder(">" if message.is_bigendian else "<")
     rows = np.frombuffer(bytes(message.data), dtype=np.uint8)
     # Rows may be padded: `step` is their length in bytes.
-    rows = rows.reshape(message.height, message.step)[:, : message.width * channels]
-    picture = rows.reshape(message.height, message.width, channels)
+    used = message.width * channels * dtype.itemsize
+    rows = np.ascontiguousarray(rows.reshape(message.height, message.step)[:, :used])
+    values = rows.view(dtype).reshape(message.height, message.width, channels)
+    if message.encoding in _DEPTHS:
+        return _grey_of(values[..., 0])
+    picture = (values >> 8 if dtype.itemsize == 2 else values).astype(np.uint8)
+    if message.encoding.startswith("bayer_"):
+        return _from_mosaic(picture[..., 0], message.encoding)
     if channels == 1:
         return np.repeat(picture, 3, axis=2)
     if message.encoding.startswith("bgr"):
         return np.ascontiguousarray(picture[:, :, 2::-1])
     return np.ascontiguousarray(picture[:, :, :3])
+
+
+def _grey_of(depths: NDArray[Any]) -> NDArray[np.uint8]:
+    """Depths as brightness, over the range that the picture has."""
+    metres = depths.astype(np.float32)
+    there = np.isfinite(metres) & (metres > 0)
+    grey = np.zeros(depths.shape, dtype=np.uint8)
+    if there.any():
+        near, far = float(metres[there].min()), float(metres[there].max())
+        share = 1 - (metres[there] - near) / max(far - near, 1e-6)
+        grey[there] = (_DARKEST + share * (255 - _DARKEST)).astype(np.uint8)
+    return np.repeat(grey[..., None], 3, axis=2)
+
+
+def _from_mosaic(mosaic: NDArray[np.uint8], encoding: str) -> NDArray[np.uint8]:
+    """Each 2 x 2 pixels as one colour: enough to look at."""
+    height, width = mosaic.shape
+    padded = np.pad(mosaic, ((0, height % 2), (0, width % 2)), mode="edge")
+    filters = encoding.removeprefix("bayer_")[:4]
+    sums = np.zeros((*(size // 2 for size in padded.shape), 3), dtype=np.uint16)
+    for index, letter in enumerate(filters):
+        row, column = divmod(index, 2)
+        sums[..., "rgb".index(letter)] += padded[row::2, column::2]
+    sums[..., 1] //= 2
+    whole = np.repeat(np.repeat(sums.astype(np.uint8), 2, axis=0), 2, axis=1)
+    return np.ascontiguousarray(whole[:height, :width])
 
 
 def _blank() -> NDArray[np.uint8]:

@@ -22,6 +22,8 @@ _LABELS = {
     "inertia": "Centre of mass, inertia",
     "contacts": "Contacts and forces",
     "camera": "Camera frustum",
+    "scans": "Laser scans",
+    "clouds": "Point clouds",
     "trail": "Trail",
     "grid": "Grid",
     "follow": "Follow the robot",

@@ -1,0 +1,212 @@
+"""Command lines of Gazebo's programs, and what of them there is something to say about.
+
+Source: gzserver 11 and gzclient 11, their ``--help``; gazebo_ros, its launch files and scripts.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import PurePath
+from typing import NoReturn
+
+from cartwheel.errors import CartwheelError
+
+WORLD = "worlds/empty.world"
+"""Where none is named."""
+
+OWN_PLUGINS = frozenset(
+    f"libgazebo_ros_{name}"
+    for name in ("api_plugin", "paths_plugin", "init", "factory", "state", "force_system", "clock")
+)
+"""System plugins whose work is Cartwheel's own; without their endings."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ServerArguments:
+    """What gzserver was asked for."""
+
+    world: str = WORLD
+    paused: bool = False
+    verbose: bool = False
+    seed: int = 0
+    iterations: int | None = None
+    """Steps to make, then end."""
+    ros: tuple[str, ...] = ()
+    """``name:=value``, for the ROS node."""
+    notes: tuple[str, ...] = ()
+    """What does not apply here, a line each."""
+    help: str = ""
+    """The text of ``--help``, where it was asked for."""
+    version: bool = False
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ClientArguments:
+    """What gzclient was asked for."""
+
+    verbose: bool = False
+    ros: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
+    help: str = ""
+    version: bool = False
+
+
+class _Parser(argparse.ArgumentParser):
+    def error(self, message: str) -> NoReturn:
+        raise CartwheelError(f"{self.prog}: {message}", hint=f"See: {self.prog} --help")
+
+
+def parse_server(program: str, words: Sequence[str]) -> ServerArguments:
+    """The arguments of gzserver, gazebo, debug or perf.
+
+    Raises:
+        CartwheelError: There is no such option, its value is none, or it cannot be met.
+    """
+    parser = _Parser(
+        prog=program,
+        add_help=False,
+        description="Simulates a world. The options are gzserver's.",
+        epilog="name:=value are arguments of the ROS node, such as __name:=gazebo.",
+    )
+    add = parser.add_argument
+    add("world", nargs="*", metavar="WORLD", help=f"a world's file; {WORLD} where none is named. "
+        "Looked for here, in the folders of GAZEBO_RESOURCE_PATH, and among those that come "
+        "with Cartwheel")  # fmt: skip
+    add("-h", "--help", action="store_true", help="print this")
+    add("-v", "--version", action="store_true", help="print the version")
+    add("--verbose", action="store_true", help="also say what is merely worth knowing")
+    add("-q", "--quiet", action="store_true", help="accepted; see --verbose")
+    add("-u", "--pause", action="store_true", help="begin with time held")
+    add("--seed", type=_whole, metavar="N", default=0, help="of all noise")
+    add("--iters", type=_whole, metavar="N", help="make so many steps, then end")
+    add("-s", "--server-plugin", action="append", metavar="FILE", default=[],
+        help="those of gazebo_ros are part of Cartwheel; others do not apply")  # fmt: skip
+    add("--lockstep", action="store_true", help="accepted: cameras never miss a frame here")
+    add("-e", "--physics", metavar="ENGINE", default="ode",
+        help="accepted: MuJoCo computes, by the parameters for ode")  # fmt: skip
+    inert = parser.add_argument_group("without effect; each says so")
+    inert.add_argument("-r", "--record", action="store_true", help=argparse.SUPPRESS)
+    for name in ("encoding", "path", "period", "filter"):
+        inert.add_argument(f"--record_{name}", metavar="X", help=argparse.SUPPRESS)
+    inert.add_argument("--record_resources", action="store_true", help=argparse.SUPPRESS)
+    inert.add_argument("-p", "--play", metavar="FILE", help=argparse.SUPPRESS)
+    inert.add_argument("-o", "--profile", metavar="NAME", help="presets of physics")
+    inert.add_argument("--initial_sim_time", metavar="S", default="0", help="time begins at 0")
+    inert.add_argument("--minimal_comms", action="store_true", help="of Gazebo's transport")
+    inert.add_argument("--headless", action="store_true", help="the launch files' argument")
+    given = parser.parse_args([word for word in words if ":=" not in word])
+    if given.play is not None:
+        raise CartwheelError(
+            f"{program} -p {given.play}: Gazebo's state logs cannot be played here",
+            hint="Record topics with rosbag record, and play them with rosbag play.",
+        )
+    if given.iters is not None and given.iters < 1:
+        raise CartwheelError(f"{program} --iters {given.iters}: it takes a number above 0")
+    return ServerArguments(
+        world=given.world[0] if given.world else WORLD,
+        paused=given.pause,
+        verbose=given.verbose or program == "debug",
+        seed=abs(given.seed),
+        iterations=given.iters,
+        ros=tuple(word for word in words if ":=" in word),
+        notes=tuple(_server_notes(program, given)),
+        help=parser.format_help() if given.help else "",
+        version=given.version,
+    )
+
+
+def parse_client(words: Sequence[str]) -> ClientArguments:
+    """The arguments of gzclient.
+
+    Raises:
+        CartwheelError: There is no such option.
+    """
+    parser = _Parser(
+        prog="gzclient",
+        add_help=False,
+        description="Shows the running simulation in the browser, until one of them ends.",
+    )
+    add = parser.add_argument
+    add("world", nargs="*", help=argparse.SUPPRESS)
+    add("-h", "--help", action="store_true", help="print this")
+    add("-v", "--version", action="store_true", help="print the version")
+    add("--verbose", action="store_true", help="accepted")
+    add("-q", "--quiet", action="store_true", help="accepted")
+    add("-g", "--gui-client-plugin", "--gui-plugin", action="append", metavar="FILE", default=[],
+        help="plugins of Gazebo's window do not apply")  # fmt: skip
+    given = parser.parse_args([word for word in words if ":=" not in word])
+    notes = [
+        f"-g {plugin} does not apply: the page takes no plugins of Gazebo's window"
+        for plugin in given.gui_client_plugin
+        if _stem(plugin) not in OWN_PLUGINS
+    ]
+    return ClientArguments(
+        verbose=given.verbose,
+        ros=tuple(word for word in words if ":=" in word),
+        notes=tuple(notes),
+        help=parser.format_help() if given.help else "",
+        version=given.version,
+    )
+
+
+def _server_notes(program: str, given: argparse.Namespace) -> list[str]:
+    notes = []
+    if program == "debug":
+        notes.append("debug: there is no gdb to run in; more is said instead, as with --verbose")
+    if program == "perf":
+        notes.append("perf: valgrind does not apply; this is an ordinary run")
+    if given.physics != "ode":
+        notes.append(
+            f"-e {given.physics} does not apply: MuJoCo computes, by the parameters for ode"
+        )
+    recording = (
+        given.record,
+        given.record_encoding,
+        given.record_path,
+        given.record_period,
+        given.record_filter,
+        given.record_resources,
+    )
+    if any(recording):
+        notes.append(
+            "recording does not apply: no state log is written. Record topics: rosbag record -a"
+        )
+    if given.headless:
+        notes.append("headless does not apply: this opens no window. gui:=false leaves it out")
+    if given.profile is not None:
+        notes.append(f"-o {given.profile} does not apply: there are no profiles")
+    if _number(given.initial_sim_time) != 0.0:
+        notes.append("--initial_sim_time does not apply: time begins at 0")
+    if given.minimal_comms:
+        notes.append("--minimal_comms does not apply: there is no transport of Gazebo's")
+    notes.extend(
+        f"-s {plugin} does not apply: no system plugin is loaded, and what it does is missing"
+        for plugin in given.server_plugin
+        if _stem(plugin) not in OWN_PLUGINS
+    )
+    notes.extend(f"{word} does not apply: one world is enough" for word in given.world[1:])
+    return notes
+
+
+def _stem(plugin: str) -> str:
+    return PurePath(plugin).name.partition(".")[0]
+
+
+def _whole(text: str) -> int:
+    value = _number(text)
+    if value != math.floor(value):
+        raise argparse.ArgumentTypeError(f"{text} is no whole number")
+    return int(value)
+
+
+def _number(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise argparse.ArgumentTypeError(f"{text} is no number")
+    return value

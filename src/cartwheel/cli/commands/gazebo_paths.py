@@ -1,0 +1,107 @@
+"""Where Gazebo finds worlds and models: its variables, and what ROS packages say of themselves.
+
+Source: gazebo 11, `SystemPaths`; gazebo_ros, gazebo_ros_paths_plugin.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from xml.etree import ElementTree
+
+from cartwheel.description.packages import share
+from cartwheel.errors import CartwheelError, likely
+
+_LEVELS = 4
+"""Folders between a workspace's source folder and a package at most."""
+_IGNORE = ("CATKIN_IGNORE", "AMENT_IGNORE", "COLCON_IGNORE", "rospack_nosubdirs")
+_EXPORTS = {
+    "gazebo_model_path": "GAZEBO_MODEL_PATH",
+    "gazebo_media_path": "GAZEBO_RESOURCE_PATH",
+}
+"""Attributes of ``<gazebo_ros>`` in the ``<export>`` of a package.xml, and their variables."""
+
+
+def find_world(name: str, environment: Mapping[str, str] | None = None) -> Path:
+    """The file of a world as Gazebo's command line names it.
+
+    Args:
+        name: A path, or a path below a folder of GAZEBO_RESOURCE_PATH or of Cartwheel's own.
+        environment: For tests; `os.environ` otherwise.
+
+    Raises:
+        CartwheelError: There is none; says where it was looked for.
+    """
+    environment = os.environ if environment is None else environment
+    given = Path(name).expanduser()
+    folders = [Path.cwd()]
+    if not given.is_absolute():
+        folders += _paths(environment, "GAZEBO_RESOURCE_PATH")
+        folders += [share(), share() / "worlds"]
+    for folder in folders:
+        if (folder / given).is_file():
+            return folder / given
+    if given.is_absolute():
+        raise CartwheelError(f"the world {name} does not exist")
+    shipped = sorted(f"worlds/{path.name}" for path in (share() / "worlds").glob("*.world"))
+    near = likely(name, shipped)
+    searched = ", ".join(str(folder) for folder in folders[:-1])
+    raise CartwheelError(
+        f'the world "{name}" was not found',
+        hint=f"{near or 'Those that come with Cartwheel: ' + ', '.join(shipped) + '.'} "
+        f"Searched: {searched}. Add its folder to GAZEBO_RESOURCE_PATH, or give its whole path.",
+    )
+
+
+def adopt_exports(environment: dict[str, str]) -> None:
+    """Adds what the packages of ROS_PACKAGE_PATH export for Gazebo to Gazebo's variables."""
+    found: dict[str, list[Path]] = {variable: [] for variable in _EXPORTS.values()}
+    for root in _paths(environment, "ROS_PACKAGE_PATH"):
+        for manifest in _manifests(root, _LEVELS):
+            for variable, path in _exports(manifest):
+                if path not in found[variable]:
+                    found[variable].append(path)
+    for variable, paths in found.items():
+        known = _paths(environment, variable)
+        added = [path for path in paths if path not in known]
+        if added:
+            environment[variable] = os.pathsep.join(str(path) for path in (*known, *added))
+
+
+def _exports(manifest: Path) -> Iterator[tuple[str, Path]]:
+    try:
+        data = manifest.read_bytes()
+        if b"<gazebo_ros" not in data:
+            return
+        # A file of the user's own workspace.
+        root = ElementTree.fromstring(data)  # noqa: S314
+    except (OSError, ElementTree.ParseError):
+        return
+    for element in root.iterfind("export/gazebo_ros"):
+        for attribute, variable in _EXPORTS.items():
+            for part in element.get(attribute, "").split(os.pathsep):
+                if part:
+                    path = part.replace("${prefix}", str(manifest.parent))
+                    yield variable, Path(os.path.normpath(path))
+
+
+def _manifests(folder: Path, levels: int) -> Iterator[Path]:
+    manifest = folder / "package.xml"
+    if manifest.is_file():
+        yield manifest
+        return
+    if levels == 0 or any((folder / name).exists() for name in _IGNORE):
+        return
+    try:
+        inner = sorted(entry.path for entry in os.scandir(folder) if entry.is_dir())
+    except OSError:
+        return
+    for path in inner:
+        if not os.path.basename(path).startswith("."):  # noqa: PTH119 - there may be many
+            yield from _manifests(Path(path), levels - 1)
+
+
+def _paths(environment: Mapping[str, str], variable: str) -> list[Path]:
+    value = environment.get(variable, "")
+    return [Path(part).expanduser() for part in value.split(os.pathsep) if part]

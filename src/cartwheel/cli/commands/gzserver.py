@@ -1,0 +1,65 @@
+"""A simulation started as Gazebo's server is."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from dataclasses import replace
+
+from cartwheel.cli.commands.gazebo_arguments import ServerArguments, parse_server
+from cartwheel.cli.commands.gazebo_paths import adopt_exports, find_world
+from cartwheel.cli.commands.ports import free_port
+from cartwheel.cli.commands.run import Options, simulate
+from cartwheel.cli.console import print_warning, say
+
+NODE = "gazebo"
+"""Of ROS, where ``__name:=`` gives no other."""
+
+
+def serve(program: str, words: Sequence[str]) -> None:
+    """Runs a world until it is interrupted.
+
+    Args:
+        program: gzserver, gazebo, debug or perf.
+        words: Of its command line.
+
+    Raises:
+        CartwheelError: Whatever is wrong with the options or the world.
+    """
+    arguments = parse_server(program, words)
+    if arguments.help:
+        say(arguments.help)
+        return
+    if arguments.version:
+        import cartwheel
+
+        say(f"cartwheel {cartwheel.__version__}")
+        return
+    for note in arguments.notes:
+        print_warning(note)
+    environment = dict(os.environ)
+    adopt_exports(environment)
+    os.environ.update(environment)
+    simulate(translated(program, arguments))
+
+
+def translated(program: str, arguments: ServerArguments) -> Options:
+    """The same as options of ``cartwheel run``.
+
+    Raises:
+        CartwheelError: The world does not exist.
+    """
+    options = Options(
+        file=str(find_world(arguments.world)),
+        values={},
+        headless=program != "gazebo",
+        paused=arguments.paused,
+        seed=arguments.seed,
+        steps=arguments.iterations,
+        verbose=arguments.verbose,
+        ros1_node=NODE,
+        ros1_arguments=arguments.ros,
+    )
+    if not options.headless:
+        return replace(options, port=free_port(options.host, options.port))
+    return options

@@ -1,0 +1,102 @@
+"""What a recording holds."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+from cartwheel.bridges.recording.reading import Recording, open_recording, span_of
+from cartwheel.cli.commands.report import size_text
+from cartwheel.cli.console import paint, print_warning, say, table
+
+_SINCE_1970 = 10**17
+"""ns: recordings that begin later were stamped by a wall clock."""
+
+
+def info(path: Path, *, as_json: bool) -> None:
+    """Lists a recording of any form.
+
+    Raises:
+        RecordingError: It cannot be read.
+    """
+    recording = open_recording(path)
+    try:
+        if as_json:
+            say(json.dumps(_described(path, recording), indent=2))
+        else:
+            _print(path, recording)
+    finally:
+        recording.close()
+
+
+def _described(path: Path, recording: Recording) -> dict[str, Any]:
+    first, last = span_of(recording) or (0, 0)
+    return {
+        "file": str(path),
+        "form": recording.form,
+        "complete": recording.complete,
+        "size": recording.size,
+        "start_ns": first,
+        "end_ns": last,
+        "messages": sum(topic.count for topic in recording.topics),
+        "notes": dict(recording.notes),
+        "attachments": dict(recording.attachments),
+        "topics": [
+            {
+                "name": topic.name,
+                "type": topic.type,
+                "encoding": topic.encoding,
+                "messages": topic.count,
+                "rate": topic.rate,
+                "latched": topic.latched,
+            }
+            for topic in _sorted(recording)
+        ],
+    }
+
+
+def _print(path: Path, recording: Recording) -> None:
+    encodings = {"cdr": "ROS 2's messages", "ros1": "ROS 1's messages"}
+    kinds = sorted({encodings.get(t.encoding, t.encoding) for t in recording.topics})
+    _line("file", f"{path}, {recording.form}{', ' + ', '.join(kinds) if kinds else ''}")
+    _line("size", size_text(recording.size))
+    span = span_of(recording)
+    if span is not None:
+        first, last = span
+        began = "" if first < _SINCE_1970 else f" ({_date(first)})"
+        _line(
+            "time", f"{(last - first) / 1e9:.3f} s, {first / 1e9:.3f} to {last / 1e9:.3f} s{began}"
+        )
+    _line("holds", f"{sum(topic.count for topic in recording.topics)} messages")
+    for name, size in recording.attachments.items():
+        _line("with", f"{name}, {size_text(size)}")
+    if recording.notes:
+        _line("of", ", ".join(f"{key} {value}" for key, value in recording.notes.items()))
+    rows = [["topic", "type", "messages", "rate"]]
+    for topic in _sorted(recording):
+        rate = "latched" if topic.latched else f"{topic.rate:.4g} Hz" if topic.rate else ""
+        rows.append([topic.name, topic.type.replace("/msg/", "/"), str(topic.count), rate])
+    say()
+    head, *lines = table(rows).splitlines()
+    say(paint(head, "dim"))
+    for line in lines:
+        say(line)
+    if not recording.complete:
+        print_warning(
+            "its end is missing: whoever wrote it was interrupted. What is listed is there"
+        )
+
+
+def _sorted(recording: Recording) -> list[Any]:
+    return sorted(recording.topics, key=lambda topic: topic.name)
+
+
+def _date(time_ns: int) -> str:
+    from datetime import UTC, datetime
+
+    return datetime.fromtimestamp(time_ns / 1e9, UTC).strftime("%Y-%m-%d %H:%M:%S UTC")
+
+
+def _line(title: str, text: str) -> None:
+    say(f"{paint(title.ljust(6), 'dim')} {text}")

@@ -1,0 +1,52 @@
+"""The viewer of a run that began without one."""
+
+from __future__ import annotations
+
+import threading
+
+from cartwheel.cli.commands.ports import free_port
+from cartwheel.control.protocol import PATIENCE
+from cartwheel.control.server import ControlServer
+from cartwheel.session import Session
+from cartwheel.simulation.pacing import Pacer
+
+
+class PageOnDemand:
+    """The page of a session that runs without one, brought up when a client asks for it.
+
+    Args:
+        session: To show.
+        server: Whose clients ask, and which then tells where the page is.
+        pacer: Runs the session.
+        host: Address to listen on.
+        port: The first to try; one that is taken is left to whoever has it.
+    """
+
+    def __init__(
+        self, session: Session, server: ControlServer, pacer: Pacer, *, host: str, port: int
+    ) -> None:
+        self._session = session
+        self._server = server
+        self._pacer = pacer
+        self._host, self._port = host, port
+        self._lock = threading.Lock()
+        self._url: str | None = None
+
+    def show(self) -> str:
+        """Where the page is; it is up when this returns. From any thread but the simulation's.
+
+        Raises:
+            ControlError: No port can be had.
+        """
+        with self._lock:
+            if self._url is None:
+                # A third of a second that a run which nobody looks at does not spend.
+                from cartwheel.viewer import Viewer
+
+                port = free_port(self._host, self._port)
+                viewer = Viewer(self._session, host=self._host, port=port)
+                starting = self._session.simulation.call(lambda: viewer.start(self._pacer))
+                starting.result(PATIENCE)
+                self._url = viewer.url
+                self._server.announce(url=self._url, port=port)
+            return self._url

@@ -1,0 +1,125 @@
+"""A recording from its file to its end."""
+
+from __future__ import annotations
+
+import math
+import threading
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, NoReturn, cast
+
+from cartwheel.cli import interrupts
+from cartwheel.cli.commands.desktop import is_desktop
+from cartwheel.cli.commands.ports import refuse_taken
+from cartwheel.cli.commands.report import Report
+from cartwheel.cli.console import say
+from cartwheel.errors import CartwheelError, RecordingError
+
+if TYPE_CHECKING:
+    from cartwheel.control.server import ControlServer
+    from cartwheel.playback import Player
+    from cartwheel.session import Session
+    from cartwheel.simulation.pacing import Pacer
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Options:
+    """What the user asked for."""
+
+    file: Path
+    headless: bool
+    speed: float | None
+    start: float
+    """s after the beginning."""
+    loop: bool
+    paused: bool
+    world: str | None
+    host: str
+    port: int
+    open_browser: bool | None
+    package_path: tuple[Path, ...]
+
+
+def play(options: Options) -> None:
+    """Plays until the end, or in the browser until Ctrl-C.
+
+    Raises:
+        CartwheelError: The recording cannot be played.
+    """
+    if not 0 <= options.start < math.inf:
+        raise CartwheelError(f"--start {options.start:g} is no time to start at")
+    from cartwheel.bridges.recording.reading import open_recording
+
+    recording = open_recording(options.file)
+    if not options.headless:
+        refuse_taken(options.host, options.port)
+    from cartwheel.control.server import ControlServer
+    from cartwheel.description import load_world
+    from cartwheel.playback import PlaybackSession
+
+    world = None
+    if options.world:
+        world = load_world(options.world, package_path=options.package_path)
+    played = PlaybackSession(
+        recording,
+        world=world,
+        package_path=options.package_path,
+        loop=options.loop,
+        hold=not options.headless,
+    )
+    player = played.simulation
+    player.set_speed(options.speed)
+    if options.start:
+        player.seek(player.start_ns + round(options.start * 1e9))
+    if options.paused:
+        player.pause()
+    # To clients a recording is what a simulation is: time, topics and models.
+    session = cast("Session", played)
+    report = Report(verbose=False)
+
+    def stop() -> None:
+        player.stop()
+        player.post(lambda: None)
+
+    with interrupts.handled_by(stop, status=0):
+        server = ControlServer(session, title=f"{options.file.name}, played", load=_refuse)
+        with interrupts.finally_do(server.close):
+            length = (player.end_ns - player.start_ns) / 1e9
+            say(f"plays   {options.file}, {length:.3f} s, {len(recording.topics)} topics")
+            for diagnostic in played.diagnostics:
+                report.diagnostic(diagnostic)
+            if not options.headless:
+                _show(session, player, server, options, report)
+            player.run()
+    recording.close()
+
+
+def _show(
+    session: Session, player: Player, server: ControlServer, options: Options, report: Report
+) -> None:
+    from cartwheel.viewer import Viewer
+    from cartwheel.viewer.play_desk import PlayDesk
+
+    viewer = Viewer(session, host=options.host, port=options.port, desk=PlayDesk)
+    viewer.start(cast("Pacer", player))
+
+    def announce() -> None:
+        try:
+            url = viewer.url
+        except CartwheelError as error:
+            report.failed(error)
+            player.post(player.stop)
+            return
+        server.announce(url=url, port=options.port)
+        report.address(url)
+        if is_desktop() if options.open_browser is None else options.open_browser:
+            import webbrowser
+
+            webbrowser.open(url)
+
+    threading.Thread(target=announce, name="announce", daemon=True).start()
+
+
+def _refuse(_: Path, __: Mapping[str, str], ___: Sequence[Path]) -> NoReturn:
+    raise RecordingError("this is a recording, into which nothing can be put")

@@ -1,0 +1,128 @@
+"""A run as a node of ROS 2."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from cartwheel.bridges.ros2 import Parameter, Rmw, Ros2Bridge
+from cartwheel.cli.commands.report import Report
+from cartwheel.errors import CartwheelError
+from cartwheel.gazebo.robot_states import RobotStates, follow
+from cartwheel.gazebo.ros2_api import Ros2Api
+from cartwheel.session import CLOCK_RATE, Session
+from cartwheel.simulation import RunState
+
+_FASTEST = 1e6
+
+
+class Ros2:
+    """The bridge of a session and what belongs to it.
+
+    Args:
+        session: To offer.
+        node: Name of the node.
+        rmw: The middleware.
+        package_path: Where models that are spawned look for packages first.
+        report: Tells the user.
+
+    Raises:
+        CartwheelError: A name or a variable of ROS makes no sense, or something is missing.
+    """
+
+    def __init__(
+        self,
+        session: Session,
+        *,
+        node: str,
+        rmw: Rmw,
+        package_path: Sequence[Path],
+        report: Report,
+    ) -> None:
+        self._session = session
+        self._report = report
+        self._api = Ros2Api(session, package_path=package_path)
+        self._states: RobotStates | None = None
+        simulation = session.simulation
+        self._bridge = Ros2Bridge(
+            session.graph,
+            node=node,
+            rmw=rmw,
+            parameters=node_parameters(session),
+            report=lambda found: simulation.post(lambda: simulation.engine.report(found)),
+            time_ns=lambda: simulation.time_ns,
+        )
+
+    def start(self) -> None:
+        """Joins ROS; on the owner's thread, before the run.
+
+        Raises:
+            CartwheelError: It cannot be joined.
+        """
+        self._api.start()
+        simulation = self._session.simulation
+        self._states = RobotStates(simulation, self._session.graph)
+        self._bridge.start()
+        self._bridge.watch_others("/robot_description", follow(self._states, simulation))
+        self._report.joined_ros2(self._bridge.name, self._bridge.description)
+        for diagnostic in simulation.engine.diagnostics:
+            self._bridge.log(diagnostic)
+        simulation.engine.on_diagnostic.append(self._bridge.log)
+
+    def close(self) -> None:
+        """Leaves ROS."""
+        self._bridge.close()
+
+
+def node_parameters(session: Session) -> list[Parameter]:
+    """What ``ros2 param`` reads and sets of a session."""
+    simulation = session.simulation
+
+    def set_speed(factor: float) -> None:
+        if not 0 <= factor <= _FASTEST:
+            raise CartwheelError(
+                f"real_time_factor is {factor:g}, but must be from 0 to {_FASTEST:g}"
+            )
+        simulation.post(lambda: simulation.set_speed(factor or None))
+
+    def set_paused(paused: bool) -> None:
+        simulation.post(simulation.pause if paused else simulation.resume)
+
+    rate = [CLOCK_RATE]
+
+    def set_rate(hertz: float) -> None:
+        if not 0 <= hertz <= _FASTEST:
+            raise CartwheelError(f"publish_rate is {hertz:g}, but must be from 0 to {_FASTEST:g}")
+        rate[0] = hertz
+        simulation.post(lambda: session.set_clock_rate(hertz))
+
+    return [
+        Parameter(
+            name="max_step_size",
+            description="s of one step of the physics.",
+            get=lambda: simulation.step_ns / 1e9,
+        ),
+        Parameter(
+            name="paused",
+            description="Whether simulated time is held.",
+            get=lambda: simulation.run_state is RunState.PAUSED,
+            set=set_paused,
+        ),
+        Parameter(
+            name="publish_rate",
+            description="Hz of simulated time at which /clock is published; 0 is every step.",
+            get=lambda: rate[0],
+            set=set_rate,
+        ),
+        Parameter(
+            name="real_time_factor",
+            description="Seconds simulated in a second; 0 is as many as can be.",
+            get=lambda: simulation.speed or 0.0,
+            set=set_speed,
+        ),
+        Parameter(
+            name="use_sim_time",
+            description="Stamps are simulated time, which this node itself publishes.",
+            get=lambda: True,
+        ),
+    ]

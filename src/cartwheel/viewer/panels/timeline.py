@@ -1,0 +1,50 @@
+"""The time of a recording, to be moved by hand."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from cartwheel.simulation.snapshot import Snapshot
+from cartwheel.viewer.panels.base import Every
+from cartwheel.viewer.panels.clock import ClockPanel
+
+if TYPE_CHECKING:
+    from cartwheel.viewer.desk import Desk
+
+_PATIENCE = 0.5
+"""s that the slider is left alone after a user has moved it."""
+
+
+class TimelinePanel(ClockPanel):
+    """A slider beside the clock; Step goes on by a picture, Reset to the start."""
+
+    def __init__(self, desk: Desk) -> None:
+        super().__init__(desk)
+        player: Any = self.simulation
+        self._start_ns = int(player.start_ns)
+        length = max((player.end_ns - player.start_ns) / 1e9, 0.001)
+        self._slider = self.gui.add_slider(
+            "Time, s", min=0.0, max=length, step=0.001, initial_value=0.0
+        )
+        self._slider.on_update(self.page.on(self._moved))
+        self._slider_due = Every(10)
+        self._left_alone = 0.0
+        self._now = 0.0
+
+    def update(self, snapshot: Snapshot, now: float) -> None:
+        super().update(snapshot, now)
+        self._now = now
+        if now < self._left_alone or not self._slider_due(now):
+            return
+        shown = round((snapshot.time_ns - self._start_ns) / 1e9, 3)
+        shown = min(max(shown, 0.0), float(self._slider.max))
+        if abs(self._slider.value - shown) > 0.0005:
+            self._slider.value = shown
+
+    def _moved(self, event: Any) -> None:
+        if event.client is None:
+            return  # moved by `update`, not by a user
+        self._left_alone = self._now + _PATIENCE
+        player: Any = self.simulation
+        place = self._start_ns + round(event.target.value * 1e9)
+        self.page.then(player.call(lambda: player.seek(place)))
