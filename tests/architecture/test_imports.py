@@ -19,10 +19,12 @@ MAY_IMPORT = {
     "simulation": {"description", "world"},
     "plugins": {"description", "world", "simulation", "messages", "graph"},
     "session": {"description", "simulation", "messages", "graph", "plugins"},
-    "api": {"description", "simulation", "messages", "graph", "session"},
+    "api": {"description", "simulation", "messages", "graph", "session", "plugins", "bridges"},
     "control": {"description", "simulation", "messages", "graph", "session"},
     "viewer": {"description", "simulation", "messages", "graph", "session"},
+    "gazebo": {"description", "world", "simulation", "messages", "graph", "plugins", "session"},
     "bridges": {"messages", "graph"},
+    "playback": {"description", "simulation", "messages", "graph", "bridges"},
     "cli": {
         "description",
         "world",
@@ -32,7 +34,9 @@ MAY_IMPORT = {
         "session",
         "control",
         "viewer",
+        "gazebo",
         "bridges",
+        "playback",
         "api",
         "plugins",
     },
@@ -88,7 +92,13 @@ def test_the_order_has_no_cycle() -> None:
 
 
 def test_wires_and_browser_are_imported_only_in_their_rooms() -> None:
-    homes = {"viser": "viewer", "rospy": "bridges", "cyclonedds": "bridges", "mujoco": None}
+    homes = {
+        "viser": "viewer",
+        "rospy": "bridges",
+        "cyclonedds": "bridges",
+        "foxglove": "bridges",
+        "mujoco": None,
+    }
     for path in FILES:
         for node in ast.walk(ast.parse(path.read_text())):
             names = []

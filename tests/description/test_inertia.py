@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from cartwheel.description.inertia import impossibility, principal_moments
+from cartwheel.description.inertia import impossibility, made_possible, principal_moments
 
 values = st.floats(-10, 10, allow_nan=False).map(lambda x: round(x, 6))
 
@@ -42,3 +42,25 @@ def test_a_thin_plate_lies_on_the_edge():
 @pytest.mark.parametrize("moments", [(0, 0, 0), (0, 1, 1), (-1, 1, 1), (1e-20, 1, 1)])
 def test_not_positive_definite(moments):
     assert "not positive definite" in impossibility(moments)[0]
+
+
+def test_moments_beyond_all_measure_are_no_crash():
+    """1e308 is a finite number whose square is none."""
+    assert principal_moments((1.0, 1e308, 1.0), (0.5, 0.0, 0.0)) == (1.0, 1.0, 1e308)
+
+
+@settings(derandomize=True, max_examples=100, deadline=None)
+@given(st.tuples(*[st.floats(0, 10)] * 3), st.tuples(*[st.floats(-3, 3)] * 3))
+def test_what_no_body_has_is_made_possible_about_the_same_axes(moments, turn):
+    if max(moments) < 1e-3:
+        return
+    axes, _ = np.linalg.qr(np.eye(3) + np.cross(np.eye(3), turn))
+    tensor = (axes * np.array(moments)) @ axes.T
+    made, products = made_possible(tuple(np.diag(tensor)), tuple(tensor[[0, 0, 1], [1, 2, 2]]))
+    found = principal_moments(made, products)
+    assert impossibility(found) is None
+    assert found[2] == pytest.approx(max(moments), rel=1e-6)
+    small, middle, large = sorted(moments)
+    missing = max(0.0, large - small - middle)
+    raised = sorted((small + missing / 2, middle + missing / 2))
+    assert found[:2] == pytest.approx(raised, rel=1e-4, abs=1e-5 * large)

@@ -3,12 +3,14 @@
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import pytest
 
 from cartwheel.description import load, load_robot, load_text, load_world
 from cartwheel.description.model import RobotDescription, WorldDescription
-from cartwheel.description.shipped import shipped_descriptions
+from cartwheel.description.packages import share
+from cartwheel.description.shipped import find_description, shipped_descriptions
 from cartwheel.errors import DescriptionError
 
 BODY = '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial>'
@@ -193,3 +195,20 @@ def test_nothing_slow_is_imported_before_it_is_needed():
         [sys.executable, "-c", script, URDF], capture_output=True, text=True, check=True
     )
     assert out.stdout == "[]\n"
+
+
+def test_a_world_is_named_as_gazebos_users_name_it(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.delenv("GAZEBO_RESOURCE_PATH", raising=False)
+    shipped = share() / "worlds" / "mud.world"
+    assert find_description("worlds/mud.world") == shipped
+    assert find_description("mud") == shipped
+    # The user's own resources come first, and a file that is really there before all.
+    theirs = tmp_path / "share" / "worlds"
+    theirs.mkdir(parents=True)
+    (theirs / "mud.world").write_text("<sdf/>")
+    monkeypatch.setenv("GAZEBO_RESOURCE_PATH", f"/nowhere:{tmp_path / 'share'}")
+    assert find_description("worlds/mud.world") == theirs / "mud.world"
+    assert find_description("mud.world") == theirs / "mud.world"
+    (tmp_path / "mud.world").write_text("<sdf/>")
+    assert find_description("mud.world") == Path("mud.world")

@@ -175,6 +175,22 @@ def test_shipped_things_are_found_from_anywhere(tmp_path):
     assert found.find("rosbots_description") == share() / "robots" / "rosbots_description"
 
 
+@pytest.mark.parametrize("root", ["ws/src", "ws"])
+def test_packages_lie_deep_in_a_workspace_or_repository(tmp_path, root):
+    own = package(tmp_path / "ws" / "src" / "turtle" / "turtle_description")
+    deep = package(tmp_path / "ws" / "src" / "create" / "common" / "more" / "b")
+    if root == "ws":
+        (tmp_path / "ws" / ".git").mkdir()
+    assert packages(robot(own)).find("b") == deep
+
+
+def test_the_package_path_of_ros_is_crawled(tmp_path):
+    deep = package(tmp_path / "share" / "create" / "common" / "more" / "b")
+    own = package(tmp_path / "home" / "a")
+    found = packages(robot(own), {"ROS_PACKAGE_PATH": str(tmp_path / "share")}).find("b")
+    assert found == deep
+
+
 def test_large_trees_are_not_walked(tmp_path):
     own = package(tmp_path / "ws" / "src" / "a")
     for number in range(700):

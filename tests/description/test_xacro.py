@@ -1,5 +1,8 @@
 """xacro as in ROS; origins through includes and macros; what is told when it fails."""
 
+import os
+import subprocess
+import sys
 import threading
 from pathlib import Path
 
@@ -177,8 +180,9 @@ def test_dynamic_calls_namespaces_and_optional_includes(folder):
         ),
         (
             '<a b="$(arg side)"/>',
-            'robot.xacro:2: the argument "side" is not declared\n'
-            '  Declare it: <xacro:arg name="side" default="…"/>.',
+            'robot.xacro:2: the argument "side" has no value\n'
+            "  Give it one on the command line, side:=…, or in the file: "
+            '<xacro:arg name="side" default="…"/>.',
         ),
         ('<a b="${1 +}"/>', "robot.xacro:2: invalid syntax, when evaluating ${1 +}"),
         ('<a b="${1 / 0}"/>', "robot.xacro:2: division by zero, when evaluating ${1 / 0}"),
@@ -358,3 +362,32 @@ def test_the_package_xacro_itself_is_left_alone(folder):
     expanded()
     assert vars(xacro) == before
     assert xacro.process_file("robot.xacro").documentElement.tagName == "robot"
+
+
+def test_another_xacro_before_ours_is_passed_over(tmp_path):
+    """A sourced ROS workspace has one of its own in PYTHONPATH."""
+    (tmp_path / "xacro.py").write_text("raise ImportError('the wrong one')")
+    (tmp_path / "robot.xacro").write_text(
+        '<robot name="r" xmlns:xacro="http://ros.org/wiki/xacro">'
+        '<xacro:property name="n" value="a"/><link name="${n}"/></robot>'
+    )
+    code = f"from cartwheel.description import load; print(load({str(tmp_path / 'robot.xacro')!r}))"
+    done = subprocess.run(
+        [sys.executable, "-c", code],
+        env={**os.environ, "PYTHONPATH": str(tmp_path)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    assert "name='a'" in done.stdout
+
+
+def test_what_is_deprecated_and_works_is_a_note(folder):
+    (folder / "size.yaml").write_text("radius: 0.3\n")
+    write("robot.xacro", """<a r="${load_yaml('size.yaml')['radius']}"/>""")
+    found = expanded()
+    assert dict(found.root.children[0].attributes) == {"r": "0.3"}
+    (told,) = found.diagnostics
+    assert (told.severity, told.origin.line) == ("info", 2)
+    assert "deprecated" in told.message

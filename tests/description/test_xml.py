@@ -22,6 +22,22 @@ def test_text_is_joined_and_stripped_and_prefixes_are_kept():
     assert root.children[0].tag == "sensor:camera"
 
 
+@pytest.mark.parametrize("encode", [str, str.encode])
+def test_blank_lines_may_stand_before_the_declaration(encode):
+    root = xml.parse(encode("\n \n<?xml version='1.0'\n?>\n<a>\n<b/></a>"), "robot.urdf")
+    assert root.children[0].origin == Origin(file="robot.urdf", line=6)
+
+
+@pytest.mark.parametrize("encode", [str, str.encode])
+def test_comments_may_hold_dashes(encode):
+    text = (
+        "<!-- gz topic\n --pub --->\n<a><![CDATA[<!-- -- -->]]><!-----><b/><!-- -\n- -->\n<c/></a>"
+    )
+    root = xml.parse(encode(text), "robot.urdf")
+    assert root.text == "<!-- -- -->"
+    assert [(each.tag, each.origin.line) for each in root.children] == [("b", 3), ("c", 5)]
+
+
 @pytest.mark.parametrize(
     ("text", "line", "part"),
     [
@@ -30,7 +46,7 @@ def test_text_is_joined_and_stripped_and_prefixes_are_kept():
         ("<a>\n&nbsp;</a>", 2, "undefined entity"),
         ('<a>\n<b c="<"/></a>', 2, "malformed XML at column 7"),
         ('<a>\n<b c="1" c="2"/></a>', 2, "given twice"),
-        ("\n<?xml version='1.0'?><a/>", 2, "must be the very first thing"),
+        ("<!-- c -->\n<?xml version='1.0'?><a/>", 2, "must be the very first thing"),
         ("<a/>\n<b/>", 2, "after the end of the root"),
         ("hello", 1, "is not XML"),
         ("", 1, "is not XML"),

@@ -242,3 +242,16 @@ def test_no_message_is_lost_or_doubled_between_threads():
     reader.join(30)
     assert got == list(range(count))
     assert box.dropped == 0
+
+
+def test_who_mirrors_the_graph_is_told_of_each_change():
+    graph = Graph()
+    seen = []
+    graph.on_change.append(lambda: seen.append(graph.changed))
+    publisher = graph.advertise("/a", TWIST)
+    subscription = graph.subscribe("/a", lambda _: None)
+    service = graph.serve("/s", "std_srvs/srv/Empty", lambda request: request)
+    subscription.close()
+    publisher.close()
+    graph.withdraw(service)
+    assert seen == [1, 2, 3, 4, 5, 6]

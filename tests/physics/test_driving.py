@@ -8,7 +8,7 @@ import pytest
 
 from cartwheel.description.model import Physics
 from cartwheel.geometry import Pose
-from cartwheel.world.bodies import _VELOCITY_ERROR
+from cartwheel.world.bodies import _MOTOR_REFERENCE
 from cartwheel.world.build import DEFAULT_STEP
 
 COMMAND = "/part2_cmr/cmd_vel"
@@ -60,10 +60,9 @@ def test_speed_and_way_follow_the_ramp(make, rosbots):
     ramp_end = 0.5 / RAMP
     wanted_speed = np.minimum(RAMP * time, 0.5)
     wanted_way = np.where(time < ramp_end, RAMP * time**2 / 2, 0.5 * time - 0.5 * ramp_end / 2)
-    # The ramp is climbed in stairs of one control period. The servo lags by that part of
-    # _VELOCITY_ERROR which the torque for the ramp is of the torque limit.
-    torque = effective_mass(rosbots) * RAMP * RADIUS / 2
-    lag = RADIUS * _VELOCITY_ERROR * torque / TORQUE
+    # The ramp is climbed in stairs of one control period. The wheel follows its motor with the
+    # time constant of their coupling.
+    lag = RAMP * _MOTOR_REFERENCE[0]
     assert np.abs(speed - wanted_speed).max() < RAMP * CONTROL + lag + RAMP * DEFAULT_STEP
     assert np.abs(way - wanted_way).max() < (RAMP * CONTROL + lag) * ramp_end + 0.5 * DEFAULT_STEP
     # From then on it holds within 2 %.

@@ -224,3 +224,23 @@ def test_what_rests_on_a_standing_bumper_is_felt_for_as_long_as_it_rests(make):
         forces = [vector(state.total_wrench.force) for state in message.states]
         assert forces
         assert np.sum(forces, axis=0) == pytest.approx([0, 0, -5 * G], rel=0.01, abs=0.1)
+
+
+def test_a_contact_sensor_of_new_gazebo_needs_no_plugin(make):
+    box = make.sdf(
+        """<model name="box"><pose>0 0 0.5 0 0 0</pose><link name="l"><inertial><mass>3</mass>
+        <inertia><ixx>1</ixx><iyy>1</iyy><izz>1</izz></inertia></inertial>
+        <collision name="c"><geometry><box><size>1 1 1</size></box></geometry></collision>
+        <sensor name="s" type="contact"><update_rate>10</update_rate>
+        <contact><collision>c</collision><topic>touch</topic></contact></sensor></link>
+        <plugin name="p" filename="gz-sim-contact-system"/></model>"""
+    )
+    world = make.world(box)
+    world.run(1.0)
+    mailbox = world.mailbox("/touch", size=100)
+    world.run(1.0)
+    messages = mailbox.drain()
+    assert len(messages) == 10
+    (state,) = messages[-1].states
+    assert state.collision1_name == "box::l::c"
+    assert state.total_wrench.force.z == pytest.approx(3 * G, rel=0.02)

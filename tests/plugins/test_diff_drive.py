@@ -137,7 +137,7 @@ def test_encoder_odometry_runs_ahead_where_wheels_slip(make, rosbots):
 
 def test_messages_are_as_gazebo_prints_them(make, rosbots):
     world = place(make, rosbots)
-    told = collect(world, ["/odom", "/joint_states", "/tf"], 0.1)
+    told = collect(world, ["/odom", "/joint_states", "/tf", "/tf_static"], 0.1)
     odometry = told["/odom"][0]
     assert (odometry.header.frame_id, odometry.child_frame_id) == ("odom", "base_link")
     assert odometry.pose.covariance == pytest.approx(
@@ -149,11 +149,14 @@ def test_messages_are_as_gazebo_prints_them(make, rosbots):
     assert len(state["position"]) == 2
     assert (state["velocity"], state["effort"], state["header"]["frame_id"]) == ([], [], "")
     transforms = told["/tf"][0].transforms
+    # The root, so that robot_state_publisher's transforms below it leave one tree.
     assert [(t.header.frame_id, t.child_frame_id) for t in transforms] == [
-        ("odom", "base_link"),
+        ("odom", "base_footprint"),
         ("base_link", "wheel_left_link"),
         ("base_link", "wheel_right_link"),
     ]
+    (fixed,) = told["/tf_static"][0].transforms
+    assert (fixed.header.frame_id, fixed.child_frame_id) == ("base_footprint", "base_link")
 
 
 def test_joint_states_are_the_wheels_angles(make, rosbots):
@@ -182,7 +185,10 @@ def test_tf_is_the_odometry_and_the_wheels(make, rosbots):
     assert len(told["/odom"]) == len(told["/tf"]) == 200
     for odometry, tf, state in zip(told["/odom"], told["/tf"], told["/joint_states"], strict=True):
         base, left, right = tf.transforms
-        assert stamp(base) == stamp(odometry) == stamp(left) == stamp(right)
+        assert stamp(base) == stamp(odometry) == stamp(state)
+        # tf drops a transform of a child and stamp that it has, and robot_state_publisher
+        # stamps the wheels' as their joint states are.
+        assert stamp(left) == stamp(right) == stamp(state) + 1
         expected = pose_of(odometry)
         move, turn = base.transform.translation, base.transform.rotation
         assert (move.x, move.y, move.z) == expected.position
@@ -262,13 +268,7 @@ def test_torque_is_read_under_its_older_name(make, rosbots):
     old = dataclasses.replace(tag, element=dataclasses.replace(tag.element, children=kept))
     plugins = tuple(old if other is tag else other for other in rosbots.plugins)
     world = place(make, dataclasses.replace(rosbots, plugins=plugins))
-    model = world.session.simulation.model
-    # Standing, the wheels brake with it; driving, their motors give it.
-    assert sorted(model.dof_frictionloss.tolist())[-2:] == [20, 20]
-    world.publish(COMMAND, linear_x=0.1)
-    world.run(0.1)
-    assert model.actuator_forcerange.tolist() == [[-20, 20], [-20, 20]]
-    assert max(model.dof_frictionloss.tolist()) == 0
+    assert world.session.simulation.model.tendon_frictionloss.tolist() == [20, 20]
     assert any("<torque>" in d.message and d.severity == "info" for d in world.diagnostics)
 
 

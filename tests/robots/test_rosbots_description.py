@@ -162,7 +162,7 @@ def test_diff_drive(robot: Element) -> None:
         "wheelAcceleration": "1.0",
         "torque": "20",
         "wheelTorque": "20",
-        "commandTopic": "/part2_cmr/cmd_vel",
+        "commandTopic": "part2_cmr/cmd_vel",
         "odometryTopic": "odom",
         "odometryFrame": "odom",
         "robotBaseFrame": "base_link",
@@ -185,7 +185,7 @@ def test_camera(robot: Element) -> None:
     }
     assert tags(one(sensor, "camera/clip")) == {"near": "0.1", "far": "50"}
     camera = plugin(robot, "libgazebo_ros_camera.so")
-    assert camera["robotNamespace"] == "rosbots"
+    assert camera["robotNamespace"] == ""
     assert camera["cameraName"] == "camera1"
     assert camera["imageTopicName"] == "image_raw"
     assert camera["cameraInfoTopicName"] == "camera_info"

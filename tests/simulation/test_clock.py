@@ -10,15 +10,13 @@ from cartwheel.simulation.clock import NANOSECONDS, Schedule, Task, to_ns
 STEP = 5_000_000
 
 
-def task(rate, *, step_ns=STEP, order=0):
-    return Task(
-        rate=rate, before=None, after=None, active=lambda: True, step_ns=step_ns, order=order
-    )
+def task(rate, *, order=0):
+    return Task(rate=rate, before=None, after=None, active=lambda: True, order=order)
 
 
 def due_steps(rate, steps, *, step_ns=STEP):
     """The steps on which a task alone is due."""
-    schedule, step, found = Schedule([task(rate, step_ns=step_ns)]), 0, []
+    schedule, step, found = Schedule([task(rate)], step_ns=step_ns), 0, []
     while step < steps:
         tasks, upcoming = schedule.at(step)
         if tasks:
@@ -56,24 +54,32 @@ def test_a_step_that_is_no_round_number():
 
 def test_a_schedule_looked_at_late_goes_on_with_the_next():
     """Steps that were missed, as after a spawn far into a run, are not made up for."""
-    schedule = Schedule([task(50)])
+    schedule = Schedule([task(50)], step_ns=STEP)
     tasks, upcoming = schedule.at(1002)
     assert (list(tasks), upcoming) == ([], 1004)
 
 
 def test_tasks_due_together_come_in_their_order():
     late, early, other = task(50, order=2), task(100, order=1), task(30, order=0)
-    schedule = Schedule([late, early, other])
+    schedule = Schedule([late, early, other], step_ns=STEP)
     assert schedule.at(0)[0] == (other, early, late)
     assert schedule.at(2)[0] == (early,)
     assert schedule.at(4)[0] == (early, late)
 
 
-def test_restart_begins_at_zero():
-    schedule = Schedule([task(50)])
-    schedule.at(100)
-    schedule.restart()
-    assert len(schedule.at(0)[0]) == 1
+@pytest.mark.parametrize("rate", [30, 29.97, 7, 100, 0.3, 0, 1000])
+@pytest.mark.parametrize("origin_ns", [0, 1_000_000, 1_234_567_891])
+def test_after_a_change_of_the_step_due_times_are_the_same(rate, origin_ns):
+    """Steps of 3 ms that begin at any time: due at the first step at or after k / rate."""
+    step_ns = 3_000_000
+    schedule = Schedule([task(rate)], step_ns=step_ns, origin_ns=origin_ns)
+    found = [step for step in range(2000) if schedule.at(step)[0]]
+    if rate in (0, 1000):
+        assert found == list(range(2000))
+        return
+    exact = Fraction(rate).limit_denominator(1_000_000)
+    due = (math.ceil((k / exact * NANOSECONDS - origin_ns) / step_ns) for k in range(10_000))
+    assert found == [step for step in due if 0 <= step < 2000]
 
 
 @pytest.mark.parametrize(("seconds", "ns"), [(0.005, 5_000_000), (0.1, 100_000_000), (1e-9, 1)])

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import cartwheel as cw
+from cartwheel.description import load_text
 
 
 @pytest.fixture
@@ -51,3 +52,29 @@ def test_models_that_only_touch_are_left_alone(world):
     world.spawn("box_medium.urdf", name="first", x=2.0)
     world.run(1.0)
     assert not [d for d in world.diagnostics if "pushed apart" in d.message]
+
+
+WALKER = """<robot name="walker"><link name="pelvis"><inertial><mass value="10"/>
+  <inertia ixx="0.1" iyy="0.1" izz="0.1"/></inertial></link>{}</robot>"""
+LEG = """<link name="{name}"><inertial><origin xyz="0 0 -0.2"/><mass value="2"/>
+  <inertia ixx="0.03" iyy="0.03" izz="0.003"/></inertial><collision><origin xyz="0.1 0 -0.2"/>
+  <geometry><box size="0.06 0.06 0.4"/></geometry></collision></link>
+  <joint name="{name}_joint" type="revolute"><parent link="{parent}"/><child link="{name}"/>
+  <origin xyz="0 {y} {z}"/><axis xyz="0 1 0"/>
+  <limit lower="-2" upper="2" effort="50" velocity="20"/></joint>"""
+
+
+def test_a_walker_put_up_to_its_hips_into_the_ground_is_not_thrown_by_its_legs(world):
+    legs = ""
+    for side, y in (("left", 0.1), ("right", -0.1)):
+        legs += LEG.format(name=f"{side}_thigh", parent="pelvis", y=y, z=0)
+        legs += LEG.format(name=f"{side}_shin", parent=f"{side}_thigh", y=0, z=-0.4)
+    walker = world.spawn(load_text(WALKER.format(legs)))
+    (said,) = [d.message for d in world.diagnostics if "pushed apart" in d.message]
+    assert said.endswith("by 80 cm: they are pushed apart. At z = 0.8 it stands on it")
+    for _ in range(10):
+        world.run(0.05)
+        assert fastest(world) < 8.0  # a fall from 0.8 m turns them no faster
+    world.run(4.5)
+    assert np.hypot(walker.pose.x, walker.pose.y) < 1.5
+    assert walker.pose.z < 0.8

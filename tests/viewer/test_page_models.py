@@ -2,7 +2,13 @@
 
 import pytest
 
+from cartwheel.viewer.panels.world import WorldPanel
+
 from .conftest import CART, close_notes, eventually, project, write
+
+
+def world_panel(arena):
+    return next(panel for panel in arena.viewer._desk._panels if isinstance(panel, WorldPanel))
 
 
 @pytest.fixture(autouse=True)
@@ -97,7 +103,7 @@ def test_the_gizmo_lifts_the_post_and_holds_it_until_let_go(page, arena):
     close_notes(page)
     row(page, "post").click()
     page.locator("[data-model='post']").wait_for()
-    gizmo = arena.viewer._desk._world._gizmo
+    gizmo = world_panel(arena)._gizmo
     box = page.locator("canvas[data-engine]").bounding_box()
     post = arena.pose("post")
     at = lambda z: project(arena.camera(), (post.x, post.y, post.z + z), box)  # noqa: E731
@@ -118,7 +124,7 @@ def test_the_gizmo_lifts_the_post_and_holds_it_until_let_go(page, arena):
 
 def test_the_scene_goes_on_as_the_gizmo_is_let_go(page, arena):
     """Moving a fixed thing builds the world anew and keeps what moves."""
-    world = arena.viewer._desk._world
+    world = world_panel(arena)
     yaw = arena.pose().yaw
     arena.viewer._page.post(
         lambda: world.move("post", arena.viewer._desk.scene.pose("post").__matmul__(_ahead()))

@@ -20,6 +20,7 @@ from cartwheel.viewer.panels.topics import list_html
 def image(encoding, data, *, width, height, step):
     return SimpleNamespace(
         encoding=encoding,
+        is_bigendian=0,
         width=width,
         height=height,
         step=step,
@@ -40,7 +41,7 @@ def test_padding_at_the_end_of_a_row_is_no_pixel():
 
 
 def test_an_encoding_without_colours_is_refused():
-    assert pixels_of(image("32FC1", [0] * 8, width=2, height=1, step=8)) is None
+    assert pixels_of(image("yuv422", [0] * 8, width=2, height=1, step=8)) is None
 
 
 def test_an_imu_message_becomes_a_row():

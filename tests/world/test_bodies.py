@@ -43,3 +43,94 @@ def test_a_cone_stands_on_its_base() -> None:
         world.run(2.0)
         assert pile.pose.z == pytest.approx(0.5, abs=2e-3)
         assert abs(pile.pose.rpy[0]) + abs(pile.pose.rpy[1]) < 0.01
+
+
+def bar(name: str, length: float) -> str:
+    """A link of 1 kg along x, its mass at the middle."""
+    inertia = length**2 / 12
+    return f"""<link name="{name}"><inertial><origin xyz="{length / 2} 0 0"/><mass value="1"/>
+      <inertia ixx="0.001" iyy="{inertia}" izz="{inertia}" ixy="0" ixz="0" iyz="0"/></inertial>
+    </link>"""
+
+
+MIMIC = f"""<robot name="r"><link name="world"/>{bar("a", 0.5)}{bar("b", 0.5)}
+  <joint name="lead" type="continuous"><parent link="world"/><child link="a"/>
+    <origin xyz="0 0 2"/><axis xyz="0 1 0"/></joint>
+  <joint name="follow" type="continuous"><parent link="world"/><child link="b"/>
+    <origin xyz="0 1 2"/><axis xyz="0 1 0"/><mimic joint="lead" multiplier="-2" offset="0.3"/>
+  </joint></robot>"""
+
+FOUR_BARS = """<sdf version="1.10"><model name="linkage">
+  {links}
+  <joint name="stand" type="fixed"><parent>world</parent><child>ground</child></joint>
+  <joint name="left" type="revolute"><parent>ground</parent><child>crank</child>
+    <axis><xyz>0 1 0</xyz></axis></joint>
+  <joint name="top" type="revolute"><parent>crank</parent><child>coupler</child>
+    <axis><xyz>0 1 0</xyz></axis></joint>
+  <joint name="right" type="revolute"><parent>ground</parent><child>rocker</child>
+    <axis><xyz>0 1 0</xyz></axis></joint>
+  <joint name="loop" type="revolute"><parent>coupler</parent><child>rocker</child>
+    <pose>0 0 0.5 0 0 0</pose><axis><xyz>0 1 0</xyz></axis></joint>
+</model></sdf>"""
+
+
+def test_a_mimic_joint_follows_its_leader() -> None:
+    with cw.World("empty") as world:
+        world.spawn(load_text(MIMIC, file="r.urdf"))
+        simulation = world.session.simulation
+        turned = []
+        for _ in range(20):
+            world.run(0.1)
+            lead, follow = (simulation.joint_position("r", name) for name in ("lead", "follow"))
+            turned.append(lead)
+            assert follow == pytest.approx(-2 * lead + 0.3, abs=0.02)
+        assert max(turned) - min(turned) > 0.05
+
+
+def test_a_loop_of_links_stays_closed() -> None:
+    """A parallelogram of bars: its coupler stays level however it swings."""
+    places = {"ground": "0 0 2", "crank": "0 0 2", "coupler": "0 0 2.5", "rocker": "1 0 2"}
+    links = "".join(
+        f"""<link name="{name}"><pose>{place} 0 0 0</pose><inertial>
+          <pose>0 0 {0.25 if name in ("crank", "rocker") else 0} 0 0 0</pose><mass>1</mass>
+          <inertia><ixx>0.02</ixx><iyy>0.02</iyy><izz>0.02</izz></inertia></inertial></link>"""
+        for name, place in places.items()
+    )
+    with cw.World("empty") as world:
+        world.spawn(load_text(FOUR_BARS.format(links=links), file="linkage.sdf"))
+        simulation = world.session.simulation
+        simulation.data.joint("linkage::left").qvel = 1.0
+        simulation.data.joint("linkage::right").qvel = 1.0
+        simulation.data.joint("linkage::top").qvel = -1.0
+        swung = []
+        for _ in range(20):
+            world.run(0.1)
+            left, top = (simulation.joint_position("linkage", name) for name in ("left", "top"))
+            swung.append(abs(left))
+            assert left + top == pytest.approx(0.0, abs=0.02)
+        assert max(swung) > 0.5
+
+
+def test_a_thin_plate_beyond_the_edge_by_rounding_is_built() -> None:
+    """ixx + iyy = izz: turned, and in binary digits, the sum is a little less."""
+    inertia = 'ixx="5.445e-05" iyy="5.445e-05" izz="1.089e-04" ixy="0" ixz="0" iyz="0"'
+    text = f"""<robot name="r"><link name="plate"><inertial><origin rpy="-1.57 0 0"/>
+      <mass value="0.1"/><inertia {inertia}/></inertial></link></robot>"""
+    with cw.World("empty") as world:
+        world.spawn(load_text(text, file="r.urdf"), z=1.0)
+        model = world.session.simulation.model
+        moments = sorted(model.body_inertia[model.body("r::plate").id])
+        assert moments == pytest.approx([5.445e-05, 5.445e-05, 1.089e-04], rel=1e-6)
+
+
+@pytest.mark.parametrize(("written", "half"), [("2 0.5", (1.0, 0.25)), ("100 100", (200.0, 200.0))])
+def test_a_small_plane_is_drawn_as_large_as_it_says_and_a_ground_to_the_horizon(
+    make, written, half
+):
+    sign = make.sdf(
+        f"""<model name="sign"><static>true</static><link name="l"><visual name="v"><geometry>
+        <plane><normal>1 0 0</normal><size>{written}</size></plane></geometry></visual></link>
+        </model>"""
+    )
+    model = make.world(sign, ground=None).session.simulation.model
+    assert model.geom_size[0, :2] == pytest.approx(half)

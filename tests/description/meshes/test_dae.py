@@ -83,7 +83,7 @@ def points(part) -> list[tuple[float, ...]]:
 def test_unit_is_applied_and_up_axis_is_not(tmp_path):
     (part,) = load(tmp_path, document(unit="0.01", up="Y_UP", positions="0 0 0 100 0 0 0 50 0"))
     assert points(part) == [(0, 0, 0), (0, 0.5, 0), (1, 0, 0)]
-    assert part.name == "part"
+    assert (part.name, part.geometry) == ("n", "part")
 
 
 def test_nodes_place_their_geometry(tmp_path):

@@ -33,6 +33,23 @@ def test_link_relative_to_link():
     close(found.link("b").pose, (1, 3, 0.5), (0, 0, QUARTER))
 
 
+@pytest.mark.parametrize("text", ["1 2 0", "1 2 0 0 0", "1 2 0 0 0 0 7"])
+def test_a_pose_of_another_length_is_read_as_far_as_it_goes(text):
+    found = robot(f'<link name="a"><pose>{text}</pose></link>')
+    close(found.link("a").pose, (1, 2, 0))
+    (told,) = found.diagnostics
+    assert f"pose has {len(text.split())} numbers" in told.message
+    assert told.origin.line == 3
+
+
+def test_a_model_may_go_by_its_own_name():
+    found = robot(
+        """<link name="a"><pose>1 0 0 0 0 0</pose><collision name="c">
+        <pose relative_to="m">3 0 0 0 0 0</pose><geometry><box/></geometry></collision></link>"""
+    )
+    close(found.link("a").collisions[0].pose, (2, 0, 0))
+
+
 def test_the_older_frame_attribute_means_the_same_and_may_be_empty():
     found = robot(
         """<link name="a"><pose frame="">1 0 0 0 0 0</pose></link>

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import pytest
+from PIL import Image
 
 from cartwheel.description import model as m
 from cartwheel.description.packages import Packages
@@ -60,16 +61,16 @@ def test_shapes(geometry, expected):
 
 
 def test_mesh_and_heightmap(tmp_path):
-    (tmp_path / "part.dae").write_text("x")
-    (tmp_path / "hills.png").write_text("x")
+    (tmp_path / "part.obj").write_text("o lid\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    Image.new("L", (3, 3), 255).save(tmp_path / "hills.png")
     found = shape(
-        "<mesh><uri>part.dae</uri><scale>1 1 -2</scale>"
+        "<mesh><uri>part.obj</uri><scale>1 1 -2</scale>"
         "<submesh><name>lid</name><center>true</center></submesh></mesh>",
         tmp_path,
     )
     assert found == m.Mesh(
-        uri="part.dae",
-        path=tmp_path / "part.dae",
+        uri="part.obj",
+        path=tmp_path / "part.obj",
         scale=(1, 1, -2),
         submesh="lid",
         center_submesh=True,
@@ -78,6 +79,59 @@ def test_mesh_and_heightmap(tmp_path):
     assert shape(hills, tmp_path) == m.Heightmap(
         path=tmp_path / "hills.png", size=(10, 10, 3), position=(0, 0, 1)
     )
+
+
+@pytest.mark.parametrize(
+    ("geometry", "expected", "missing"),
+    [
+        ("<box/>", m.Box(size=(1, 1, 1)), ["size"]),
+        ("<sphere/>", m.Sphere(radius=1), ["radius"]),
+        ("<ellipsoid/>", m.Ellipsoid(radii=(1, 1, 1)), ["radii"]),
+        ("<cylinder/>", m.Cylinder(radius=1, length=1), ["radius", "length"]),
+        ("<cone><radius>2</radius></cone>", m.Cone(radius=2, length=1), ["length"]),
+    ],
+)
+def test_a_measure_that_is_not_stated_is_1_m(geometry, expected, missing):
+    found = link(f'<visual name="v"><geometry>{geometry}</geometry></visual>')
+    assert found.links[0].visuals[0].shape == expected
+    assert [f"has no <{tag}>" in told.message for tag, told in
+            zip(missing, found.diagnostics, strict=True)] == [True] * len(missing)  # fmt: skip
+
+
+@pytest.mark.parametrize("geometry", ["", "<geometry/>"])
+def test_a_part_without_a_shape_is_left_out(geometry):
+    found = link(f'<collision name="c">{geometry}</collision>')
+    assert found.links[0].collisions == ()
+    (told,) = found.diagnostics
+    assert told.severity == "warning"
+    assert 'collision "c"' in told.message
+
+
+def test_a_mesh_without_the_submesh_costs_the_one_shape(tmp_path):
+    (tmp_path / "part.obj").write_text("o lid\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    found = link(
+        """<visual name="v"><geometry><mesh><uri>part.obj</uri><submesh><name>lip</name></submesh>
+        </mesh></geometry></visual>""",
+        folder=tmp_path,
+    )
+    assert found.links[0].visuals == ()
+    (told,) = found.diagnostics
+    assert told.severity == "error"
+    assert 'no submesh "lip"' in told.message
+    assert 'Did you mean "lid"' in told.message
+
+
+def test_one_scale_counts_for_all_axes_and_none_costs_the_shape(tmp_path):
+    (tmp_path / "part.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    mesh = "<mesh><uri>part.obj</uri><scale>{}</scale></mesh>"
+    assert shape(mesh.format("2"), tmp_path).scale == (2, 2, 2)
+    assert shape(mesh.format("1 0 1"), tmp_path) is None
+
+
+def test_nested_models_of_one_name_are_told_apart():
+    inner = '<model name="n"><link name="a"/></model>'
+    found = robot(inner + inner)
+    assert sorted(each.name for each in found.links) == ["n::a", "n_1::a"]
 
 
 def test_a_missing_mesh_costs_the_one_shape(tmp_path):
@@ -334,6 +388,39 @@ def test_joint_types(written, kind):
         assert found.axis2.xyz == (0, 1, 0)
 
 
+def test_a_joint_without_an_axis_turns_about_z():
+    found = robot(BAD_JOINT.format("revolute", ENDS))
+    assert found.joint("j").axis.xyz == (0, 0, 1)
+    (told,) = found.diagnostics
+    assert "has no <axis>" in told.message
+
+
+def test_a_fixed_joint_may_name_the_world_as_its_child():
+    found = robot(BAD_JOINT.format("fixed", "<parent>a</parent><child>world</child>"))
+    assert (found.joint("j").parent, found.joint("j").child) == ("world", "a")
+
+
+def test_a_joint_may_stand_on_the_frame_of_another_joint_or_model():
+    found = robot(
+        f"""<link name="a"/><link name="b"/><link name="c"/>
+        <model name="n"><pose>0 0 1 0 0 0</pose><link name="d"/></model>
+        <joint name="j" type="fixed"><parent>c</parent><child>k</child></joint>
+        <joint name="k" type="fixed">{ENDS}</joint>
+        <joint name="l" type="fixed"><parent>__model__</parent><child>n::__model__</child>
+        </joint>"""
+    )
+    ends = [(joint.parent, joint.child) for joint in found.joints]
+    assert ends == [("c", "b"), ("a", "b"), ("a", "n::d")]
+
+
+def test_an_empty_pose_may_say_how_it_would_be_written():
+    found = robot(
+        '<link name="a"><pose degrees="true"/></link>'
+        '<link name="b"><pose rotation_format="quat_xyzw" degrees="false"/></link>'
+    )
+    assert found.diagnostics == ()
+
+
 def test_screw_pitch_is_metres_per_turn():
     axis = "<axis><xyz>1 0 0</xyz></axis>"
     assert (
@@ -406,8 +493,13 @@ POINT = "<inertial><inertia><ixx>0</ixx><iyy>0</iyy><izz>0</izz></inertia></iner
 
 
 def test_impossible_inertia_matters_where_it_moves():
-    with pytest.raises(DescriptionError, match=r'm\.sdf:4: link "base": no body has this'):
-        link(FLAT)
+    found = link(FLAT)
+    (told,) = found.diagnostics
+    assert 'link "base": no body has this' in told.message
+    assert told.origin.line == 4
+    made = found.links[0].inertial
+    a, b, c = sorted((made.ixx, made.iyy, made.izz))
+    assert a + b == pytest.approx(c)
     robot(f'<static>true</static><link name="a">{FLAT}</link>')
     with pytest.raises(DescriptionError, match="not positive definite"):
         link(POINT)
@@ -441,11 +533,10 @@ ENDS = "<parent>a</parent><child>b</child>"
          'm.sdf:3: joint "j": parent link "aa" does not exist'),
         (BAD_JOINT.format("fixed", "<parent>a</parent><child>bb</child>"),
          'child link "bb" does not exist'),
-        (BAD_JOINT.format("fixed", "<parent>a</parent><child>world</child>"), "Swap"),
+        (BAD_JOINT.format("ball", "<parent>a</parent><child>world</child>"), "Swap"),
         (BAD_JOINT.format("fixed", "<parent>a</parent><child>a</child>"), "to itself"),
         (BAD_JOINT.format("fixed", "<parent>a</parent>"), "has no <child>"),
         (BAD_JOINT.format("revolut", ENDS), 'Did you mean "revolute"'),
-        (BAD_JOINT.format("revolute", ENDS), "has no <axis>"),
         (BAD_JOINT.format("universal", ENDS + "<axis/>"), "has no <axis2>"),
         (BAD_JOINT.format("revolute", ENDS + "<axis><xyz>0 0 0</xyz></axis>"), "no direction"),
         (BAD_JOINT.format("revolute", ENDS + "<axis><limit><lower>1</lower><upper>0</upper>"
@@ -454,9 +545,7 @@ ENDS = "<parent>a</parent><child>b</child>"
         (BAD_JOINT.format("fixed", ENDS) + f'<joint name="j" type="fixed">{ENDS}</joint>', '"j"'),
         ('<link name="a"><inertial><mass>0</mass></inertial></link>', "must be above 0"),
         ('<link name="a"><inertial><mass>x</mass></inertial></link>', 'mass "x" is not a number'),
-        ('<link name="a"><pose>0 0 0</pose></link>', "6 are needed"),
-        ('<link name="a"><visual name="v"/></link>', "has no <geometry>"),
-        ('<link name="a"><visual name="v"><geometry/></visual></link>', "<geometry> is empty"),
+        ('<link name="a"><pose>0 0 x</pose></link>', 'pose "x" is not a number'),
         ('<link name="a"><visual name="v"><geometry><bx/></geometry></visual></link>',
          'Did you mean "box"'),
         ('<link name="a"><visual name="v"><geometry><box><size>1 -1 1</size></box></geometry>'
@@ -494,3 +583,49 @@ def test_errors(inside, reason):
 def test_wrong_documents(text, reason):
     with pytest.raises(DescriptionError, match=reason):
         read_sdf(parse(text, "a.sdf"), Packages(environment={}))
+
+
+def test_an_inertia_that_is_no_number_is_the_default():
+    found = link("<inertial><mass>2</mass><inertia><ixx>nan</ixx><iyy>1</iyy></inertia></inertial>")
+    inertial = found.links[0].inertial
+    assert (inertial.mass, inertial.ixx, inertial.iyy, inertial.izz) == (2, 1, 1, 1)
+    (told,) = found.diagnostics
+    assert told.severity == "warning"
+    assert "not a number" in told.message
+
+
+def test_a_static_model_may_state_any_mass():
+    found = robot("<static>true</static><link name='a'><inertial><mass>0</mass></inertial></link>")
+    assert found.links[0].inertial is None
+
+
+def test_names_with_a_prefix_are_for_other_programs_and_told_once():
+    found = robot(
+        """<gz:semantics x="1"/><link name="a" my:colour="red"><gz:semantics/>
+        <collision name="c"><geometry><box/></geometry><surface><friction><ode>
+        <fdir1 gz:expressed_in="a">1 0 0</fdir1></ode></friction></surface></collision></link>
+        <static>0</static><static>0</static>"""
+    )
+    infos = [told.message for told in found.diagnostics if told.severity == "info"]
+    assert infos == [
+        "gz:semantics is for other programs",
+        "my:colour is for other programs",
+        "<static> in <model> has no effect: the first counts",
+    ]
+
+
+def test_what_needs_a_missing_part_tells_of_the_missing_part():
+    with pytest.raises(DescriptionError, match='"nothing_there" was not found') as caught:
+        robot(
+            """<link name='a'/><include><uri>model://nothing_there</uri><name>n</name></include>
+            <joint name='j' type='fixed'><parent>a</parent><child>n::b</child></joint>"""
+        )
+    assert 'child link "n::b" does not exist' in caught.value.hint
+
+
+def test_a_missing_part_of_a_model_costs_the_part():
+    found = robot("<link name='a'/><include><uri>model://nothing_there</uri></include>")
+    assert [each.name for each in found.links] == ["a"]
+    (told,) = found.diagnostics
+    assert told.severity == "error"
+    assert "left out" in told.message

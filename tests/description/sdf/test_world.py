@@ -132,13 +132,13 @@ def test_include_changes_name_pose_and_static(tmp_path):
 def test_an_included_file_has_its_own_version_and_relative_files(tmp_path):
     inside = f"""<model name="arm"><link name="a"/>
       <link name="b"><pose>0 0 0 0 0 {QUARTER}</pose>
-      <visual name="v"><geometry><mesh><uri>meshes/b.dae</uri></mesh></geometry></visual></link>
+      <visual name="v"><geometry><mesh><uri>meshes/b.obj</uri></mesh></geometry></visual></link>
       <joint name="j" type="revolute"><parent>a</parent><child>b</child>
       <axis><xyz>1 0 0</xyz></axis></joint></model>"""
     save_model(tmp_path, "arm", inside, version="1.4", file="old.sdf")
-    mesh = tmp_path / "models" / "arm" / "meshes" / "b.dae"
+    mesh = tmp_path / "models" / "arm" / "meshes" / "b.obj"
     mesh.parent.mkdir()
-    mesh.write_text("x")
+    mesh.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
     (found,) = world("<include><uri>model://arm</uri></include>", "1.9", tmp_path).models
     assert found.joint("j").axis.xyz == pytest.approx((0, -1, 0))
     assert found.link("b").visuals[0].shape.path == mesh
@@ -209,21 +209,121 @@ def test_saved_joint_positions_are_told():
 @pytest.mark.parametrize(
     ("inside", "reason"),
     [
-        (box("a") + box("a"), 'model "a" has the name of another model'),
         ("<include/>", "has no <uri>"),
         ("<include><uri/></include>", "<uri> is empty"),
-        ("<include><uri>model://nothing_there</uri></include>", '"nothing_there" was not found'),
-        ("<include><uri>https://a.b/1.0/c/models/Dragon</uri></include>", "nothing is downloaded"),
         (box("a", '<pose relative_to="b"/>') + box("b", '<pose relative_to="a"/>'), "in a circle"),
         ("<physics><max_step_size>0</max_step_size></physics>", "step must be above 0"),
         ("<gravity>0 -9.8</gravity>", "3 are needed"),
-        ("</world><world name='b'>", "one file describes one world"),
     ],
 )
 def test_errors(inside, reason):
     with pytest.raises(DescriptionError, match=reason) as caught:
         world(inside)
     assert caught.value.origin.line >= 2
+
+
+@pytest.mark.parametrize(
+    ("uri", "reason"),
+    [
+        ("model://nothing_there", '"nothing_there" was not found'),
+        ("https://a.b/1.0/c/models/Dragon", "nothing is downloaded"),
+        ("model://walker", "an actor, which is not simulated"),
+    ],
+)
+def test_a_missing_model_costs_the_one_model(uri, reason, tmp_path):
+    save_model(tmp_path, "walker", '<actor name="walker"/>')
+    found = world(f"<include><uri>{uri}</uri></include>" + box("a"), folder=tmp_path)
+    assert [model.name for model in found.models] == ["a"]
+    (told,) = found.diagnostics
+    assert told.severity == "error"
+    assert reason in told.message
+    assert "left out" in told.message
+    assert told.origin.line >= 2
+
+
+@pytest.mark.parametrize("tag", ["actor", "population", "road"])
+def test_what_is_not_simulated_is_told_by_name(tag):
+    found = world(f'<{tag} name="it"><pose>0 0 0 0 0 0</pose></{tag}>' + box("a"))
+    assert [model.name for model in found.models] == ["a"]
+    (told,) = found.diagnostics
+    assert told.severity == "warning"
+    assert f'<{tag}> "it"' in told.message
+
+
+def test_a_model_that_needs_a_missing_part_is_left_out():
+    found = world(
+        box("a")
+        + """<model name="cart"><link name="base"/><include><uri>nothing_there</uri>
+        <name>n</name></include><joint name="j" type="fixed"><parent>base</parent>
+        <child>n::b</child></joint></model><model name="shelf"><include><uri>nothing_there</uri>
+        </include></model><model name="on"><pose relative_to="shelf"/><link name="x"/></model>""",
+        "1.9",
+    )
+    assert [model.name for model in found.models] == ["a"]
+    told = [each.message for each in found.diagnostics]
+    assert {each.severity for each in found.diagnostics} == {"error"}
+    for name in ("cart", "nothing_there", "on"):
+        assert any(f'"{name}"' in each and "left out" in each for each in told)
+
+
+def test_a_static_model_stays_static_in_another(tmp_path):
+    save_model(tmp_path, "wall", '<model name="wall"><static>1</static><link name="l"/></model>')
+    include = "<include><uri>model://wall</uri></include>"
+    alone, mixed = world(
+        f'<model name="a">{include}</model><model name="b">{include}<link name="ball"/></model>',
+        "1.9",
+        tmp_path,
+    ).models
+    assert alone.static
+    assert alone.joints == ()
+    assert not mixed.static
+    ((parent, child),) = [(joint.parent, joint.child) for joint in mixed.joints]
+    assert (parent, child) == ("world", "wall::l")
+
+
+def test_a_model_without_links_is_left_out():
+    found = world(box("a") + '<model name="empty"/>')
+    assert [model.name for model in found.models] == ["a"]
+    (told,) = found.diagnostics
+    assert told.severity == "warning"
+    assert 'model "empty" has no links; it is left out' in told.message
+
+
+def test_models_of_one_name_are_told_apart():
+    found = world(box("a") + box("a") + box("a_1"))
+    assert [model.name for model in found.models] == ["a_2", "a", "a_1"]
+    (told,) = found.diagnostics
+    assert told.severity == "warning"
+
+
+def test_only_the_first_world_is_run():
+    found = world(box("a") + "</world><world name='b'><x/>")
+    assert found.name == "w"
+    (told,) = found.diagnostics
+    assert '"b" is left out' in told.message
+
+
+@pytest.mark.parametrize("uri", ["tree", "file://tree", "model://tree"])
+def test_a_bare_name_is_that_of_a_model(uri, tmp_path):
+    save_model(tmp_path, "tree", box("tree"))
+    (found,) = world(f"<include><uri>{uri}</uri></include>", folder=tmp_path).models
+    assert found.name == "tree"
+
+
+def test_a_damaged_model_config_is_done_without(tmp_path):
+    save_model(tmp_path, "door", box("door"))
+    (tmp_path / "models/door/model.config").write_text("<model>door & frame</model>")
+    found = world("<include><uri>model://door</uri></include>", folder=tmp_path)
+    assert [model.name for model in found.models] == ["door"]
+    (told,) = found.diagnostics
+    assert told.severity == "info"
+    assert "model.config" in told.message
+
+
+def test_the_default_plugin_is_none():
+    plugin = '<plugin name="__default__" filename="__default__"/>'
+    found = world(plugin + box("a", plugin))
+    assert found.plugins == found.models[0].plugins == found.diagnostics == ()
 
 
 def test_a_model_that_includes_itself(tmp_path):

@@ -252,7 +252,7 @@ def test_light():
         ),
         (on("base", "<projector/>x"), "<projector> is empty"),
         (on("base", '<projector name="p"/>'), "<projector> has no effect here"),
-        (on("hinge", "<fudgeFactor>1</fudgeFactor>"), "<fudgeFactor> has no effect here"),
+        (on("hinge", "<stopCfm></stopCfm>"), "<stopCfm> is empty: the default counts"),
         (
             on("base", "<preserveFixedJoint>1</preserveFixedJoint>"),
             '<preserveFixedJoint> acts on a joint, but "base" is a link: it has no effect',
@@ -285,13 +285,18 @@ def test_warnings(tags, message):
     assert message in diagnostic.message
 
 
+def test_a_tag_for_nothing_is_left_out_and_told():
+    (diagnostic,) = load(on("bas", '<mu1>1</mu1><sensor name="a" type="imu"/>')).diagnostics
+    assert str(diagnostic).startswith("robot.urdf:2: warning: ")
+    assert diagnostic.message == (
+        '<gazebo> refers to "bas", which is neither a link nor a joint: all in it is left out. '
+        'Did you mean "base"?'
+    )
+
+
 @pytest.mark.parametrize(
     ("tags", "message"),
     [
-        (
-            on("bas", "<mu1>1</mu1>"),
-            '<gazebo> refers to "bas", which is neither a link nor a joint\n  Did you mean "base"?',
-        ),
         (on("base", "<mu1>x</mu1>"), 'mu1 "x" is not a number'),
         (on("base", "<selfCollide>perhaps</selfCollide>"), "neither true nor false"),
         (on("base", '<sensor name="a"/>'), 'sensor "a" has no attribute "type"'),
@@ -303,3 +308,11 @@ def test_errors(tags, message):
         load(tags)
     assert str(caught.value).startswith("robot.urdf:2: ")
     assert message in str(caught.value)
+
+
+def test_a_fudge_factor_is_no_loss():
+    (diagnostic,) = load(on("hinge", "<fudgeFactor>1</fudgeFactor>")).diagnostics
+    assert (diagnostic.severity, diagnostic.message) == (
+        "info",
+        "<fudgeFactor> is not needed: limits here do not overshoot",
+    )

@@ -1,0 +1,624 @@
+"""Recordings, read back by readers that are not ours: mcap, rosbags, Debian's rosbag, SQLite."""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import json
+import os
+import random
+import re
+import signal
+import sqlite3
+import subprocess
+import sys
+import threading
+import time
+from collections import defaultdict
+from pathlib import Path
+from typing import Any
+
+import pytest
+from mcap.reader import NonSeekingReader, make_reader
+from mcap_ros2.decoder import DecoderFactory
+from rosbags.highlevel import AnyReader
+
+import cartwheel as cw
+from cartwheel.bridges.recording import Recorder
+from cartwheel.bridges.recording.backlog import Backlog, Item
+from cartwheel.bridges.recording.patterns import Patterns
+from cartwheel.bridges.recording.sink import Sink
+from cartwheel.errors import RecordingError
+from cartwheel.graph import Graph
+from cartwheel.messages import encode_cdr, from_dict, message_class
+from cartwheel.messages.ros1 import encode_ros1, ros1_type
+
+PROGRAM = Path(sys.executable).with_name("cartwheel")
+PYTHON = "/usr/bin/python3"
+HAS_ROSBAG = Path("/usr/lib/python3/dist-packages/rosbag").is_dir()
+NAMES = ["drive.mcap", "drive.bag", "drive.db3", "drive"]
+
+Found = dict[str, list[tuple[int, bytes]]]
+"""Times and bytes by topic."""
+
+
+class Witness:
+    """What a subscriber of all topics sees."""
+
+    def __init__(self, world: cw.World, *, ros1: bool) -> None:
+        self.found: Found = defaultdict(list)
+        self.types: dict[str, str] = {}
+        for info in world.graph.topics():
+            self._watch(world, info.name, info.type, ros1)
+
+    def _watch(self, world: cw.World, name: str, kind: str, ros1: bool) -> None:
+        simulation = world.session.simulation
+        found = self.found[name]
+
+        def take(message: Any) -> None:
+            seq = len(found) + 1
+            data = encode_ros1(message, seq=seq) if ros1 else encode_cdr(message)
+            found.append((simulation.time_ns, data))
+
+        self.types[name] = kind
+        world.graph.subscribe(name, take, node="witness")
+
+
+def read_with_rosbags(path: Path) -> Found:
+    found: Found = defaultdict(list)
+    with AnyReader([path]) as reader:
+        for connection, time_ns, data in reader.messages():
+            reader.deserialize(data, connection.msgtype)
+            found[connection.topic].append((time_ns, bytes(data)))
+    return found
+
+
+def read_with_mcap(path: Path) -> Found:
+    found: Found = defaultdict(list)
+    with path.open("rb") as file:
+        for _, channel, message in make_reader(file, validate_crcs=True).iter_messages():
+            found[channel.topic].append((message.log_time, message.data))
+    return found
+
+
+def read_with_debian(path: Path, *options: str) -> dict[str, list[list[Any]]]:
+    """By Debian's rosbag, in another Python: times and digests by topic."""
+    script = (
+        "import collections, hashlib, json, rosbag, sys\n"
+        "found = collections.defaultdict(list)\n"
+        "for topic, raw, t in rosbag.Bag(sys.argv[1], *map(json.loads, sys.argv[2:]))"
+        ".read_messages(raw=True):\n"
+        "    found[topic].append([t.to_nsec(), hashlib.md5(raw[1]).hexdigest(), raw[2]])\n"
+        "print(json.dumps(found))\n"
+    )
+    run = subprocess.run(
+        [PYTHON, "-c", script, str(path), *options],
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+    )
+    assert run.returncode == 0, run.stderr
+    found: dict[str, list[list[Any]]] = json.loads(run.stdout)
+    return found
+
+
+def drive(path: Path, seconds: float = 1.0, **options: Any) -> Found:
+    """Records the cart, driving, beside a witness."""
+    with cw.World("empty", seed=3) as world:
+        cart = world.spawn("rosbots.xacro")
+        with world.record(path, **options):
+            witness = Witness(world, ros1=path.suffix == ".bag")
+            cart.publish("/part2_cmr/cmd_vel", linear_x=0.5, angular_z=0.3)
+            world.run(seconds)
+            return {topic: list(found) for topic, found in witness.found.items() if found}
+
+
+@pytest.fixture(scope="module")
+def drives(tmp_path_factory: pytest.TempPathFactory) -> dict[str, tuple[Path, Found]]:
+    folder = tmp_path_factory.mktemp("drives")
+    made = {}
+    for name in NAMES:
+        path = folder / name
+        made[name] = (path, drive(path))
+    return made
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_recording_is_what_a_subscriber_saw(
+    name: str, drives: dict[str, tuple[Path, Found]]
+) -> None:
+    path, seen = drives[name]
+    assert len(seen["/clock"]) == 100
+    assert len(seen["/rosbots/camera1/image_raw"]) == 30
+    assert len(seen["/part2_cmr/cmd_vel"]) == 1
+    found = read_with_rosbags(path)
+    assert set(found) == set(seen)
+    for topic in seen:
+        # rosbag knows no moment before its first nanosecond.
+        least = 1 if name == "drive.bag" else 0
+        assert found[topic] == [(max(t, least), data) for t, data in seen[topic]], topic
+
+
+@pytest.mark.parametrize("name", ["drive.mcap", "drive/drive_0.mcap"])
+def test_mcap_is_read_by_its_own_library(name: str, drives: dict[str, tuple[Path, Found]]) -> None:
+    path, seen = drives[name.partition("/")[0]]
+    path = path.parent / name
+    assert read_with_mcap(path) == seen
+    with path.open("rb") as file:
+        reader = make_reader(file, validate_crcs=True, decoder_factories=[DecoderFactory()])
+        summary = reader.get_summary()
+        assert summary is not None and summary.statistics is not None
+        assert summary.statistics.message_count == sum(map(len, seen.values()))
+        decoded = defaultdict(list)
+        for _, channel, _, message in reader.iter_decoded_messages():
+            decoded[channel.topic].append(message)
+        ((attachment),) = reader.iter_attachments()
+        assert attachment.name == "robot_description.xml"
+        assert attachment.data.decode() == decoded["/robot_description"][0].data
+        (notes,) = reader.iter_metadata()
+        assert notes.metadata["seed"] == "3"
+    stamps = [m.header.stamp for m in decoded["/imu/data"]]
+    assert [s.sec * 10**9 + s.nanosec for s in stamps] == [t for t, _ in seen["/imu/data"]]
+    assert decoded["/odom"][-1].twist.twist.linear.x == pytest.approx(0.5, abs=0.05)
+
+
+@pytest.mark.skipif(not HAS_ROSBAG, reason="Debian's python3-rosbag is not installed")
+def test_a_bag_is_read_by_ros_1(drives: dict[str, tuple[Path, Found]]) -> None:
+    path, seen = drives["drive.bag"]
+    found = read_with_debian(path)
+    assert set(found) == set(seen)
+    for topic, messages in seen.items():
+        digests = [[max(t, 1), hashlib.md5(data).hexdigest()] for t, data in messages]
+        assert [row[:2] for row in found[topic]] == digests, topic
+    assert found["/imu/data"][0][2] == "6a62c6daae103f4ff57a132d6f95cec2"  # rosmsg md5
+
+
+def test_db3_is_rosbag2s_schema(drives: dict[str, tuple[Path, Found]]) -> None:
+    path, seen = drives["drive.db3"]
+    base = sqlite3.connect(path)
+    rows = base.execute(
+        "SELECT name, timestamp, data FROM messages JOIN topics ON topics.id = topic_id"
+        " ORDER BY messages.id"
+    )
+    found: Found = defaultdict(list)
+    for name, time_ns, data in rows:
+        found[name].append((time_ns, data))
+    assert found == seen
+    texts = dict(
+        base.execute("SELECT topic_type, encoded_message_definition FROM message_definitions")
+    )
+    assert texts["sensor_msgs/msg/Imu"].startswith("std_msgs/Header header\n")
+    assert base.execute("SELECT schema_version FROM schema").fetchone() == (4,)
+
+
+def test_ros_1s_encoding_in_mcap(tmp_path: Path) -> None:
+    path = tmp_path / "one.mcap"
+    drive(path, 0.2, topics=["/imu/data"], encoding="ros1")
+    with path.open("rb") as file:
+        rows = list(make_reader(file, validate_crcs=True).iter_messages())
+    assert [message.log_time for _, _, message in rows] == [
+        # 30 Hz on steps of 5 ms
+        0, 35_000_000, 70_000_000, 100_000_000, 135_000_000, 170_000_000,
+    ]  # fmt: skip
+    schema, channel, first = rows[0]
+    assert schema is not None
+    assert (schema.name, schema.encoding) == ("sensor_msgs/Imu", "ros1msg")
+    assert schema.data.decode() == ros1_type("sensor_msgs/msg/Imu").definition
+    assert channel.message_encoding == "ros1"
+    assert first.data[:4] == b"\x01\0\0\0"  # the header's seq
+
+
+# -- which topics
+
+
+@pytest.mark.parametrize(
+    ("patterns", "expected"),
+    [
+        ([], {"/clock", "/imu/data", "/a/image", "/b/image"}),
+        (["/clock"], {"/clock"}),
+        (["clock"], {"/clock"}),
+        (["*/image"], {"/a/image", "/b/image"}),
+        (["re:/(clock|imu/.*)"], {"/clock", "/imu/data"}),
+        (["!*/image"], {"/clock", "/imu/data"}),
+        (["/a/*", "!*image"], set()),
+        (["/?/image"], {"/a/image", "/b/image"}),
+        (["/imu"], set()),
+    ],
+)
+def test_patterns(patterns: list[str], expected: set[str]) -> None:
+    matcher = Patterns(patterns)
+    topics = ("/clock", "/imu/data", "/a/image", "/b/image")
+    assert {topic for topic in topics if matcher.match(topic)} == expected
+
+
+@pytest.mark.parametrize("pattern", ["re:(", "", "!"])
+def test_a_pattern_that_is_none(pattern: str) -> None:
+    with pytest.raises(RecordingError):
+        Patterns([pattern])
+
+
+def test_what_is_not_recorded_is_not_computed(tmp_path: Path) -> None:
+    with cw.World("empty") as world:
+        world.spawn("rosbots.xacro")
+        with world.record(tmp_path / "imu.mcap", topics=["/imu/*"]):
+            world.run(0.5)
+            wanted = {p.topic for p in world.graph.publishers() if p.wanted and p.qos != "latched"}
+            images = [p for p in world.graph.publishers() if p.topic.endswith("image_raw")]
+            assert wanted == {"/imu/data"}
+            assert images and all(image.sent == 0 for image in images)
+        assert not [p for p in world.graph.publishers() if p.wanted and p.qos != "latched"]
+    assert set(read_with_mcap(tmp_path / "imu.mcap")) == {"/imu/data"}
+
+
+def test_recording_changes_nothing(tmp_path: Path) -> None:
+    def states(file: Path | None) -> list[bytes]:
+        with cw.World("post", seed=4) as world:
+            cart = world.spawn("rosbots.xacro")
+            cart.publish("/part2_cmr/cmd_vel", linear_x=0.5, angular_z=-0.2)
+            if file is None:
+                world.run(1.5)
+            else:
+                with world.record(file):
+                    world.run(1.5)
+            data = world.session.simulation.data
+            return [data.qpos.tobytes(), data.qvel.tobytes()]
+
+    assert states(None) == states(tmp_path / "a.mcap")
+
+
+def test_a_pattern_without_topics_is_told(tmp_path: Path) -> None:
+    with cw.World("empty") as world:
+        with world.record(tmp_path / "a.mcap", topics=["/clok", "/clock"]):
+            world.run(0.1)
+        assert [d.message for d in world.diagnostics if d.severity == "warning"] == [
+            'recording: no topic matched "/clok"'
+        ]
+
+
+def test_a_robot_that_comes_later_is_recorded_from_its_first_message_on(tmp_path: Path) -> None:
+    path = tmp_path / "late.mcap"
+    with cw.World("empty") as world, world.record(path):
+        world.run(0.5)
+        world.spawn("rosbots.xacro")
+        world.run(0.5)
+    found = read_with_mcap(path)
+    assert [t for t, _ in found["/imu/data"]][:2] == [500_000_000, 535_000_000]
+    assert len(found["/imu/data"]) == 15
+    ((described, _),) = found["/robot_description"]
+    assert 500_000_000 <= described <= 600_000_000
+
+
+def test_a_reset_begins_a_new_file_that_stands_alone(tmp_path: Path) -> None:
+    with cw.World("empty") as world:
+        world.spawn("rosbots.xacro")
+        with world.record(tmp_path / "a.mcap", topics=["/clock", "/tf_static"]) as recorder:
+            world.run(0.5)
+            world.reset()
+            world.run(0.3)
+            world.reset()
+            world.run(0.1)
+    assert recorder.summary.files == tuple(tmp_path / f"a{n}.mcap" for n in ("", "_1", "_2"))
+    for name, count in (("a", 50), ("a_1", 30), ("a_2", 10)):
+        found = read_with_mcap(tmp_path / f"{name}.mcap")
+        assert [t for t, _ in found["/clock"]] == [i * 10_000_000 for i in range(count)]
+        assert len(found["/tf_static"]) == 1
+
+
+def test_a_reset_overwrites_nothing(tmp_path: Path) -> None:
+    (tmp_path / "a_1.mcap").write_text("mine")
+    with cw.World("empty") as world, world.record(tmp_path / "a.mcap"):
+        world.run(0.1)
+        world.reset()
+        world.run(0.1)
+    assert (tmp_path / "a_1.mcap").read_text() == "mine"
+    assert len(read_with_mcap(tmp_path / "a_2.mcap")["/clock"]) == 10
+
+
+# -- places
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("drive.avi", "no form of recording"),
+        ("nowhere/drive.mcap", "there is no folder"),
+        ("there.mcap", "exists"),
+        ("folder", "exists"),
+    ],
+)
+def test_a_place_that_takes_no_recording(tmp_path: Path, name: str, words: str) -> None:
+    (tmp_path / "there.mcap").write_text("mine")
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "folder" / "letter.txt").write_text("mine")
+    with (
+        cw.World("empty") as world,
+        pytest.raises(RecordingError, match=words),
+        world.record(tmp_path / name),
+    ):
+        pass
+    assert (tmp_path / "there.mcap").read_text() == "mine"
+
+
+def test_overwriting_takes_recordings_alone(tmp_path: Path) -> None:
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "folder" / "letter.txt").write_text("mine")
+    with cw.World("empty") as world:
+        with (
+            pytest.raises(RecordingError, match="no recording"),
+            world.record(tmp_path / "folder", overwrite=True),
+        ):
+            pass
+        for name in NAMES:
+            for seconds in (0.2, 0.1):
+                with world.record(tmp_path / name, topics=["/clock"], overwrite=True):
+                    world.run(seconds)
+            assert len(read_with_rosbags(tmp_path / name)["/clock"]) == 10
+    assert (tmp_path / "folder" / "letter.txt").read_text() == "mine"
+
+
+@pytest.mark.parametrize(
+    ("name", "encoding"), [("a.bag", "ros2"), ("a.db3", "ros1"), ("a", "ros1")]
+)
+def test_an_encoding_that_a_form_cannot_hold(tmp_path: Path, name: str, encoding: Any) -> None:
+    with (
+        cw.World("empty") as world,
+        pytest.raises(RecordingError, match="cannot hold"),
+        world.record(tmp_path / name, encoding=encoding),
+    ):
+        pass
+    assert not (tmp_path / name).exists()
+
+
+def test_a_file_that_the_system_refuses(tmp_path: Path) -> None:
+    with (
+        cw.World("empty") as world,
+        pytest.raises(RecordingError, match="cannot be written"),
+        world.record("/proc/drive.mcap"),
+    ):
+        pass
+
+
+# -- hardship
+
+
+def test_a_slow_disk_holds_the_simulation_and_loses_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    real = Backlog.get
+
+    def slow(self: Backlog, timeout: float) -> list[Item]:
+        time.sleep(0.02)
+        return real(self, timeout)
+
+    monkeypatch.setattr(Backlog, "get", slow)
+    monkeypatch.setattr("cartwheel.bridges.recording.backlog.COUNT", 5)
+    monkeypatch.setattr("cartwheel.bridges.recording.recorder.Backlog", lambda: Backlog(count=5))
+    path = tmp_path / "slow.mcap"
+    with cw.World("empty") as world:
+        with world.record(path, topics=["/clock"]) as recorder:
+            world.run(5.0)
+        told = [d.message for d in world.diagnostics if "slower" in d.message]
+    assert [t for t, _ in read_with_mcap(path)["/clock"]] == [i * 10_000_000 for i in range(500)]
+    # At most five wait, so there were at least a hundred turns of 20 ms.
+    assert recorder.summary.waited > 1.0
+    assert len(told) == 1
+
+
+def test_a_backlog_counts_bytes(tmp_path: Path) -> None:
+    image = from_dict("sensor_msgs/msg/Image", {"data": bytes(1000)})
+    backlog = Backlog(room=3000)
+    put = [0]
+
+    def fill() -> None:
+        for _ in range(10):
+            backlog.put(Item("/a", "t", False, 0, image, False))
+            put[0] += 1
+
+    thread = threading.Thread(target=fill)
+    thread.start()
+    taken = 0
+    while taken < 10:
+        items = backlog.get(10.0)
+        assert 0 < len(items) <= 3
+        taken += len(items)
+        backlog.done(items)
+    thread.join(10.0)
+    assert put == [10]
+
+
+def test_a_message_that_cannot_be_encoded_costs_itself_alone(tmp_path: Path) -> None:
+    graph = Graph()
+    told: list[str] = []
+    recorder = Recorder(
+        graph, tmp_path / "a.bag", time_ns=lambda: 5, report=lambda d: told.append(d.message)
+    )
+    publisher = graph.advertise("/a", "std_msgs/msg/UInt8")
+    made = message_class("std_msgs/msg/UInt8")
+    recorder.start()
+    for value in (1, 4000, 2):
+        publisher.publish(made(value))
+    assert recorder.close().messages == 2
+    assert read_with_rosbags(tmp_path / "a.bag") == {"/a": [(5, b"\1"), (5, b"\2")]}
+    assert len(told) == 1 and "/a" in told[0]
+
+
+_RUN = ["run", "--headless", "--speed", "max", "--for", "100000", "--record"]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_kill_leaves_all_but_the_last_second(name: str, tmp_path: Path) -> None:
+    path = tmp_path / name
+    process = subprocess.Popen(
+        [PROGRAM, *_RUN, str(path), "--record-topics", "!*image*"], stdout=subprocess.DEVNULL
+    )
+    try:
+        deadline = time.monotonic() + 60
+        file = path / "drive_0.mcap" if name == "drive" else path
+        while not file.exists() or file.stat().st_size < 200_000:
+            assert time.monotonic() < deadline and process.poll() is None
+            time.sleep(0.01)
+        # What is kept is what was there a second ago.
+        time.sleep(random.uniform(1.5, 3.0))
+    finally:
+        process.send_signal(signal.SIGKILL)
+        process.wait()
+    times = [t for t, _ in _read_broken(name, path)["/clock"]]
+    assert len(times) > 100
+    assert times == [max(i * 10_000_000, int(name == "drive.bag")) for i in range(len(times))]
+
+
+def _read_broken(name: str, path: Path) -> Found:
+    """What others read of a file without its end."""
+    found: Found = defaultdict(list)
+    if name == "drive.bag":
+        if not HAS_ROSBAG:
+            pytest.skip("Debian's python3-rosbag is not installed")
+        subprocess.run(["rosbag", "reindex", str(path)], check=True, capture_output=True)
+        for topic, rows in read_with_debian(path).items():
+            found[topic] = [(time_ns, b"") for time_ns, _, _ in rows]
+    elif name == "drive.db3":
+        base = sqlite3.connect(path)
+        for topic, time_ns in base.execute(
+            "SELECT name, timestamp FROM messages JOIN topics ON topics.id = topic_id"
+        ):
+            found[topic].append((time_ns, b""))
+    else:
+        if name == "drive":
+            assert "drive_0.mcap" in (path / "metadata.yaml").read_text()
+            path /= "drive_0.mcap"
+        # As a stream: it ends where the file does.
+        reader = NonSeekingReader(io.BytesIO(path.read_bytes()))
+        try:
+            for _, channel, message in reader.iter_messages(log_time_order=False):
+                found[channel.topic].append((message.log_time, b""))
+        except Exception as error:  # noqa: BLE001
+            assert "end" in type(error).__name__.lower() or "end" in str(error).lower(), error
+    return found
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_full_disk_ends_the_run_and_keeps_what_was_written(name: str, tmp_path: Path) -> None:
+    path = tmp_path / name
+    limit = 4_000_000
+    script = (
+        "import os, resource, sys\n"
+        f"resource.setrlimit(resource.RLIMIT_FSIZE, ({limit}, {limit}))\n"
+        "os.execv(sys.argv[1], sys.argv[1:])\n"
+    )
+    run = subprocess.run(
+        [sys.executable, "-c", script, str(PROGRAM), *_RUN, str(path), "--record-topics",
+         "/clock /odom /imu/data"],
+        capture_output=True, text=True, timeout=240, check=False,
+    )  # fmt: skip
+    assert run.returncode == 2, run.stderr
+    assert "Traceback" not in run.stderr
+    assert str(path) in run.stderr
+    (told,) = re.findall(r"broke off at ([\d.]+) s", run.stderr)
+    found = read_with_rosbags(path) if name != "drive.db3" else _read_broken(name, path)
+    times = [t for t, _ in found["/clock"]]
+    assert len(times) > 100
+    assert times == [max(i * 10_000_000, int(name == "drive.bag")) for i in range(len(times))]
+    # Whatever else was published at that time.
+    assert max(t for each in found.values() for t, _ in each) / 1e9 == pytest.approx(float(told))
+
+
+def test_a_write_that_fails_leaves_no_part_of_itself(tmp_path: Path) -> None:
+    sink = Sink(tmp_path / "a")
+    sink.write(b"whole")
+
+    class Full(io.RawIOBase):
+        """Takes three bytes more."""
+
+        def write(self, data: Any) -> int:
+            os.write(number, bytes(data[:3]))
+            self.write = self._refuse  # type: ignore[method-assign]
+            return 3
+
+        def _refuse(self, _: Any) -> int:
+            raise OSError(28, "No space left on device")
+
+        def truncate(self, size: int | None = None) -> int:
+            os.ftruncate(number, size or 0)
+            return size or 0
+
+        def seek(self, place: int, _: int = 0) -> int:
+            return os.lseek(number, place, 0)
+
+    number = os.open(tmp_path / "a", os.O_WRONLY | os.O_APPEND)
+    sink._file = Full()  # type: ignore[assignment]
+    with pytest.raises(OSError, match="No space"):
+        sink.write(b"never complete")
+    os.close(number)
+    assert (tmp_path / "a").read_bytes() == b"whole"
+    assert sink.position == 5
+
+
+# -- the command
+
+
+def run_program(*arguments: str, folder: Path, status: int = 0) -> str:
+    done = subprocess.run(
+        [PROGRAM, *arguments], cwd=folder, capture_output=True, text=True, timeout=120, check=False
+    )
+    assert done.returncode == status, done.stderr
+    assert "Traceback" not in done.stderr
+    return done.stdout if status == 0 else done.stderr
+
+
+def test_the_command_records_and_says_so(tmp_path: Path) -> None:
+    said = run_program(
+        *("run", "--headless", "--speed", "max", "--for", "2"),
+        *("--record", "a.mcap", "--record-topics", "/clock", "--record-topics", "/odom"),
+        folder=tmp_path,
+    )
+    assert "recorded 400 messages of 2 topics" in said
+    assert {t: len(m) for t, m in read_with_mcap(tmp_path / "a.mcap").items()} == {
+        "/clock": 200,
+        "/odom": 200,
+    }
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (["--record", "a.mp4"], "no form"),
+        (["--record", "there.bag"], "--overwrite"),
+        (["--record", "a.mcap", "--record-encoding", "ros3"], '"ros3"'),
+        (["--record", "a.mcap", "--record-topics", "re:("], "no regular expression"),
+    ],
+)
+def test_the_command_refuses(options: list[str], words: str, tmp_path: Path) -> None:
+    (tmp_path / "there.bag").write_text("mine")
+    said = run_program("run", "--headless", "--for", "1", *options, folder=tmp_path, status=2)
+    assert words in said
+
+
+def test_ctrl_c_completes_the_file(tmp_path: Path) -> None:
+    path = tmp_path / "a.mcap"
+    process = subprocess.Popen(
+        [PROGRAM, "run", "--headless", "--speed", "max", "--record", str(path)],
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    deadline = time.monotonic() + 60
+    while not path.exists() or path.stat().st_size < 50_000:
+        assert time.monotonic() < deadline and process.poll() is None
+        time.sleep(0.02)
+    process.send_signal(signal.SIGINT)
+    process.communicate(timeout=60)
+    assert process.returncode == 0
+    with path.open("rb") as file:
+        summary = make_reader(file, validate_crcs=True).get_summary()
+    assert summary is not None and summary.statistics is not None
+    found = read_with_mcap(path)
+    assert summary.statistics.message_count == sum(map(len, found.values()))
+    assert [t for t, _ in found["/clock"]] == [i * 10_000_000 for i in range(len(found["/clock"]))]
+
+
+def test_an_error_in_the_block_is_not_lost(tmp_path: Path) -> None:
+    with cw.World("empty") as world:
+        with pytest.raises(ZeroDivisionError), world.record(tmp_path / "a.mcap"):
+            world.run(0.1)
+            raise ZeroDivisionError
+        assert len(read_with_mcap(tmp_path / "a.mcap")["/clock"]) == 10

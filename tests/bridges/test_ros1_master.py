@@ -1,0 +1,221 @@
+"""Masters that come, go and come again; names that others take; ends."""
+
+import signal
+import subprocess
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from tests.bridges.conftest import Bridge
+from tests.bridges.ros1_peers import (
+    PATIENCE,
+    REASON,
+    Master,
+    Subscriber,
+    free_port,
+    registered,
+    simulation,
+    wait_for,
+)
+
+from cartwheel.bridges.ros1 import Ros1Bridge
+from cartwheel.errors import CartwheelError
+from cartwheel.graph import Graph
+
+pytestmark = [
+    pytest.mark.timeout(90),
+    pytest.mark.skipif(bool(REASON), reason=REASON),
+]
+
+
+@pytest.fixture
+def master(tmp_path: Path) -> Iterator[Master]:
+    """One of the test's own, which it may kill."""
+    made = Master(tmp_path)
+    yield made
+    made.kill()
+
+
+def test_a_master_that_is_restarted_learns_everything_anew(bridge: Bridge, master: Master) -> None:
+    run = bridge("_colour:=red")
+    wait_for(lambda: "/imu/service" in master.state()[2], "the registration")
+    run.graph.parameters.set("/part2_cmr/gain", 2.5)
+    wait_for(lambda: master.api.getParam("/test", "/part2_cmr/gain")[2] == 2.5, "the parameter")
+    before = master.state()
+    old = Subscriber(master, "/odom")
+    old.read()
+    time_ns = run.simulation.time_ns
+    master.kill()
+    wait_for(lambda: run.told("the ROS master is gone") == 1, "the report")
+    old.read()
+    assert run.simulation.time_ns > time_ns
+    master.start()
+    wait_for(lambda: run.told("answers again"), "the second report")
+    wait_for(lambda: master.state() == before, "everything")
+    assert master.api.getParam("/test", "/use_sim_time")[2] is True
+    assert master.api.getParam("/test", "/part2_cmr/gain")[2] == 2.5
+    assert master.api.getParam("/test", "/gazebo/colour")[2] == "red"
+    new = Subscriber(master, "/odom")
+    new.read()
+    old.read()
+    assert run.told("the ROS master is gone") == 1
+    talker = master.python(TALK)
+    try:
+        heard: list[float] = []
+        run.graph.subscribe("/part2_cmr/cmd_vel", lambda twist: heard.append(twist.linear.x))
+        wait_for(lambda: 0.25 in heard, "a peer of the new master")
+    finally:
+        talker.kill()
+        talker.communicate()
+    new.close()
+    old.close()
+
+
+TALK = """
+import rospy, time
+from geometry_msgs.msg import Twist
+rospy.init_node("talker", disable_rostime=True)
+publisher = rospy.Publisher("/part2_cmr/cmd_vel", Twist, queue_size=1, latch=True)
+command = Twist()
+command.linear.x = 0.25
+publisher.publish(command)
+rospy.spin()
+"""
+
+
+def test_a_restart_between_two_looks_is_noticed_too(bridge: Bridge, master: Master) -> None:
+    run = bridge(robot=False)
+    master.kill()
+    master.start()
+    registered(master)
+    assert master.state()[0]["/clock"] == ["/gazebo"]
+    wait_for(lambda: run.told("answers again"), "the report")
+
+
+def test_the_users_wall_time_is_left_alone(bridge: Bridge, master: Master) -> None:
+    master.api.setParam("/test", "/use_sim_time", False)
+    run = bridge(robot=False)
+    assert run.graph.parameters.get("/use_sim_time") is False
+
+
+def test_parameters_are_the_masters(bridge: Bridge, master: Master) -> None:
+    master.api.setParam("/test", "/arm/gains", {"p": 1, "i": 0.5})
+    run = bridge("_rate:=50", robot=False)
+    parameters = run.graph.parameters
+    assert parameters.get("/arm/gains") == {"p": 1, "i": 0.5}
+    assert parameters.get("/arm/gains/p") == 1
+    assert parameters.get("/arm/none", 3) == 3
+    assert parameters.search("gains", "/arm/left") == {"p": 1, "i": 0.5}
+    parameters.set("/arm/list", [1, 2.5, "text", True])
+    parameters.set("/arm/large", 1 << 40)
+    assert parameters.get("/arm/list") == [1, 2.5, "text", True]
+    wait_for(lambda: master.api.getParam("/test", "/arm/large")[2] == float(1 << 40), "the values")
+    assert master.api.getParam("/test", "/arm/list")[2] == [1, 2.5, "text", True]
+    assert master.api.getParam("/test", "/gazebo/rate")[2] == 50
+
+
+def test_a_node_of_the_same_name_takes_over(bridge: Bridge, master: Master) -> None:
+    run = bridge(robot=False)
+    other = master.python("import rospy; rospy.init_node('gazebo'); rospy.spin()")
+    try:
+        wait_for(lambda: run.ended, "the end")
+        assert "/gazebo" in run.ended[0]
+    finally:
+        other.kill()
+        other.communicate()
+
+
+def test_rosnode_kill_ends_the_run(master: Master) -> None:
+    with simulation(master, "empty.world") as process:
+        registered(master)
+        wait_for(lambda: "/gazebo/reset_world" in master.state()[2], "the services")
+        assert "killed" in master.run("rosnode", "kill", "/gazebo")
+        output, _ = process.communicate(timeout=PATIENCE)
+        assert process.returncode == 0
+        assert "ROS ended the node /gazebo" in output
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_ends_and_nothing_stays_registered(master: Master, number: int) -> None:
+    with simulation(master, "empty.world") as process:
+        registered(master)
+        wait_for(lambda: "/gazebo/reset_world" in master.state()[2], "the services")
+        process.send_signal(number)
+        process.communicate(timeout=PATIENCE)
+        assert process.returncode == 0
+        assert master.state() == ({}, {}, {})
+
+
+def test_a_master_is_started_where_none_is_and_ends_with_us(tmp_path: Path) -> None:
+    made = Master(tmp_path)
+    made.kill()
+    with simulation(made, "empty.world") as process:
+        wait_for(made.answers, "a master")
+        registered(made)
+        child = made.api.getPid("/test")[2]
+        if "/rosout_agg" in made.types():
+            assert made.run("rosnode", "list") == "/gazebo\n/rosout\n"
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=PATIENCE)
+        assert process.returncode == 0
+    wait_for(lambda: not Path(f"/proc/{child}").exists(), "its end")
+
+
+def test_a_master_of_ours_ends_also_where_we_are_killed(tmp_path: Path) -> None:
+    made = Master(tmp_path)
+    made.kill()
+    with simulation(made, "empty.world") as process:
+        registered_pid = wait_for(lambda: made.answers() and made.api.getPid("/test")[2], "it")
+        process.kill()
+        process.wait()
+    wait_for(lambda: not Path(f"/proc/{registered_pid}").exists(), "its end")
+
+
+def test_a_remote_master_that_does_not_answer_is_an_error(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    # An address that is kept for documentation: nobody is there.
+    monkeypatch.setenv("ROS_MASTER_URI", "http://192.0.2.1:11311")
+    bridge = Ros1Bridge(Graph())
+    began = time.monotonic()
+    with pytest.raises(CartwheelError, match=r"no ROS master: http://192\.0\.2\.1:11311"):
+        bridge.start()
+    assert time.monotonic() - began < 20
+    bridge.close()
+
+
+def test_what_is_no_master_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ROS_MASTER_URI", "here:or there")
+    with pytest.raises(CartwheelError, match="no address of a ROS node"):
+        Ros1Bridge(Graph())
+
+
+def test_a_port_that_something_else_has_is_told(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    port = free_port()
+    server = subprocess.Popen(
+        ["/usr/bin/python3", "-m", "http.server", str(port), "--bind", "127.0.0.1"],
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        cwd=tmp_path,
+    )
+    try:
+        monkeypatch.setenv("ROS_MASTER_URI", f"http://127.0.0.1:{port}")
+
+        def refused() -> bool:
+            bridge = Ros1Bridge(Graph())
+            try:
+                bridge.start()
+            except CartwheelError as error:
+                return "is no ROS master" in str(error)
+            finally:
+                bridge.close()
+            return False
+
+        time.sleep(0.5)
+        assert refused()
+    finally:
+        server.kill()
+        server.wait()

@@ -1,0 +1,140 @@
+"""RTPS's bytes against the standard's layouts, and delivery over a network that loses."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Sequence
+
+import pytest
+
+from cartwheel.bridges.ros2.rtps import discovery, wire
+from cartwheel.bridges.ros2.rtps.discovery import Endpoint, EndpointQos
+from cartwheel.bridges.ros2.rtps.reader import Reader, Taken
+from cartwheel.bridges.ros2.rtps.writer import Writer
+
+OURS, THEIRS = b"w" * 12, b"r" * 12
+WRITER, READER = b"\0\0\1\3", b"\0\0\1\4"
+HERE = ("127.0.0.1", 1)
+
+
+def endpoint(guid: bytes, **qos: object) -> Endpoint:
+    return Endpoint(guid=guid, topic="rt/x", type="X", qos=EndpointQos(**qos))  # type: ignore[arg-type]
+
+
+def test_a_heartbeat_has_the_standards_layout() -> None:
+    made = wire.heartbeat(
+        reader=READER, writer=WRITER, first=1, last=(1 << 32) + 5, count=7, final=True
+    )
+    # Kind, flags (final, little-endian), length; entities; 64-bit numbers high word first; count.
+    assert made.hex() == ("07031c0000000104000001030000000001000000010000000500000007000000")
+
+
+def test_a_set_of_numbers_has_the_standards_layout() -> None:
+    made = wire.acknack(
+        reader=READER, writer=WRITER, base=10, missing=[10, 12, 42], count=1, final=True
+    )
+    # 33 bits, the first of them the highest of its word: 10 and 12 are 0xa…, 42 the next word's.
+    assert made[12:].hex() == "000000000a00000021000000000000a00000008001000000"
+    (read,) = wire.read(memoryview(wire.message(THEIRS, made)))
+    assert isinstance(read.content, wire.Acknack)
+    assert (read.content.base, read.content.missing) == (10, (10, 12, 42))
+
+
+def test_endpoints_are_read_as_they_were_written() -> None:
+    for reliable in (True, False):
+        for stays in (True, False):
+            made = Endpoint(
+                guid=OURS + WRITER,
+                topic="rt/odom",
+                type="nav_msgs::msg::dds_::Odometry_",
+                qos=EndpointQos(reliable=reliable, transient_local=stays),
+                user_data=b"typehash=RIHS01_0;",
+            )
+            assert discovery.decode_endpoint(discovery.encode_endpoint(made), writer=True) == made
+
+
+def test_what_is_not_said_of_reliability_depends_on_the_side() -> None:
+    # Cyclone DDS leaves out what is the default.
+    whole = discovery.encode_endpoint(endpoint(OURS + WRITER))
+    at = whole.index(b"\x1a\x00\x0c\x00")
+    bare = whole[:at] + whole[at + 16 :]
+    assert discovery.decode_endpoint(bare, writer=True).qos.reliable
+    assert not discovery.decode_endpoint(bare, writer=False).qos.reliable
+
+
+@pytest.mark.parametrize("loss", [0.0, 0.3])
+@pytest.mark.parametrize("size", [10, 150_000])
+def test_reliable_samples_arrive_in_order_over_a_network_that_loses(loss: float, size: int) -> None:
+    dice = random.Random(1)
+    under_way: list[bytes] = []
+    taken: list[Taken] = []
+
+    def send(parts: Sequence[bytes | memoryview], _: object) -> None:
+        if dice.random() >= loss:
+            under_way.append(b"".join(parts))
+
+    writer = Writer(endpoint(OURS + WRITER, depth=50), send)
+    reader = Reader(endpoint(THEIRS + READER), send, taken.append)
+    reader.match(writer.endpoint, HERE)
+    writer.match(reader.endpoint, HERE)
+    sent = [bytes([0, 1, 0, 0]) + dice.randbytes(size - 4) for _ in range(30)]
+
+    def carry() -> None:
+        while under_way:
+            data = under_way.pop(dice.randrange(len(under_way)) if loss else 0)
+            for each in wire.read(memoryview(data)):
+                content = each.content
+                if isinstance(content, wire.Data):
+                    reader.take_data(OURS + WRITER, b"\1\2", content)
+                elif isinstance(content, wire.Heartbeat):
+                    reader.take_heartbeat(OURS + WRITER, content)
+                elif isinstance(content, wire.Gap):
+                    reader.take_gap(OURS + WRITER, content)
+                elif isinstance(content, wire.Acknack):
+                    writer.take_acknack(THEIRS + READER, content)
+
+    for payload in sent:
+        writer.write(payload)
+        carry()
+    now = 1e12
+    for _ in range(200):
+        # Reminders, as time goes by.
+        now += 1e6
+        writer.remind(now)
+        carry()
+        if len(taken) == len(sent):
+            break
+    padding = b"\0" * (-size % 4)
+    assert [each.payload for each in taken] == [payload + padding for payload in sent]
+
+
+def test_who_asks_for_what_is_no_more_is_told_and_it_is_counted() -> None:
+    sent: list[bytes] = []
+    told: list[int] = []
+    writer = Writer(endpoint(OURS + WRITER, depth=2), lambda parts, _: sent.append(b"".join(parts)))
+    writer.on_drop = lambda: told.append(writer.dropped)
+    writer.match(endpoint(THEIRS + READER), HERE)
+    for number in range(5):
+        writer.write(bytes([0, 1, 0, 0, number, 0, 0, 0]))
+    sent.clear()
+    asked = wire.Acknack(READER, WRITER, 1, (1, 2, 3, 4, 5), 1, True)
+    writer.take_acknack(THEIRS + READER, asked)
+    contents = [each.content for data in sent for each in wire.read(memoryview(data))]
+    assert [each.number for each in contents if isinstance(each, wire.Data)] == [4, 5]
+    (gap,) = [each for each in contents if isinstance(each, wire.Gap)]
+    assert (gap.start, gap.base) == (1, 4)
+    assert told == [1, 2, 3]
+
+
+def test_a_response_goes_to_whom_it_is_for_and_others_do_not_wait_for_it() -> None:
+    sent: list[bytes] = []
+    writer = Writer(endpoint(OURS + WRITER), lambda parts, _: sent.append(b"".join(parts)))
+    other = b"o" * 12
+    writer.match(endpoint(THEIRS + READER), HERE)
+    writer.match(endpoint(other + READER), HERE)
+    sent.clear()
+    writer.write(b"\0\1\0\0", to=THEIRS)
+    by_receiver = {
+        each.to: type(each.content) for data in sent for each in wire.read(memoryview(data))
+    }
+    assert by_receiver == {THEIRS: wire.Data, other: wire.Gap}

@@ -1,0 +1,161 @@
+"""Topics, services and tokens over Zenoh, by a session that speaks as rmw_zenoh does.
+
+What is written here is rmw_zenoh's: keys, attachments and tokens in full, as literals.
+"""
+
+from __future__ import annotations
+
+import json
+import struct
+import time
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+from tests.bridges.ros1_peers import free_port, wait_for
+from tests.bridges.ros2_peers import Ros2Bridged
+from tests.bridges.test_ros2_services import prepared
+
+from cartwheel.bridges.ros2 import zenoh as ours
+from cartwheel.messages import decode_cdr, encode_cdr, from_dict
+
+zenoh = pytest.importorskip("zenoh", reason="not installed: eclipse-zenoh")
+
+ODOM = (
+    "7/odom/nav_msgs::msg::dds_::Odometry_/"
+    "RIHS01_3cc97dc7fb7502f8714462c526d369e35b603cfc34d946e3f2eda2766dfec6e0"
+)
+TWIST = (
+    "7/part2_cmr/cmd_vel/geometry_msgs::msg::dds_::Twist_/"
+    "RIHS01_9c45bf16fe0983d80e3cfe750d6835843d265a9a6c46bd2e609fcddde6fb8d2a"
+)
+IMAGE = (
+    "7/rosbots/camera1/image_raw/sensor_msgs::msg::dds_::Image_/"
+    "RIHS01_d31d41a9a4c4bc8eae9be757b0beed306564f7526c88ea6a4588fb9582527d47"
+)
+PAUSE = (
+    "7/pause_physics/std_srvs::srv::dds_::Empty_/"
+    "RIHS01_5888399dedec5ccc85ea6451949fd2c9f97bfdf963f9a588821639fcd31b5d19"
+)
+
+
+@pytest.fixture(scope="module")
+def bridged() -> Iterator[Ros2Bridged]:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("ROS_DOMAIN_ID", "7")
+        patch.setattr(ours, "PORT", free_port())
+        made = Ros2Bridged(prepare=prepared, rmw="zenoh")
+        yield made
+        made.close()
+
+
+@pytest.fixture
+def session(bridged: Ros2Bridged) -> Iterator[Any]:
+    """A session at the router that the simulation opened."""
+    config = zenoh.Config()
+    for name, value in {
+        "mode": "peer",
+        "scouting/multicast/enabled": False,
+        "listen/endpoints": ["tcp/127.0.0.1:0"],
+        "connect/endpoints": [f"tcp/127.0.0.1:{ours.PORT}"],
+        "connect/timeout_ms": 10_000,
+    }.items():
+        config.insert_json5(name, json.dumps(value))
+    made = zenoh.open(config)
+    yield made
+    made.close()
+
+
+def test_tokens_tell_of_the_node_and_its_endpoints(session: Any) -> None:
+    tokens: list[str] = []
+    subscriber = session.liveliness().declare_subscriber(
+        "@ros2_lv/7/**", lambda sample: tokens.append(str(sample.key_expr)), history=True
+    )
+    wait_for(lambda: any("%pause_physics" in token for token in tokens), "the tokens")
+    zid = tokens[0].split("/")[2]
+    assert f"@ros2_lv/7/{zid}/0/0/NN/%/%/gazebo" in tokens
+    ends = {token.split("/", 5)[5] for token in tokens}
+    odom = ODOM.removeprefix("7/odom/")
+    assert f"MP/%/%/gazebo/%odom/{odom}/::,10:,:,:,," in ends
+    # Best effort, five kept; then reliable for what everybody must get.
+    image = IMAGE.removeprefix("7/rosbots/camera1/image_raw/")
+    assert f"MP/%/%/gazebo/%rosbots%camera1%image_raw/{image}/2::,5:,:,:,," in ends
+    twist = TWIST.removeprefix("7/part2_cmr/cmd_vel/")
+    assert f"MS/%/%/gazebo/%part2_cmr%cmd_vel/{twist}/::,10:,:,:,," in ends
+    assert any(end.startswith("MP/%/%/gazebo/%tf_static/") and "/:1:,1:" in end for end in ends)
+    subscriber.undeclare()
+
+
+def test_topics_are_read_lazily_and_attachments_count(bridged: Ros2Bridged, session: Any) -> None:
+    assert not bridged.wanted("/odom")
+    samples: list[tuple[bytes, bytes]] = []
+    subscriber = session.declare_subscriber(
+        ODOM,
+        lambda sample: samples.append((sample.payload.to_bytes(), sample.attachment.to_bytes())),
+    )
+    wait_for(lambda: len(samples) > 50, "odometry")
+    assert bridged.wanted("/odom")
+    numbers = [struct.unpack_from("<q", attachment)[0] for _, attachment in samples]
+    assert numbers == list(range(numbers[0], numbers[0] + len(numbers)))
+    assert {(len(attachment), attachment[16]) for _, attachment in samples} == {(33, 16)}
+    assert decode_cdr(samples[-1][0], "nav_msgs/msg/Odometry").header.frame_id == "odom"
+    subscriber.undeclare()
+    wait_for(lambda: not bridged.wanted("/odom"), "that nothing is published for nobody")
+
+
+def test_images_arrive_whole(session: Any) -> None:
+    sizes: list[int] = []
+    subscriber = session.declare_subscriber(
+        IMAGE, lambda sample: sizes.append(len(sample.payload.to_bytes()))
+    )
+    wait_for(lambda: len(sizes) > 10, "images")
+    assert len(set(sizes)) == 1
+    assert sizes[0] > 100_000
+    subscriber.undeclare()
+
+
+def test_cmd_vel_drives_the_cart(bridged: Ros2Bridged, session: Any) -> None:
+    publisher = session.declare_publisher(TWIST)
+    data = encode_cdr(from_dict("geometry_msgs/msg/Twist", {"linear": {"x": 0.5}}))
+
+    def x() -> float:
+        simulation = bridged.simulation
+        return float(simulation.call(lambda: simulation.pose("rosbots")).result().position[0])
+
+    start = x()
+
+    def moved() -> bool:
+        publisher.put(data, attachment=struct.pack("<qqB", 1, time.time_ns(), 16) + bytes(16))
+        return x() > start + 0.3
+
+    wait_for(moved, "the cart's way")
+
+
+def test_services_answer_with_what_was_asked_by(bridged: Ros2Bridged, session: Any) -> None:
+    attachment = struct.pack("<qqB", 41, 5, 16) + b"who asks for it."
+    replies = list(session.get(PAUSE, payload=b"\0\1\0\0\0", attachment=attachment, timeout=20.0))
+    assert bridged.simulation.run_state.value == "paused"
+    (reply,) = replies
+    told = reply.ok.attachment.to_bytes()
+    assert struct.unpack_from("<q", told) == (41,)
+    assert told[16:] == b"\x10who asks for it."
+    bridged.simulation.post(bridged.simulation.resume)
+
+
+def test_who_comes_late_gets_what_stays(session: Any) -> None:
+    found: list[Any] = []
+    key = (
+        "7/tf_static/tf2_msgs::msg::dds_::TFMessage_/"
+        "RIHS01_e369d0f05a23ae52508854b66f6aa0437f3449d652e8cbf22d5abe85d020f087"
+    )
+    subscriber = zenoh.ext.declare_advanced_subscriber(
+        session,
+        key,
+        lambda sample: found.append(
+            decode_cdr(sample.payload.to_bytes(), "tf2_msgs/msg/TFMessage")
+        ),
+        history=zenoh.ext.HistoryConfig(detect_late_publishers=True),
+    )
+    wait_for(lambda: found, "the static transforms")
+    assert "base_link" in {one.child_frame_id for one in found[-1].transforms}
+    subscriber.undeclare()

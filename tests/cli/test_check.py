@@ -1,0 +1,145 @@
+"""``cartwheel check``: status, text and JSON."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from cartwheel.description.check import RULES
+
+GOOD = """<?xml version="1.0"?>
+<robot name="bar">
+  <link name="bar">
+    <inertial>
+      <mass value="12"/>
+      <inertia ixx="2" iyy="2" izz="2"/>
+    </inertial>
+    <collision>
+      <geometry><box size="1 1 1"/></geometry>
+    </collision>
+  </link>
+</robot>
+"""
+WARNING = GOOD.replace('ixx="2" iyy="2" izz="2"', 'ixx="90" iyy="90" izz="90"')
+ERROR = GOOD.replace('izz="2"', 'izz="9"')
+NOTE = GOOD.replace("<collision>", '<collision colour="blue">')
+KEYS = {
+    "rule": str, "severity": str, "message": str, "file": str, "line": int, "column": int,
+    "stack": list, "instead": str, "place": str, "hint": str, "also": list,
+}  # fmt: skip
+
+
+@pytest.fixture
+def checked(program, tmp_path):
+    def run(text, *options, status):
+        path = tmp_path / "bar.urdf"
+        path.write_text(text)
+        return program("check", path, *options, status=status).stdout
+
+    return run
+
+
+def test_a_clean_description_ends_with_0_and_says_so(checked):
+    assert checked(GOOD, status=0).strip().endswith("bar.urdf: nothing found")
+
+
+@pytest.mark.parametrize("text", [WARNING, ERROR])
+def test_findings_end_with_1(checked, text):
+    checked(text, status=1)
+
+
+def test_notes_end_with_1_only_where_strict(checked):
+    assert "1 note" in checked(NOTE, status=0)
+    checked(NOTE, "--strict", status=1)
+
+
+def test_what_cannot_be_read_ends_with_2(checked, program, tmp_path):
+    checked("<robot", status=2)
+    checked('<gazebo version="1.0"><world name="w"/></gazebo>', status=2)
+    program("check", tmp_path / "nothing.urdf", status=2)
+    program("check", status=2)
+
+
+def test_a_finding_shows_its_line_a_caret_and_the_text_to_write(checked):
+    lines = checked(ERROR, status=1).splitlines()
+    assert ":6: error: link" in lines[0]
+    assert lines[0].endswith("[inertia-impossible]")
+    assert lines[1] == '    6 | <inertia ixx="2" iyy="2" izz="9"/>'
+    assert lines[2] == " " * 8 + "^" + "~" * (len(lines[1]) - 9)
+    assert lines[3] == '  write: <inertia ixx="2" ixy="0" ixz="0" iyy="2" iyz="0" izz="2"/>'
+    assert lines[-1].endswith("bar.urdf: 1 error")
+    assert "\033" not in "".join(lines), "a file shows no colours"
+
+
+def test_a_caret_points_at_what_is_wrong(checked):
+    text = GOOD.replace(
+        "</robot>",
+        '<joint name="j" type="revolute">\n<parent link="bar"/>\n<child link="tip"/>\n'
+        '<axis xyz="0 0 0"/>\n<limit lower="0" upper="1" effort="1" velocity="1"/></joint>'
+        '<link name="tip"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/>'
+        "</inertial></link></robot>",
+    )
+    lines = checked(text, status=1).splitlines()
+    index = next(i for i, line in enumerate(lines) if "[axis-zero]" in line)
+    source, caret = lines[index + 1], lines[index + 2]
+    begin, end = caret.index("^"), len(caret)
+    assert source[begin:end] == 'xyz="0 0 0"'
+
+
+def test_json_keeps_to_its_schema(checked):
+    report = json.loads(checked(ERROR, "--json", status=1))
+    assert set(report) == {"schema", "file", "name", "complete", "summary", "findings"}
+    assert report["schema"] == 1
+    assert report["name"] == "bar"
+    assert report["complete"] is True
+    assert report["summary"] == {"error": 1, "warning": 0, "info": 0, "ignored": 0}
+    (finding,) = report["findings"]
+    assert {key: type(value) for key, value in finding.items()} == KEYS
+    assert finding["rule"] == "inertia-impossible"
+    assert finding["severity"] == "error"
+    assert (finding["line"], finding["column"]) == (6, 7)
+    assert finding["place"] == "element"
+    assert finding["file"].endswith("bar.urdf")
+
+
+def test_json_of_a_clean_description_has_no_findings(checked):
+    assert json.loads(checked(GOOD, "--json", status=0))["findings"] == []
+
+
+def test_a_rule_can_be_ignored_and_a_wrong_name_is_told(checked, program, tmp_path):
+    out = checked(ERROR, "--ignore", "inertia-impossible", status=0)
+    assert "1 ignored" in out
+    done = program("check", tmp_path / "bar.urdf", "--ignore", "inertia-imposible", status=2)
+    assert 'Did you mean "inertia-impossible"?' in done.stderr
+
+
+def test_all_rules_are_listed(program):
+    listed = program("check", "--list").stdout.splitlines()
+    assert [line.split()[0] for line in listed] == [rule.name for rule in RULES]
+    for line in listed:
+        assert line.split()[1] in ("error", "warning", "info")
+
+
+def test_arguments_of_a_xacro_are_taken(program, tmp_path):
+    path = tmp_path / "bar.xacro"
+    path.write_text(
+        ERROR.replace('name="bar">\n', 'name="bar" xmlns:xacro="http://www.ros.org/wiki/xacro">\n'
+        '<xacro:arg name="izz" default="9"/>', 1).replace('izz="9"/>\n', 'izz="$(arg izz)"/>\n')
+    )  # fmt: skip
+    program("check", path, status=1)
+    program("check", path, "izz:=2", status=0)
+
+
+def test_parameters_are_held_against_the_plugins(checked):
+    plugin = (
+        '<gazebo><plugin name="p" filename="libgazebo_ros_imu.so">\n<bodyName>bar</bodyName>\n'
+        "<topicNam>imu</topicNam></plugin></gazebo></robot>"
+    )
+    out = checked(GOOD.replace("</robot>", plugin), status=1)
+    assert "[plugin-parameter]" in out
+    assert "write: <topicName>imu</topicName>" in out
+
+
+def test_the_shipped_robot_has_nothing_to_note(program):
+    assert "nothing found" in program("check", "rosbots.xacro", "--strict").stdout

@@ -1,0 +1,380 @@
+"""Each rule fires at the right line, and its advice, taken literally, silences it."""
+
+# ruff: noqa: E501  (a case is a table row)
+
+from __future__ import annotations
+
+import pytest
+
+from cartwheel.description.check import RULES
+
+LUMP = "base_footprint_fixed_joint_lump__base_link_collision"
+
+# Rule; what is replaced by what; a text in the line it is told for; a text of the advice.
+WITH_ADVICE = {
+    "link twice": ("name-twice", [('<link name="eye"/>', '<link name="eye"/>\n<link name="eye" />')],
+        '<link name="eye" />', 'name="eye_2"'),
+    "parent unknown": ("joint-link-unknown", [
+        ('<parent link="arm"/>', '<parent link="arn"/>')], 'link="arn"', 'link="arm"'),
+    "child unknown": ("joint-link-unknown", [
+        ('<child link="finger"/>', '<child link="fingr"/>')], 'link="fingr"', 'link="finger"'),
+    "loose link": ("several-roots", [('<link name="eye"/>', '<link name="eye"/>\n<link name="loose"/>')],
+        '"loose"', '<child link="loose"/>'),
+    "mimic": ("mimic-unknown", [('mimic joint="arm_joint"', 'mimic joint="arm_jiont"')],
+        "arm_jiont", 'joint="arm_joint"'),
+    "reference": ("reference-unknown", [('reference="caster_link"', 'reference="castor_link"')],
+        "castor_link", 'reference="caster_link"'),
+    "no limit": ("limit-missing", [('    <limit lower="-1" upper="1" effort="5" velocity="2"/>\n', "")],
+        'name="arm_joint"', "<limit lower="),
+    "no effort": ("limit-incomplete", [('upper="1" effort="5" ', 'upper="1" ')],
+        'upper="1" velocity', 'effort="10"'),
+    "reversed": ("limit-reversed", [('lower="-1" upper="1"', 'lower="1" upper="-1"')],
+        'lower="1"', 'lower="-1" upper="1"'),
+    "degrees": ("limit-degrees", [('lower="-1" upper="1"', 'lower="-90" upper="90"')],
+        'lower="-90"', 'lower="-1.5708" upper="1.5708"'),
+    "effort 0": ("effort-zero", [('effort="5" velocity="20"', 'effort="0" velocity="20"')],
+        'effort="0"', 'effort="10"'),
+    "velocity 0": ("effort-zero", [('effort="5" velocity="20"', 'effort="5" velocity="0"')],
+        'velocity="0"', 'velocity="10"'),
+    "axis 0": ("axis-zero", [('<axis xyz="1 0 0"/>', '<axis xyz="0 0 0"/>')],
+        'axis xyz="0 0 0"', 'xyz="0 0 1"'),
+    "axis 2": ("axis-not-unit", [('<axis xyz="1 0 0"/>', '<axis xyz="1 0 1"/>')],
+        'axis xyz="1 0 1"', 'xyz="0.707107 0 0.707107"'),
+    "no inertial": ("inertia-missing", [
+        ('<inertial>\n      <mass value="0.1"/>\n      <inertia ixx="0.00002" iyy="0.00002" '
+         'izz="0.00002"/>\n    </inertial>', "")], 'link name="finger"', '<mass value="1"/>'),
+    "triangle": ("inertia-impossible", [('iyy="0.085" izz="0.125"', 'iyy="0.085" izz="0.325"')],
+        'izz="0.325"', '<inertia ixx="0.05" ixy="0" ixz="0" iyy="0.085" iyz="0" izz="0.125"/>'),
+    "negative": ("inertia-impossible", [('ixx="0.001"', 'ixx="-0.001"')], 'ixx="-0.001"',
+        '<inertia ixx="0.00104"'),
+    "mass 0": ("mass-not-positive", [('<mass value="0.3"/>', '<mass value="0"/>')],
+        'mass value="0"', 'value="0.1"'),
+    "mass below 0": ("mass-not-positive", [('<mass value="0.3"/>', '<mass value="-0.3"/>')],
+        'mass value="-0.3"', 'value="0.3"'),
+    "inertia large": ("inertia-unlike-geometry", [('ixx="0.001" iyy="0.001" izz="0.00008"',
+        'ixx="1" iyy="1" izz="1"')], 'ixx="1"', '<inertia ixx="0.00104"'),
+    "inertia small": ("inertia-unlike-geometry", [('ixx="0.001" iyy="0.001" izz="0.00008"',
+        'ixx="1e-6" iyy="1e-6" izz="1e-6"')], 'ixx="1e-6"', '<inertia ixx="0.00104"'),
+    "centre": ("mass-outside", [('<origin xyz="0 0 0.1"/>\n      <mass value="0.3"/>',
+        '<origin xyz="0 0 0.5"/>\n      <mass value="0.3"/>')], 'xyz="0 0 0.5"',
+        '<origin xyz="0 0 0.1"/>'),
+    "grams": ("mass-grams", [('<mass value="0.3"/>', '<mass value="300"/>')], 'mass value="300"',
+        'value="0.3"'),
+    "tonnes": ("mass-absurd", [('<mass value="6"/>', '<mass value="600000"/>')],
+        'mass value="600000"', 'value="600"'),
+    "left joint": ("drive-joint-unknown", [("<leftJoint>left_wheel_joint", "<leftJoint>left_wheel_jnt")],
+        "left_wheel_jnt", "<leftJoint>left_wheel_joint</leftJoint>"),
+    "fixed wheel": ("drive-joint-fixed", [('name="left_wheel_joint" type="continuous"',
+        'name="left_wheel_joint" type="fixed"')], 'name="left_wheel_joint"', 'type="continuous"'),
+    "separation": ("wheel-separation", [("<wheelSeparation>0.4<", "<wheelSeparation>0.45<")],
+        "wheelSeparation", "<wheelSeparation>0.4</wheelSeparation>"),
+    "diameter": ("wheel-diameter", [("<wheelDiameter>0.16<", "<wheelDiameter>0.08<")],
+        "wheelDiameter", "<wheelDiameter>0.16</wheelDiameter>"),
+    "axis backwards": ("wheel-axes", [('<child link="right_wheel"/>\n    <axis xyz="0 1 0"/>',
+        '<child link="right_wheel"/>\n    <axis xyz="0 -1 0"/>')], 'xyz="0 -1 0"', 'xyz="0 1 0"'),
+    "no friction": ("wheel-frictionless", [("<mu1>1.0</mu1>\n    <mu2>1.0</mu2>",
+        "<mu1>0</mu1>\n    <mu2>0</mu2>")], "<mu1>0</mu1>", "<mu1>1.0</mu1>"),
+    "wheel without collision": ("wheel-no-collision", [(
+        '<collision>\n      <origin rpy="1.5707963 0 0"/>\n      <geometry>\n        '
+        '<cylinder radius="0.08" length="0.04"/>\n      </geometry>\n    </collision>', "")],
+        'link name="left_wheel"', "<cylinder radius="),
+    "rate": ("rate-above-physics", [("<updateRate>100<", "<updateRate>5000<")], "updateRate",
+        "<updateRate>1000</updateRate>"),
+    "bumper": ("contact-collision-unknown", [(LUMP, "bumper_collision")], "bumper_collision",
+        "<collision>"),
+    "bumper silent": ("contact-never-fires", [(LUMP, "base_footprint_collision_base_link")],
+        "base_footprint_collision_base_link", f"<collision>{LUMP}</collision>"),
+    "bumper plain": ("contact-never-fires", [(LUMP, "base_link_collision")],
+        "<collision>base_link_collision", f"<collision>{LUMP}</collision>"),
+    "body": ("body-unknown", [("<bodyName>base_link", "<bodyName>base_lnk")], "base_lnk",
+        "<bodyName>base_link</bodyName>"),
+    "frame": ("frame-unknown", [("<robotBaseFrame>base_link", "<robotBaseFrame>base_lnk")],
+        "base_lnk", "<robotBaseFrame>base_link</robotBaseFrame>"),
+    "topic": ("topic-twice", [("<topicName>imu<", "<topicName>odom<")], "<topicName>",
+        "<topicName>odom_2</topicName>"),
+    "plugin": ("plugin-unknown", [("libgazebo_ros_diff_drive.so", "libgazebo_ros_diffdrive.so")],
+        "libgazebo_ros_diffdrive.so", 'filename="libgazebo_ros_diff_drive.so"'),
+    "parameter": ("plugin-parameter", [("<wheelDiameter>0.16</wheelDiameter>",
+        "<wheeldiameter>0.16</wheeldiameter>")], "wheeldiameter",
+        "<wheelDiameter>0.16</wheelDiameter>"),
+    "torque": ("plugin-obsolete", [("<wheelTorque>2</wheelTorque>", "<torque>2</torque>")],
+        "<torque>", "<wheelTorque>2</wheelTorque>"),
+    "legacy": ("plugin-obsolete", [("<wheelTorque>2</wheelTorque>",
+        "<wheelTorque>2</wheelTorque>\n<legacyMode>true</legacyMode>")], "legacyMode",
+        "<legacyMode>false</legacyMode>"),
+    "giant": ("shape-size", [('<box size="0.04 0.04 0.2"/>', '<box size="40 40 200"/>')],
+        "40 40 200", '<box size="0.04 0.04 0.2"/>'),
+    "rpy": ("angle-degrees", [('rpy="0 0 0"', 'rpy="0 0 90"')], 'rpy="0 0 90"', 'rpy="0 0 1.5708"'),
+    "millimetres": ("place-millimetres", [('<origin xyz="0 0 0.16"/>', '<origin xyz="0 0 160"/>')],
+        "0 0 160", 'xyz="0 0 0.16"'),
+    "mu": ("gazebo-ignores", [("<mu1>1.0</mu1>\n    <mu2>1.0</mu2>", "<mu>1.0</mu>")], "<mu>",
+        "<mu1>1.0</mu1><mu2>1.0</mu2>"),
+    "selfCollide": ("gazebo-ignores", [("  <gazebo>\n", "  <gazebo>\n<selfCollide>0</selfCollide>")],
+        "selfCollide", "<self_collide>0</self_collide>"),
+    "Gazebo's material": ("material-unknown", [("Gazebo/Black", "Gazebo/Blck")], "Gazebo/Blck",
+        "<material>Gazebo/Black</material>"),
+    "material": ("material-undefined", [('<material name="blue"/>', '<material name="bleu"/>')],
+        '"bleu"', 'name="blue"'),
+    "misspelt": ("tag-ignored", [("<mu1>1.0</mu1>", "<minDepht>1.0</minDepht>")], "minDepht",
+        "<minDepth>1.0</minDepth>"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", WITH_ADVICE.values(), ids=WITH_ADVICE)
+def test_a_fault_is_found_and_its_advice_mends_it(case, bench, spoil, line_of, take):
+    rule, changes, there, advice = case
+    text = spoil(*changes)
+    found = bench.find(text, rule)
+    assert found, [str(f) for f in bench.report(text).findings]
+    finding = found[0]
+    assert finding.origin.line == line_of(text, there)
+    assert advice in finding.instead
+    mended = text
+    for _ in range(4):
+        if not found:
+            break
+        mended = take(mended, found[0])
+        found = bench.find(mended, rule)
+    assert not found, mended
+
+
+# Faults whose advice is a sentence, or a text whose place the user must choose.
+WITHOUT_PLACE = {
+    "two parents": ("two-parents", [('<child link="finger"/>', '<child link="arm"/>')],
+        'name="finger_joint"', "Remove one"),
+    "ring": ("links-in-a-ring", [('<parent link="base_footprint"/>', '<parent link="arm"/>')],
+        None, "Turn round"),
+    "mimic ring": ("mimic-unknown", [('mimic joint="arm_joint"', 'mimic joint="finger_joint"')],
+        'mimic joint="finger_joint"', "free"),
+    "limits 0": ("limit-zero", [('lower="-1" upper="1"', 'lower="0" upper="0"')],
+        'lower="0" upper="0"', 'type="fixed"'),
+    "swapped": ("wheels-swapped", [("<leftJoint>left", "<leftJoint>right"),
+        ("<rightJoint>right", "<rightJoint>left")], "<leftJoint>", "Swap"),
+    "caster": ("caster-friction", [("<mu1>0.0</mu1>", "<mu1>1.0</mu1>")], None, "Add it"),
+    "deep": ("wheels-off-ground", [('<box size="0.4 0.3 0.1"/>\n      </geometry>\n    </collision>',
+        '<box size="0.4 0.3 0.25"/>\n      </geometry>\n    </collision>')], None, "Raise it"),
+    "overlap": ("collisions-overlap", [("  <gazebo>\n", "  <gazebo><self_collide>true</self_collide>"),
+        ('<origin xyz="0 0 0.21"/>', '<origin xyz="0 0 -0.06"/>')], None, "smaller"),
+    "mesh": ("file-missing", [('<box size="0.03 0.03 0.01"/>', '<mesh filename="finger.stl"/>')],
+        "finger.stl", "Looked for"),
+    "number": ("unreadable", [('<box size="0.03 0.03 0.01"/>', '<box size="0.03 0.03 x"/>')],
+        "0.03 0.03 x", ""),
+    "two sensors": ("sensor-twice", [('type="ray" name="lidar"', 'type="ray" name="camera"')],
+        'type="ray"', ""),
+    "further limit": ("tag-repeated", [('<limit effort="5" velocity="20"/>',
+        '<limit effort="5" velocity="20"/>\n<limit effort="6" velocity="20"/>')], 'effort="6"', ""),
+    "misplaced": ("tag-misplaced", [("  <gazebo>\n", "  <gazebo>\n<mu1>1</mu1>")], "<mu1>1<", ""),
+    "empty": ("tag-empty", [("<mu1>1.0</mu1>", "<kp></kp>")], "<kp>", ""),
+    "below 0": ("value-ignored", [("<mu1>1.0</mu1>", "<mu1>-2</mu1>")], "<mu1>-2", ""),
+    "materials differ": ("material-differs", [('<link name="base_footprint"/>',
+        '<material name="blue">\n<color rgba="0 1 0 1"/>\n</material><link name="base_footprint"/>')],
+        None, ""),
+    "wind": ("not-simulated", [("<mu1>1.0</mu1>", "<enable_wind>true</enable_wind>")],
+        "enable_wind", ""),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", WITHOUT_PLACE.values(), ids=WITHOUT_PLACE)
+def test_a_fault_is_found_with_a_hint(case, bench, spoil, line_of):
+    rule, changes, there, hint = case
+    text = spoil(*changes)
+    found = bench.find(text, rule)
+    assert found, [str(f) for f in bench.report(text).findings]
+    if there is not None:
+        assert found[0].origin.line == line_of(text, there)
+    assert hint in found[0].hint
+
+
+def test_a_robot_without_a_fault_gives_no_finding(bench, robot):
+    report = bench.report(robot)
+    assert report.findings == ()
+    assert report.complete
+    assert report.name == "tester"
+
+
+def test_names_of_rules_are_unique_and_every_rule_has_its_line():
+    names = [rule.name for rule in RULES]
+    assert len(set(names)) == len(names)
+    for rule in RULES:
+        assert rule.summary
+        assert "\n" not in rule.summary
+        assert len(rule.summary) <= 80, rule.name
+
+
+def test_the_rest_is_checked_behind_an_error(bench, spoil):
+    text = spoil(
+        ('<parent link="arm"/>', '<parent link="arn"/>'),
+        ('<axis xyz="0 1 0"/>', '<axis xyz="0 0 0"/>'),
+        ('iyy="0.085" izz="0.125"', 'iyy="0.085" izz="0.325"'),
+        ("<wheelSeparation>0.4<", "<wheelSeparation>0.45<"),
+        ('<sphere radius="0.03"/>', '<sphere radius="wide"/>'),
+    )
+    report = bench.report(text)
+    assert report.complete
+    assert {
+        "joint-link-unknown", "axis-zero", "inertia-impossible", "wheel-separation", "unreadable",
+    } <= {finding.rule for finding in report.findings}  # fmt: skip
+    lines = [finding.origin.line for finding in report.findings]
+    assert lines == sorted(lines)
+
+
+def test_a_cause_is_told_once(bench, spoil):
+    """A link that is cut out because of one number makes no second error."""
+    text = spoil(('<mass value="0.3"/>', '<mass value="heavy"/>'))
+    errors = [f for f in bench.report(text).findings if f.severity == "error"]
+    assert [finding.rule for finding in errors] == ["unreadable"]
+    assert '"heavy" is not a number' in errors[0].message
+
+
+def test_a_rule_can_be_ignored(bench, spoil):
+    text = spoil(("<wheelSeparation>0.4<", "<wheelSeparation>0.45<"))
+    report = bench.report(text, ignore=["wheel-separation"])
+    assert report.findings == ()
+    assert report.ignored == 1
+
+
+def test_a_contact_sensor_hears_all_spellings_of_its_collision(bench, spoil):
+    text = spoil((LUMP, "no_such_collision"))
+    hint = bench.find(text, "contact-collision-unknown")[0].hint
+    for name in (LUMP, "base_link_collision", "base_footprint_collision_base_link"):
+        assert name in hint
+
+
+def test_a_lumped_link_is_told_where_its_frame_is_another(bench, spoil):
+    moved = ('<child link="base_link"/>', '<child link="base_link"/>\n<origin xyz="0 0 0.1"/>')
+    assert bench.find(spoil(moved), "lumped-link")[0].severity == "info"
+    snake = spoil(("<bodyName>base_link</bodyName>", "<body_name>base_link</body_name>"))
+    found = bench.find(snake, "lumped-link")
+    assert found[0].severity == "warning"
+    assert '<gazebo reference="base_joint"><preserveFixedJoint>true' in found[0].instead
+    kept = snake.replace("</robot>", found[0].instead + "</robot>")
+    assert not bench.find(kept, "lumped-link")
+
+
+def test_a_fixed_joint_that_is_measured_must_be_kept(bench, spoil):
+    plugin = '<plugin name="ft" filename="libx.so">\n<jointName>caster_joint</jointName></plugin>'
+    text = spoil(("  <gazebo>\n", f"  <gazebo>\n{plugin}"))
+    found = bench.find(text, "lumped-joint")
+    assert "caster_joint" in found[0].message
+    assert not bench.find(text.replace("</robot>", found[0].instead + "</robot>"), "lumped-joint")
+
+
+HOUSING = (
+    '<link name="eye"/>',
+    '<link name="eye"><visual><origin xyz="0.1 0 0"/><geometry><box size="0.02 0.5 0.5"/>'
+    "</geometry></visual></link>",
+)
+
+
+def test_a_camera_that_looks_at_its_housing_is_told(bench, spoil):
+    found = bench.find(spoil(HOUSING), "view-blocked")
+    assert '100% of what the camera "camera" looks at' in found[0].message
+    assert "0.09" in found[0].message, "the box's front is at 0.1 - 0.02/2 m"
+    # It lies before the near plane, or the camera within it looks out: nothing is seen of it.
+    assert not bench.find(spoil(HOUSING, ("<near>0.02<", "<near>0.2<")), "view-blocked")
+    inside = (HOUSING[0], HOUSING[1].replace('size="0.02', 'size="0.4'))
+    assert not bench.find(spoil(inside), "view-blocked")
+
+
+def test_a_lidar_within_a_collision_is_told(bench, spoil):
+    around = HOUSING[1].replace("visual", "collision").replace("0.02 0.5 0.5", "0.3 0.3 0.3")
+    text = spoil((HOUSING[0], around))
+    found = bench.find(text, "view-blocked")
+    assert 'the lidar "lidar"' in found[0].message
+    assert not bench.find(spoil((HOUSING[0], around), ("<min>0.05<", "<min>0.7<")), "view-blocked")
+
+
+def test_a_dwarf_mesh_is_told_with_its_scale(bench, spoil, take, tmp_path):
+    corners = [(0, 0, 0), (300, 0, 0), (0, 300, 0), (0, 0, 300)]
+    faces = [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]
+    lines = [f"v {x} {y} {z}" for x, y, z in corners]
+    lines += ["f " + " ".join(str(i + 1) for i in face) for face in faces]
+    (tmp_path / "big.obj").write_text("\n".join(lines) + "\n")
+    text = spoil(('<box size="0.4 0.3 0.1"/>', '<mesh filename="big.obj"/>'))
+    found = bench.find(text, "shape-size")
+    assert found[0].instead == 'scale="0.001 0.001 0.001"'
+    assert not bench.find(take(text, found[0]), "shape-size")
+
+
+def test_a_damaged_mesh_is_told(bench, spoil, tmp_path):
+    (tmp_path / "bad.stl").write_bytes(b"solid nothing")
+    text = spoil(('<box size="0.03 0.03 0.01"/>', '<mesh filename="bad.stl"/>'))
+    assert bench.find(text, "mesh-unreadable")
+
+
+def test_a_mesh_of_nearly_that_name_is_offered(bench, spoil, take, tmp_path):
+    (tmp_path / "finger.stl").write_bytes(b"")
+    text = spoil(('<box size="0.03 0.03 0.01"/>', '<mesh filename="fingr.stl"/>'))
+    found = bench.find(text, "file-missing")
+    assert found[0].instead == 'filename="finger.stl"'
+    assert not bench.find(take(text, found[0]), "file-missing")
+
+
+def test_what_nothing_collides_with_is_told(bench, spoil, take):
+    text = spoil(
+        (
+            '<collision>\n      <origin xyz="0 0 0.1"/>\n      <geometry>\n'
+            '        <box size="0.4 0.3 0.1"/>\n      </geometry>\n    </collision>',
+            "",
+        ),
+        ("<collision>\n      <geometry>\n        <sphere", "<visual><geometry><sphere"),
+        ('radius="0.03"/>\n      </geometry>\n    </collision>',
+         'radius="0.03"/></geometry></visual>'),
+        (LUMP, "left_wheel_collision"),
+    )  # fmt: skip
+    found = bench.find(text, "base-no-collision")
+    assert '<box size="0.4 0.3 0.1"/>' in found[0].instead
+    assert not bench.find(take(text, found[0]), "base-no-collision")
+
+
+def test_what_is_written_already_is_not_what_was_meant(bench, spoil):
+    """A parameter that resembles one that is there is no misspelt one."""
+    more = "<wheelDiameter>0.16</wheelDiameter>\n<wheelDiameters>0.2</wheelDiameters>"
+    found = bench.find(spoil(("<wheelDiameter>0.16</wheelDiameter>", more)), "plugin-parameter")
+    assert (found[0].severity, found[0].instead) == ("info", "")
+    limit = ('effort="5" velocity="20"', 'effort="5" velocity="20" q_velocity="10"')
+    found = bench.find(spoil(limit), "tag-ignored")
+    assert (found[0].severity, found[0].instead) == ("info", "")
+
+
+def test_what_is_measured_on_a_part_only_is_not_told(bench, spoil):
+    """Where a mesh is missing the rest of the link's geometry says nothing of its inertia."""
+    large = ('ixx="0.001" iyy="0.001" izz="0.00008"', 'ixx="1" iyy="1" izz="1"')
+    assert bench.find(spoil(large), "inertia-unlike-geometry")
+    lost = (
+        '<collision>\n      <origin xyz="0 0 0.1"/>\n      <geometry>\n        <box size="0.04',
+        '<visual><geometry><mesh filename="no.stl"/></geometry></visual>'
+        '<collision>\n      <origin xyz="0 0 0.1"/>\n      <geometry>\n        <box size="0.04',
+    )
+    assert not bench.find(spoil(large, lost), "inertia-unlike-geometry")
+
+
+def test_an_inertia_that_does_not_matter_is_a_note(bench, spoil):
+    """A light link's too large inertia counts little on a robot whose own is far larger."""
+    caster = 'ixx="0.000036" iyy="0.000036" izz="0.000036"'
+    for moment, severity in (("0.3", "warning"), ("0.004", "info")):
+        changed = caster.replace("0.000036", moment)
+        light = f'<mass value="0.001"/>\n      <inertia {changed}'
+        text = spoil((f'<mass value="0.1"/>\n      <inertia {caster}', light))
+        found = bench.find(text, "inertia-unlike-geometry")
+        assert [f.severity for f in found if "caster" in f.message] == [severity]
+
+
+def test_two_giant_wheels_are_told_though_they_are_alike(bench, spoil):
+    wheel = 'radius="0.08" length="0.04"'
+    giant = wheel.replace("0.08", "30").replace("0.04", "4")
+    found = bench.find(spoil((wheel, giant), (wheel, giant)), "shape-size")
+    assert len(found) == 2
+    assert found[0].instead == '<cylinder radius="0.03" length="0.004"/>'
+
+
+def test_a_plugin_of_gazebos_own_is_no_misspelt_one(bench, spoil):
+    """libgazebo_ros_f3d.so resembles libgazebo_ros_p3d.so, and both are there."""
+    changed = ("libgazebo_ros_imu.so", "libgazebo_ros_f3d.so")
+    found = bench.find(spoil(changed), "plugin-unknown")
+    assert [(f.severity, f.instead) for f in found] == [("info", "")]
+
+
+def test_a_material_of_the_robots_own_script_is_a_note(bench, spoil):
+    found = bench.find(spoil(("Gazebo/Black", "PR2/Black")), "material-unknown")
+    assert [(f.severity, f.instead) for f in found] == [("info", "")]

@@ -1,0 +1,94 @@
+"""Models and worlds of SDF go through the same rules."""
+
+import pytest
+
+from cartwheel.description.check import check
+from cartwheel.description.shipped import shipped_descriptions
+from cartwheel.errors import DescriptionError
+
+BOX = """<link name="box"><pose>0 0 0.5 0 0 {yaw}</pose>
+<inertial><mass>{mass}</mass>
+<inertia><ixx>{i}</ixx><iyy>{i}</iyy><izz>{izz}</izz></inertia></inertial>
+<collision name="c"><geometry><box><size>1 1 1</size></box></geometry></collision>
+<visual name="v"><geometry><box><size>1 1 1</size></box></geometry></visual>
+</link>
+"""
+GOOD = {"mass": "6", "i": "1", "izz": "1", "yaw": "1.57"}
+
+
+def model(extra="", **values):
+    text = BOX.format(**{**GOOD, **values})
+    return f'<sdf version="1.6"><model name="m">\n{text}{extra}</model></sdf>'
+
+
+def world(extra="", inner=""):
+    inside = model(inner).removeprefix('<sdf version="1.6">').removesuffix("</sdf>")
+    return f'<sdf version="1.6"><world name="w">\n{extra}{inside}</world></sdf>'
+
+
+def test_a_good_model_and_a_good_world_are_clean(bench):
+    assert bench.report(model(), "m.sdf").findings == ()
+    assert bench.report(world(), "w.world").findings == ()
+
+
+@pytest.mark.parametrize(
+    ("rule", "text", "line"),
+    [
+        ("reader", model(izz="9"), 3),
+        ("inertia-unlike-geometry", model(i="100", izz="100"), 3),
+        ("angle-degrees", model(yaw="90"), 2),
+        ("file-missing", world("<include><uri>model://nothing_here</uri></include>\n"), 2),
+        ("tag-ignored", model("<velocty_decay/>"), 8),
+        ("unreadable", model('<joint name="j" type="fixed"/>'), 8),
+    ],
+)
+def test_a_fault_is_found_at_its_line(bench, rule, text, line):
+    found = bench.find(text, rule, "x.sdf")
+    assert found, bench.report(text, "x.sdf").findings
+    assert found[0].origin.line == line
+
+
+def test_advice_is_written_as_sdf_has_it(bench):
+    found = bench.find(model(i="100", izz="100"), "inertia-unlike-geometry", "x.sdf")
+    assert found[0].instead == (
+        "<inertia><ixx>1</ixx><ixy>0</ixy><ixz>0</ixz><iyy>1</iyy><iyz>0</iyz><izz>1</izz></inertia>"
+    )
+
+
+def test_degrees_that_say_so_are_none(bench):
+    text = model(yaw="90").replace("<pose>", '<pose degrees="true">')
+    assert not bench.find(text, "angle-degrees", "m.sdf")
+
+
+def test_the_worlds_own_step_bounds_the_rates(bench):
+    rate = "<update_rate>300</update_rate>"
+    sensor = f'<link name="eye"><sensor name="s" type="imu">\n{rate}</sensor></link>'
+    slow = '<physics type="ode"><max_step_size>0.01</max_step_size></physics>\n'
+    assert not bench.find(world(inner=sensor), "rate-above-physics", "w.world")
+    found = bench.find(world(slow, sensor), "rate-above-physics", "w.world")
+    assert found[0].instead == "<update_rate>100</update_rate>"
+
+
+def test_a_version_too_old_leaves_the_check_incomplete(bench):
+    report = bench.report('<gazebo version="1.0"><world name="w"/></gazebo>', "w.world")
+    assert not report.complete
+    assert "too old" in report.findings[0].message
+
+
+def test_what_is_no_description_is_refused(bench):
+    with pytest.raises(DescriptionError, match="launch file"):
+        bench.report("<launch/>", "x.launch")
+    with pytest.raises(DescriptionError, match="macros"):
+        bench.report('<robot xmlns:xacro="http://www.ros.org/wiki/xacro"/>', "x.xacro")
+
+
+@pytest.mark.parametrize("path", list(shipped_descriptions()), ids=lambda path: path.name)
+def test_what_is_shipped_is_clean(path):
+    if "<robot" in (text := path.read_text()) and "<link" not in text:
+        pytest.skip("a file of macros")
+    try:
+        report = check(path)
+    except DescriptionError as error:
+        assert "no links" in error.message or "macros" in (error.hint or "")
+        return
+    assert report.findings == ()

@@ -1,0 +1,76 @@
+"""The page of tags: each row is tried, and no tag that is known is missing."""
+
+import re
+from dataclasses import replace
+
+import pytest
+from tests.docs.pages import ROOT
+
+import cartwheel as cw
+from cartwheel.description import load_text
+from cartwheel.description.urdf import gazebo_link_tags as of_links
+from cartwheel.description.urdf import gazebo_tags as of_others
+
+PAGE = (ROOT / "docs" / "gazebo-tags.md").read_text()
+ROW = re.compile(r"^\| `(<.*?>)` \| (yes|note|warning) \| (.*) \|$", re.MULTILINE)
+SEVERITY = {"note": "info", "warning": "warning"}
+BODY = (
+    '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial><collision><geometry>'
+    '<box size="1 1 1"/></geometry></collision><visual><geometry><box size="1 1 1"/></geometry>'
+    "</visual>"
+)
+URDF = (
+    '<robot name="r"><link name="base">{body}</link><link name="arm">{body}</link>'
+    '<joint name="hinge" type="{type}"><parent link="base"/><child link="arm"/></joint>{tags}'
+    "</robot>"
+)
+SECTIONS = {"link": "base", "joint": "hinge", "robot": ""}
+KNOWN = {
+    "link": {*of_links.LINK_TAGS, *of_links._IDLE},
+    "joint": {*of_others.JOINT_TAGS},
+    "robot": {*of_others.ROBOT_TAGS, *of_others._ROBOT_IDLE},
+}
+
+
+def section(kind):
+    text = PAGE.split(f"## Of a {kind}" if kind != "robot" else "## Of the robot")[1]
+    return ROW.findall(text.split("\n## ")[0])
+
+
+ROWS = [(kind, *row) for kind in SECTIONS for row in section(kind)]
+
+
+def tag_of(example):
+    return re.match(r"<(\w+)", example)[1]
+
+
+@pytest.mark.parametrize("kind", SECTIONS)
+def test_no_tag_is_missing_from_the_page(kind):
+    assert {tag_of(example) for example, _, _ in section(kind)} == KNOWN[kind]
+
+
+def load(kind, example):
+    fixed = "ixed" in example
+    reference = SECTIONS[kind]
+    attribute = f' reference="{reference}"' if reference else ""
+    tags = f"<gazebo{attribute}>{example}</gazebo>" if example else ""
+    joint = "fixed" if fixed else "continuous"
+    return load_text(URDF.format(body=BODY, type=joint, tags=tags)), joint
+
+
+@pytest.mark.parametrize(("kind", "example", "acts", "said"), ROWS)
+def test_each_tag_acts_or_is_told(kind, example, acts, said):
+    found, joint = load(kind, example)
+    plain = load_text(URDF.format(body=BODY, type=joint, tags=""))
+    changed = replace(found, text="", diagnostics=()) != replace(plain, text="", diagnostics=())
+    if acts == "yes":
+        assert changed
+        return
+    with cw.World("empty") as world:
+        before = len(world.diagnostics)
+        world.spawn(found)
+        told = world.diagnostics[before:]
+    # Of a robot that says nothing there is nothing to tell.
+    assert [each for each in told if each.severity == SEVERITY[acts]], said
+    if "has no effect" in " ".join(each.message for each in told):
+        assert any(said in each.message for each in told)

@@ -1,0 +1,277 @@
+"""Models in, by their text, and out again."""
+
+import math
+import threading
+from concurrent.futures import ThreadPoolExecutor
+
+import pytest
+
+from cartwheel.geometry import Pose, quat_from_rpy
+
+from .conftest import SDF, URDF
+
+BOTH = pytest.mark.parametrize("service", ["spawn_urdf_model", "spawn_sdf_model"])
+
+
+def xyz(v):
+    return dict(zip("xyz", map(float, v), strict=True))
+
+
+def pose_fields(position, orientation=(0, 0, 0, 1)):
+    return {
+        "position": xyz(position),
+        "orientation": dict(zip("xyzw", map(float, orientation), strict=True)),
+    }
+
+
+@pytest.fixture
+def api(make, gazebo):
+    return gazebo(make.world())
+
+
+def test_a_world_that_includes_one_model_is_that_model(api):
+    include = "<include><uri>model://traffic_cone</uri></include>"
+    text = f'<sdf version="1.4"><world name="default">{include}</world></sdf>'
+    api.done("spawn_sdf_model", model_name="mine", model_xml=text)
+    assert api.world.models == ("ground_plane", "mine")
+    two = text.replace(include, include + include.replace("traffic_cone", "wall"))
+    refused = api.refused("spawn_sdf_model", model_name="other", model_xml=two)
+    assert "not a model" in refused
+
+
+@BOTH
+@pytest.mark.parametrize("text", [URDF, SDF])
+def test_either_service_takes_either_text(api, service, text):
+    answer = api.done(
+        service, model_name="mine", model_xml=text, initial_pose=pose_fields((1, 2, 3))
+    )
+    assert answer.status_message == "SpawnModel: Successfully spawned entity"
+    assert api.world.models == ("ground_plane", "mine")
+    # An SDF model's own pose adds to the initial one, as in Gazebo.
+    above = 0.5 if text is SDF else 0.0
+    assert api.world.model("mine").pose.position == pytest.approx((1, 2, 3 + above))
+    api.world.run(3.0)
+    assert api.world.model("mine").pose.z == pytest.approx(0.1, abs=2e-3)
+
+
+def test_without_a_name_it_has_its_own(api):
+    api.done("spawn_urdf_model", model_xml=URDF)
+    assert api.world.models == ("ground_plane", "brick")
+
+
+@pytest.mark.parametrize("frame", ["base", "base::link"])
+def test_in_the_frame_of_a_model_or_link(make, api, frame):
+    turn = quat_from_rpy(0, 0, math.pi / 2)
+    api.world.session.spawn(make.box("base", (0.1,) * 3, pose=Pose((5, 0, 1), turn)))
+    api.done(
+        "spawn_urdf_model",
+        model_name="mine",
+        model_xml=URDF,
+        initial_pose=pose_fields((2, 0, 0.5)),
+        reference_frame=frame,
+    )
+    found = api.world.model("mine").pose
+    assert found.position == pytest.approx((5, 2, 1.5))
+    assert found.yaw == pytest.approx(math.pi / 2)
+
+
+@pytest.mark.parametrize("frame", ["", "world", "map", "/map"])
+def test_in_the_worlds_frame(api, frame):
+    api.done(
+        "spawn_urdf_model",
+        model_xml=URDF,
+        initial_pose=pose_fields((2, 0, 0.5)),
+        reference_frame=frame,
+    )
+    assert api.world.model("brick").pose.position == pytest.approx((2, 0, 0.5))
+
+
+def test_a_pose_that_was_left_out_is_the_origin(api):
+    """As ``Pose()`` in a caller's code: an orientation of zeros."""
+    api.done("spawn_urdf_model", model_xml=URDF)
+    assert api.world.model("brick").pose.position == (0, 0, 0)
+    assert api.world.model("brick").pose.orientation == (0, 0, 0, 1)
+
+
+def test_namespace_and_prefix(api, rosbots):
+    """Relative topics go under the namespace; frames under its tf_prefix."""
+    api.world.graph.parameters.set("/left/tf_prefix", "left_robot")
+    api.done(
+        "spawn_urdf_model",
+        model_name="left",
+        model_xml=rosbots.text,
+        robot_namespace="/left",
+        initial_pose=pose_fields((0, 0, 0.05)),
+    )
+    topics = {topic.name for topic in api.world.graph.topics()}
+    assert "/left/imu/data" in topics
+    box = api.world.mailbox("/left/imu/data")
+    api.world.run(0.2)
+    assert box.drain()[-1].header.frame_id.startswith("left_robot/")
+
+
+def test_two_of_a_kind(api):
+    for index, name in enumerate(("one", "two")):
+        api.done(
+            "spawn_urdf_model",
+            model_name=name,
+            model_xml=URDF,
+            initial_pose=pose_fields((index, 0, 1)),
+        )
+    assert api.world.models == ("ground_plane", "one", "two")
+
+
+def test_the_text_is_read_on_the_callers_thread(api, monkeypatch):
+    """Meshes take long: the simulation goes on while they are read."""
+    from cartwheel.gazebo import spawning
+
+    threads = []
+    load_text = spawning.load_text
+
+    def load(*args, **more):
+        threads.append(threading.current_thread())
+        return load_text(*args, **more)
+
+    monkeypatch.setattr(spawning, "load_text", load)
+    api.done("spawn_urdf_model", model_xml=URDF)
+    assert threads
+    assert threads[0] is not threading.current_thread()
+
+
+def test_packages_are_found_on_the_path(make, gazebo, tmp_path):
+    package = tmp_path / "things"
+    package.mkdir()
+    (package / "package.xml").write_text("<package><name>things</name></package>")
+    (package / "tri.stl").write_text(
+        "solid t\n"
+        + "".join(
+            f"facet normal 0 0 1\nouter loop\nvertex {a}\nvertex {b}\nvertex {c}\n"
+            "endloop\nendfacet\n"
+            for a, b, c in (
+                ("0 0 0", "1 0 0", "0 1 0"),
+                ("0 0 0", "0 0 1", "1 0 0"),
+                ("0 0 0", "0 1 0", "0 0 1"),
+                ("1 0 0", "0 0 1", "0 1 0"),
+            )
+        )
+        + "endsolid t\n"
+    )
+    text = URDF.replace('<box size="0.2 0.2 0.2"/>', '<mesh filename="package://things/tri.stl"/>')
+    lost = gazebo(make.world())
+    assert "things" in lost.refused("spawn_urdf_model", model_xml=text)
+    found = gazebo(make.world(), package_path=[tmp_path])
+    found.done("spawn_urdf_model", model_xml=text)
+
+
+@BOTH
+@pytest.mark.parametrize(
+    ("fields", "said"),
+    [
+        ({"model_xml": ""}, "model_xml is empty"),
+        ({"model_xml": "hello"}, "<model_xml of mine>:1"),
+        ({"model_xml": URDF.replace("</link>", "</lnk>")}, "<model_xml of mine>:"),
+        ({"model_xml": URDF.replace("<mass value", "<mass vlue")}, "<model_xml of mine>:4"),
+        ({"model_xml": "<launch/>"}, "a launch file"),
+        (
+            {"model_xml": '<sdf version="1.6"><world name="w"/></sdf>'},
+            'describes the world "w", not a model',
+        ),
+        ({"reference_frame": "nowhere"}, 'reference frame "nowhere" does not exist'),
+        ({"initial_pose": {"position": {"x": math.nan}}}, "initial_pose.position.x is nan"),
+        ({"initial_pose": {"orientation": {"x": 1e-300}}}, "no rotation"),
+        ({"model_name": "ground_plane"}, 'model name "ground_plane" already exists'),
+        ({"model_name": "a::b"}, "is no name for a model"),
+    ],
+)
+def test_refusals(api, service, fields, said):
+    message = api.refused(service, **{"model_name": "mine", "model_xml": URDF} | fields)
+    assert message.startswith("SpawnModel: ")
+    assert said in message
+    assert "\n" not in message
+
+
+def test_a_taken_name_comes_with_a_free_one(api):
+    for name in ("mine", "mine_1"):
+        api.done("spawn_urdf_model", model_name=name, model_xml=URDF)
+    message = api.refused("spawn_urdf_model", model_name="mine", model_xml=URDF)
+    assert 'such as "mine_2"' in message
+
+
+def test_after_the_end_there_is_an_answer(make, gazebo):
+    """Nobody runs what is posted any more."""
+    api = gazebo(make.world())
+    api.simulation.stop()
+    request = api.request("spawn_urdf_model", model_xml=URDF)
+    with ThreadPoolExecutor() as pool:
+        future = pool.submit(api.world.graph.call, "/gazebo/spawn_urdf_model", request)
+        answer = future.result(timeout=60).result(timeout=60)
+    assert not answer.success
+    assert "has ended" in answer.status_message
+
+
+LAMP = """<?xml version="1.0"?>
+<!-- a lamp -->
+<sdf version="1.6">
+  <light name="lamp" type="point"><pose>0 0 1 0 0 0</pose>
+    <diffuse>0.25 0.5 0.75 1</diffuse></light>
+</sdf>"""
+
+
+def test_a_light(make, api):
+    """As Gazebo does: a light alone may be spawned, and is deleted as a light."""
+    api.world.session.spawn(make.box("base", (0.1,) * 3, pose=Pose((5, 0, 1))))
+    api.done(
+        "spawn_sdf_model",
+        model_name="mine",
+        model_xml=LAMP,
+        initial_pose=pose_fields((0, 2, 0)),
+        reference_frame="base",
+    )
+    light = api.simulation.model.light("mine")
+    assert light.pos.tolist() == pytest.approx([5, 2, 2])
+    assert light.diffuse.tolist() == pytest.approx([0.25, 0.5, 0.75])
+    message = api.refused("spawn_sdf_model", model_name="mine", model_xml=LAMP)
+    assert 'light "mine" already exists' in message
+    broken = LAMP.replace("point", "pint")
+    assert "<model_xml of other>:4" in api.refused(
+        "spawn_sdf_model", model_name="other", model_xml=broken
+    )
+    api.done("delete_light", light_name="mine")
+    api.done("spawn_sdf_model", model_xml=LAMP)
+    assert api.done("get_light_properties", light_name="lamp").diffuse.g == pytest.approx(0.5)
+
+
+def test_many_comments_cost_nothing(api):
+    """Looking for a light must not try every way to part a hundred comments."""
+    text = SDF.replace("<sdf", "<!-- a -->" * 100 + "<sdf").replace(
+        "<model", "<!-- b -->" * 100 + "<model"
+    )
+    api.done("spawn_sdf_model", model_xml=text)
+
+
+def test_on_the_owners_own_thread(api):
+    """A script of one thread: nobody else could run it."""
+    request = api.request("spawn_urdf_model", model_name="mine", model_xml=URDF)
+    answer = api.world.graph.call("/gazebo/spawn_urdf_model", request).result(timeout=60)
+    assert answer.success
+    assert api.world.models == ("ground_plane", "mine")
+
+
+def test_delete(api):
+    api.done("spawn_urdf_model", model_name="mine", model_xml=URDF)
+    api.world.run(0.1)
+    answer = api.done("delete_model", model_name="mine")
+    assert answer.status_message == "DeleteModel: successfully deleted model"
+    assert api.world.models == ("ground_plane",)
+    message = api.refused("delete_model", model_name="ground_plan")
+    assert message == (
+        'DeleteModel: model "ground_plan" does not exist. Did you mean "ground_plane"?'
+    )
+    api.done("spawn_urdf_model", model_name="mine", model_xml=URDF)
+
+
+def test_while_it_is_paused(api):
+    api("pause_physics")
+    api.done("spawn_urdf_model", model_name="mine", model_xml=URDF)
+    assert api.done("get_model_state", model_name="mine").success
+    assert api.simulation.time_ns == 0

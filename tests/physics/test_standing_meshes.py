@@ -1,0 +1,130 @@
+"""Meshes that stand still collide with their surface: rooms have an inside, valleys a bottom."""
+
+import numpy as np
+import pytest
+import trimesh
+
+from cartwheel.geometry import Pose
+
+
+def static_mesh(make, path, name="thing"):
+    return make.sdf(
+        f"""<model name="{name}"><static>true</static><link name="l"><collision name="c"><geometry>
+        <mesh><uri>file://{path}</uri></mesh></geometry></collision></link></model>"""
+    )
+
+
+def ball(make, x, y, z, name="ball"):
+    return make.sdf(
+        f"""<model name="{name}"><pose>{x} {y} {z} 0 0 0</pose><link name="l"><inertial>
+        <mass>1</mass><inertia><ixx>0.004</ixx><iyy>0.004</iyy><izz>0.004</izz></inertia>
+        </inertial><collision name="c"><geometry><sphere><radius>0.1</radius></sphere></geometry>
+        </collision></link></model>"""
+    )
+
+
+@pytest.fixture
+def ring(tmp_path):
+    """A wall 1 m high of outer radius 3 m and inner radius 2.8 m, in one piece."""
+    path = tmp_path / "ring.stl"
+    trimesh.creation.annulus(r_min=2.8, r_max=3.0, height=1.0, sections=24).export(path)
+    return path
+
+
+def test_a_ring_has_room_inside_and_its_wall_stops_a_ball(make, ring):
+    world = make.world(
+        static_mesh(make, ring), ball(make, 0, 0, 0.1), ball(make, 2.9, 0, 0.7, name="top")
+    )
+    told = [d.message for d in world.session.diagnostics if "put into" in d.message]
+    assert not told
+    simulation = world.session.simulation
+    simulation.data.joint("ball::l").qvel[0] = 2.0
+    world.run(3.0)
+    # The ball came to the inner face, whose facets lie between 2.8 cos(π/24) and 2.8 m.
+    radius = float(np.linalg.norm(simulation.pose("ball").position[:2]))
+    assert radius < 2.8 - 0.1 + 5e-3
+    # The other lies on the rim: 0.5 m is half of the height.
+    assert simulation.pose("top").position[2] == pytest.approx(0.6, abs=5e-3)
+
+
+def test_a_ball_rolls_into_the_valley_of_a_terrain(make, tmp_path):
+    """A sheet without thickness, 4 m by 4 m, that rises by 0.3 m for each metre from y = 0."""
+    rows = [(x, y, 1.0 + 0.3 * abs(y)) for y in (-2.0, 0.0, 2.0) for x in (-2.0, 2.0)]
+    faces = [(0, 1, 3), (0, 3, 2), (2, 3, 5), (2, 5, 4)]
+    path = tmp_path / "valley.stl"
+    trimesh.Trimesh(rows, faces).export(path)
+    world = make.world(static_mesh(make, path), ball(make, 0.0, 1.0, 1.5), ground=None)
+    world.run(12.0)
+    x, y, z = world.session.simulation.pose("ball").position
+    # It rolls to and fro, and lost most of its height where the slopes meet. Its centre is
+    # r / cos(slope) above the surface.
+    assert abs(x) < 0.05
+    assert abs(y) < 0.5
+    assert z == pytest.approx(1.0 + 0.3 * abs(y) + 0.1 * np.hypot(1, 0.3), abs=5e-3)
+
+
+def test_a_room_with_a_door_is_open_and_its_walls_are_where_they_are_drawn(make, tmp_path):
+    """Walls of 0.1 m around 4 m by 4 m, in one mesh; a ray finds each face."""
+    import mujoco
+
+    def wall(x, y, w, d):
+        box = trimesh.creation.box((w, d, 2.0))
+        box.apply_translation((x, y, 1.0))
+        return box
+
+    mesh = trimesh.util.concatenate(
+        [wall(2, 0, 0.1, 4), wall(-2, 0, 0.1, 4), wall(0, 2, 3.9, 0.1), wall(-1.2, -2, 1.5, 0.1)]
+    )
+    path = tmp_path / "room.stl"
+    mesh.export(path)
+    world = make.world(
+        static_mesh(make, path), make.box("b", (0.2, 0.2, 0.2), pose=Pose((0, 0, 0.1)))
+    )
+    simulation = world.session.simulation
+    group = np.array([0, 0, 0, 0, 1, 0], dtype=np.uint8)
+    hit = np.zeros(1, dtype=np.int32)
+    start = np.array([0.0, 0.0, 1.0])
+    for direction, expected in (((1.0, 0, 0), 1.95), ((-1.0, 0, 0), 1.95), ((0, 1.0, 0), 1.95)):
+        found = mujoco.mj_ray(
+            simulation.model, simulation.data, start, np.array(direction), group, 1, -1, hit
+        )
+        assert found == pytest.approx(expected, abs=1e-4)
+    # Out of the door there is nothing.
+    free = mujoco.mj_ray(
+        simulation.model, simulation.data, np.array([0.8, 0, 1.0]), np.array([0, -1.0, 0]),
+        group, 1, -1, hit,
+    )  # fmt: skip
+    assert free == -1
+
+
+def test_a_convex_mesh_stays_one_hull_and_one_that_moves_too(make, tmp_path, ring):
+    path = tmp_path / "box.stl"
+    trimesh.creation.box((1, 1, 1)).export(path)
+    world = make.world(static_mesh(make, path), ground=None)
+    assert world.session.simulation.model.ngeom == 1
+    moving = make.sdf(
+        f"""<model name="r"><link name="l"><inertial><mass>1</mass></inertial><collision name="c">
+        <geometry><mesh><uri>file://{ring}</uri></mesh></geometry></collision></link></model>"""
+    )
+    assert make.world(moving, ground=None).session.simulation.model.ngeom == 1
+
+
+def test_a_surface_of_too_many_facets_is_told(make, ring, monkeypatch):
+    from cartwheel.description.meshes import loading, standing
+
+    loading._standing.cache_clear()
+    monkeypatch.setattr(standing, "MOST_PIECES", 10)
+    world = make.world(static_mesh(make, ring), ground=None)
+    loading._standing.cache_clear()
+    assert world.session.simulation.model.ngeom == 1
+    told = [d.message for d in world.session.diagnostics]
+    assert any("the surface of a mesh has no effect" in message for message in told)
+
+
+def test_a_flat_sheet_carries_what_lies_on_it(make, tmp_path):
+    path = tmp_path / "sheet.stl"
+    corners = [(-1, -1, 0.5), (1, -1, 0.5), (1, 1, 0.5), (-1, 1, 0.5)]
+    trimesh.Trimesh(corners, [(0, 1, 2), (0, 2, 3)]).export(path)
+    world = make.world(static_mesh(make, path), ball(make, 0.3, 0.2, 0.8), ground=None)
+    world.run(2.0)
+    assert world.session.simulation.pose("ball").position[2] == pytest.approx(0.6, abs=5e-3)

@@ -1,0 +1,55 @@
+"""Limits of a drive's commands."""
+
+import pytest
+
+from cartwheel.errors import PluginError
+from cartwheel.plugins.control.limiter import Limiter
+from cartwheel.plugins.control.settings import Settings
+
+
+def test_velocity_and_acceleration():
+    values = {
+        "has_velocity_limits": True,
+        "max_velocity": 1.0,
+        "min_velocity": -0.5,
+        "has_acceleration_limits": True,
+        "max_acceleration": 2.0,
+    }
+    limiter = Limiter.read(Settings(values, "c"))
+    assert limiter.limit(5.0, 0.0, 0.0, 0.1) == pytest.approx(0.2)
+    assert limiter.limit(5.0, 0.95, 0.95, 0.1) == 1.0
+    assert limiter.limit(-5.0, -0.45, -0.45, 0.1) == -0.5
+
+
+def test_a_limit_that_is_switched_off_does_nothing():
+    values = {"has_velocity_limits": False, "max_velocity": 1.0}
+    assert Limiter.read(Settings(values, "c")).limit(5.0, 0.0, 0.0, 0.1) == 5.0
+
+
+def test_jerk_limits_how_the_acceleration_grows():
+    """By j dt in each dt: from rest the speeds grow as 2 j dt² times 1, 3, 6, 10 ..."""
+    limiter = Limiter.read(Settings({"has_jerk_limits": True, "max_jerk": 3.0}, "c"))
+    dt, speeds = 0.1, [0.0, 0.0]
+    for _ in range(4):
+        speeds.append(limiter.limit(100.0, speeds[-1], speeds[-2], dt))
+    step = 2 * 3.0 * dt * dt
+    assert speeds[2:] == pytest.approx([step * n for n in (1, 3, 6, 10)])
+
+
+def test_ros2_slows_by_a_limit_of_its_own():
+    values = {"max_acceleration": 1.0, "max_deceleration": -4.0}
+    limiter = Limiter.read(Settings(values, "c"))
+    assert limiter.limit(5.0, 1.0, 1.0, 0.1) == pytest.approx(1.1)
+    assert limiter.limit(0.0, 1.0, 1.0, 0.1) == pytest.approx(0.6)
+
+
+@pytest.mark.parametrize(
+    ("values", "text"),
+    [
+        ({"has_velocity_limits": True}, "there is no .max_velocity."),
+        ({"max_velocity": 1.0, "min_velocity": 2.0}, "is above"),
+    ],
+)
+def test_limits_that_make_no_sense(values, text):
+    with pytest.raises(PluginError, match=text):
+        Limiter.read(Settings(values, "c"))

@@ -1,0 +1,119 @@
+"""The controller manager's services, and what may run beside what."""
+
+import pytest
+from tests.plugins.control.arms import ROS1, beam, robot, transmission
+
+STRICT, BEST_EFFORT = 2, 1
+ONE = {"type": "position_controllers/JointPositionController", "joint": "beam_joint"}
+
+
+@pytest.fixture
+def arm(bench):
+    made = bench(robot(beam("beam", "world") + transmission("beam_joint", "Position"), ROS1))
+    parameters = made.world.graph.parameters
+    parameters.set("/one", ONE)
+    parameters.set("/two", ONE)
+    parameters.set(
+        "/states", {"type": "joint_state_controller/JointStateController", "publish_rate": 10}
+    )
+    made.world.graph.post = lambda function: function()
+    return made
+
+
+def load(made, name):
+    return made.call("/controller_manager/load_controller", name=name).ok
+
+
+def switch(made, start=(), stop=(), strictness=STRICT):
+    return made.call(
+        "/controller_manager/switch_controller",
+        start_controllers=list(start),
+        stop_controllers=list(stop),
+        strictness=strictness,
+        start_asap=False,
+        timeout=0.0,
+    ).ok
+
+
+def states(made):
+    answer = made.call(
+        "/controller_manager/list_controllers", structure_needs_at_least_one_member=0
+    )
+    return {each.name: each.state for each in answer.controller}
+
+
+def test_a_controller_is_loaded_started_stopped_and_unloaded(arm):
+    assert load(arm, "one")
+    assert states(arm) == {"one": "initialized"}
+    assert switch(arm, start=["one"])
+    arm.publish("/one/command", "std_msgs/msg/Float64", data=0.4)
+    arm.world.run(1.0)
+    assert states(arm) == {"one": "running"}
+    assert arm.position("beam_joint") == pytest.approx(0.4, abs=1e-3)
+    assert not arm.call("/controller_manager/unload_controller", name="one").ok
+    assert switch(arm, stop=["one"])
+    arm.world.run(0.5)
+    assert states(arm) == {"one": "stopped"}
+    # What held a position goes on to hold it.
+    assert arm.position("beam_joint") == pytest.approx(0.4, abs=1e-3)
+    assert arm.call("/controller_manager/unload_controller", name="one").ok
+    assert states(arm) == {}
+    assert "/one/command" not in [topic.name for topic in arm.world.graph.topics()]
+
+
+def test_a_joint_has_one_controller_at_a_time(arm):
+    assert load(arm, "one")
+    assert load(arm, "two")
+    assert load(arm, "states")
+    assert switch(arm, start=["one", "states"])
+    assert not switch(arm, start=["two"])
+    assert states(arm) == {"one": "running", "two": "initialized", "states": "running"}
+    assert any('is commanded by "one"' in text for text in arm.warnings)
+    assert switch(arm, start=["two"], stop=["one"])
+    assert states(arm) == {"one": "stopped", "two": "running", "states": "running"}
+
+
+def test_strict_is_all_or_nothing_and_best_effort_what_it_can(arm):
+    assert load(arm, "one")
+    assert not switch(arm, start=["one", "missing"])
+    assert states(arm) == {"one": "initialized"}
+    assert switch(arm, start=["one", "missing"], strictness=BEST_EFFORT)
+    assert states(arm) == {"one": "running"}
+
+
+def test_what_cannot_be_loaded_is_told(arm):
+    assert not load(arm, "nowhere")
+    assert any("there is no parameter /nowhere/type" in text for text in arm.warnings)
+    arm.world.graph.parameters.set("/odd", {"type": "odd_controllers/Odd"})
+    assert not load(arm, "odd")
+    arm.world.graph.parameters.set("/bad", {"type": ONE["type"], "joint": "elbow"})
+    assert not load(arm, "bad")
+    assert any('"elbow" does not exist' in text for text in arm.warnings)
+    assert load(arm, "one")
+    assert not load(arm, "one")
+
+
+def test_types_are_listed_with_their_base(arm):
+    answer = arm.call(
+        "/controller_manager/list_controller_types", structure_needs_at_least_one_member=0
+    )
+    assert "diff_drive_controller/DiffDriveController" in answer.types
+    assert set(answer.base_classes) == {"controller_interface::ControllerBase"}
+    assert len(answer.types) == len(answer.base_classes)
+
+
+def test_claims_are_listed(arm):
+    assert load(arm, "one")
+    answer = arm.call("/controller_manager/list_controllers", structure_needs_at_least_one_member=0)
+    (claim,) = answer.controller[0].claimed_resources
+    assert claim.hardware_interface == "hardware_interface::PositionJointInterface"
+    assert claim.resources == ["beam_joint"]
+
+
+def test_reloading_the_libraries_unloads_everything(arm):
+    assert load(arm, "one")
+    assert switch(arm, start=["one"])
+    name = "/controller_manager/reload_controller_libraries"
+    assert not arm.call(name, force_kill=False).ok
+    assert arm.call(name, force_kill=True).ok
+    assert states(arm) == {}

@@ -1,0 +1,56 @@
+"""The PID law against its definition."""
+
+import pytest
+
+from cartwheel.errors import PluginError
+from cartwheel.plugins.control.pid import Gains, Pid
+from cartwheel.plugins.control.settings import Settings
+
+
+def test_each_term():
+    pid = Pid(Gains(p=2.0, i=3.0, d=4.0, i_min=-10, i_max=10))
+    law = pid.position(0.5, 0.1, target=1.0)
+    # The first time the target has not changed; its own speed is the damping's.
+    assert law.effort == pytest.approx(2 * 0.5 + 3 * 0.5 * 0.1)
+    assert law.damping == 4.0
+    law = pid.position(0.4, 0.1, target=1.2)
+    assert law.effort == pytest.approx(2 * 0.4 + 3 * (0.5 + 0.4) * 0.1 + 4 * 0.2 / 0.1)
+
+
+def test_the_integral_is_clamped_by_what_it_gives():
+    pid = Pid(Gains(p=0.0, i=10.0, i_min=-1, i_max=2))
+    for _ in range(100):
+        law = pid.position(1.0, 0.1, target=0.0)
+    assert law.effort == 2.0
+    # It went on to grow, so it takes as long to come back...
+    for _ in range(50):
+        law = pid.position(-1.0, 0.1, target=0.0)
+    assert law.effort == 2.0
+
+
+def test_antiwindup_clamps_the_integral_itself():
+    pid = Pid(Gains(p=0.0, i=10.0, i_min=-1, i_max=2, antiwindup=True))
+    for _ in range(100):
+        law = pid.position(1.0, 0.1, target=0.0)
+    assert law.effort == 2.0
+    law = pid.position(-1.0, 0.1, target=0.0)
+    assert law.effort == pytest.approx(2.0 - 10 * 0.1)
+
+
+def test_without_a_clamp_the_integral_gives_nothing_as_in_ros_control():
+    gains = Gains.read(Settings({"p": 1.0, "i": 5.0}, "c"))
+    assert (gains.i_min, gains.i_max) == (0.0, 0.0)
+    gains = Gains.read(Settings({"p": 1.0, "i": 5.0, "i_clamp": 3.0}, "c"))
+    assert (gains.i_min, gains.i_max) == (-3.0, 3.0)
+    gains = Gains.read(Settings({"p": 1.0, "i": 5.0, "i_clamp_min": -1.0, "i_clamp_max": 2.0}, "c"))
+    assert (gains.i_min, gains.i_max) == (-1.0, 2.0)
+
+
+def test_there_must_be_a_p():
+    with pytest.raises(PluginError, match='"p" is missing'):
+        Gains.read(Settings({"i": 1.0}, "c"))
+
+
+def test_a_velocity_is_held_by_p_as_damping():
+    law = Pid(Gains(p=3.0)).velocity(2.0, 0.5, 0.01)
+    assert law.effort - law.damping * 0.5 == pytest.approx(3.0 * (2.0 - 0.5))

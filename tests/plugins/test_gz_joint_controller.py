@@ -1,0 +1,119 @@
+"""New Gazebo's controllers of single joints: where the joint goes, and how fast."""
+
+import math
+
+import pytest
+
+from cartwheel.errors import PluginError
+
+INERTIA = 1.0
+
+
+def arm(plugin, *, limit=""):
+    """A beam that turns about the upright, which gravity does not move."""
+    return f"""<model name="arm"><link name="base"/><joint name="bolt" type="fixed">
+      <parent>world</parent><child>base</child></joint>
+      <link name="beam"><inertial><mass>1</mass><inertia><ixx>1</ixx><iyy>1</iyy>
+      <izz>{INERTIA}</izz></inertia></inertial></link>
+      <joint name="turn" type="revolute"><parent>base</parent><child>beam</child>
+      <axis><xyz>0 0 1</xyz>{limit}</axis></joint>{plugin}</model>"""
+
+
+def controller(kind, tags, *, joint="<joint_name>turn</joint_name>"):
+    return f'<plugin name="p" filename="gz-sim-{kind}-system">{joint}{tags}</plugin>'
+
+
+def run(make, plugin, seconds, commands=(), *, limit="", reset=False):
+    world = make.world(make.sdf(arm(plugin, limit=limit)), ground=None)
+    for topic, value in commands:
+        world.publish(topic, data=value)
+    world.run(seconds)
+    if reset:
+        world.reset()
+        world.run(seconds)
+    data = world.session.simulation.data
+    return float(data.qpos[0]), float(data.qvel[0])
+
+
+POSITION = "/model/arm/joint/turn/cmd_pos"
+VELOCITY = "/model/arm/joint/turn/cmd_vel"
+FORCE = "/model/arm/joint/turn/cmd_force"
+
+
+@pytest.mark.parametrize("reset", [False, True])
+def test_the_pid_swings_as_its_gains_say(make, reset):
+    # Critically damped: 1 - (1 + w t) e^(-w t), w = 10 1/s.
+    gains = "<p_gain>100</p_gain><i_gain>0</i_gain><d_gain>20</d_gain>"
+    plugin = controller(
+        "joint-position-controller", gains + "<initial_position>1</initial_position>"
+    )
+    position, _ = run(make, plugin, 0.2, reset=reset)
+    assert position == pytest.approx(1 - 3 * math.exp(-2), abs=0.03)
+
+
+def test_the_pid_s_force_is_bounded(make):
+    tags = "<p_gain>1e4</p_gain><i_gain>0</i_gain><d_gain>0</d_gain><cmd_max>2</cmd_max>"
+    plugin = controller("joint-position-controller", tags)
+    _, velocity = run(make, plugin, 0.5, [(POSITION, 100.0)])
+    assert velocity == pytest.approx(2 / INERTIA * 0.5, rel=0.03)
+
+
+def test_an_integral_bears_a_load(make):
+    # The offset pulls with 5 N m; alone, the proportional part would give way by 0.1 rad.
+    gains = "<p_gain>50</p_gain><i_gain>100</i_gain><d_gain>14</d_gain><i_max>10</i_max>"
+    bounds = "<i_min>-10</i_min><cmd_offset>-5</cmd_offset>"
+    plugin = controller("joint-position-controller", gains + bounds)
+    position, _ = run(make, plugin, 5.0, [(POSITION, 0.5)])
+    assert position == pytest.approx(0.5, abs=0.005)
+
+
+def test_a_position_by_velocity_goes_no_faster_than_told(make):
+    tags = "<use_velocity_commands>true</use_velocity_commands><cmd_max>0.5</cmd_max>"
+    plugin = controller("joint-position-controller", tags)
+    commands = [(POSITION, 1.0)]
+    position, velocity = run(make, plugin, 1.0, commands)
+    assert position == pytest.approx(0.5, abs=0.01)
+    assert velocity == pytest.approx(0.5, rel=0.01)
+    assert run(make, plugin, 4.0, commands)[0] == pytest.approx(1.0, abs=0.001)
+
+
+@pytest.mark.parametrize(
+    ("tags", "topic"),
+    [
+        ("", VELOCITY),
+        ("<topic>spin</topic>", "/spin"),
+        ("<sub_topic>spin</sub_topic>", "/model/arm/spin"),
+    ],
+)
+def test_a_velocity_is_held(make, tags, topic):
+    plugin = controller("joint-controller", "<initial_velocity>3</initial_velocity>" + tags)
+    assert run(make, plugin, 0.5)[1] == pytest.approx(3, rel=1e-3)
+    assert run(make, plugin, 0.5, [(topic, -2.0)])[1] == pytest.approx(-2, rel=1e-3)
+
+
+def test_a_velocity_by_force_rises_as_the_gain_says(make):
+    # v = v0 (1 - e^(-p t / I))
+    tags = "<use_force_commands>true</use_force_commands><p_gain>2</p_gain>"
+    plugin = controller("joint-controller", tags + "<initial_velocity>4</initial_velocity>")
+    _, velocity = run(make, plugin, 0.5)
+    assert velocity == pytest.approx(4 * (1 - math.exp(-1)), rel=0.02)
+
+
+def test_a_force_is_given_until_the_next(make):
+    plugin = controller("apply-joint-force", "")
+    _, velocity = run(make, plugin, 1.0, [(FORCE, 0.7)])
+    assert velocity == pytest.approx(0.7 / INERTIA, rel=0.02)
+
+
+@pytest.mark.parametrize(
+    ("plugin", "message"),
+    [
+        (controller("joint-controller", "", joint=""), "joint_name"),
+        (controller("joint-controller", "<cmd_max>-2000</cmd_max>"), "lower bound"),
+    ],
+)
+def test_what_makes_no_sense_is_refused(make, plugin, message):
+    world = make.world(ground=None)
+    with pytest.raises(PluginError, match=message) as caught:
+        world.session.spawn(make.sdf(arm(plugin)))
+    assert caught.value.origin is not None

@@ -1,0 +1,66 @@
+"""Which namespace a plugin's topics have, by its tag and by who spawned the model."""
+
+import pytest
+
+import cartwheel as cw
+from cartwheel.description import load_text
+
+ROBOT = """<robot name="{name}"><link name="base"><inertial><mass value="1"/>
+  <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+  <link name="l"><inertial><mass value="1"/>
+  <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+  <link name="r"><inertial><mass value="1"/>
+  <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+  <joint name="left_joint" type="continuous"><parent link="base"/><child link="l"/></joint>
+  <joint name="right_joint" type="continuous"><parent link="base"/><child link="r"/></joint>
+  <gazebo><plugin name="d" filename="libgazebo_ros_diff_drive.so">{tag}</plugin>
+    <plugin name="i" filename="libgazebo_ros_imu.so">{tag}<bodyName>base</bodyName></plugin>
+  </gazebo></robot>"""
+
+
+@pytest.mark.parametrize(
+    ("tag", "spawner", "drive", "imu"),
+    [
+        ("", "", "/cmd_vel", "/imu"),
+        ("", "/", "/cmd_vel", "/imu"),
+        ("", "/r1", "/r1/cmd_vel", "/r1/imu"),
+        ("<robotNamespace>/</robotNamespace>", "/r1", "/cmd_vel", "/imu"),
+        ("<robotNamespace>/mine</robotNamespace>", "/r1", "/mine/cmd_vel", "/mine/imu"),
+        # Gazebo's drive and cameras take the model's name for an empty tag, its IMU none.
+        ("<robotNamespace></robotNamespace>", "/r1", "/two/cmd_vel", "/imu"),
+        ("<ros><namespace>/two</namespace></ros>", "/r1", "/two/cmd_vel", "/two/imu"),
+    ],
+)
+def test_the_tag_counts_before_the_spawner(tag: str, spawner: str, drive: str, imu: str) -> None:
+    with cw.World("empty") as world:
+        robot = load_text(ROBOT.format(name="two", tag=tag), file="two.urdf")
+        world.session.spawn(robot, namespace=spawner)
+        topics = {topic.name for topic in world.graph.topics()}
+        assert {drive, imu} <= topics
+
+
+@pytest.mark.parametrize(
+    ("tag", "spawner", "prefix", "frames"),
+    [
+        ("", "/", "", ("odom", "base")),
+        ("", "/r1", "", ("r1/odom", "r1/base")),
+        ("", "/r1", "left", ("left/odom", "left/base")),
+        (
+            "<ros><namespace>/two</namespace></ros><publish_odom>1</publish_odom>",
+            "/",
+            "",
+            ("odom", "base"),
+        ),
+    ],
+)
+def test_a_drive_puts_its_namespace_before_its_frames(tag, spawner, prefix, frames) -> None:
+    """As gazebo_plugins does where there is no tf_prefix; its ROS 2 branch does not."""
+    with cw.World("empty") as world:
+        base = "<robotBaseFrame>base</robotBaseFrame>"
+        robot = load_text(ROBOT.format(name="two", tag=tag + base), file="two.urdf")
+        world.session.spawn(robot, namespace=spawner, frame_prefix=prefix)
+        (topic,) = (t.name for t in world.graph.topics() if t.name.endswith("/odom"))
+        seen = []
+        world.subscribe(topic, seen.append)
+        world.run(0.1)
+        assert (seen[0].header.frame_id, seen[0].child_frame_id) == frames

@@ -1,0 +1,114 @@
+"""Plugins of worlds: none is passed over in silence."""
+
+import pytest
+
+from cartwheel.description import load_text
+from cartwheel.errors import CartwheelError
+from cartwheel.session import Session
+
+
+def told(filename):
+    text = (
+        f'<sdf version="1.6"><world name="w"><plugin name="p" filename="{filename}"/></world></sdf>'
+    )
+    session = Session(load_text(text, file="w.world"))
+    found = [d for d in session.diagnostics if d.severity == "warning"]
+    session.close()
+    return found
+
+
+@pytest.mark.parametrize(
+    ("filename", "reason"),
+    [
+        ("libSimEventsPlugin.so", "is not supported"),
+        ("libgazebo_ros_diff_drive.so", "belongs inside a <model>"),
+    ],
+)
+def test_a_plugin_that_does_nothing_is_told(filename, reason):
+    (found,) = told(filename)
+    assert filename in found.message
+    assert reason in found.message
+    assert found.origin.line == 1
+
+
+@pytest.mark.parametrize(
+    "filename",
+    [
+        "gz-sim-physics-system",
+        "ignition-gazebo-user-commands-system",
+        "libgazebo_ros_factory.so",
+        "gz-sim-sensors-system",
+    ],
+)
+def test_what_is_built_in_is_not(filename):
+    assert not told(filename)
+
+
+WORLD = """<sdf version="1.9"><world name="w"><model name="cart">
+  <link name="a"/><link name="b"/>
+  <joint name="left" type="continuous"><parent>a</parent><child>b</child>
+  <axis><xyz>0 1 0</xyz></axis></joint>
+  {}</model></world></sdf>"""
+DRIVE = """<plugin name="p" filename="gz-sim-diff-drive-system"><left_joint>left</left_joint>
+  <right_joint>right</right_joint></plugin>"""
+
+
+def test_a_plugin_that_cannot_be_made_costs_a_world_the_plugin():
+    states = '<plugin name="s" filename="gz-sim-joint-state-publisher-system"/>'
+    session = Session(load_text(WORLD.format(DRIVE + states), file="w.world"))
+    (told,) = [each for each in session.diagnostics if each.severity == "error"]
+    assert 'plugin "gz-sim-diff-drive-system" is left out' in told.message
+    assert '"right" does not exist' in told.message
+    topics = {topic.name for topic in session.graph.topics()}
+    assert any("joint_state" in name for name in topics)
+    assert not any("cmd_vel" in name for name in topics)
+    assert session.simulation.model.nu == 0
+    session.close()
+
+
+def test_a_plugin_that_cannot_be_made_refuses_a_robot():
+    text = WORLD.format(DRIVE).replace('<world name="w">', "").replace("</world>", "")
+    session = Session(load_text('<sdf version="1.6"><world name="w"/></sdf>', file="w.world"))
+    with pytest.raises(CartwheelError, match='"right" does not exist'):
+        session.spawn(load_text(text, file="r.sdf"))
+    session.close()
+
+
+@pytest.mark.parametrize("name", ["gz-sim-diff-drive-system", "libgazebo_ros_diff_drive.so"])
+def test_a_static_model_has_nothing_to_drive(name):
+    drive = f"""<static>1</static><plugin name="p" filename="{name}"><left_joint>left</left_joint>
+      <right_joint>left</right_joint></plugin>"""
+    session = Session(load_text(WORLD.format(drive), file="w.world"))
+    (told,) = [each for each in session.diagnostics if each.severity == "error"]
+    assert "is static: its joints do not move" in told.message
+    session.close()
+
+
+def test_names_that_ros_does_not_know_make_topics_that_it_does():
+    states = '<plugin name="s" filename="gz-sim-joint-state-publisher-system"/>'
+    text = WORLD.format(states).replace('name="cart"', 'name="3-wheeled cart"')
+    session = Session(load_text(text, file="w.world"))
+    topics = [topic.name for topic in session.graph.topics()]
+    assert "/world/w/model/_3_wheeled_cart/joint_state" in topics
+    session.close()
+
+
+def test_a_sensor_that_lacks_something_costs_the_sensor():
+    sensor = '<link name="c"><sensor name="eye" type="camera"><topic>eye</topic></sensor></link>'
+    session = Session(load_text(WORLD.format(sensor), file="w.world"))
+    (told,) = [each for each in session.diagnostics if each.severity == "error"]
+    assert 'sensor "eye" is left out' in told.message
+    assert "has no <camera>" in told.message
+    session.close()
+
+
+def test_a_nested_model_s_plugin_knows_its_own_joints():
+    text = """<sdf version="1.9"><world name="w"><model name="outer"><link name="base"/>
+      <model name="inner"><link name="a"/><link name="b"/>
+      <joint name="j" type="revolute"><parent>a</parent><child>b</child>
+      <axis><xyz>0 1 0</xyz></axis></joint>
+      <plugin name="s" filename="gz-sim-joint-state-publisher-system">
+      <joint_name>j</joint_name></plugin></model></model></world></sdf>"""
+    session = Session(load_text(text, file="w.world"))
+    assert [each for each in session.diagnostics if each.severity == "error"] == []
+    session.close()

@@ -1,0 +1,75 @@
+"""A learner's desk: terminals that share a master, and a screen."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import shutil
+import subprocess
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import ImageGrab
+from tests.ros1.conftest import ROOT, free_port
+from tests.ros1.terminal import Terminal
+
+Pixels = NDArray[np.uint8]
+
+
+class Desk:
+    """A learner's desk: terminals that share a master, and a screen."""
+
+    def __init__(self, folder: Path, display: str) -> None:
+        self.folder = folder
+        self.display = display
+        self.environment = {
+            **{key: os.environ[key] for key in ("PATH", "LANG") if key in os.environ},
+            "PATH": f"/usr/bin:/bin:{os.environ['PATH']}",
+            "HOME": str(folder),
+            "ROS_MASTER_URI": f"http://127.0.0.1:{free_port()}",
+            "ROS_HOSTNAME": "127.0.0.1",
+            "LIBGL_ALWAYS_SOFTWARE": "1",
+            "XDG_RUNTIME_DIR": str(folder / "runtime"),
+        }
+        (folder / "runtime").mkdir(mode=0o700)
+        self._open = contextlib.ExitStack()
+
+    def terminal(self, *, display: bool = False) -> Terminal:
+        """A new one in the workspace, with its setup sourced."""
+        screen = {"DISPLAY": self.display} if display else {}
+        terminal = Terminal({**self.environment, **screen}, ROOT / "ros1")
+        self._open.callback(terminal.close)
+        terminal.run("source devel/setup.bash")
+        return terminal
+
+    def look(self) -> Pixels:
+        """The screen, shape (height, width, 3)."""
+        image = ImageGrab.grab(xdisplay=self.display).convert("RGB")
+        image.save(self.folder / "screen.png")
+        return np.asarray(image)
+
+    def close(self) -> None:
+        self._open.close()
+
+
+@contextlib.contextmanager
+def open_desk(folder: Path) -> Iterator[Desk]:
+    """A desk with a screen in memory where Xvfb is installed."""
+    display = f":{200 + os.getpid() % 700}"
+    screen = None
+    if shutil.which("Xvfb"):
+        screen = subprocess.Popen(
+            ["Xvfb", display, "-screen", "0", "1280x900x24", "-nolisten", "tcp"],
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
+    desk = Desk(folder, display)
+    try:
+        yield desk
+    finally:
+        desk.close()
+        if screen is not None:
+            screen.terminate()
+            screen.wait()
