@@ -4,7 +4,7 @@ BIN = $(VENV)/bin
 ARGS ?=
 export VENV
 
-.PHONY: run test lint format bench docs clean
+.PHONY: run test lint format bench docs ros1 clean
 
 run: ## the cart in the browser, with a post before its camera
 	@tools/setup.sh run
@@ -33,5 +33,9 @@ docs: ## the parts of docs/ that are made from the code
 	@tools/setup.sh lint
 	@$(BIN)/python tools/make_plugin_reference.py
 
+ros1: ## ROS 1's names for Cartwheel: gazebo_ros, gazebo_msgs, xacro, teleop_twist_keyboard
+	@tools/setup.sh ros1
+	@tools/build_ros1.sh
+
 clean:
-	rm -rf $(VENV) build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	rm -rf $(VENV) ros1/build ros1/devel build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis

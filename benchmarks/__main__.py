@@ -12,11 +12,11 @@ os.environ.setdefault("MUJOCO_GL", "egl")
 
 from rich.console import Console
 
-from benchmarks import camera, headless, process
+from benchmarks import camera, headless, process, scans
 from benchmarks.figure import FULL, QUICK
 from benchmarks.report import machine, show, write
 
-_PARTS = {"headless": headless, "camera": camera, "process": process}
+_PARTS = {"headless": headless, "camera": camera, "scans": scans, "process": process}
 
 
 def main() -> None:

@@ -11,7 +11,7 @@ import numpy as np
 import cartwheel as cw
 
 READ = ("/odom", "/tf", "/joint_states", "/imu/data")
-IMAGE = "/rosbots/camera1/image_raw"
+IMAGE = "/cart_0/camera1/image_raw"
 
 
 class Listener:

@@ -17,12 +17,13 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
-from benchmarks.carts import IMAGE, READ
+from benchmarks.carts import READ
 from benchmarks.figure import Effort, Figure
 from cartwheel.control.client import ControlClient, Subscription
 from cartwheel.control.registry import find
 from cartwheel.errors import ControlError
 
+IMAGE = "/rosbots/camera1/image_raw"
 _PATIENCE = 60.0
 """s."""
 

@@ -33,8 +33,9 @@ from cartwheel.description.model import (
     WorldDescription,
 )
 from cartwheel.errors import Origin
+from cartwheel.geometry import Pose
 from cartwheel.plugins.base import Plugin
-from cartwheel.plugins.registry import plugins
+from cartwheel.plugins.registry import plugins, sensor_plugins
 from cartwheel.session import Session
 
 TARGET = Path(__file__).resolve().parent.parent / "docs" / "plugins.md"
@@ -51,6 +52,10 @@ of its spellings; the first that is present counts. A tag that a plugin does not
 with its file and line. `<robotNamespace>` (or `<ros><namespace>`) goes before every topic and
 service that does not begin with `/`, and `<ros><remapping>` renames them. `<alwaysOn>` is accepted
 everywhere and changes nothing: a plugin works whenever somebody reads what it publishes.
+
+Sensors of new Gazebo need no `<plugin>`: they publish where the world or the model names their
+system, such as `gz-sim-sensors-system`, and, whatever the world names, where they have a `<topic>`
+or a `<gz_frame_id>` or are of a type that only new Gazebo knows.
 
 A file name counts without its path, with or without `lib` and `.so`; `ignition-gazebo-` is read as
 `gz-sim-`. A plugin that is not in this list is reported when the robot is loaded, with what it
@@ -81,27 +86,37 @@ def reference() -> str:
     # Not those of packages that happen to be installed here.
     ours = [
         plugin
-        for plugin in dict.fromkeys(plugins().values())
+        for plugin in dict.fromkeys([*plugins().values(), *sensor_plugins().values()])
         if plugin.__module__.startswith("cartwheel.")
     ]
-    contents = "\n".join(f"- [`{p.filenames[0]}`](#{_anchor(p.filenames[0])})" for p in ours)
+    contents = "\n".join(f"- [`{_title(p)}`](#{_anchor(_title(p))})" for p in ours)
     return "\n".join([INTRODUCTION, contents, "", *(_section(plugin) for plugin in ours)])
 
 
 def _section(plugin: type[Plugin[Any]]) -> str:
-    lines = [f"## {plugin.filenames[0]}", "", *_prose(plugin), ""]
+    lines = [f"## {_title(plugin)}", "", *_prose(plugin), ""]
     if len(plugin.filenames) > 1:
         others = ", ".join(f"`{name}`" for name in plugin.filenames[1:])
         lines += [f"Also answers to {others}.", ""]
-    inside = "inside a `<sensor>`"
-    if not plugin.for_sensor:
-        inside = "directly inside a `<gazebo>` of a URDF or a `<model>` of an SDF"
-    lines += [f"Written {inside}.", ""]
+    if not plugin.filenames:
+        kinds = ", ".join(f"`{kind}`" for kind in plugin.serves)
+        lines += [f"Serves sensors of the types {kinds} that have no `<plugin>`.", ""]
+    elif plugin.for_sensor:
+        lines += ["Written inside a `<sensor>`.", ""]
+    else:
+        lines += [
+            "Written directly inside a `<gazebo>` of a URDF or a `<model>` of an SDF.",
+            "",
+        ]
     lines += ["| tag | other spellings | value | default | what it is |", "|---|---|---|---|---|"]
     lines += [_row(item, kind) for item, kind in _fields(plugin)]
     lines += ["", "| topic or service | type | with these defaults |", "|---|---|---|"]
     lines += _interface(plugin)
     return "\n".join([*lines, ""])
+
+
+def _title(plugin: type[Plugin[Any]]) -> str:
+    return plugin.filenames[0] if plugin.filenames else f"sensor {plugin.serves[0]}"
 
 
 def _prose(plugin: type[Plugin[Any]]) -> list[str]:
@@ -146,7 +161,7 @@ def _default(item: dataclasses.Field[Any]) -> str:
     if isinstance(value, bool):
         return "`true`" if value else "`false`"
     if isinstance(value, tuple):
-        return f"`{' '.join(f'{part:g}' for part in value)}`"
+        return f"`{' '.join(p if isinstance(p, str) else f'{p:g}' for p in value)}`"
     return f"`{value:g}`" if isinstance(value, float) else f"`{value}`"
 
 
@@ -169,19 +184,28 @@ def _robot(plugin: type[Plugin[Any]]) -> RobotDescription:
     """A robot on which any plugin finds what it needs under its default names."""
     switches = [_element(item.metadata["tags"][0], text="true")
                 for item, kind in _fields(plugin) if kind is bool]  # fmt: skip
-    needed = [_element(item.metadata["tags"][0], text="base_footprint")
-              for item, _ in _fields(plugin) if item.default is dataclasses.MISSING]  # fmt: skip
+    needed = [
+        _element(
+            item.metadata["tags"][0],
+            text="left_joint" if "joint" in item.name else "base_footprint",
+        )
+        for item, _ in _fields(plugin)
+        # A joint to be measured has no default that a robot could have.
+        if item.default is dataclasses.MISSING or (item.name, item.default) == ("joint", "")
+    ]
     element = _element("plugin", children=(*switches, *needed))
-    tag = PluginTag(name="plugin", filename=plugin.filenames[0], element=element, origin=HERE)
+    tag = PluginTag(name="plugin", filename=_title(plugin), element=element, origin=HERE)
+    topic = () if plugin.filenames else (_element("topic", text="my_topic"),)
     sensor = Sensor(
         name=SENSOR,
-        type="any",
+        type=plugin.serves[0] if plugin.serves else "any",
         link="base_footprint",
+        joint="left_joint",
         update_rate=10.0,
         cameras=(CameraIntrinsics(),),
         collisions=("base_footprint_collision",),
-        plugins=(tag,) if plugin.for_sensor else (),
-        element=_element("sensor"),
+        plugins=(tag,) if plugin.for_sensor and plugin.filenames else (),
+        element=_element("sensor", children=(*topic, _ray())),
         origin=HERE,
     )
     body = Collision(name="base_footprint_collision", shape=Sphere(radius=0.1), origin=HERE)
@@ -191,14 +215,23 @@ def _robot(plugin: type[Plugin[Any]]) -> RobotDescription:
     )
     links = [base]
     joints = []
-    for side in ("left", "right"):
-        links.append(Link(name=f"{side}_wheel", inertial=mass, origin=HERE))
+    for name in _joint_names(plugin):
+        # Where its name says, so that a drive finds its axles apart.
+        x, y = (0.5 if "front" in name else -0.5), (0.5 if "left" in name else -0.5)
+        wheel = Link(
+            name=f"{name}_wheel",
+            pose=Pose((x, y, 0.0)),
+            inertial=mass,
+            collisions=(dataclasses.replace(body, name=f"{name}_collision"),),
+            origin=HERE,
+        )
+        links.append(wheel)
         joints.append(
             Joint(
-                name=f"{side}_joint",
+                name=name,
                 type="continuous",
                 parent="base_footprint",
-                child=f"{side}_wheel",
+                child=wheel.name,
                 origin=HERE,
             )
         )
@@ -210,6 +243,23 @@ def _robot(plugin: type[Plugin[Any]]) -> RobotDescription:
         canonical_link="base_footprint",
         origin=HERE,
     )
+
+
+def _joint_names(plugin: type[Plugin[Any]]) -> list[str]:
+    """All joints that a plugin looks for by default, and the two wheels of any cart."""
+    names = ["left_joint", "right_joint"]
+    for item, _ in _fields(plugin):
+        texts = item.default if isinstance(item.default, tuple) else (item.default,)
+        names += [text for text in texts if isinstance(text, str) and text.endswith("_joint")]
+    return list(dict.fromkeys(names))
+
+
+def _ray() -> Element:
+    """A scan of one ray, for the sensors that have one."""
+    limits = (_element("min", text="0.1"), _element("max", text="10"))
+    horizontal = _element("horizontal", children=(_element("samples", text="1"),))
+    scan = _element("scan", children=(horizontal,))
+    return _element("ray", children=(scan, _element("range", children=limits)))
 
 
 def _element(tag: str, *, text: str = "", children: tuple[Element, ...] = ()) -> Element:

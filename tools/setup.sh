@@ -1,6 +1,6 @@
 #!/bin/sh
 # Sets up what is missing: a virtual environment with Cartwheel in it, and Debian's packages
-# that pip cannot bring. Usage: tools/setup.sh run|test|lint
+# that pip cannot bring. Usage: tools/setup.sh run|test|lint|ros1
 set -eu
 cd "$(dirname "$0")/.."
 purpose=${1:-run}
@@ -34,6 +34,41 @@ install() {
 has_library() { (ldconfig -p 2>/dev/null || /sbin/ldconfig -p) | grep -q "$1"; }
 has_driver() { ls /usr/lib/*/dri/*swrast* >/dev/null 2>&1 || ls /usr/lib/*/libgallium* >/dev/null 2>&1; }
 
+# ROS 1 as Debian 12 has it: to build the folder ros1, and what the launch files start.
+ros1_packages() {
+    sed 's/#.*//' <<'END'
+make cmake g++                          # catkin_make
+catkin ros-message-generation ros-message-runtime
+libstd-msgs-dev libgeometry-msgs-dev libtrajectory-msgs-dev libstd-srvs-dev
+libactionlib-msgs-dev ros-actionlib-msgs python3-actionlib-msgs
+ros-std-msgs ros-geometry-msgs ros-trajectory-msgs ros-sensor-msgs ros-std-srvs
+python3-std-msgs python3-geometry-msgs python3-trajectory-msgs python3-sensor-msgs python3-std-srvs
+python3-nav-msgs python3-tf2-msgs       # to echo topics
+python3-rospy python3-roslaunch python3-rosmaster rosout
+rosbash rospack-tools ros-environment   # rosrun, roscd
+python3-rostopic python3-rosnode python3-rosservice python3-rosparam python3-rosmsg python3-rosbag
+ros-robot-state-publisher joint-state-publisher rviz
+tf-tools tf2-tools                      # static_transform_publisher
+END
+}
+
+# Those of the packages that are not installed; nothing where that cannot be asked.
+absent_of() {
+    command -v dpkg-query >/dev/null 2>&1 || return 0
+    # It fails where one of them is missing, which is what is asked.
+    there=$(dpkg-query -W -f '${Status} ${Package} \n' "$@" 2>/dev/null) || true
+    for package in "$@"; do
+        case $there in *"ok installed $package "*) ;; *) printf ' %s' "$package" ;; esac
+    done
+}
+
+# Whether there is such a package. Where apt has no lists yet, Debian's release says it.
+in_archive() {
+    apt-cache show "$1" >/dev/null 2>&1 || {
+        ! ls /var/lib/apt/lists/*_Packages* >/dev/null 2>&1 && grep -q 'VERSION_CODENAME=bookworm' /etc/os-release
+    }
+}
+
 # What nothing works without.
 needed=""
 if ! command -v "$python" >/dev/null 2>&1; then needed="python3 python3-venv"
@@ -47,9 +82,27 @@ has_driver || wanted="$wanted libgl1-mesa-dri"
 if [ "$purpose" = test ]; then
     before=$wanted
     command -v chromium >/dev/null 2>&1 || wanted="$wanted chromium"
+    command -v Xvfb >/dev/null 2>&1 || wanted="$wanted xvfb"
+    # Foxglove's own client, which the tests of that wire read with, is a program for Node.
+    command -v npm >/dev/null 2>&1 || wanted="$wanted nodejs npm"
     # The program that drives the browser needs it, and slim images lack it.
     has_library libatomic.so.1 || wanted="$wanted libatomic1"
+    # A peer for the tests of ROS 2, which Debian has as of ROS 2's default middleware.
+    [ -e /usr/include/fastdds/dds/domain/DomainParticipant.hpp ] || wanted="$wanted g++ libfastrtps-dev"
     [ "$wanted" = "$before" ] || loss="Going on without: tests of cameras or the browser may fail or be skipped."
+fi
+if [ "$purpose" = test ] || [ "$purpose" = ros1 ]; then
+    absent=""
+    # Another ROS 1, with a setup file of its own, brings its own packages.
+    if [ "${ROS_VERSION:-}" != 1 ] || [ "${ROS_DISTRO:-Debian}" = Debian ]; then
+        # shellcheck disable=SC2046 # they are words
+        absent=$(absent_of $(ros1_packages))
+    fi
+    if [ "$purpose" = ros1 ]; then needed="$needed$absent"
+    elif [ -n "$absent" ] && in_archive catkin; then
+        wanted="$wanted $absent"
+        loss="Going on without: tests of what is missing are skipped or may fail."
+    fi
 fi
 
 # Asked for together, so that nobody has to ask twice.
