@@ -11,7 +11,6 @@ import termios
 import time
 import tty
 from collections.abc import Iterator
-from types import FrameType
 from typing import Any
 
 import rospy
@@ -31,7 +30,9 @@ or, in a launch file, give its node launch-prefix="xterm -e"."""
 class Teleop:
     """Publishes what a `Driver` says, on ``cmd_vel``; parameters as in teleop_twist_keyboard."""
 
-    def __init__(self) -> None:
+    def __init__(self, end: int) -> None:
+        """`end` is a descriptor that can be read as soon as the program should end."""
+        self._end = end
         number = _parameter
         self.driver = Driver(number("~speed", 0.5), number("~turn", 1.0))
         self._speed_limit = number("~speed_limit", 1000.0)
@@ -44,17 +45,22 @@ class Teleop:
         kind = TwistStamped if self._stamped else Twist
         self._publisher = rospy.Publisher("cmd_vel", kind, queue_size=1)
 
-    def wait_for_reader(self) -> None:
-        """Waits until somebody reads the topic, and says so where it takes a while."""
+    def wait_for_reader(self) -> bool:
+        """Waits until somebody reads the topic, saying so where it takes a while.
+
+        Returns False where the program should end first.
+        """
         told = time.monotonic()
         while not self._publisher.get_num_connections():
             if time.monotonic() - told > 1.0:
                 told = time.monotonic() + 4.0
                 print(f"waiting: nobody reads {self._publisher.resolved_name} yet")
-            time.sleep(0.02)
+            if select.select([self._end], [], [], 0.02)[0]:
+                return False
+        return True
 
     def run(self) -> int:
-        """Takes keys until they end; returns the exit status."""
+        """Takes keys until they end or the program should; returns the exit status."""
         terminal = os.isatty(sys.stdin.fileno())
         if not terminal:
             print("standard input is no terminal: its letters are taken as keys")
@@ -68,7 +74,11 @@ class Teleop:
             if self._timeout and any(self.driver.move):
                 wake.append(last_key + self._timeout)
             wait = max(0.0, min(wake) - time.monotonic()) if wake else None
-            if select.select([sys.stdin], [], [], wait)[0]:
+            ready = select.select([sys.stdin, self._end], [], [], wait)[0]
+            if self._end in ready:
+                print()
+                return 0
+            if ready:
                 pressed = _read_keys()
                 if pressed is None:
                     if not keys and not terminal:
@@ -121,25 +131,30 @@ def main() -> int:
     # rospy would take the node out of the graph before the last stop was sent.
     rospy.init_node("teleop_twist_keyboard", disable_signals=True)
     sys.stdout.reconfigure(line_buffering=True)
-    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-        signal.signal(number, _interrupt)
+    teleop = Teleop(_end_of_program())
     status = 0
-    teleop = Teleop()
-    try:
-        with _single_keys():
-            teleop.wait_for_reader()
+    with _single_keys():
+        if teleop.wait_for_reader():
             try:
                 status = teleop.run()
             finally:
                 teleop.stop()
-    except KeyboardInterrupt:
-        print()
     rospy.signal_shutdown("done")
     return status
 
 
-def _interrupt(_number: int, _frame: FrameType | None) -> None:
-    raise KeyboardInterrupt
+def _end_of_program() -> int:
+    """A descriptor that can be read as soon as a signal asks for the end.
+
+    An exception in the middle of publishing would leave that message in rospy's buffer, to be
+    sent once more with the next one.
+    """
+    wakes, wake = os.pipe()
+    os.set_blocking(wake, False)
+    signal.set_wakeup_fd(wake)
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, lambda _number, _frame: None)
+    return wakes
 
 
 def _parameter(name: str, default: float) -> float:
