@@ -20,7 +20,7 @@ MODULES = [
     "@foxglove/rosmsg2-serialization@3.1.0",
     "ws@8.23.0",
 ]
-PATIENCE = 30.0
+PATIENCE = 120.0
 
 Accept = Callable[[dict[str, Any]], Any]
 

@@ -17,7 +17,7 @@ from typing import Any
 
 PROGRAM = Path(sys.executable).with_name("cartwheel")
 PYTHON = "/usr/bin/python3"
-PATIENCE = 30.0
+PATIENCE = 120.0
 
 NEEDED = ("rosmaster", "rostopic", "rosservice", "rosnode", "rosbag", "rosparam")
 _missing = [name for name in NEEDED if shutil.which(name) is None]

@@ -102,7 +102,7 @@ def client(served: Served, folder: Path) -> Iterator[Client]:
 
 
 def until(condition: Any, what: str) -> None:
-    deadline = time.monotonic() + 30
+    deadline = time.monotonic() + 120
     while not condition():
         assert time.monotonic() < deadline, f"in vain: {what}"
         time.sleep(0.02)

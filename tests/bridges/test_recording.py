@@ -453,7 +453,7 @@ def test_a_kill_leaves_all_but_the_last_second(name: str, tmp_path: Path) -> Non
         [PROGRAM, *_RUN, str(path), "--record-topics", "!*image*"], stdout=subprocess.DEVNULL
     )
     try:
-        deadline = time.monotonic() + 60
+        deadline = time.monotonic() + 120
         file = path / "drive_0.mcap" if name == "drive" else path
         while not file.exists() or file.stat().st_size < 200_000:
             assert time.monotonic() < deadline and process.poll() is None
@@ -601,7 +601,7 @@ def test_ctrl_c_completes_the_file(tmp_path: Path) -> None:
         stdout=subprocess.PIPE,
         text=True,
     )
-    deadline = time.monotonic() + 60
+    deadline = time.monotonic() + 120
     while not path.exists() or path.stat().st_size < 50_000:
         assert time.monotonic() < deadline and process.poll() is None
         time.sleep(0.02)

@@ -59,7 +59,7 @@ class Program:
     def wait_until_up(self, process: subprocess.Popen[str]) -> None:
         """Waits for a started simulation."""
         entry = Path(self.environment["XDG_RUNTIME_DIR"], "cartwheel", f"{process.pid}.json")
-        deadline = time.monotonic() + 20
+        deadline = time.monotonic() + 120
         while not entry.exists():
             assert process.poll() is None, process.stderr.read()
             assert time.monotonic() < deadline
@@ -93,7 +93,7 @@ def cart(shared: Program) -> Iterator[Program]:
     shared.wait_until_up(process)
     yield shared
     process.send_signal(signal.SIGINT)
-    _, errors = process.communicate(timeout=10)
+    _, errors = process.communicate(timeout=60)
     assert process.returncode == 0, errors
     assert "Traceback" not in errors
 

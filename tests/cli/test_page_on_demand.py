@@ -74,7 +74,7 @@ def test_the_client_opens_the_browser_where_there_is_a_display(program, headless
     program.environment |= {"DISPLAY": ":99", "BROWSER": f"{browser} %s"}
     client = program.start("gzclient", "--verbose", "__name:=gazebo_gui", "__log:=/dev/null")
     url = url_of(client)
-    deadline = time.monotonic() + 20
+    deadline = time.monotonic() + 120
     while not opened.exists():
         assert time.monotonic() < deadline
         time.sleep(0.02)

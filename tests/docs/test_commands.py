@@ -22,7 +22,7 @@ import pytest
 from .pages import PAGES, ROOT, Command, blocks, commands
 
 START_SECONDS = 60.0
-PATIENCE = 20.0
+PATIENCE = 120.0
 """s in which what a simulation says must have become what the page shows."""
 _DECIMAL = re.compile(r"-?\d+\.\d+")
 _PARTS = re.compile(r"(\.\.\.|(?<![\w.])-?\d+\.\d+(?![\w.]))")

@@ -21,7 +21,7 @@ import pytest
 ROOT = Path(__file__).parents[2]
 PYTHON = "/usr/bin/python3"
 MARK = "TEST_ROS1"
-PATIENCE = 60.0
+PATIENCE = 120.0
 """s; a machine may be busy."""
 
 
@@ -137,9 +137,9 @@ class Ros:
         return found
 
     def close(self) -> None:
-        deadline = time.monotonic() + 10.0
+        deadline = time.monotonic() + 40.0
         while self.left():
-            number = signal.SIGTERM if time.monotonic() < deadline - 8.0 else signal.SIGKILL
+            number = signal.SIGTERM if time.monotonic() < deadline - 20.0 else signal.SIGKILL
             for line in self.left():
                 try:
                     os.kill(int(line.split()[0]), number)
@@ -151,7 +151,7 @@ class Ros:
                 process.poll()
             time.sleep(0.1)
         for process in self.started:
-            process.communicate(timeout=10)
+            process.communicate(timeout=60)
 
 
 def reachable(port: int) -> bool:

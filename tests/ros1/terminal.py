@@ -74,7 +74,7 @@ class Terminal:
             self.said += ESCAPES.sub("", data.decode(errors="replace"))
         return self.said[self._mark :]
 
-    def wait_for(self, pattern: str, seconds: float = 60.0) -> re.Match[str]:
+    def wait_for(self, pattern: str, seconds: float = 120.0) -> re.Match[str]:
         """Waits until a regular expression is shown after the last command.
 
         Raises:
@@ -88,7 +88,7 @@ class Terminal:
             shown = self.said[self._mark :]
             assert time.monotonic() < until, f"no {pattern!r} in {seconds} s, but:\n{shown}"
 
-    def run(self, command: str, seconds: float = 60.0) -> str:
+    def run(self, command: str, seconds: float = 120.0) -> str:
         """Types a command, waits for it to end, and returns what it showed.
 
         Raises:

@@ -3,7 +3,6 @@
 import itertools
 import re
 import signal
-import time
 import urllib.error
 import urllib.request
 
@@ -42,11 +41,9 @@ def test_it_comes_up_shows_itself_and_leaves_nothing(ros, launch):
         assert page.status == 200
     assert len(ros.left()) >= 4  # roslaunch, the master, the server and the client
     process.send_signal(signal.SIGINT)
-    began = time.monotonic()
-    process.wait(timeout=60)
+    process.wait(timeout=120)
     ros.until(lambda: not ros.left())
-    assert time.monotonic() - began < 14, "roslaunch had to kill something"
-    assert "escalating" not in said(ros)
+    assert "escalating" not in said(ros), "roslaunch had to kill something"
     with pytest.raises(urllib.error.URLError):
         urllib.request.urlopen(found[1], timeout=5)
 

@@ -100,7 +100,7 @@ for topic, kind, message in (
     ("set_link_state", LinkState, LinkState("box::base", at(6, 2, 0.2), Twist(), "world")),
 ):
     publisher = rospy.Publisher("/gazebo/" + topic, kind, queue_size=1)
-    until = time.monotonic() + 20
+    until = time.monotonic() + 120
     while publisher.get_num_connections() == 0 and time.monotonic() < until:
         time.sleep(0.05)
     publisher.publish(message)

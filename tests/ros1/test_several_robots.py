@@ -37,7 +37,7 @@ def place(topic):
 for order in orders:
     rospy.Subscriber(order["odom"], Odometry, lambda m, t=order["odom"]: hear(t, m))
 commands = {o["command"]: rospy.Publisher(o["command"], Twist, queue_size=1) for o in orders}
-until = time.monotonic() + 60
+until = time.monotonic() + 120
 while len(last) < len({o["odom"] for o in orders}) or not all(
     p.get_num_connections() for p in commands.values()
 ):

@@ -88,7 +88,7 @@ def shell(desk: Desk, spawned: Terminal) -> Terminal:
     return terminal
 
 
-def eventually(condition: Callable[[], bool], seconds: float = 60.0) -> bool:
+def eventually(condition: Callable[[], bool], seconds: float = 120.0) -> bool:
     until = time.monotonic() + seconds
     while time.monotonic() < until:
         if condition():

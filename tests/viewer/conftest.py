@@ -38,7 +38,7 @@ CART = "rosbots"
 TWIST = "/part2_cmr/cmd_vel"
 
 
-def eventually(condition, *, seconds=30.0, what="it"):
+def eventually(condition, *, seconds=120.0, what="it"):
     """Waits for a condition, and gives what it returned."""
     deadline = time.monotonic() + seconds
     while time.monotonic() < deadline:
@@ -137,7 +137,7 @@ def arena():
 def open_page(browser, arena):
     """A page that shows the scene."""
     page = browser.new_page(viewport=SIZE, device_scale_factor=0.5)
-    page.set_default_timeout(40_000)
+    page.set_default_timeout(90_000)
     page.faults = []
     page.on("pageerror", lambda error: page.faults.append(error.stack))
     page.goto(arena.url)

@@ -52,7 +52,7 @@ def messages_sent(arena):
 def wait(arena, seconds):
     """Lets simulated time pass."""
     until = arena.ask(lambda: arena.simulation.time_ns) + int(seconds * 1e9)
-    eventually(lambda: arena.simulation.time_ns >= until, seconds=60, what="time")
+    eventually(lambda: arena.simulation.time_ns >= until, what="time")
 
 
 def test_nobody_looks_nothing_is_read_or_sent(fresh):

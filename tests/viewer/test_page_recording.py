@@ -56,7 +56,7 @@ def cinema(tmp_path_factory):
 @pytest.fixture(scope="module")
 def page(browser, cinema):
     made = browser.new_page(viewport=SIZE, device_scale_factor=0.5)
-    made.set_default_timeout(40_000)
+    made.set_default_timeout(90_000)
     faults = []
     made.on("pageerror", lambda error: faults.append(error.stack))
     made.goto(cinema.viewer.url)

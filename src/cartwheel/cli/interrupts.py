@@ -1,8 +1,8 @@
 """Ctrl-C and SIGTERM end a command at once, whatever it does, and leave no traceback.
 
 The first signal asks: a running simulation stops, anything else is left by an exception.
-Where that takes too long, as inside a compiler of meshes, or where a second signal comes,
-the process ends there and then.
+Where it is not heard, as inside a compiler of meshes, where the end takes too long, or where a
+second signal comes, the process ends there and then.
 """
 
 from __future__ import annotations
@@ -17,7 +17,10 @@ from collections.abc import Callable, Iterator
 from types import FrameType
 
 PATIENCE = 0.35
-"""s that the first signal may take."""
+"""s that the first signal may take to be heard."""
+
+FOR_THE_END = 2.0
+"""s that the end may take once the signal was heard; a busy machine needs some."""
 
 
 class Interrupted(BaseException):
@@ -127,7 +130,12 @@ def _on_signal(number: int, _: FrameType | None) -> None:
 def _watch(reader: socket.socket, _writer: socket.socket) -> None:
     """Ends the process where the first signal did not do so in time, or at a second one."""
     reader.recv(1)
-    reader.settimeout(PATIENCE)
-    with contextlib.suppress(TimeoutError):
-        reader.recv(1)
+    for patience in (PATIENCE, FOR_THE_END):
+        reader.settimeout(patience)
+        try:
+            reader.recv(1)
+            break
+        except TimeoutError:
+            if not _state.count:
+                break
     leave(_state.status, patience=0.05)
