@@ -101,6 +101,8 @@ def _section(plugin: type[Plugin[Any]]) -> str:
     if not plugin.filenames:
         kinds = ", ".join(f"`{kind}`" for kind in plugin.serves)
         lines += [f"Serves sensors of the types {kinds} that have no `<plugin>`.", ""]
+    elif plugin.for_world:
+        lines += ["Written directly inside a `<world>`.", ""]
     elif plugin.for_sensor:
         lines += ["Written inside a `<sensor>`.", ""]
     else:
@@ -169,7 +171,11 @@ def _interface(plugin: type[Plugin[Any]]) -> list[str]:
     """What a plugin puts on the graph, as rows; asked of one that runs."""
     session = Session(WorldDescription(name="reference"))
     before = {topic.name for topic in session.graph.topics()}
-    session.spawn(_robot(plugin))
+    if plugin.for_world:
+        session.close()
+        session = Session(WorldDescription(name="reference", plugins=(_tag(plugin),)))
+    else:
+        session.spawn(_robot(plugin))
     rows = []
     for topic in session.graph.topics():
         for role, nodes in (("publishes", topic.publishers), ("reads", topic.subscribers)):
@@ -180,8 +186,8 @@ def _interface(plugin: type[Plugin[Any]]) -> list[str]:
     return [f"| `{name}` | `{kind}` | {role} |" for role, name, kind in rows]
 
 
-def _robot(plugin: type[Plugin[Any]]) -> RobotDescription:
-    """A robot on which any plugin finds what it needs under its default names."""
+def _tag(plugin: type[Plugin[Any]]) -> PluginTag:
+    """The plugin's tag with every switch on, and what it cannot do without."""
     switches = [_element(item.metadata["tags"][0], text="true")
                 for item, kind in _fields(plugin) if kind is bool]  # fmt: skip
     needed = [
@@ -194,7 +200,12 @@ def _robot(plugin: type[Plugin[Any]]) -> RobotDescription:
         if item.default is dataclasses.MISSING or (item.name, item.default) == ("joint", "")
     ]
     element = _element("plugin", children=(*switches, *needed))
-    tag = PluginTag(name="plugin", filename=_title(plugin), element=element, origin=HERE)
+    return PluginTag(name="plugin", filename=_title(plugin), element=element, origin=HERE)
+
+
+def _robot(plugin: type[Plugin[Any]]) -> RobotDescription:
+    """A robot on which any plugin finds what it needs under its default names."""
+    tag = _tag(plugin)
     topic = () if plugin.filenames else (_element("topic", text="my_topic"),)
     sensor = Sensor(
         name=SENSOR,

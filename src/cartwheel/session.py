@@ -13,7 +13,7 @@ from cartwheel.graph import Graph
 from cartwheel.messages import message_class, stamp
 from cartwheel.plugins.control.files import ControllerFiles
 from cartwheel.plugins.registry import attach
-from cartwheel.plugins.world_plugins import world_plugin_notes
+from cartwheel.plugins.world_plugins import attach_world
 from cartwheel.simulation import Simulation
 from cartwheel.simulation.clock import Task
 from cartwheel.simulation.pacing import Pacer
@@ -34,9 +34,12 @@ class Session:
     def __init__(self, world: WorldDescription, *, seed: int = 0, strict: bool = False) -> None:
         self.graph = Graph()
         self.strict = strict
-        self.simulation = Simulation(world, attach=lambda part: attach(part, self.graph), seed=seed)
-        for note in world_plugin_notes(world):
-            self.simulation.engine.report(note)
+        self.simulation = Simulation(
+            world,
+            attach=lambda part: attach(part, self.graph),
+            attach_world=lambda part: attach_world(part, self.graph),
+            seed=seed,
+        )
         self.graph.post = self.simulation.post
         self._clock = self.graph.advertise(
             "/clock", "rosgraph_msgs/msg/Clock", node="cartwheel", rate=CLOCK_RATE

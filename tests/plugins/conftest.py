@@ -4,6 +4,8 @@ import math
 
 import pytest
 
+from cartwheel.messages import from_dict
+
 RADIUS = 0.1
 WIDTH = 0.04
 
@@ -84,3 +86,16 @@ class Log:
 @pytest.fixture
 def read():
     return Log.read
+
+
+@pytest.fixture
+def ask():
+    """Calls a service, lets one step go by, and returns the answer."""
+
+    def asked(world, name, **request):
+        kind = world.graph.service(name).type
+        future = world.graph.call(name, from_dict(f"{kind}_Request", request))
+        world.run(world.session.simulation.step_ns * 1e-9)
+        return future.result(timeout=60)
+
+    return asked

@@ -39,6 +39,8 @@ class Plugin(Generic[C]):
     """A frozen dataclass of `tag` fields."""
     for_sensor: ClassVar[bool] = False
     """Whether it belongs inside a ``<sensor>``."""
+    for_world: ClassVar[bool] = False
+    """Whether it belongs directly inside a ``<world>``; its part is then the world's own."""
     empty_is_model: ClassVar[bool] = False
     """Whether an empty ``<robotNamespace>`` is the model's name; for others it is none."""
     prefixes_by_namespace: ClassVar[bool] = False
@@ -197,7 +199,8 @@ class Plugin(Generic[C]):
     @property
     def node(self) -> str:
         """Who publishes, for listings."""
-        return f"{self.part.name}/{self.tag.name}" if self.tag.name else self.part.name
+        names = (self.part.name, self.tag.name)
+        return "/".join(name for name in names if name) or "world"
 
 
 def _remappings(tag: PluginTag) -> dict[str, str]:

@@ -41,6 +41,7 @@ def plugins() -> dict[str, type[Plugin[object]]]:
     from cartwheel.plugins.force import Force
     from cartwheel.plugins.ft_sensor import FtSensor
     from cartwheel.plugins.gps import GpsSensor, HectorGps
+    from cartwheel.plugins.grasp_fix import GraspFix
     from cartwheel.plugins.gz_diff_drive import GzDiffDrive
     from cartwheel.plugins.gz_joint_controller import (
         ApplyJointForce,
@@ -55,6 +56,7 @@ def plugins() -> dict[str, type[Plugin[object]]]:
         JointStatePublisher,
     )
     from cartwheel.plugins.laser import Laser
+    from cartwheel.plugins.link_attacher import LinkAttacher, LinkAttacherRos2
     from cartwheel.plugins.magnetic import HectorMagnetic
     from cartwheel.plugins.mecanum import MecanumDrive
     from cartwheel.plugins.mimic_joint import MimicJoint
@@ -64,6 +66,7 @@ def plugins() -> dict[str, type[Plugin[object]]]:
     from cartwheel.plugins.ray_sensor import RaySensor
     from cartwheel.plugins.skid_steer import SkidSteerDrive
     from cartwheel.plugins.tricycle import TricycleDrive
+    from cartwheel.plugins.vacuum_gripper import VacuumGripper
     from cartwheel.plugins.velodyne_laser import VelodyneLaser
 
     known: dict[str, type[Plugin[object]]] = {}
@@ -98,6 +101,12 @@ def plugins() -> dict[str, type[Plugin[object]]]:
         HectorGps,
         HectorMagnetic,
     )
+    joining: tuple[type[Plugin[Any]], ...] = (
+        GraspFix,
+        VacuumGripper,
+        LinkAttacher,
+        LinkAttacherRos2,
+    )
     lasers = (Laser, RaySensor, BlockLaser, VelodyneLaser, Range, HectorSonar)
     cameras = (Camera, DepthCamera, OpenniKinect, TriggeredCamera, Prosilica)
     for plugin in (
@@ -107,6 +116,7 @@ def plugins() -> dict[str, type[Plugin[object]]]:
         *states,
         Bumper,
         Elevator,
+        *joining,
         RosControl,
         Ros2Control,
         *third,
@@ -164,12 +174,13 @@ def attach(part: Part, graph: Graph) -> list[Behaviour]:
                 continue
             if plugin is None:
                 _report_unknown(part, tag)
-            elif plugin.for_sensor and sensor is None:
+            elif plugin.for_world or (plugin.for_sensor and sensor is None):
+                place = "<world>" if plugin.for_world else "<sensor>"
                 part.report(
                     Diagnostic(
                         severity="warning",
                         message=f'plugin "{tag.filename}" has no effect here: '
-                        "it belongs inside a <sensor>",
+                        f"it belongs inside a {place}",
                         origin=tag.origin,
                     )
                 )

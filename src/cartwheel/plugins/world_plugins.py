@@ -1,13 +1,13 @@
-"""The ``<plugin>`` tags of worlds: what Cartwheel does anyway, and what is told to be missing."""
+"""The ``<plugin>`` tags of worlds: those that act, what Cartwheel does anyway, and the rest."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
-from cartwheel.description.model import WorldDescription
-from cartwheel.errors import Diagnostic
+from cartwheel.errors import CartwheelError, Diagnostic, Severity
+from cartwheel.graph import Graph
 from cartwheel.plugins.gz_sensor import SYSTEMS
 from cartwheel.plugins.registry import plugins, short_name
+from cartwheel.simulation import Part
+from cartwheel.simulation.resident import Behaviour
 
 _BUILT_IN = {
     *SYSTEMS,
@@ -22,16 +22,35 @@ _BUILT_IN = {
 """Physics, spawning, time and sensors need no plugin here."""
 
 
-def world_plugin_notes(world: WorldDescription) -> Iterator[Diagnostic]:
-    """A warning for each plugin of a world that does nothing here."""
-    for tag in world.plugins:
+def attach_world(part: Part, graph: Graph) -> list[Behaviour]:
+    """Makes the plugins of the world itself; one that does nothing here is reported.
+
+    A plugin that cannot be made costs the world that plugin, which is reported.
+
+    Args:
+        part: The world's own.
+        graph: Where they publish.
+    """
+    made: list[Behaviour] = []
+    for tag in part.world.plugins:
         name = short_name(tag.filename)
         if name in _BUILT_IN:
             continue
-        if name in plugins():
-            message = f'plugin "{tag.filename}" has no effect here: it belongs inside a <model>'
-        else:
+        plugin = plugins().get(name)
+        severity: Severity = "warning"
+        if plugin is None:
             message = (
                 f'world plugin "{tag.filename}" is not supported: what it does is missing here'
             )
-        yield Diagnostic(severity="warning", message=message, origin=tag.origin)
+        elif not plugin.for_world:
+            message = f'plugin "{tag.filename}" has no effect here: it belongs inside a <model>'
+        else:
+            try:
+                with part.undone_on_error():
+                    made.append(plugin(part, graph, tag, None))
+                continue
+            except CartwheelError as error:
+                severity = "error"
+                message = f'plugin "{tag.filename}" is left out: {error.message}'
+        part.report(Diagnostic(severity=severity, message=message, origin=tag.origin))
+    return made

@@ -47,6 +47,8 @@ class Engine:
         self.on_diagnostic: list[Callable[[Diagnostic], None]] = []
         self.on_tasks: list[Callable[[], None]] = []
         """Called after a task was changed for another."""
+        self.on_entries: list[Callable[[], None]] = []
+        """Called after something more was asked to be built into a model that stands already."""
         self._orders = itertools.count()
 
     @property

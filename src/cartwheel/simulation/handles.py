@@ -15,6 +15,7 @@ import numpy as np
 
 from cartwheel.description.model import CameraIntrinsics
 from cartwheel.geometry import Array, Pose, Quat, Vec3, from_wxyz, quat_multiply, rotate
+from cartwheel.simulation.attaching import AttachmentHandle, SurroundingsHandle
 from cartwheel.simulation.pushing import BodyDriveHandle, WrenchHandle
 from cartwheel.simulation.servo import ServoHandle
 from cartwheel.world.entry import ROTOR, Motor, scoped
@@ -250,4 +251,6 @@ Handle = (
     | CameraHandle
     | BodyDriveHandle
     | WrenchHandle
+    | AttachmentHandle
+    | SurroundingsHandle
 )

@@ -20,6 +20,7 @@ from cartwheel.errors import (
     UnknownNameError,
 )
 from cartwheel.geometry import Array, Pose
+from cartwheel.simulation.attaching import AttachmentHandle, SurroundingsHandle
 from cartwheel.simulation.clock import NANOSECONDS, Task, always
 from cartwheel.simulation.contacts import read_contacts
 from cartwheel.simulation.engine import Engine
@@ -213,6 +214,23 @@ class Part:
         self.handles.append(handle)
         return handle
 
+    def attachment(self) -> AttachmentHandle:
+        """A fixed joint to be made and undone at any time, between links of any models."""
+        name = scoped(self.name, "attachment", str(len(self._entry.attachments)))
+        self._entry.attachments.append(name)
+        handle = AttachmentHandle(name)
+        self.handles.append(handle)
+        if self.spawned:
+            for callback in self._engine.on_entries:
+                callback()
+        return handle
+
+    def surroundings(self) -> SurroundingsHandle:
+        """All links in the world, those of other models among them."""
+        handle = SurroundingsHandle()
+        self.handles.append(handle)
+        return handle
+
     def camera(
         self, name: str, link: str, pose: Pose, intrinsics: CameraIntrinsics
     ) -> CameraHandle:
@@ -298,7 +316,13 @@ class Part:
     def undone_on_error(self) -> Iterator[None]:
         """Takes back what was asked for in between where that ends in an error of the user's."""
         entry = self._entry
-        lists: tuple[list[Any], ...] = (self.handles, self.tasks, entry.drives, entry.cameras)
+        lists: tuple[list[Any], ...] = (
+            self.handles,
+            self.tasks,
+            entry.drives,
+            entry.cameras,
+            entry.attachments,
+        )
         tables: tuple[dict[str, Any], ...] = (entry.motors, entry.mimics)
         lengths = [len(each) for each in lists]
         copies = [dict(each) for each in tables]

@@ -6,8 +6,10 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Protocol
 
-from cartwheel.errors import WorldError
+from cartwheel.description.model import RobotDescription
+from cartwheel.errors import Origin, WorldError
 from cartwheel.geometry import Pose
+from cartwheel.simulation.engine import Engine
 from cartwheel.simulation.handles import MotorHandle
 from cartwheel.simulation.part import Part
 from cartwheel.world.entry import ModelEntry
@@ -75,3 +77,12 @@ class Resident:
         """Ends its plugins."""
         for behaviour in self.behaviours:
             behaviour.close()
+
+
+def world_resident(engine: Engine) -> Resident:
+    """What the world itself has: no links, but plugins, and what they ask for."""
+    nothing = RobotDescription(
+        name="", links=(), static=True, canonical_link="", origin=Origin(file=engine.world.name)
+    )
+    entry = ModelEntry(name="", description=nothing, pose=Pose())
+    return Resident(entry, Part(engine, entry))

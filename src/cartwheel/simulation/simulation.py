@@ -21,7 +21,7 @@ from cartwheel.simulation.guard import Guard
 from cartwheel.simulation.observing import Observer
 from cartwheel.simulation.part import Part
 from cartwheel.simulation.placing import place_model, with_mimics
-from cartwheel.simulation.resident import Attach, Resident
+from cartwheel.simulation.resident import Attach, Resident, world_resident
 from cartwheel.simulation.separation import Separation
 from cartwheel.simulation.snapshot import RunState, Scene, Snapshot
 from cartwheel.world import build, unused
@@ -42,11 +42,17 @@ class Simulation:
     Args:
         world: Its own models are spawned at once.
         attach: Makes a model's plugins.
+        attach_world: Makes the world's own.
         seed: Of all noise.
     """
 
     def __init__(
-        self, world: WorldDescription, *, attach: Attach = lambda _: [], seed: int = 0
+        self,
+        world: WorldDescription,
+        *,
+        attach: Attach = lambda _: [],
+        attach_world: Attach = lambda _: [],
+        seed: int = 0,
     ) -> None:
         self.engine = Engine(world, seed)
         self.run_state = RunState.RUNNING
@@ -61,15 +67,21 @@ class Simulation:
         """Called after time went back to zero."""
         self.forces = Forces(self.engine)
         self._attach = attach
+        self._house = world_resident(self.engine)
         self._residents: dict[str, Resident] = {}
         self._schedule = Schedule()
         self._world_tasks: list[Task] = []
         self.engine.on_tasks.append(self._gather_tasks)
+        self.engine.on_entries.append(lambda: self._compile(self._residents))
         self._guard = Guard()
         self._guard_due = 0
         self._separation = Separation()
         self._version = 0
+        self._house.behaviours = attach_world(self._house.part)
         self._compile({})
+        self._house.part.spawned = True
+        for diagnostic in self._house.part.diagnostics:
+            self.engine.report(diagnostic)
         self._populate(world.models)
 
     @property
@@ -225,7 +237,7 @@ class Simulation:
         if not keep_time:
             self.forces.forget()
         self.forces.bind()
-        for resident in self._residents.values():
+        for resident in self._inhabitants():
             for behaviour in resident.behaviours:
                 behaviour.reset()
             for handle in resident.drives.values():
@@ -500,7 +512,7 @@ class Simulation:
         self._gather_tasks()
 
     def _gather_tasks(self) -> None:
-        tasks = [task for resident in self._residents.values() for task in resident.part.tasks]
+        tasks = [task for resident in self._inhabitants() for task in resident.part.tasks]
         self._schedule = Schedule(
             [*self._world_tasks, *tasks],
             step_ns=self.step_ns,
@@ -593,6 +605,10 @@ class Simulation:
             raise UnknownNameError("model", name, self._residents)
         return self._residents[name]
 
+    def _inhabitants(self) -> tuple[Resident, ...]:
+        """The world itself, and its models."""
+        return (self._house, *self._residents.values())
+
     def _free_name(self, name: str) -> str:
         return next(
             f"{name}_{i}" for i in itertools.count(1) if f"{name}_{i}" not in self._residents
@@ -601,7 +617,7 @@ class Simulation:
     def _compile(self, residents: dict[str, Resident]) -> None:
         """Compiles a new set of models and carries over the state of those that stay."""
         entries = [resident.entry for resident in residents.values()]
-        self.engine.replace(build(self.world, entries).model)
+        self.engine.replace(build(self.world, [self._house.entry, *entries]).model)
         step_ns = to_ns(step_of(self.world))
         if step_ns != self.engine.step_ns:
             self.engine.set_step(step_ns)
@@ -609,7 +625,7 @@ class Simulation:
         self._guard_due = 0
         self._guard.forget()
         self.forces.bind()
-        for resident in residents.values():
+        for resident in self._inhabitants():
             for handle in resident.part.handles:
                 handle.bind(self.model, self.data)
         self._gather_tasks()
@@ -634,6 +650,6 @@ class Simulation:
     def close(self) -> None:
         """Ends the run and frees what it holds."""
         self.stop()
-        for resident in self._residents.values():
+        for resident in self._inhabitants():
             resident.close()
         self.engine.renderer.close()

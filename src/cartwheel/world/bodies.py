@@ -312,10 +312,6 @@ class BodyBuilder:
         )
 
 
-def _equality_data(*values: float) -> list[float]:
-    return [*values, *([0.0] * (mujoco.mjNEQDATA - len(values)))]
-
-
 def _possible(tensor: Array) -> Array:
     """An inertia matrix whose largest moment is no larger than the sum of the others.
 

@@ -13,7 +13,7 @@ import numpy as np
 from cartwheel.description.model import Light, WorldDescription
 from cartwheel.errors import Origin, WorldError
 from cartwheel.geometry import rotate
-from cartwheel.world import chains, contact
+from cartwheel.world import chains, contact, joints
 from cartwheel.world.bodies import ROTOR_INERTIA, BodyBuilder
 from cartwheel.world.entry import ModelEntry, scoped
 from cartwheel.world.shapes import Assets
@@ -57,6 +57,8 @@ def build(world: WorldDescription, entries: Iterable[ModelEntry], *, xml: bool =
     entries = list(entries)
     for entry in entries:
         bodies.add(entry)
+    for name in (name for entry in entries for name in entry.attachments):
+        joints.add_attachment(spec, name)
     if any(_feels_touch(entry) for entry in entries if entry.description.static):
         # A body asleep on something that stands has no contact with it to be reported.
         spec.option.enableflags &= ~mujoco.mjtEnableBit.mjENBL_SLEEP.value

@@ -82,3 +82,5 @@ class ModelEntry:
     """By the joint that follows; besides those of the description."""
     drives: list[BodyDrive] = field(default_factory=list)
     cameras: list[CameraMount] = field(default_factory=list)
+    attachments: list[str] = field(default_factory=list)
+    """Names of welds that hold nothing at first; see `AttachmentHandle`."""

@@ -113,6 +113,26 @@ def close_loop(spec: mujoco.MjSpec, entry: ModelEntry, joint: Joint) -> None:
         )
 
 
+def add_attachment(spec: mujoco.MjSpec, name: str) -> None:
+    """Adds a weld that holds nothing yet; see `AttachmentHandle`.
+
+    It needs two bodies all the same: any will do. A world without any needs no welds.
+    """
+    if not spec.worldbody.bodies:
+        return
+    spec.add_equality(
+        name=name,
+        type=_EQUALITY.mjEQ_WELD,
+        objtype=mujoco.mjtObj.mjOBJ_BODY,
+        name1="world",
+        name2=spec.worldbody.bodies[0].name,
+        active=False,
+        solref=list(_COUPLING_REFERENCE),
+        solimp=list(_COUPLING_IMPEDANCE),
+        data=equality_data(*([0.0] * 10), 1.0),
+    )
+
+
 def equality_data(*values: float) -> list[float]:
     """A constraint's numbers, as many as the engine wants."""
     return [*values, *([0.0] * (mujoco.mjNEQDATA - len(values)))]

@@ -1,0 +1,216 @@
+"""``libgazebo_grasp_fix.so``: what fingers press from both sides is held in the palm."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from cartwheel.description.model import Element
+from cartwheel.errors import PluginError
+from cartwheel.geometry import Array, Vec3
+from cartwheel.messages import message_class
+from cartwheel.plugins.base import Plugin
+from cartwheel.plugins.parameters import tag
+from cartwheel.simulation.handles import LinkHandle
+
+_LEAST_FORCE = 1e-4
+"""N; what presses less does not press."""
+_LEAST_RATIO = 0.3
+"""Of two forces that hold something, the smaller one to the larger."""
+_EVENTS = "/gazebo_grasp_plugin_event_republisher/grasp_events"
+Place = tuple[str, str]
+"""Model and link."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class GraspFixParameters:
+    arms: tuple[str, ...] = tag(
+        "arm",
+        default=(),
+        doc="For each hand: `<arm_name>`, `<palm_link>`, and a `<gripper_link>` for each finger.",
+    )
+    angle: float = tag(
+        "forces_angle_tolerance",
+        default=120.0,
+        unit="°",
+        doc="Forces of fingers that are further apart hold; 90 or more.",
+    )
+    rate: float = tag("update_rate", default=5.0, unit="Hz", doc="Of looking at the fingers.")
+    most: int = tag("max_grip_count", default=10, doc="As far as it counts.")
+    threshold: int | None = tag(
+        "grip_count_threshold",
+        default=None,
+        doc="Looks in a row beyond which something is held; half of max_grip_count when missing.",
+    )
+    tolerance: float = tag(
+        "release_tolerance",
+        default=0.005,
+        unit="m",
+        doc="A finger that has moved so far from what it held releases it.",
+    )
+    pass_through: bool = tag(
+        "disable_collisions_on_attach", default=False, doc="What is held touches nothing."
+    )
+    contact_topic: str = tag("contact_topic", default="", doc="Has no effect.")
+
+
+class GraspFix(Plugin[GraspFixParameters]):
+    """Holds what a hand's fingers press from opposite sides in its palm, until they open.
+
+    Each look that finds two fingers' forces on a collision further apart than the angle, the
+    smaller one 0.3 of the larger or more, counts it up, and each other one down. Above the
+    threshold it is held as by a fixed joint; no longer above it, it is released when a finger has
+    moved. A hand holds one thing. Source: JenniferBuehler, gazebo_grasp_plugin, whose republisher's
+    topic is published.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ("libgazebo_grasp_fix.so",)
+    parameters: ClassVar[type] = GraspFixParameters
+
+    def configure(self) -> None:
+        config, origin = self.config, self.tag.origin
+        if config.angle < 90 or config.angle > 180:
+            raise PluginError("<forces_angle_tolerance> must be from 90 to 180", origin=origin)
+        if config.rate <= 0 or config.tolerance < 0:
+            raise PluginError(
+                "<update_rate> must be above 0 and <release_tolerance> not below it", origin=origin
+            )
+        self._surroundings = self.part.surroundings()
+        arms = [self._hand(element) for element in self.tag.element.find_all("arm")]
+        if not arms:
+            self.warn("no <arm>: this plugin holds nothing")
+        self._hands = arms
+        self._threshold = config.most // 2 if config.threshold is None else config.threshold
+        self._Event = message_class("gazebo_grasp_plugin_ros/msg/GazeboGraspEvent")
+        self._events = self.advertise(_EVENTS, "gazebo_grasp_plugin_ros/msg/GazeboGraspEvent")
+        self.part.schedule(config.rate, after=self._look)
+
+    def reset(self) -> None:
+        for hand in self._hands:
+            hand.forget()
+
+    def _hand(self, element: Element) -> _Hand:
+        names = {}
+        for name in ("arm_name", "palm_link"):
+            found = element.find(name)
+            if found is None:
+                raise PluginError(f"<arm> needs <{name}>", origin=element.origin)
+            names[name] = found.text.strip()
+        fingers = [each.text.strip() for each in element.find_all("gripper_link")]
+        if not fingers:
+            raise PluginError("<arm> needs <gripper_link>", origin=element.origin)
+        links = [self.part.link(name, origin=element.origin) for name in fingers]
+        self.part.link(names["palm_link"], origin=element.origin)
+        return _Hand(self, names["arm_name"], names["palm_link"], links)
+
+    def _look(self) -> None:
+        for hand in self._hands:
+            pressed = hand.pressed(self._surroundings.moving)
+            gripped = {
+                name for name, forces in pressed.items() if _holds(forces, self.config.angle)
+            }
+            for name in gripped:
+                count = hand.counts[name] = min(hand.counts.get(name, 0) + 1, self.config.most)
+                if count > self._threshold and hand.object is None:
+                    hand.take(name, list(pressed[name]), collides=not self.config.pass_through)
+                    self._tell(hand, name, attached=True)
+            for name in hand.counts.keys() - gripped:
+                count = hand.counts[name] = max(hand.counts[name] - 1, 0)
+                let_go = name == hand.object and count <= self._threshold
+                if let_go and hand.opened(self.config.tolerance):
+                    hand.release()
+                    hand.counts[name] = 0
+                    self._tell(hand, name, attached=False)
+
+    def _tell(self, hand: _Hand, name: str, *, attached: bool) -> None:
+        if self._events.wanted:
+            self._events.publish(self._Event(hand.name, name, attached))
+
+
+class _Hand:
+    """A palm and its fingers."""
+
+    def __init__(
+        self, plugin: Plugin[GraspFixParameters], name: str, palm: str, fingers: list[LinkHandle]
+    ) -> None:
+        self.name = name
+        self.counts: dict[str, int] = {}
+        """By collision: how often it was found gripped."""
+        self.object: str | None = None
+        """The collision that is held."""
+        self._part, self._palm = plugin.part, palm
+        self._grip = plugin.part.attachment()
+        description = plugin.part.description
+        self._fingers = {
+            f"{finger.name}::{collision.name}": finger
+            for finger in fingers
+            for link in description.links
+            if link.name == finger.name
+            for collision in link.collisions
+        }
+        self._marks: list[tuple[LinkHandle, Vec3, float]] = []
+        """Where fingers touched, in them, and how far that was from the object's frame."""
+        self._points: dict[tuple[str, str], Vec3] = {}
+
+    def pressed(self, moving: frozenset[Place]) -> dict[str, dict[str, Array]]:
+        """What the fingers touch and can move: forces on it in N, by collision and finger's."""
+        found: dict[str, dict[str, Array]] = {}
+        self._points = {}
+        for contact in self._part.contacts(self._fingers):
+            model, _, link = contact.second.rpartition("::")[0].partition("::")
+            if model == self._part.name or (model, link) not in moving:
+                continue
+            finger = contact.first.partition("::")[2]
+            forces = found.setdefault(contact.second, {})
+            forces[finger] = forces.get(finger, np.zeros(3)) - contact.force
+            x, y, z = contact.position.tolist()
+            self._points[contact.second, finger] = (x, y, z)
+        return found
+
+    def take(self, name: str, fingers: list[str], *, collides: bool) -> None:
+        """Holds a collision's link in the palm."""
+        model, _, link = name.rpartition("::")[0].partition("::")
+        self.object = name
+        self._grip.hold((self._part.name, self._palm), (model, link), collides=collides)
+        place = self._grip.link_pose().position
+        self._marks = []
+        for each in fingers:
+            finger, point = self._fingers[each], self._points[name, each]
+            local = finger.pose.inverse().apply(point)
+            self._marks.append((finger, local, math.dist(point, place)))
+
+    def opened(self, tolerance: float) -> bool:
+        """Whether a finger has left what it held, or that is gone."""
+        if self._grip.held is None:
+            return True
+        place = self._grip.link_pose().position
+        return any(
+            abs(math.dist(finger.pose.apply(local), place) - distance) > tolerance
+            for finger, local, distance in self._marks
+        )
+
+    def release(self) -> None:
+        """Lets go."""
+        self.object = None
+        self._grip.release()
+
+    def forget(self) -> None:
+        """After a reset."""
+        self.release()
+        self.counts.clear()
+
+
+def _holds(forces: dict[str, Array], angle: float) -> bool:
+    """Whether two of the forces are opposite enough, and alike enough, to hold something."""
+    for one, two in itertools.combinations(forces.values(), 2):
+        a, b = float(np.linalg.norm(one)), float(np.linalg.norm(two))
+        if min(a, b) < _LEAST_FORCE or min(a, b) < _LEAST_RATIO * max(a, b):
+            continue
+        cosine = float(one @ two) / (a * b)
+        if math.degrees(math.acos(min(1.0, max(-1.0, cosine)))) > angle:
+            return True
+    return False
