@@ -19,7 +19,7 @@ from cartwheel.bridges.ros2 import Parameter, Ros2Bridge
 from cartwheel.description import load_robot, load_world
 from cartwheel.errors import Diagnostic
 from cartwheel.messages import decode_cdr, encode_cdr, from_dict
-from cartwheel.messages.ros2_types import dds_name, ros2_service
+from cartwheel.messages.ros2_types import dds_name, ros2_name, ros2_service
 from cartwheel.session import Session
 
 SOURCE = Path(__file__).with_name("fastdds_peer.cpp")
@@ -75,11 +75,13 @@ class Peer:
     def subscribe(
         self, topic: str, type_name: str, *, reliable: bool = True, transient: bool = False
     ) -> None:
-        self.tell("sub", f"rt{topic}", dds_name(type_name), int(reliable), int(transient))
+        self.tell(
+            "sub", f"rt{topic}", dds_name(ros2_name(type_name)), int(reliable), int(transient)
+        )
 
     def publish(self, topic: str, type_name: str, values: dict[str, Any]) -> None:
         data = encode_cdr(from_dict(type_name, values))
-        self.tell("pub", f"rt{topic}", dds_name(type_name), data.hex())
+        self.tell("pub", f"rt{topic}", dds_name(ros2_name(type_name)), data.hex())
 
     def call(self, service: str, type_name: str, values: dict[str, Any]) -> Any:
         """Calls a service and waits for its response."""

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import mcap.writer
+import numpy as np
 import pytest
 from rosbags.rosbag1 import Writer as Bag1Writer
 from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin
@@ -18,8 +19,10 @@ from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 from tests.bridges.test_recording import HAS_ROSBAG, PROGRAM, PYTHON, drive, run_program
 
 from cartwheel.bridges.recording.decoding import decoder
-from cartwheel.bridges.recording.reading import open_recording
+from cartwheel.bridges.recording.encoding import codec
+from cartwheel.bridges.recording.reading import RecordedTopic, open_recording
 from cartwheel.errors import RecordingError
+from cartwheel.messages import encode_cdr, zero
 
 COUNT = 200
 STORE = get_typestore(Stores.ROS2_JAZZY)
@@ -278,3 +281,18 @@ def test_info_of_nothing(tmp_path: Path) -> None:
     assert "cannot be read" in run_program("info", "nowhere.bag", folder=tmp_path, status=2)
     (tmp_path / "empty").mkdir()
     assert "holds neither" in run_program("info", "empty", folder=tmp_path, status=2)
+
+
+def test_a_type_that_ros1_and_ros2_have_differently_is_read_as_each_has_it() -> None:
+    name = "control_msgs/msg/JointTrajectoryControllerState"
+    for mine, field in ((name, "desired"), (name.replace("/", "_ros2/", 1), "reference")):
+        schema = codec("ros2").schema(mine)
+        assert schema.name == name
+        topic = RecordedTopic(
+            name="/state", type=name, encoding="cdr", schema="ros2msg", definition=schema.text
+        )
+        message = zero(mine)
+        getattr(message, field).positions = np.array([0.5])
+        again = decoder(topic)(encode_cdr(message))
+        assert again.__msgtype__ == mine
+        assert getattr(again, field).positions.tolist() == [0.5]

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
+from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from cartwheel.errors import UnknownNameError
-from cartwheel.messages import service_classes
+from cartwheel.messages import message_class, service_classes
 from cartwheel.messages.ros1 import ros1_service
+from cartwheel.messages.ros2 import ros2_definition
 from cartwheel.messages.ros2_types import dds_name, ros2_service, ros2_type
+from cartwheel.messages.store import ROS2_DEFINITIONS, definitions, parsed_definitions
 
 MESSAGES = {
     "std_msgs/msg/String": "df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18",
@@ -27,6 +32,12 @@ MESSAGES = {
     "rcl_interfaces/msg/Log": "e28ce254ca8abc06abf92773b74602cdbf116ed34fbaf294fb9f81da9f318eac",
     "rcl_interfaces/msg/ParameterEvent": (
         "043e627780fcad87a22d225bc2a037361dba713fca6a6b9f4b869a5aa0393204"
+    ),
+    "action_msgs/msg/GoalStatusArray": (
+        "6c1684b00f177d37438febe6e709fc4e2b0d4248dca4854946f9ed8b30cda83e"
+    ),
+    "action_msgs/srv/CancelGoal_Request": (
+        "3d3c84653c1f96918086887e1dcb236faec88b81a5b14fd4cf4840065bcdf8af"
     ),
     "rmw_dds_common/msg/ParticipantEntitiesInfo": (
         "91a0593bacdcc50ea9bdcf849a938b128412cc1ea821245c663bcd26f83c295e"
@@ -48,6 +59,14 @@ SERVICES = {
         "56eed9a67e169f9cb6c1f987bc88f868c14a8fc9f743a263bc734c154015d7e0"
     ),
 }
+
+
+FIBONACCI = {
+    "SendGoal_Request": "3d088942b413247db536576f0286768c6be8fcd5d0c9a5d544f359fba090a238",
+    "GetResult_Request": "c8a4f5e7d13b81286ee1043e2ecd084281cecf1ff06aaa799464f5f15479f003",
+    "FeedbackMessage": "c1de71afd52e49a89c53d8262366884185bc0a02f78ce051c4e46b0a7fe59bb2",
+}
+"""Of example_interfaces/action/Fibonacci, which ROS's own documents hash."""
 
 
 @pytest.mark.parametrize("name", MESSAGES)
@@ -80,3 +99,52 @@ def test_types_of_ros2_alone_do_not_reach_ros1() -> None:
     service_classes("gazebo_msgs/srv/SpawnEntity")
     with pytest.raises(UnknownNameError):
         ros1_service("gazebo_msgs/srv/SpawnEntity")
+
+
+def test_parts_of_actions_hash_as_in_ros(tmp_path: Path) -> None:
+    folder = tmp_path / "example_interfaces" / "action"
+    folder.mkdir(parents=True)
+    (folder / "Fibonacci.action").write_text(
+        "int32 order\n---\nint32[] sequence\n---\nint32[] sequence\n"
+    )
+    known = get_typestore(Stores.ROS2_JAZZY)
+    # It has some of the parts already: what counts is what is made here.
+    made = parsed_definitions(tmp_path)
+    known.fielddefs = {**known.fielddefs, **made}
+    for part, expected in FIBONACCI.items():
+        name = f"example_interfaces/action/Fibonacci_{part}"
+        assert name in made
+        assert known.hash_rihs01(name) == f"RIHS01_{expected}"
+
+
+def test_ros2_has_its_own_types_where_ros1_has_others_of_their_name() -> None:
+    ros1 = message_class("control_msgs/msg/JointTrajectoryControllerState")
+    ros2 = message_class("control_msgs_ros2/msg/JointTrajectoryControllerState")
+    assert "desired" in ros1.__dataclass_fields__
+    assert "reference" in ros2.__dataclass_fields__
+    state = ros2_type("control_msgs_ros2/msg/JointTrajectoryControllerState")
+    assert state.name == "control_msgs/msg/JointTrajectoryControllerState"
+    assert state.dds == "control_msgs::msg::dds_::JointTrajectoryControllerState_"
+    with pytest.raises(UnknownNameError):
+        ros2_type("control_msgs/msg/JointTrajectoryControllerState")
+    send = ros2_service("control_msgs_ros2/action/FollowJointTrajectory_SendGoal")
+    assert send.dds_request == "control_msgs::action::dds_::FollowJointTrajectory_SendGoal_Request_"
+    listed = ros2_definition("controller_manager_msgs_ros2/srv/ListControllers_Response")
+    assert "controller_manager_msgs/ControllerState[] controller" in listed.replace("/msg/", "/")
+    assert "_ros2" not in listed
+
+
+def test_a_hash_is_that_of_the_real_names() -> None:
+    """Types in it count by their names: the store here has another for them."""
+    listed = ros2_service("controller_manager_msgs_ros2/srv/ListControllers")
+    plain = get_typestore(Stores.ROS2_JAZZY)
+    plain.fielddefs = dict(plain.fielddefs)
+    for name, text in definitions(ROS2_DEFINITIONS):
+        if name.startswith("controller_manager_msgs_ros2/"):
+            real = name.replace("_ros2/", "/")
+            (plain.fielddefs[real],) = get_types_from_msg(
+                text.replace("_ros2/", "/"), real
+            ).values()
+    assert listed.response_hash == plain.hash_rihs01(
+        "controller_manager_msgs/srv/ListControllers_Response"
+    )

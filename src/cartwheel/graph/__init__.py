@@ -1,5 +1,7 @@
-"""Topics and services in process."""
+"""Topics, services and actions in process."""
 
+from cartwheel.graph.action import Action, ActionListener, Goal, GoalState
+from cartwheel.graph.actionlib import ActionTopics
 from cartwheel.graph.graph import (
     Callback,
     Graph,
@@ -16,7 +18,12 @@ from cartwheel.graph.reconfigure import ReconfigureParameter, ReconfigureServer,
 from cartwheel.graph.transforms import StaticTransforms
 
 __all__ = [
+    "Action",
+    "ActionListener",
+    "ActionTopics",
     "Callback",
+    "Goal",
+    "GoalState",
     "Graph",
     "Mailbox",
     "ParameterServer",

@@ -1,4 +1,4 @@
-"""Topics and services in one process: typed, lazy, as a ROS graph names them.
+"""Topics, services and actions in one process: typed, lazy, as a ROS graph names them.
 
 One thread, the owner (the simulation's), publishes and delivers. Other threads subscribe
 with a `Mailbox`, and hand messages in through `Graph.post`.
@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from cartwheel.errors import GraphError, UnknownNameError
+from cartwheel.graph.action import Action
 from cartwheel.graph.mailbox import Mailbox
 from cartwheel.graph.names import resolve_name
 from cartwheel.graph.parameters import Parameters
@@ -124,7 +125,7 @@ class Service:
 
 
 class Graph:
-    """All topics and services of a simulation.
+    """All topics, services and actions of a simulation.
 
     Args:
         post: Runs a function on the owner's thread, soon; the simulation gives its own.
@@ -136,6 +137,7 @@ class Graph:
         self._lock = threading.RLock()
         self._topics: dict[str, Topic] = {}
         self._services: dict[str, Service] = {}
+        self._actions: dict[str, Action] = {}
         self.parameters = Parameters()
         self.static_transforms: Any = None
         """See `StaticTransforms`, which puts itself here."""
@@ -245,6 +247,33 @@ class Graph:
         with self._lock:
             self._services.pop(service.name, None)
             self._tell_change()
+
+    def offer(self, action: Action) -> None:
+        """Puts an action on the graph; see there.
+
+        Raises:
+            GraphError: The name is taken.
+        """
+        with self._lock:
+            if action.name in self._actions:
+                raise GraphError(
+                    f'action "{action.name}" is offered already by '
+                    f"{self._actions[action.name].node}"
+                )
+            self._actions[action.name] = action
+            self._tell_change()
+
+    def take_back(self, action: Action) -> None:
+        """Takes an action off the graph."""
+        with self._lock:
+            if self._actions.get(action.name) is action:
+                del self._actions[action.name]
+            self._tell_change()
+
+    def actions(self) -> list[Action]:
+        """All actions, by name."""
+        with self._lock:
+            return [self._actions[name] for name in sorted(self._actions)]
 
     def service(self, name: str) -> Service:
         """The service of that name.

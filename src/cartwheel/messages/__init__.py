@@ -1,7 +1,7 @@
 """ROS messages in process: classes, names, parts, and their forms outside."""
 
 from cartwheel.messages.common import header, stamp
-from cartwheel.messages.convert import from_dict, from_flat, to_dict, zero
+from cartwheel.messages.convert import from_dict, from_flat, recast, to_dict, zero
 from cartwheel.messages.echo import to_yaml
 from cartwheel.messages.encoding import CdrCache, decode_cdr, encode_cdr
 from cartwheel.messages.store import message_class, service_classes, store, type_name
@@ -14,6 +14,7 @@ __all__ = [
     "from_flat",
     "header",
     "message_class",
+    "recast",
     "service_classes",
     "stamp",
     "store",

@@ -88,6 +88,22 @@ def zero(type_name: str) -> Any:
     return _message(message_class(type_name), {}, "")
 
 
+def recast(message: Any, type_name: str) -> Any:
+    """A message of another type, with the fields that both have; the others are zero or empty.
+
+    What is within a field stays what it is: for types that differ by package or by fields that
+    one of them lacks.
+
+    Raises:
+        UnknownNameError: There is no such type.
+    """
+    made = zero(type_name)
+    for field in fields(type_name):
+        if hasattr(message, field.name):
+            setattr(made, field.name, getattr(message, field.name))
+    return made
+
+
 def _of(message: Any) -> tuple[Field, ...]:
     name = getattr(message, "__msgtype__", None)
     if name is None:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import functools
 
-from cartwheel.messages.store import message_class, store
+from cartwheel.messages.ros2_types import is_ros1_only, ros2_type
+from cartwheel.messages.store import TWIN, message_class, store
 
 
 @functools.cache
@@ -15,19 +16,15 @@ def ros2_definition(name: str) -> str:
         UnknownNameError: There is no such type.
     """
     text, _ = store().generate_msgdef(message_class(name).__msgtype__, ros_version=2)
-    return str(text)
+    return str(text).replace(f"{TWIN}/", "/")
 
 
 @functools.cache
 def ros2_hash(name: str) -> str:
-    """ROS 2's hash of a type, ``RIHS01_…``; empty where it cannot be told.
-
-    Source: REP 2011. A type that holds ``char`` gets none: its hash would be another's.
+    """ROS 2's hash of a type, ``RIHS01_…``; empty where it has none. Source: REP 2011.
 
     Raises:
         UnknownNameError: There is no such type.
     """
     full = message_class(name).__msgtype__
-    if "char " in ros2_definition(full) or "char[" in ros2_definition(full):
-        return ""
-    return str(store().hash_rihs01(full))
+    return "" if is_ros1_only(full) else ros2_type(full).hash

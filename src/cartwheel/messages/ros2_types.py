@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from cartwheel.errors import UnknownNameError
-from cartwheel.messages.store import service_classes, store, type_name
+from cartwheel.messages.store import TWIN, service_classes, store, type_name
 
 _ROS1_ONLY = frozenset(
     {
@@ -68,36 +68,52 @@ def ros2_type(name: str) -> Ros2Type:
         UnknownNameError: ROS 2 has no such type.
     """
     full = type_name(name)
-    known = _hash_store().fielddefs
+    known = store().fielddefs
     if full not in known or is_ros1_only(full):
         raise UnknownNameError("ROS 2 message type", full, known)
-    return Ros2Type(name=full, dds=dds_name(full), hash=_hash_store().hash_rihs01(full))
+    real = ros2_name(full)
+    return Ros2Type(name=real, dds=dds_name(real), hash=_hash_store().hash_rihs01(real))
 
 
 @functools.cache
 def ros2_service(name: str) -> Ros2Service:
     """Names and hashes of a service type ``pkg/srv/Name`` or ``pkg/Name``.
 
+    The services of an action are such as well: ``pkg/action/Name_SendGoal``.
+
     Raises:
         UnknownNameError: ROS 2 has no such type.
     """
     package, _, rest = name.partition("/")
-    full = f"{package}/srv/{rest.rpartition('/')[2]}"
+    full = name if "/" in rest else f"{package}/srv/{rest}"
     if is_ros1_only(full):
         raise UnknownNameError("ROS 2 service type", name, ())
     request, response = (each.__msgtype__ for each in service_classes(full))
+    real = ros2_name(full)
     made = _hash_store()
-    if full not in made.fielddefs:
-        made.fielddefs |= _whole(full, request, response)
+    if real not in made.fielddefs:
+        made.fielddefs |= _whole(real)
     return Ros2Service(
-        name=full,
-        dds=dds_name(full),
-        hash=made.hash_rihs01(full),
+        name=real,
+        dds=dds_name(real),
+        hash=made.hash_rihs01(real),
         request=request,
         response=response,
-        request_hash=made.hash_rihs01(request),
-        response_hash=made.hash_rihs01(response),
+        request_hash=made.hash_rihs01(f"{real}_Request"),
+        response_hash=made.hash_rihs01(f"{real}_Response"),
     )
+
+
+def ros2_name(name: str) -> str:
+    """ROS 2's name of a type of the graph: that of a package with a twin is its own again."""
+    package, slash, rest = name.partition("/")
+    return f"{package.removesuffix(TWIN)}{slash}{rest}"
+
+
+def twin_name(name: str) -> str:
+    """The graph's name of a type of ROS 2 whose package is another in ROS 1, if it is such."""
+    package, slash, rest = name.partition("/")
+    return f"{package}{TWIN}{slash}{rest}"
 
 
 def is_ros1_only(name: str) -> bool:
@@ -113,13 +129,14 @@ def dds_name(name: str) -> str:
 
 @functools.cache
 def _hash_store() -> Any:
-    """A store to hash in: fields as ROS 2 hashes them, which is with ``uint8`` for ``char``."""
+    """ROS 2's types alone, by ROS 2's names, as it hashes them: with ``uint8`` for ``char``."""
     from rosbags.typesys import Stores, get_typestore
 
     made = get_typestore(Stores.ROS2_JAZZY)
     made.fielddefs = {
-        name: (constants, [(field, _hashed(kind)) for field, kind in fields])
+        ros2_name(name): (constants, [(field, _hashed(kind)) for field, kind in fields])
         for name, (constants, fields) in store().fielddefs.items()
+        if not is_ros1_only(name)
     }
     return made
 
@@ -131,11 +148,11 @@ def _hashed(kind: Any) -> Any:
     if node == Nodetype.BASE:
         return (node, ("uint8", 0)) if value[0] == "char" else kind
     if node == Nodetype.NAME:
-        return kind
+        return (node, ros2_name(value))
     return node, (_hashed(value[0]), value[1])
 
 
-def _whole(full: str, request: str, response: str) -> dict[str, Any]:
+def _whole(full: str) -> dict[str, Any]:
     """A service as one type, which is what is hashed of it. Source: rosidl, REP 2016."""
     from rosbags.interfaces import Nodetype
 
@@ -145,7 +162,7 @@ def _whole(full: str, request: str, response: str) -> dict[str, Any]:
     def at_most_one(name: str) -> Any:
         return (Nodetype.SEQUENCE, (one(name), 1))
 
-    event = f"{full}_Event"
+    event, request, response = (f"{full}_{part}" for part in ("Event", "Request", "Response"))
     return {
         event: (
             [],

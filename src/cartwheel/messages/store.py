@@ -2,7 +2,8 @@
 
 A definition is the text of ROS 1 and ROS 2 alike: the ROS 1 bridge reads the same files
 into its own store, where they have the md5 sums that ROS 1 nodes expect. Types that only
-ROS 2 has are in a folder of their own, which ROS 1's store does not see.
+ROS 2 has are in a folder of their own, which ROS 1's store does not see. Some packages have
+different types of the same names in ROS 1 and ROS 2: here ROS 2's have a package of their own.
 """
 
 from __future__ import annotations
@@ -20,7 +21,12 @@ ROS2_DEFINITIONS = Path(__file__).parent / "definitions_ros2"
 """The same, of types that ROS 1 does not have."""
 
 SEPARATOR = "---\n"
-"""Between the request and the response of a service."""
+"""Between the parts of a service and of an action."""
+
+TWIN = "_ros2"
+"""Ends the name that a package has here where ROS 1 has another of that name."""
+
+_GOAL_ID = "unique_identifier_msgs/UUID goal_id\n"
 
 
 @functools.cache
@@ -49,9 +55,10 @@ def parsed_definitions(folder: Path = DEFINITIONS) -> dict[str, Any]:
 
 
 def definitions(folder: Path = DEFINITIONS) -> Iterator[tuple[str, str]]:
-    """Our types with their texts: messages, and each service's two parts.
+    """Our types with their texts: messages, and the parts of services and actions.
 
-    A service ``pkg/srv/Name`` has the parts ``pkg/srv/Name_Request`` and ``…_Response``.
+    A service ``pkg/srv/Name`` has the parts ``pkg/srv/Name_Request`` and ``…_Response``, an
+    action ``pkg/action/Name`` those that ROS 2 makes of it.
     """
     for path in sorted(folder.glob("*/msg/*.msg")):
         yield f"{path.parent.parent.name}/msg/{path.stem}", path.read_text()
@@ -60,6 +67,21 @@ def definitions(folder: Path = DEFINITIONS) -> Iterator[tuple[str, str]]:
         service = f"{path.parent.parent.name}/srv/{path.stem}"
         yield f"{service}_Request", request
         yield f"{service}_Response", response
+    for path in sorted(folder.glob("*/action/*.action")):
+        yield from _action(f"{path.parent.parent.name}/action/{path.stem}", path.read_text())
+
+
+def _action(name: str, text: str) -> Iterator[tuple[str, str]]:
+    """Source: rosidl's design of actions."""
+    goal, result, feedback = text.split(SEPARATOR)
+    yield f"{name}_Goal", goal
+    yield f"{name}_Result", result
+    yield f"{name}_Feedback", feedback
+    yield f"{name}_SendGoal_Request", f"{_GOAL_ID}{name}_Goal goal\n"
+    yield f"{name}_SendGoal_Response", "bool accepted\nbuiltin_interfaces/Time stamp\n"
+    yield f"{name}_GetResult_Request", _GOAL_ID
+    yield f"{name}_GetResult_Response", f"int8 status\n{name}_Result result\n"
+    yield f"{name}_FeedbackMessage", f"{_GOAL_ID}{name}_Feedback feedback\n"
 
 
 def is_ros2_only(name: str) -> bool:

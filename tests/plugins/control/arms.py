@@ -28,3 +28,36 @@ def robot(body, plugin):
 
 ROS1 = """<plugin name="control" filename="libgazebo_ros_control.so">
   <robotNamespace>/</robotNamespace></plugin>"""
+
+
+def ros2_joint(name, *commands, extra=""):
+    """For ros2_control."""
+    told = "".join(f'<command_interface name="{each}"/>' for each in commands or ("position",))
+    return f"""<joint name="{name}">{told}<state_interface name="position"/>
+      <state_interface name="velocity"/>{extra}</joint>"""
+
+
+def ros2_system(*joints):
+    """The joints of a robot for ros2_control, in a simulation."""
+    return f"""<ros2_control name="bench" type="system"><hardware>
+      <plugin>gz_ros2_control/GazeboSimSystem</plugin></hardware>{"".join(joints)}
+      </ros2_control>"""
+
+
+def ros2_plugin(*files, namespace=""):
+    """The plugin, with its parameter files."""
+    space = f"<ros><namespace>{namespace}</namespace></ros>" if namespace else ""
+    named = "".join(f"<parameters>{file}</parameters>" for file in files)
+    return f"""<plugin name="control" filename="gz_ros2_control-system">{space}{named}</plugin>"""
+
+
+def ros2_parameters(rate=100, /, **controllers):
+    """A file of the manager and its controllers, each with its type among its parameters."""
+    manager = {"update_rate": rate}
+    nodes = {}
+    for name, values in controllers.items():
+        manager[name] = {"type": values["type"]}
+        own = {key: value for key, value in values.items() if key != "type"}
+        if own:
+            nodes[name] = {"ros__parameters": own}
+    return {"controller_manager": {"ros__parameters": manager}, **nodes}

@@ -8,6 +8,7 @@ from typing import Any
 from cartwheel.graph import Graph, Mailbox, Subscription, TopicInfo
 from cartwheel.messages import encode_cdr
 from cartwheel.messages.ros2 import ros2_definition
+from cartwheel.messages.ros2_types import ros2_name
 
 READER = "foxglove"
 """Our name in the graph."""
@@ -46,7 +47,9 @@ class Publication:
         self._wake = wake
         self._tell = tell
         schema = foxglove.Schema(
-            name=info.type, encoding="ros2msg", data=ros2_definition(info.type).encode()
+            name=ros2_name(info.type),
+            encoding="ros2msg",
+            data=ros2_definition(info.type).encode(),
         )
         self.channel = foxglove.Channel(
             info.name, message_encoding="cdr", schema=schema, context=context

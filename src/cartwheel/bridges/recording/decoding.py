@@ -10,6 +10,7 @@ from cartwheel.errors import CartwheelError, RecordingError
 from cartwheel.messages import decode_cdr, store
 from cartwheel.messages.ros1 import decode_ros1, ros1_type
 from cartwheel.messages.ros1_types import ros1_store
+from cartwheel.messages.ros2_types import twin_name
 
 Decode = Callable[[bytes], Any]
 
@@ -31,6 +32,7 @@ def decoder(topic: RecordedTopic) -> Decode:
             if topic.md5 not in ("", "*", known.md5):
                 raise RecordingError(f"{topic.name}: {kind} has other fields than the one known")
             return lambda data: decode_ros1(data, kind)
+        kind = _in_graph(kind, topic)
         if kind not in store().types:
             raise RecordingError(f"{topic.name}: the type {kind} is neither known nor defined")
     except RecordingError:
@@ -47,6 +49,8 @@ def _learn(topic: RecordedTopic) -> None:
     ours = store()
     if topic.encoding == "cdr":
         for name, (_, fields) in types.items():
+            if twin_name(name) in ours.fielddefs:
+                continue
             if name in ours.fielddefs and _plain(ours.fielddefs[name][1]) != _plain(fields):
                 raise RecordingError(f"{topic.name}: {name} has other fields than the one known")
     new = {name: fields for name, fields in types.items() if name not in ours.fielddefs}
@@ -55,6 +59,19 @@ def _learn(topic: RecordedTopic) -> None:
     if topic.encoding == "ros1":
         known = ros1_store().fielddefs
         known.update({name: fields for name, fields in types.items() if name not in known})
+
+
+def _in_graph(kind: str, topic: RecordedTopic) -> str:
+    """The graph's name of a type of ROS 2, of which ROS 1 may have another of that name."""
+    known, twin = store().fielddefs, twin_name(kind)
+    if twin not in known:
+        return kind
+    stated = _parsed(topic).get(kind) if topic.definition else None
+    if stated is None or _plain(stated[1]) == _plain(known[twin][1]):
+        return twin
+    if kind in known and _plain(stated[1]) == _plain(known[kind][1]):
+        return kind
+    raise RecordingError(f"{topic.name}: {kind} has other fields than the one known")
 
 
 def _parsed(topic: RecordedTopic) -> dict[str, Any]:

@@ -10,6 +10,7 @@ from cartwheel.bridges.recording.formats import Encoding
 from cartwheel.messages import encode_cdr, type_name
 from cartwheel.messages.ros1 import encode_ros1, ros1_type
 from cartwheel.messages.ros2 import ros2_definition, ros2_hash
+from cartwheel.messages.ros2_types import ros2_name
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -49,7 +50,7 @@ def _ros1_schema(name: str) -> Schema:
 
 def _ros2_schema(name: str) -> Schema:
     full = type_name(name)
-    return Schema(name=full, text=ros2_definition(full), hash=ros2_hash(full))
+    return Schema(name=ros2_name(full), text=ros2_definition(full), hash=ros2_hash(full))
 
 
 _ROS1 = Codec(

@@ -336,6 +336,8 @@ class Ros1Bridge:
     # -- what the user should know
 
     def _is_known(self, info: TopicInfo) -> bool:
+        if is_ros2_only(info.type):
+            return False
         try:
             ros1_type(info.type)
         except UnknownNameError:

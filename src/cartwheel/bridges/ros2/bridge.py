@@ -9,6 +9,7 @@ from typing import Any, Literal
 
 from cartwheel.bridges.loop import Loop
 from cartwheel.bridges.mirror import Arrivals, survey
+from cartwheel.bridges.ros2.actions import OfferedAction
 from cartwheel.bridges.ros2.log import Log
 from cartwheel.bridges.ros2.middleware import (
     DEFAULT,
@@ -17,11 +18,12 @@ from cartwheel.bridges.ros2.middleware import (
     Outlet,
     Reply,
     profile_of,
+    request_check,
 )
 from cartwheel.bridges.ros2.parameters import NodeParameters, Parameter
 from cartwheel.bridges.tap import Tap
 from cartwheel.errors import CartwheelError, Diagnostic, GraphError, UnknownNameError
-from cartwheel.graph import Graph, Service, TopicInfo
+from cartwheel.graph import Action, Graph, Service, TopicInfo
 from cartwheel.messages import decode_cdr, encode_cdr, service_classes, zero
 from cartwheel.messages.ros2_types import is_ros1_only, ros2_service, ros2_type
 
@@ -41,7 +43,7 @@ Report = Callable[[Diagnostic], None]
 
 
 class Ros2Bridge:
-    """Makes topics and services of a graph those of a ROS 2 node, and back.
+    """Makes topics, services and actions of a graph those of a ROS 2 node, and back.
 
     Everything is lazy: the graph is subscribed to while another node reads. No part of ROS needs
     to be installed.
@@ -85,6 +87,7 @@ class Ros2Bridge:
         self._publications: dict[str, _Publication] = {}
         self._subscriptions: dict[str, _Subscription] = {}
         self._services: dict[str, _Offered] = {}
+        self._actions: dict[str, OfferedAction] = {}
         self._due = False
         self._closed = False
         self._calls = 0
@@ -162,6 +165,7 @@ class Ros2Bridge:
         self._mirror_services(
             {one.name: one for one in self._graph.services() if self._is_known_service(one)}
         )
+        self._mirror_actions({one.name: one for one in self._graph.actions()})
 
     def _mirror_publications(self, sent: Mapping[str, TopicInfo]) -> None:
         known = self._publications
@@ -193,20 +197,22 @@ class Ros2Bridge:
                     one.type, self._offer(name, one.type, self._caller(name), threaded=True)
                 )
 
+    def _mirror_actions(self, offered: Mapping[str, Action]) -> None:
+        known = self._actions
+        for name, action in list(known.items()):
+            if offered.get(name) is not action.action:
+                known.pop(name).close()
+        for name, one in offered.items():
+            if name not in known:
+                known[name] = OfferedAction(
+                    self._graph, one, loop=self._loop, middleware=self.middleware, tell=self._warn
+                )
+
     def _offer(
         self, name: str, type_name: str, handler: Callable[[Any], Any], *, threaded: bool = False
     ) -> Closable:
         """Offers a service whose handler may take long, if it is `threaded`."""
         type_ = ros2_service(type_name)
-
-        def fits(data: bytes) -> bool:
-            try:
-                again = encode_cdr(decode_cdr(data, type_.request))
-            except GraphError:
-                return False
-            return data[:4] != b"\0\1\0\0" or (
-                data.startswith(again) and len(data) - len(again) < 4
-            )
 
         def answer(data: bytes, reply: Reply) -> None:
             try:
@@ -230,7 +236,7 @@ class Ros2Bridge:
                 data = encode_cdr(self._failure(name, type_name, text))
             self._loop.post(lambda: reply(data))
 
-        return self.middleware.serve(name, type_, answer, fits)
+        return self.middleware.serve(name, type_, answer, request_check(type_))
 
     def _in_thread(self, function: Callable[[], None], name: str) -> None:
         if self._calls >= _MOST_CALLS:

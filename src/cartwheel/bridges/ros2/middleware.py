@@ -6,7 +6,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
+from cartwheel.errors import GraphError
 from cartwheel.graph import Qos
+from cartwheel.messages import decode_cdr, encode_cdr
 from cartwheel.messages.ros2_types import Ros2Service, Ros2Type
 
 Reply = Callable[[bytes], None]
@@ -97,3 +99,16 @@ class Middleware(Protocol):
 
     on_others: Callable[[], None]
     """Told when what other nodes offer has changed."""
+
+
+def request_check(type_: Ros2Service) -> Callable[[bytes], bool]:
+    """What tells whether bytes can be a service's request."""
+
+    def fits(data: bytes) -> bool:
+        try:
+            again = encode_cdr(decode_cdr(data, type_.request))
+        except GraphError:
+            return False
+        return data[:4] != b"\0\1\0\0" or (data.startswith(again) and len(data) - len(again) < 4)
+
+    return fits

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Protocol
 
 from cartwheel.description.model import Sensor
 from cartwheel.errors import CartwheelError, Diagnostic
-from cartwheel.graph import Graph, Publisher, Qos, Service, Subscription, resolve_name
+from cartwheel.graph import Graph, Publisher, Qos, Service, resolve_name
 from cartwheel.plugins.base import Plugin
 from cartwheel.plugins.control.hardware import Hardware, JointHardware
 from cartwheel.plugins.control.settings import Settings
@@ -28,6 +28,13 @@ class SensedLink:
     """imu or force_torque."""
     link: LinkHandle
     sensor: Sensor
+
+
+class Closable(Protocol):
+    """Something on the graph."""
+
+    def close(self) -> None:
+        """Takes it off."""
 
 
 class Rig:
@@ -93,7 +100,7 @@ class Controller:
         """The joints it commands."""
         self.interfaces: dict[str, str] = {}
         """By which interface."""
-        self._open: list[Publisher | Subscription | Service] = []
+        self._open: list[Closable | Service] = []
         try:
             self.configure(settings)
         except CartwheelError:
@@ -200,6 +207,10 @@ class Controller:
                 self.resolve(topic), heard, type_name=type_name, node=self.node
             )
         )
+
+    def keep(self, closable: Closable) -> None:
+        """Closes it with the controller."""
+        self._open.append(closable)
 
     def serve(self, name: str, type_name: str, handler: Callable[[Any], Any]) -> None:
         """A service that closes with the controller."""

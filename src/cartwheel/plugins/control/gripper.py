@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from typing import Any, ClassVar
 
-from cartwheel.messages import message_class
-from cartwheel.plugins.control.action import ActionServer, Goal
+from cartwheel.graph import Goal
+from cartwheel.plugins.control.action import ActionServer
 from cartwheel.plugins.control.controller import Controller, Rhythm
 from cartwheel.plugins.control.pid import Gains, Pid
 from cartwheel.plugins.control.settings import Settings
@@ -46,7 +46,7 @@ class GripperActionController(Controller):
         self._action = ActionServer(
             self,
             "gripper_cmd",
-            "control_msgs/GripperCommand",
+            "GripperCommand",
             on_goal=self._on_goal,
             on_cancel=self._on_cancel,
         )
@@ -79,7 +79,7 @@ class GripperActionController(Controller):
 
     def stop(self, time_ns: int) -> None:  # noqa: ARG002
         self._joint.strength = math.inf
-        self._finish("cancel")
+        self._finish("abort" if self.rig.ros2 else "cancel")
 
     def _watch(self, time_ns: int, error: float) -> None:
         goal = self._active
@@ -92,7 +92,7 @@ class GripperActionController(Controller):
         elif time_ns - self._moved_ns > self._patience_ns:
             self._finish("succeed" if self._stalls_well else "abort", stalled=True)
             return
-        if self._monitor.due(time_ns) and self._action.feedback_wanted:
+        if self._monitor.due(time_ns) and self._action.wants_feedback:
             goal.feedback(self._told("Feedback"))
 
     def _on_goal(self, goal: Goal) -> None:
@@ -101,7 +101,7 @@ class GripperActionController(Controller):
             text = "the position is no number" if self.running else "the controller does not run"
             goal.reject(self._told("Result"), text)
             return
-        self._finish("cancel")
+        self._finish("abort" if self.rig.ros2 else "cancel")
         self._active = goal
         self._target = position
         effort = float(goal.goal.command.max_effort)
@@ -122,7 +122,8 @@ class GripperActionController(Controller):
             getattr(goal, how)(self._told("Result", reached=reached, stalled=stalled))
 
     def _told(self, part: str, *, reached: bool = False, stalled: bool = False) -> Any:
-        return message_class(f"control_msgs/msg/GripperCommand{part}")(
+        return self._action.message(
+            part,
             position=self._joint.position,
             effort=self._joint.effort,
             stalled=stalled,

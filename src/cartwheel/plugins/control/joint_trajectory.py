@@ -3,22 +3,31 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
 
-from cartwheel.errors import PluginError
-from cartwheel.messages import header, message_class
-from cartwheel.plugins.control.action import ActionServer, Goal
+from cartwheel.graph import Goal
+from cartwheel.messages import header, message_class, zero
+from cartwheel.messages.store import TWIN
+from cartwheel.plugins.control.action import ActionServer
 from cartwheel.plugins.control.controller import Controller, Rhythm
 from cartwheel.plugins.control.hardware import JointHardware
 from cartwheel.plugins.control.pid import Gains, Pid
 from cartwheel.plugins.control.settings import Settings
-from cartwheel.plugins.control.trajectory import State, Trajectory, Waypoint
+from cartwheel.plugins.control.trajectory import State, Trajectory
+from cartwheel.plugins.control.trajectory_reading import (
+    GOAL,
+    INVALID_GOAL,
+    INVALID_JOINTS,
+    PATH,
+    SUCCESSFUL,
+    InvalidTrajectoryError,
+    TrajectoryReader,
+)
 
-SUCCESSFUL, INVALID_GOAL, INVALID_JOINTS, OLD_HEADER, PATH, GOAL = 0, -1, -2, -3, -4, -5
-_KIND = "control_msgs/FollowJointTrajectory"
 _SETTLING_NS = 100_000_000
 """What a joint that stops gets to stand still, before a goal counts as missed."""
 
@@ -33,14 +42,6 @@ class Tolerance:
     def violated(self, position: float, velocity: float) -> bool:
         """Whether errors of these sizes are too large."""
         return (0 < self.position < abs(position)) or (0 < self.velocity < abs(velocity))
-
-
-class InvalidTrajectoryError(PluginError):
-    """A trajectory that cannot be followed, with the error code of the action."""
-
-    def __init__(self, code: int, message: str) -> None:
-        super().__init__(message)
-        self.code = code
 
 
 class JointTrajectoryController(Controller):
@@ -89,28 +90,27 @@ class JointTrajectoryController(Controller):
             self._goal.append(
                 Tolerance(position=constraints.number(f"{name}/goal", 0.0), velocity=stopped)
             )
-        self._partial = settings.boolean("allow_partial_joints_goal", False)
+        self._reader = TrajectoryReader(self._names, self._joints, settings, ros2=ros2)
         rate = settings.number("state_publish_rate", 50.0)
         self._rhythm = Rhythm(rate)
         self._monitor = Rhythm(settings.number("action_monitor_rate", 20.0))
         settings.ignore(
             "stop_trajectory_duration", "hold_trajectory_duration", "verbose",
-            "open_loop_control", "allow_integration_in_goal_trajectories",
-            "interpolation_method", "allow_nonzero_velocity_at_trajectory_end",
-            "set_last_command_interface_value_as_state_on_activation", "cmd_timeout",
+            "open_loop_control", "interpolate_from_desired_state",
+            "set_last_command_interface_value_as_state_on_activation",
         )  # fmt: skip
         topic = "joint_trajectory" if ros2 else "command"
         self.subscribe(topic, "trajectory_msgs/msg/JointTrajectory", self._on_trajectory)
         self._action = ActionServer(
             self,
             "follow_joint_trajectory",
-            _KIND,
+            "FollowJointTrajectory",
             on_goal=self._on_goal,
             on_cancel=self._on_cancel,
         )
         self._state = self.advertise(
             "controller_state" if ros2 else "state",
-            "control_msgs/msg/JointTrajectoryControllerState",
+            f"control_msgs{TWIN if ros2 else ''}/msg/JointTrajectoryControllerState",
             rate=rate or None,
         )
         if not ros2:
@@ -142,15 +142,12 @@ class JointTrajectoryController(Controller):
         self._action.tick(time_ns)
         due = self._rhythm.due(time_ns)
         if due and self._state.wanted:
-            self._state.publish(
-                self._told(
-                    "control_msgs/msg/JointTrajectoryControllerState", time_ns, wanted, errors
-                )
-            )
+            self._tell_state(time_ns, wanted, errors)
 
     def stop(self, time_ns: int) -> None:
         self._hold(time_ns)
-        self._finish("cancel", INVALID_GOAL, "the controller was stopped")
+        how = "abort" if self.rig.ros2 else "cancel"
+        self._finish(how, INVALID_GOAL, "the controller was stopped")
 
     # -- commands to the joints
 
@@ -214,15 +211,15 @@ class JointTrajectoryController(Controller):
     def _on_trajectory(self, message: Any) -> None:
         time_ns = self.part.time_ns
         if not message.points:
-            self._finish("cancel", SUCCESSFUL, "stopped by an empty trajectory")
+            self._preempt("stopped by an empty trajectory")
             self._hold(time_ns)
             return
         try:
-            trajectory = self._read(message, time_ns)
+            trajectory = self._reader.read(message, time_ns, self._following)
         except InvalidTrajectoryError as error:
             self.warn(f"a trajectory was ignored: {error.message}")
             return
-        self._finish("cancel", SUCCESSFUL, "another trajectory took its place")
+        self._preempt("another trajectory took its place")
         self._follow(trajectory, time_ns)
 
     def _follow(self, trajectory: Trajectory, time_ns: int) -> None:
@@ -230,106 +227,6 @@ class JointTrajectoryController(Controller):
             self._next = trajectory
         else:
             self._following, self._next = trajectory, None
-
-    def _read(self, message: Any, time_ns: int) -> Trajectory:
-        """A message as a trajectory that begins where the joints are to be then.
-
-        Raises:
-            InvalidTrajectoryError: It cannot be followed.
-        """
-        names = list(message.joint_names)
-        order = self._order(names)
-        moment = message.header.stamp
-        stamp_ns = moment.sec * 1_000_000_000 + moment.nanosec
-        start_ns = stamp_ns or time_ns
-        begin_ns = max(start_ns, time_ns)
-        begin = self._following.at(begin_ns)
-        points = []
-        last = -1.0
-        for number, point in enumerate(message.points):
-            span = point.time_from_start
-            time = span.sec + span.nanosec / 1e9
-            if time < 0 or time <= last:
-                raise InvalidTrajectoryError(
-                    INVALID_GOAL, f"the time of point {number} does not come after the one before"
-                )
-            last = time
-            moved = time - (begin_ns - start_ns) / 1e9
-            made = self._waypoint(point, number, order, begin, moved)
-            if moved > 1e-9:
-                points.append(made)
-            elif number == len(message.points) - 1 and stamp_ns == 0:
-                # At once, as far as the joints can.
-                return Trajectory(time_ns, [replace(made, time=0.0)])
-        if not points:
-            raise InvalidTrajectoryError(OLD_HEADER, "all of its points lie in the past")
-        self._unwind(points, begin)
-        first = Waypoint(
-            time=0.0,
-            position=begin.position,
-            velocity=begin.velocity,
-            acceleration=begin.acceleration,
-        )
-        return Trajectory(begin_ns, [first, *points])
-
-    def _order(self, names: list[str]) -> list[int]:
-        """Where each of our joints is in a message; -1 where it is not."""
-        unknown = [name for name in names if name not in self._names]
-        if unknown:
-            raise InvalidTrajectoryError(
-                INVALID_JOINTS, f'joint "{unknown[0]}" is not of this controller'
-            )
-        missing = [name for name in self._names if name not in names]
-        if missing and not self._partial:
-            raise InvalidTrajectoryError(INVALID_JOINTS, f'joint "{missing[0]}" is missing')
-        return [names.index(name) if name in names else -1 for name in self._names]
-
-    def _waypoint(
-        self, point: Any, number: int, order: list[int], begin: State, time: float
-    ) -> Waypoint:
-        count = sum(place >= 0 for place in order)
-
-        def ours(values: Any, what: str, rest: tuple[float, ...]) -> tuple[float, ...]:
-            if len(values) == 0:
-                return ()
-            if len(values) != count:
-                raise InvalidTrajectoryError(
-                    INVALID_GOAL,
-                    f"point {number} has {len(values)} {what} for {count} joints",
-                )
-            numbers = [float(value) for value in values]
-            if not all(math.isfinite(value) for value in numbers):
-                raise InvalidTrajectoryError(
-                    INVALID_GOAL, f"point {number} has {what} that are none"
-                )
-            return tuple(
-                numbers[place] if place >= 0 else rest[index] for index, place in enumerate(order)
-            )
-
-        still = (0.0,) * len(order)
-        positions = ours(point.positions, "positions", begin.position)
-        if not positions:
-            raise InvalidTrajectoryError(INVALID_GOAL, f"point {number} has no positions")
-        return Waypoint(
-            time=time,
-            position=positions,
-            velocity=ours(point.velocities, "velocities", still),
-            acceleration=ours(point.accelerations, "accelerations", still),
-        )
-
-    def _unwind(self, points: list[Waypoint], begin: State) -> None:
-        """Joints without limits go the short way: whole turns are taken off."""
-        for joint, hardware in enumerate(self._joints):
-            if hardware.type != "continuous":
-                continue
-            way = points[0].position[joint] - begin.position[joint]
-            turns = way - math.remainder(way, 2 * math.pi)
-            if abs(turns) < 1e-9:
-                continue
-            for index, point in enumerate(points):
-                position = list(point.position)
-                position[joint] -= turns
-                points[index] = replace(point, position=tuple(position))
 
     # -- the action
 
@@ -344,12 +241,12 @@ class JointTrajectoryController(Controller):
         try:
             if not goal.goal.trajectory.points:
                 raise InvalidTrajectoryError(INVALID_GOAL, "the trajectory has no points")
-            trajectory = self._read(goal.goal.trajectory, time_ns)
+            trajectory = self._reader.read(goal.goal.trajectory, time_ns, self._following)
             paths, ends = self._tolerances(goal.goal)
         except InvalidTrajectoryError as error:
             goal.reject(self._result(error.code, error.message), error.message)
             return
-        self._finish("cancel", SUCCESSFUL, "another goal took its place")
+        self._preempt("another goal took its place")
         self._goal_path, self._goal_end = paths, ends
         span = goal.goal.goal_time_tolerance
         patience = span.sec + span.nanosec / 1e9
@@ -391,12 +288,8 @@ class JointTrajectoryController(Controller):
         """Ends the goal when it is reached or missed, and tells how it goes."""
         goal = self._active
         assert goal is not None
-        if self._monitor.due(time_ns) and self._action.feedback_wanted:
-            goal.feedback(
-                self._told(
-                    "control_msgs/msg/FollowJointTrajectoryFeedback", time_ns, wanted, errors
-                )
-            )
+        if self._monitor.due(time_ns) and self._action.wants_feedback:
+            self._tell_feedback(goal, time_ns, wanted, errors)
         followed = self._next or self._following
         if time_ns < followed.end_ns:
             if self._next is not None:
@@ -423,41 +316,65 @@ class JointTrajectoryController(Controller):
             self._finish("abort", GOAL, f"{off[0]} is {errors[index][0]:.4g} off its goal")
             self._hold(time_ns)
 
+    def _preempt(self, text: str) -> None:
+        """In ROS 2 only a client can cancel a goal."""
+        if self.rig.ros2:
+            self._finish("abort", INVALID_GOAL, text)
+        else:
+            self._finish("cancel", SUCCESSFUL, text)
+
     def _finish(self, how: str, code: int, text: str) -> None:
         goal, self._active = self._active, None
         if goal is not None:
             getattr(goal, how)(self._result(code, text), text)
 
     def _result(self, code: int, text: str) -> Any:
-        return message_class("control_msgs/msg/FollowJointTrajectoryResult")(
-            error_code=code, error_string=text
-        )
+        return self._action.message("Result", error_code=code, error_string=text)
 
     # -- what is told
 
-    def _told(
-        self, kind: str, time_ns: int, wanted: State, errors: list[tuple[float, float]]
-    ) -> Any:
-        Point = message_class("trajectory_msgs/msg/JointTrajectoryPoint")
-        nothing = np.zeros(0)
-        duration = message_class("builtin_interfaces/msg/Duration")(0, 0)
+    def _tell_state(self, time_ns: int, wanted: State, errors: list[tuple[float, float]]) -> None:
+        desired, actual, error = self._points(wanted, errors)
+        fields = {"header": header(time_ns, ""), "joint_names": self._names, "error": error}
+        if not self.rig.ros2:
+            kind = message_class("control_msgs/msg/JointTrajectoryControllerState")
+            self._state.publish(kind(desired=desired, actual=actual, **fields))
+            return
+        message = zero("control_msgs_ros2/msg/JointTrajectoryControllerState")
+        for name, value in {
+            **fields,
+            "reference": desired,
+            "feedback": actual,
+            "output": self._output(),
+            "speed_scaling_factor": 1.0,
+        }.items():
+            setattr(message, name, value)
+        self._state.publish(message)
 
-        def point(position: Any, velocity: Any, acceleration: Any = nothing) -> Any:
-            return Point(
-                positions=np.array(position, dtype=float),
-                velocities=np.array(velocity, dtype=float),
-                accelerations=np.array(acceleration, dtype=float),
-                effort=nothing,
-                time_from_start=duration,
-            )
+    def _output(self) -> Any:
+        """What the joints are commanded."""
+        if self._interface == "effort":
+            return _point(effort=[joint.effort for joint in self._joints])
+        commands = [joint.command for joint in self._joints]
+        if self._interface == "velocity":
+            return _point(velocities=commands)
+        return _point(commands)
 
+    def _tell_feedback(
+        self, goal: Goal, time_ns: int, wanted: State, errors: list[tuple[float, float]]
+    ) -> None:
+        message = zero("control_msgs_ros2/action/FollowJointTrajectory_Feedback")
+        message.header, message.joint_names = header(time_ns, ""), self._names
+        message.desired, message.actual, message.error = self._points(wanted, errors)
+        goal.feedback(message)
+
+    def _points(self, wanted: State, errors: list[tuple[float, float]]) -> tuple[Any, Any, Any]:
+        """Where the joints are to be, where they are, and by how much they are off."""
         joints = self._joints
-        return message_class(kind)(
-            header=header(time_ns, ""),
-            joint_names=self._names,
-            desired=point(wanted.position, wanted.velocity, wanted.acceleration),
-            actual=point([j.position for j in joints], [j.velocity for j in joints]),
-            error=point([error[0] for error in errors], [error[1] for error in errors]),
+        return (
+            _point(wanted.position, wanted.velocity, wanted.acceleration),
+            _point([j.position for j in joints], [j.velocity for j in joints]),
+            _point([error[0] for error in errors], [error[1] for error in errors]),
         )
 
     def _on_query(self, request: Any) -> Any:
@@ -473,3 +390,18 @@ class JointTrajectoryController(Controller):
             velocity=np.array(state.velocity),
             acceleration=np.array(state.acceleration),
         )
+
+
+def _point(
+    positions: Sequence[float] = (),
+    velocities: Sequence[float] = (),
+    accelerations: Sequence[float] = (),
+    effort: Sequence[float] = (),
+) -> Any:
+    return message_class("trajectory_msgs/msg/JointTrajectoryPoint")(
+        positions=np.array(positions, dtype=float),
+        velocities=np.array(velocities, dtype=float),
+        accelerations=np.array(accelerations, dtype=float),
+        effort=np.array(effort, dtype=float),
+        time_from_start=message_class("builtin_interfaces/msg/Duration")(0, 0),
+    )

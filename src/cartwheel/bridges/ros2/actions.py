@@ -1,0 +1,260 @@
+"""Actions of the graph as ROS 2 has them: three services and two topics.
+
+Source: rcl_action; the design article on actions.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from cartwheel.bridges.loop import Loop
+from cartwheel.bridges.ros2.middleware import (
+    DEFAULT,
+    LATCHED,
+    Answer,
+    Middleware,
+    Reply,
+    request_check,
+)
+from cartwheel.errors import GraphError
+from cartwheel.graph import Action, Goal, GoalState, Graph
+from cartwheel.messages import decode_cdr, encode_cdr, message_class, stamp, zero
+from cartwheel.messages.ros2_types import ros2_service, ros2_type
+
+_STATUS = "action_msgs/msg/GoalStatusArray"
+_CANCEL = "action_msgs/srv/CancelGoal"
+_UNKNOWN, _EXECUTING, _CANCELED = 0, 2, 5
+_STATES = {
+    GoalState.PENDING: 1,
+    GoalState.ACTIVE: _EXECUTING,
+    GoalState.SUCCEEDED: 4,
+    GoalState.CANCELLED: _CANCELED,
+    GoalState.ABORTED: 6,
+}
+_NONE, _REFUSED, _UNKNOWN_GOAL, _TERMINATED = range(4)
+"""What an attempt to cancel has come to."""
+_WAITING = 100
+"""Requests for results that may wait at a time."""
+
+
+class OfferedAction:
+    """One action; made on the loop's thread.
+
+    Whoever asks for a result is answered when it is there, so no thread waits.
+
+    Args:
+        graph: Where the action is.
+        action: What is offered.
+        loop: The bridge's.
+        middleware: Where it is offered.
+        tell: Takes a warning.
+    """
+
+    def __init__(
+        self,
+        graph: Graph,
+        action: Action,
+        *,
+        loop: Loop,
+        middleware: Middleware,
+        tell: Callable[[str], None],
+    ) -> None:
+        self.action = action
+        self._graph = graph
+        self._loop = loop
+        self._tell = tell
+        self._submitting = False
+        self._readers = False
+        self._waiting: dict[str, list[Reply]] = {}
+        """Who asks for the results of goals under way; on the owner's thread."""
+        self._closed = False
+        base, kind = f"{action.name}/_action", action.type
+        self._types = {
+            "send_goal": f"{kind}_SendGoal",
+            "cancel_goal": _CANCEL,
+            "get_result": f"{kind}_GetResult",
+        }
+        self._status = middleware.publish(
+            f"{base}/status", ros2_type(_STATUS), LATCHED, lambda _: None
+        )
+        self._feedback = middleware.publish(
+            f"{base}/feedback", ros2_type(f"{kind}_FeedbackMessage"), DEFAULT, self._found_readers
+        )
+        self._services = [
+            middleware.serve(
+                f"{base}/{name}",
+                ros2_service(self._types[name]),
+                self._answer(name, handler),
+                request_check(ros2_service(self._types[name])),
+            )
+            for name, handler in (
+                ("send_goal", self._send_goal),
+                ("cancel_goal", self._cancel_goal),
+                ("get_result", self._get_result),
+            )
+        ]
+        graph.post(self._join)
+
+    def close(self) -> None:
+        """Offers it no longer; on the loop's thread."""
+        self._closed = True
+        self._graph.post(lambda: self.action.leave(self))
+        for each in (self._status, self._feedback, *self._services):
+            each.close()
+
+    @property
+    def wants_feedback(self) -> bool:
+        """See `ActionListener`."""
+        return self._readers
+
+    # -- on the loop's thread
+
+    def _found_readers(self, there: bool) -> None:
+        self._readers = there
+
+    def _answer(self, name: str, handler: Callable[[Any, Reply], None]) -> Answer:
+        def answer(data: bytes, reply: Reply) -> None:
+            try:
+                request = decode_cdr(data, ros2_service(self._types[name]).request)
+            except GraphError as error:
+                self._tell(f"{self.action.name}/_action/{name} was called with nonsense: {error}")
+                return
+            self._graph.post(lambda: handler(request, reply))
+
+        return answer
+
+    # -- on the owner's thread
+
+    def _join(self) -> None:
+        self.action.listen(self)
+        self._tell_status()
+
+    def goal_changed(self, goal: Goal) -> None:
+        """See `ActionListener`."""
+        if self._submitting:
+            return
+        self._tell_status()
+        if goal.done:
+            for reply in self._waiting.pop(goal.id, ()):
+                self._send_result(goal, reply)
+
+    def goal_goes_on(self, goal: Goal, feedback: Any) -> None:
+        """See `ActionListener`."""
+        if self._readers:
+            self._publish(
+                self._feedback.send,
+                message_class(f"{self.action.type}_FeedbackMessage")(
+                    goal_id=_uuid(goal.id), feedback=feedback
+                ),
+            )
+
+    def _send_goal(self, request: Any, reply: Reply) -> None:
+        # Who asks is to be told that its goal is accepted before it hears how that goes on.
+        self._submitting = True
+        try:
+            goal = self.action.submit(request.goal, identity=_identity(request.goal_id))
+        finally:
+            self._submitting = False
+        accepted = goal is not None and goal.state is not GoalState.REJECTED
+        moment = stamp(self.action.time_ns())
+        self._respond(reply, "send_goal", accepted=accepted, stamp=moment)
+        if goal is not None and goal.state is GoalState.REJECTED:
+            # ROS 2 has no field for it.
+            self._tell(f"{self.action.name}: a goal was rejected: {goal.text}")
+        elif goal is not None:
+            self.goal_changed(goal)
+
+    def _cancel_goal(self, request: Any, reply: Reply) -> None:
+        info = request.goal_info
+        before_ns = info.stamp.sec * 1_000_000_000 + info.stamp.nanosec
+        identity = _identity(info.goal_id) if any(info.goal_id.uuid) else ""
+        known = self._known(identity) if identity else None
+        if known is not None:
+            identity = known.id
+        meant = self.action.cancel(identity=identity, before_ns=before_ns)
+        code = _NONE if meant else _REFUSED
+        if not meant and identity and not before_ns:
+            code = _UNKNOWN_GOAL if known is None else _TERMINATED
+        self._respond(
+            reply,
+            "cancel_goal",
+            return_code=code,
+            goals_canceling=[_info(goal) for goal in meant],
+        )
+
+    def _get_result(self, request: Any, reply: Reply) -> None:
+        goal = self._known(_identity(request.goal_id))
+        if goal is None or goal.state is GoalState.REJECTED:
+            self._send_result(None, reply)
+        elif goal.done:
+            self._send_result(goal, reply)
+        elif sum(len(replies) for replies in self._waiting.values()) < _WAITING:
+            self._waiting.setdefault(goal.id, []).append(reply)
+        else:
+            self._tell(f"{self.action.name}: more than {_WAITING} wait for results")
+
+    def _known(self, identity: str) -> Goal | None:
+        """A goal by what ROS 2 calls it, where another wire has made it as well."""
+        found = self.action.goal(identity)
+        if found is not None:
+            return found
+        named = (each for each in self.action.goals if _bytes(each.id).hex() == identity)
+        return next(named, None)
+
+    def _send_result(self, goal: Goal | None, reply: Reply) -> None:
+        if goal is None:
+            result = zero(f"{self.action.type}_Result")
+            self._respond(reply, "get_result", status=_UNKNOWN, result=result)
+        else:
+            self._respond(reply, "get_result", status=_STATES[goal.state], result=goal.result)
+
+    def _tell_status(self) -> None:
+        GoalStatus = message_class("action_msgs/msg/GoalStatus")
+        self._publish(
+            self._status.send,
+            message_class(_STATUS)(
+                status_list=[
+                    GoalStatus(goal_info=_info(goal), status=_STATES[goal.state])
+                    for goal in self.action.goals
+                    if goal.state in _STATES
+                ]
+            ),
+        )
+
+    def _respond(self, reply: Reply, name: str, **fields: Any) -> None:
+        self._publish(reply, message_class(ros2_service(self._types[name]).response)(**fields))
+
+    def _publish(self, send: Callable[[bytes], None], message: Any) -> None:
+        data = encode_cdr(message)
+        self._loop.post(lambda: None if self._closed else send(data))
+
+
+def _identity(uuid: Any) -> str:
+    return bytes(uuid.uuid).hex()
+
+
+def _bytes(identity: str) -> bytes:
+    """The 16 bytes of a goal's name: those of ROS 2's goals, and some for any other's."""
+    try:
+        plain = bytes.fromhex(identity)
+    except ValueError:
+        plain = b""
+    if len(plain) == 16:
+        return plain
+    return hashlib.md5(identity.encode(), usedforsecurity=False).digest()
+
+
+def _uuid(identity: str) -> Any:
+    return message_class("unique_identifier_msgs/msg/UUID")(
+        uuid=np.frombuffer(_bytes(identity), np.uint8)
+    )
+
+
+def _info(goal: Goal) -> Any:
+    return message_class("action_msgs/msg/GoalInfo")(
+        goal_id=_uuid(goal.id), stamp=stamp(goal.stamp_ns)
+    )

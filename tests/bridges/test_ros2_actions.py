@@ -1,0 +1,268 @@
+"""Actions over DDS, as rclcpp_action calls them: services and topics below ``_action``."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+from tests.bridges.ros1_peers import wait_for
+from tests.bridges.ros2_peers import DOMAIN, REASON, Peer, Ros2Bridged
+from tests.plugins.control.arms import beam, robot, ros2_joint, ros2_parameters, ros2_plugin
+from tests.plugins.control.arms import ros2_system as system
+
+from cartwheel.description import load_text
+from cartwheel.session import Session
+
+pytestmark = pytest.mark.skipif(bool(REASON), reason=REASON)
+
+ARM = "/arm_controller/follow_joint_trajectory"
+FINGER = "/gripper/gripper_cmd"
+TRAJECTORY = "control_msgs_ros2/action/FollowJointTrajectory"
+GRIPPER = "control_msgs_ros2/action/GripperCommand"
+CANCEL = "action_msgs/srv/CancelGoal"
+STATUS = "action_msgs/msg/GoalStatusArray"
+UNKNOWN, EXECUTING, SUCCEEDED, CANCELED, ABORTED = 0, 2, 4, 5, 6
+JOINTS = ("a_joint", "b_joint")
+SLOW = 'lower="-3" upper="3" effort="100" velocity="0.2"'
+"""The limits of a joint that keeps up with little."""
+numbers = itertools.count(1)
+
+
+def spawn_arm(folder: Path) -> Any:
+    """Two joints that follow trajectories, and a third that grips."""
+    file = folder / "controllers.yaml"
+    file.write_text(
+        yaml.safe_dump(
+            ros2_parameters(
+                arm_controller={
+                    "type": "joint_trajectory_controller/JointTrajectoryController",
+                    "joints": list(JOINTS),
+                    "command_interfaces": ["position"],
+                    "state_interfaces": ["position", "velocity"],
+                },
+                gripper={
+                    "type": "position_controllers/GripperActionController",
+                    "joint": "c_joint",
+                },
+            )
+        )
+    )
+    body = beam("a", "world") + beam("b", "world", origin="0 1 1", limit=SLOW)
+    body += beam("c", "world", origin="0 2 1")
+    body += system(*(ros2_joint(name) for name in (*JOINTS, "c_joint")))
+
+    def spawn(session: Session) -> None:
+        session.spawn(load_text(robot(body, ros2_plugin(file)), file=str(folder / "arm.urdf")))
+
+    return spawn
+
+
+@pytest.fixture(scope="module")
+def bridged(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Ros2Bridged]:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("ROS_DOMAIN_ID", str(DOMAIN + 5))
+        made = Ros2Bridged(robot=False, prepare=spawn_arm(tmp_path_factory.mktemp("arm")))
+        yield made
+        made.close()
+
+
+@pytest.fixture(scope="module")
+def peer(bridged: Ros2Bridged) -> Iterator[Peer]:
+    made = Peer(DOMAIN + 5)
+    yield made
+    made.close()
+
+
+def uuid() -> dict[str, Any]:
+    return {"uuid": [next(numbers), *range(15)]}
+
+
+def point(seconds: int, *positions: float, nanosec: int = 0, **more: Any) -> dict[str, Any]:
+    span = {"sec": seconds, "nanosec": nanosec}
+    return {"positions": list(positions), "time_from_start": span, **more}
+
+
+def send(peer: Peer, *points: dict[str, Any], names: Any = JOINTS, **more: Any) -> tuple[Any, bool]:
+    """A goal's id, and whether it was accepted."""
+    identity = uuid()
+    goal = {"trajectory": {"joint_names": list(names), "points": list(points)}, **more}
+    answer = peer.call(
+        f"{ARM}/_action/send_goal", f"{TRAJECTORY}_SendGoal", {"goal_id": identity, "goal": goal}
+    )
+    return identity, answer.accepted
+
+
+def result(peer: Peer, identity: Any, name: str = ARM, kind: str = TRAJECTORY) -> tuple[int, Any]:
+    """What a goal ends as; waits until it does."""
+    answer = peer.call(f"{name}/_action/get_result", f"{kind}_GetResult", {"goal_id": identity})
+    return answer.status, answer.result
+
+
+def cancel(peer: Peer, identity: Any = None, name: str = ARM) -> Any:
+    info = {"goal_id": identity} if identity else {}
+    return peer.call(f"{name}/_action/cancel_goal", CANCEL, {"goal_info": info})
+
+
+def position(bridged: Ros2Bridged, joint: str) -> float:
+    simulation = bridged.simulation
+    return simulation.call(lambda: simulation.joint_position("arm", joint)).result()
+
+
+def test_a_goal_is_followed_and_told_of(bridged: Ros2Bridged, peer: Peer) -> None:
+    feedback = f"{TRAJECTORY}_FeedbackMessage"
+    peer.subscribe(f"{ARM}/_action/feedback", feedback)
+    peer.subscribe(f"{ARM}/_action/status", STATUS, transient=True)
+    wait_for(
+        lambda: next(each for each in bridged.graph.actions() if each.name == ARM).wants_feedback,
+        "the reader of the feedback",
+    )
+    identity, accepted = send(peer, point(1, 0.5, 0.1))
+    assert accepted
+    status, ended = result(peer, identity)
+    assert (status, ended.error_code) == (SUCCEEDED, 0)
+    assert position(bridged, "a_joint") == pytest.approx(0.5, abs=0.02)
+    told = wait_for(
+        lambda: [
+            each
+            for each in peer.messages(f"{ARM}/_action/feedback", feedback)
+            if each.goal_id.uuid.tolist() == identity["uuid"]
+        ],
+        "feedback",
+    )
+    assert told[0].feedback.joint_names == list(JOINTS)
+    assert len(told[0].feedback.desired.positions) == 2
+
+    def states() -> list[int]:
+        return [
+            one.status
+            for array in peer.messages(f"{ARM}/_action/status", STATUS)
+            for one in array.status_list
+            if one.goal_info.goal_id.uuid.tolist() == identity["uuid"]
+        ]
+
+    wait_for(lambda: {EXECUTING, SUCCEEDED} <= set(states()), "both states")
+
+
+def test_names_and_points_that_make_no_sense_are_rejected(peer: Peer) -> None:
+    for names, points in (
+        (JOINTS[:1], [point(1, 0.1)]),
+        (("a_joint", "elbow"), [point(1, 0.1, 0.1)]),
+        (JOINTS, []),
+        (JOINTS, [point(1, 0.1)]),
+        (JOINTS, [point(1, 0.1, 0.1), point(1, 0.2, 0.2)]),
+        (JOINTS, [point(1, 0.1, 0.1, velocities=[0.5, 0.0])]),
+    ):
+        identity, accepted = send(peer, *points, names=names)
+        assert not accepted, (names, points)
+        assert result(peer, identity)[0] == UNKNOWN
+
+
+def test_a_goal_is_cancelled_where_it_is(bridged: Ros2Bridged, peer: Peer) -> None:
+    send(peer, point(0, 0.0, 0.0))
+    identity, _ = send(peer, point(1000, 2.0, 0.0))
+    assert cancel(peer, uuid()).return_code == 2  # ERROR_UNKNOWN_GOAL_ID
+    answer = cancel(peer, identity)
+    assert answer.return_code == 0
+    assert [one.goal_id.uuid.tolist() for one in answer.goals_canceling] == [identity["uuid"]]
+    assert result(peer, identity)[0] == CANCELED
+    assert abs(position(bridged, "a_joint")) < 1.0
+    assert cancel(peer, identity).return_code == 3  # ERROR_GOAL_TERMINATED
+    assert cancel(peer).return_code == 1  # ERROR_REJECTED: there is none to be cancelled
+
+
+def test_all_goals_are_cancelled_at_once(peer: Peer) -> None:
+    first, _ = send(peer, point(1000, 1.0, 0.0))
+    assert [one.goal_id.uuid.tolist() for one in cancel(peer).goals_canceling] == [first["uuid"]]
+
+
+def test_a_new_goal_ends_the_one_before(peer: Peer) -> None:
+    first, _ = send(peer, point(1000, 1.0, 0.0))
+    second, accepted = send(peer, point(1, 0.1, 0.0))
+    assert accepted
+    status, ended = result(peer, first)
+    assert (status, ended.error_code) == (ABORTED, -1)
+    assert result(peer, second)[0] == SUCCEEDED
+
+
+def test_a_path_that_cannot_be_kept_is_aborted(peer: Peer) -> None:
+    tolerance = [{"name": "b_joint", "position": 0.05}]
+    identity, _ = send(peer, point(1, 0.0, 2.0), path_tolerance=tolerance)
+    status, ended = result(peer, identity)
+    assert (status, ended.error_code) == (ABORTED, -4)
+    assert "b_joint" in ended.error_string
+
+
+def test_a_goal_that_is_missed_is_aborted_after_its_time(peer: Peer) -> None:
+    send(peer, point(0, 0.0, 0.0))
+    identity, _ = send(
+        peer,
+        point(1, 0.0, 1.0),
+        goal_tolerance=[{"name": "b_joint", "position": 0.05}],
+        goal_time_tolerance={"sec": 0, "nanosec": 200_000_000},
+    )
+    status, ended = result(peer, identity)
+    assert (status, ended.error_code) == (ABORTED, -5)
+
+
+def test_a_result_that_waits_is_sent_when_it_is_there(bridged: Ros2Bridged, peer: Peer) -> None:
+    """The request comes before the goal ends, and from another node than the cancellation."""
+    other = Peer(DOMAIN + 5)
+    try:
+        identity, _ = send(peer, point(1000, 1.0, 0.0))
+        service = f"{ARM}/_action/get_result"
+        action = next(each for each in bridged.graph.actions() if each.name == ARM)
+        (listener,) = (each for each in action.listeners if hasattr(each, "_waiting"))
+        before = len(other.lines)
+        request = f"00010000{bytes(identity['uuid']).hex()}"
+        kind = "control_msgs::action::dds_::FollowJointTrajectory_GetResult_"
+        other.tell("call", service, kind, request)
+        wait_for(lambda: listener._waiting, "the request for the result")
+        assert cancel(peer, identity).return_code == 0
+        (answer,) = wait_for(
+            lambda: [line for line in other.lines[before:] if line[0] == "REPLY"], "the result"
+        )
+        # Its encapsulation, then the status.
+        assert bytes.fromhex(answer[2])[4] == CANCELED
+    finally:
+        other.close()
+
+
+def test_a_gripper_goes_where_it_is_told(bridged: Ros2Bridged, peer: Peer) -> None:
+    identity = uuid()
+    request = {"goal_id": identity, "goal": {"command": {"position": 0.3, "max_effort": 0.0}}}
+    assert peer.call(f"{FINGER}/_action/send_goal", f"{GRIPPER}_SendGoal", request).accepted
+    status, ended = result(peer, identity, FINGER, GRIPPER)
+    assert (status, ended.reached_goal, ended.stalled) == (SUCCEEDED, True, False)
+    assert position(bridged, "c_joint") == pytest.approx(0.3, abs=0.02)
+    # A goal of the same name is not taken twice.
+    assert not peer.call(f"{FINGER}/_action/send_goal", f"{GRIPPER}_SendGoal", request).accepted
+
+
+def test_the_states_of_a_trajectory_controller_are_those_of_ros2(peer: Peer) -> None:
+    kind = "control_msgs_ros2/msg/JointTrajectoryControllerState"
+    peer.subscribe("/arm_controller/controller_state", kind)
+    state = wait_for(lambda: peer.messages("/arm_controller/controller_state", kind), "a state")[0]
+    assert state.joint_names == list(JOINTS)
+    assert len(state.reference.positions) == len(state.feedback.positions) == 2
+    assert state.output.positions.tolist() == state.reference.positions.tolist()
+
+
+def test_what_others_see_of_it(peer: Peer) -> None:
+    """Names, types and quality of service as rcl_action's."""
+    base = f"{ARM}/_action"
+    kind = "control_msgs::action::dds_::FollowJointTrajectory_"
+    wait_for(lambda: f"rt{base}/status" in peer.endpoints("WRITER"), "the topics")
+    writers, readers = peer.endpoints("WRITER"), peer.endpoints("READER")
+    assert writers[f"rt{base}/status"][:3] == [
+        "action_msgs::msg::dds_::GoalStatusArray_", "1", "1"
+    ]  # fmt: skip
+    assert writers[f"rt{base}/feedback"][:3] == [f"{kind}FeedbackMessage_", "1", "0"]
+    assert readers[f"rq{base}/send_goalRequest"][0] == f"{kind}SendGoal_Request_"
+    assert writers[f"rr{base}/get_resultReply"][0] == f"{kind}GetResult_Response_"
+    assert (
+        readers[f"rq{base}/cancel_goalRequest"][0] == "action_msgs::srv::dds_::CancelGoal_Request_"
+    )

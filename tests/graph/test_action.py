@@ -1,0 +1,101 @@
+"""Actions in process: names, what a cancellation means, how long goals are known."""
+
+import pytest
+
+from cartwheel.errors import GraphError
+from cartwheel.graph import Action, ActionTopics, GoalState, Graph
+from cartwheel.messages import from_dict, message_class
+
+KIND = "control_msgs_ros2/action/GripperCommand"
+NANO = 1_000_000_000
+
+
+class Worker:
+    """Accepts every goal, and ends those that are called off."""
+
+    def __init__(self):
+        self.graph = Graph()
+        self.now = 0
+        self.action = Action(
+            self.graph,
+            "grip",
+            KIND,
+            node="hand",
+            time_ns=lambda: self.now,
+            on_goal=lambda goal: goal.accept(),
+            on_cancel=lambda goal: goal.cancel(self.result()),
+        )
+
+    def result(self, **fields):
+        return from_dict(f"{KIND}_Result", fields)
+
+    def submit(self, identity, **more):
+        return self.action.submit(from_dict(f"{KIND}_Goal", {}), identity=identity, **more)
+
+
+@pytest.fixture
+def worker():
+    return Worker()
+
+
+def test_a_name_is_offered_once(worker):
+    assert worker.action.name == "/grip"
+    with pytest.raises(GraphError, match='"/grip" is offered already by hand'):
+        Action(
+            worker.graph, "/grip", KIND, node="other", time_ns=lambda: 0, on_goal=print,
+            on_cancel=print,
+        )  # fmt: skip
+    worker.action.close()
+    assert worker.graph.actions() == []
+
+
+def test_a_cancellation_means_a_name_a_time_or_all(worker):
+    goals = {name: worker.submit(name, stamp_ns=at) for name, at in (("a", 1), ("b", 5), ("c", 9))}
+    assert worker.action.cancel(identity="nobody") == []
+    assert worker.action.cancel(identity="b") == [goals["b"]]
+    assert goals["b"].state is GoalState.CANCELLED
+    assert worker.action.cancel(before_ns=5) == [goals["a"]]
+    assert worker.action.cancel() == [goals["c"]]
+    assert worker.action.cancel() == []
+
+
+def test_a_goal_of_a_known_name_is_not_taken_again(worker):
+    assert worker.submit("a") is not None
+    assert worker.submit("a") is None
+    assert worker.submit("").id != worker.submit("").id
+
+
+def test_goals_that_are_done_are_known_for_a_while_and_some_for_longer(worker):
+    for number in range(50):
+        worker.submit(str(number)).succeed(worker.result())
+    assert len(worker.action.goals) == 50
+    worker.now = 11 * NANO
+    worker.submit("late")
+    assert [goal.id for goal in worker.action.goals] == [*map(str, range(30, 50)), "late"]
+    worker.action.restart()
+    assert [goal.id for goal in worker.action.goals] == ["late"]
+
+
+def test_ros1_has_its_types_on_five_topics(worker):
+    topics = ActionTopics(worker.graph, worker.action)
+    box = worker.graph.mailbox("/grip/result")
+    status = worker.graph.mailbox("/grip/status")
+    feedback = worker.graph.mailbox("/grip/feedback")
+    assert worker.action.wants_feedback
+    goal = message_class("control_msgs/msg/GripperCommandActionGoal")
+    kind = "control_msgs/msg/GripperCommandActionGoal"
+    message = from_dict(kind, {"goal_id": {"id": "x"}, "goal": {"command": {"position": 0.3}}})
+    assert isinstance(message, goal)
+    worker.graph.publish("/grip/goal", kind, message)
+    found = worker.action.goal("x")
+    assert found.goal.__msgtype__ == f"{KIND}_Goal"
+    assert found.goal.command.position == 0.3
+    found.feedback(from_dict(f"{KIND}_Feedback", {"position": 0.1}))
+    found.succeed(worker.result(reached_goal=True), "there")
+    (told,) = box.drain()
+    assert told.__msgtype__ == "control_msgs/msg/GripperCommandActionResult"
+    assert (told.status.status, told.status.text, told.result.reached_goal) == (3, "there", True)
+    assert [[each.status for each in one.status_list] for one in status.drain()] == [[1], [3]]
+    assert feedback.drain()[0].feedback.position == 0.1
+    topics.close()
+    assert worker.graph.topics() == [info for info in worker.graph.topics() if not info.publishers]
