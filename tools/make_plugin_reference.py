@@ -193,14 +193,23 @@ def _tag(plugin: type[Plugin[Any]]) -> PluginTag:
     needed = [
         _element(
             item.metadata["tags"][0],
-            text="left_joint" if "joint" in item.name else "base_footprint",
+            text=_needed(item, kind),
         )
-        for item, _ in _fields(plugin)
+        for item, kind in _fields(plugin)
         # A joint to be measured has no default that a robot could have.
         if item.default is dataclasses.MISSING or (item.name, item.default) == ("joint", "")
     ]
     element = _element("plugin", children=(*switches, *needed))
     return PluginTag(name="plugin", filename=_title(plugin), element=element, origin=HERE)
+
+
+def _needed(item: dataclasses.Field[Any], kind: Any) -> str:
+    """What stands in a tag that must be given."""
+    if kind in (float, int):
+        return "1"
+    if "joint" in item.name:
+        return "left_joint"
+    return SENSOR if "sensor" in item.metadata["doc"] else "base_footprint"
 
 
 def _robot(plugin: type[Plugin[Any]]) -> RobotDescription:

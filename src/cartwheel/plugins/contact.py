@@ -7,6 +7,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from cartwheel.description.model import Sensor
 from cartwheel.errors import suggestion
 from cartwheel.geometry import Array
 from cartwheel.messages import header, message_class
@@ -56,7 +57,8 @@ class Bumper(Plugin[Any]):
             frame: Of the messages.
             rate: Hz; 0 is every step.
         """
-        self._collisions = self._resolve_collisions()
+        assert self.sensor is not None
+        self._collisions = watched_collisions(self, self.sensor)
         self._frame = self.frame(frame)
         self._ContactsState = message_class("gazebo_msgs/msg/ContactsState")
         self._ContactState = message_class("gazebo_msgs/msg/ContactState")
@@ -64,32 +66,6 @@ class Bumper(Plugin[Any]):
         self._Vector3 = message_class("geometry_msgs/msg/Vector3")
         self._publisher = self.advertise(topic, "gazebo_msgs/msg/ContactsState", rate=rate or None)
         self.part.schedule(rate, after=self._publish, active=lambda: self._publisher.wanted)
-
-    def _resolve_collisions(self) -> set[str]:
-        """``link::collision`` of all that the sensor names, in any of Gazebo's spellings."""
-        assert self.sensor is not None
-        spellings: dict[str, str] = {}
-        for link in self.part.description.links:
-            for collision in link.collisions:
-                for name in (*collision.aliases, collision.name):
-                    spellings[name] = scoped(link.name, collision.name)
-                spellings[scoped(link.name, collision.name)] = scoped(link.name, collision.name)
-        found = set()
-        for wanted in self.sensor.collisions:
-            name = wanted.strip()
-            bare = name.rsplit("::", 1)[-1]
-            if name in spellings or bare in spellings:
-                found.add(spellings.get(name) or spellings[bare])
-            else:
-                self.warn(
-                    f'contact sensor "{self.sensor.name}": there is no collision "{name}", '
-                    f"so it would never report. {suggestion(name, spellings)}"
-                )
-        if not self.sensor.collisions:
-            self.warn(
-                f'contact sensor "{self.sensor.name}" names no <collision>, so it never reports'
-            )
-        return found
 
     def _publish(self) -> None:
         pairs: dict[tuple[str, str], list[Contact]] = {}
@@ -122,3 +98,30 @@ class Bumper(Plugin[Any]):
     def _vector(self, values: Array) -> Any:
         x, y, z = values.tolist()
         return self._Vector3(x=x, y=y, z=z)
+
+
+def watched_collisions(plugin: Plugin[Any], sensor: Sensor) -> set[str]:
+    """``link::collision`` of all that a contact sensor names, in any of Gazebo's spellings.
+
+    A name that is none is reported.
+    """
+    spellings: dict[str, str] = {}
+    for link in plugin.part.description.links:
+        for collision in link.collisions:
+            for name in (*collision.aliases, collision.name):
+                spellings[name] = scoped(link.name, collision.name)
+            spellings[scoped(link.name, collision.name)] = scoped(link.name, collision.name)
+    found = set()
+    for wanted in sensor.collisions:
+        name = wanted.strip()
+        bare = name.rsplit("::", 1)[-1]
+        if name in spellings or bare in spellings:
+            found.add(spellings.get(name) or spellings[bare])
+        else:
+            plugin.warn(
+                f'contact sensor "{sensor.name}": there is no collision "{name}", '
+                f"so it would never report. {suggestion(name, spellings)}"
+            )
+    if not sensor.collisions:
+        plugin.warn(f'contact sensor "{sensor.name}" names no <collision>, so it never reports')
+    return found

@@ -7,18 +7,18 @@ way and left gravity out.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
 
+from cartwheel.description.model import Sensor
 from cartwheel.errors import PluginError
-from cartwheel.geometry import Pose, matrix_from_quat, quat_from_rpy, quat_multiply
+from cartwheel.geometry import Pose, quat_from_rpy
 from cartwheel.messages import header, message_class
 from cartwheel.plugins.base import Plugin
 from cartwheel.plugins.gz_sensor import default_topic
-from cartwheel.plugins.noise import VectorNoise, read_noise
+from cartwheel.plugins.inertial_unit import InertialUnit
 from cartwheel.plugins.parameters import tag
 
 
@@ -48,32 +48,20 @@ class ImuParameters:
 class _ImuBase(Plugin[Any]):
     """Reads a link and publishes what a unit mounted on it measures."""
 
-    _rate_noise: VectorNoise | None = None
-    _accel_noise: VectorNoise | None = None
-
-    def _sensor_noise(self) -> None:
-        """Takes what the sensor's own ``<imu>`` says of noise, axis by axis."""
-        assert self.sensor is not None
-        element = self.sensor.element.find("imu")
-        if element is None:
-            return
-        both = []
-        for what, older in (("angular_velocity", "rate"), ("linear_acceleration", "accel")):
-            noises = [read_noise(element.find(f"{what}/{axis}/noise")) for axis in "xyz"]
-            if element.find(f"noise/{older}") is not None and element.find(what) is None:
-                # As SDF 1.4 wrote it, one for all axes.
-                noises = [read_noise(element.find(f"noise/{older}"))] * 3
-            both.append(VectorNoise(self.part, f"imu {self.sensor.name} {what}", noises))
-        self._rate_noise, self._accel_noise = both
-
     def _start(
-        self, *, link: str, mount: Pose, topic: str, frame: str, noise: float, rate: float
+        self,
+        *,
+        link: str,
+        mount: Pose,
+        topic: str,
+        frame: str,
+        noise: float,
+        rate: float,
+        sensor: Sensor | None = None,
     ) -> None:
         if rate < 0 or noise < 0:
             raise PluginError("a rate or noise cannot be below 0", origin=self.tag.origin)
-        self._link = self.part.link(link, origin=self.tag.origin)
-        self._mount = mount
-        self._turn = matrix_from_quat(mount.orientation).T.tolist()
+        self._unit = InertialUnit(self.part, link, mount, sensor=sensor, origin=self.tag.origin)
         self._frame = self.frame(frame)
         self._noise = noise
         self._Imu = message_class("sensor_msgs/msg/Imu")
@@ -81,27 +69,21 @@ class _ImuBase(Plugin[Any]):
         self._Quaternion = message_class("geometry_msgs/msg/Quaternion")
         self._covariance = np.diag([noise**2] * 3).ravel()
         self._rate_covariance = self._accel_covariance = self._covariance
-        if self._rate_noise is not None and self._accel_noise is not None:
-            self._rate_covariance = self._covariance + np.diag(self._rate_noise.variance).ravel()
-            self._accel_covariance = self._covariance + np.diag(self._accel_noise.variance).ravel()
+        both = (self._unit.rate_noise, self._unit.acceleration_noise)
+        if both[0] is not None and both[1] is not None:
+            self._rate_covariance = self._covariance + np.diag(both[0].variance).ravel()
+            self._accel_covariance = self._covariance + np.diag(both[1].variance).ravel()
         self._publisher = self.advertise(
             topic, "sensor_msgs/msg/Imu", rate=rate or None, qos="sensor"
         )
         self.part.schedule(rate, after=self._measure, active=lambda: self._publisher.wanted)
 
     def _measure(self) -> None:
-        _, turned = self._link.place()
-        x, y, z, w = quat_multiply(turned, self._mount.orientation)
-        # Rates first: the unit sits on a rigid link, so only its acceleration depends on where.
-        _, turning = self._link.motion(local=True)
-        rate = self._turned(turning)
-        acceleration = self._turned(self._link.proper_acceleration(self._mount.position).tolist())
+        (x, y, z, w), rate, acceleration = self._unit.measure()
         if self._noise > 0:
             random = self.part.random(f"imu {self._publisher.topic}")
             rate = (rate + random.normal(0.0, self._noise, 3)).tolist()
             acceleration = (acceleration + random.normal(0.0, self._noise, 3)).tolist()
-        if self._rate_noise is not None and self._accel_noise is not None:
-            rate, acceleration = self._rate_noise.add(rate), self._accel_noise.add(acceleration)
         self._publisher.publish(
             self._Imu(
                 header(self.part.time_ns, self._frame),
@@ -113,11 +95,6 @@ class _ImuBase(Plugin[Any]):
                 self._accel_covariance,
             )
         )
-
-    def _turned(self, vector: Sequence[float]) -> Sequence[float]:
-        """A vector of the link in the unit's axes."""
-        x, y, z = vector
-        return [a * x + b * y + c * z for a, b, c in self._turn]
 
 
 class Imu(_ImuBase):
@@ -196,7 +173,6 @@ class ImuSensor(_ImuBase):
         named = element.find("topicName") or element.find("topic")
         if element.find("ros") is not None and named is None:
             topic = "out" if self.remaps("out") else f"{self.tag.name or 'imu'}/out"
-        self._sensor_noise()
         self._start(
             link=self.sensor.link,
             mount=self.sensor.pose @ offset,
@@ -204,6 +180,7 @@ class ImuSensor(_ImuBase):
             frame=config.frame or self.sensor.link,
             noise=config.noise,
             rate=config.update_rate or self.sensor.update_rate,
+            sensor=self.sensor,
         )
 
 
@@ -233,7 +210,6 @@ class GzImu(_ImuBase):
         sensor = self.sensor
         assert sensor is not None
         config: GzImuParameters = self.config
-        self._sensor_noise()
         self._start(
             link=sensor.link,
             mount=sensor.pose,
@@ -241,4 +217,5 @@ class GzImu(_ImuBase):
             frame=config.frame or sensor.link,
             noise=0.0,
             rate=sensor.update_rate,
+            sensor=sensor,
         )

@@ -55,6 +55,7 @@ def plugins() -> dict[str, type[Plugin[object]]]:
         GzJointStatePublisher,
         JointStatePublisher,
     )
+    from cartwheel.plugins.kobuki import Kobuki
     from cartwheel.plugins.laser import Laser
     from cartwheel.plugins.link_attacher import LinkAttacher, LinkAttacherRos2
     from cartwheel.plugins.magnetic import HectorMagnetic
@@ -77,6 +78,7 @@ def plugins() -> dict[str, type[Plugin[object]]]:
         TricycleDrive,
         AckermannDrive,
         PlanarMove,
+        Kobuki,
         GzDiffDrive,
         GzAckermann,
         MecanumDrive,

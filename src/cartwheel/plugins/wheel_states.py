@@ -57,6 +57,7 @@ class JointStates:
         rate: Hz, for listings.
         velocities: Whether they are told.
         efforts: Whether they are told.
+        frame: Of the messages.
     """
 
     def __init__(
@@ -68,10 +69,12 @@ class JointStates:
         rate: float | None,
         velocities: bool = False,
         efforts: bool = False,
+        frame: str = "",
     ) -> None:
         self._joints = list(joints)
         self._names = [joint.name for joint in joints]
         self._velocities, self._efforts = velocities, efforts
+        self._frame = plugin.frame(frame) if frame else ""
         self._JointState = message_class("sensor_msgs/msg/JointState")
         self._publisher = plugin.advertise(topic, "sensor_msgs/msg/JointState", rate=rate)
 
@@ -89,5 +92,7 @@ class JointStates:
         if self._efforts:
             efforts = np.array([joint.effort for joint in joints])
         self._publisher.publish(
-            self._JointState(header(time_ns, ""), self._names, positions, velocities, efforts)
+            self._JointState(
+                header(time_ns, self._frame), self._names, positions, velocities, efforts
+            )
         )

@@ -1,0 +1,274 @@
+"""``libgazebo_ros_kobuki.so``: the base of the TurtleBot 2."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+
+from cartwheel.description.model import Sensor
+from cartwheel.errors import UnknownNameError
+from cartwheel.geometry import Array, yaw_of
+from cartwheel.messages import header, message_class
+from cartwheel.plugins.contact import watched_collisions
+from cartwheel.plugins.inertial_unit import InertialUnit
+from cartwheel.plugins.odometry import Odometry
+from cartwheel.plugins.parameters import tag
+from cartwheel.plugins.scan import Scanner
+from cartwheel.plugins.wheel_drive import WheelDrive, WheelPair
+from cartwheel.plugins.wheel_states import JointStates
+
+_BASE = "mobile_base/"
+"""Before the topics of the robot's own."""
+_SIDES = ("left", "center", "right")
+_LOWEST, _HIGHEST = 0.01, 0.13
+"""m above the robot's frame, between which a contact presses the bumper."""
+_POSE_COVARIANCE = np.diag([0.1, 0.1, 1e6, 1e6, 1e6, 0.05]).ravel()
+_UNIT_COVARIANCE = np.diag([1e6, 1e6, 0.05]).ravel()
+_MOST = 4095
+"""Of a cliff sensor's converter."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class KobukiParameters:
+    left_joint: str = tag("left_wheel_joint_name", doc="Joint of that wheel.")
+    right_joint: str = tag("right_wheel_joint_name", doc="Joint of that wheel.")
+    separation: float = tag("wheel_separation", unit="m", doc="Between the wheels.")
+    diameter: float = tag("wheel_diameter", unit="m", doc="Of both wheels.")
+    torque: float = tag("torque", unit="N m", doc="The most that each motor gives.")
+    timeout: float = tag(
+        "velocity_command_timeout",
+        unit="s",
+        doc="After that long without a command it stands.",
+    )
+    cliff_left: str = tag("cliff_sensor_left_name", doc="A ray sensor.")
+    cliff_center: str = tag("cliff_sensor_center_name", doc="A ray sensor.")
+    cliff_right: str = tag("cliff_sensor_right_name", doc="A ray sensor.")
+    cliff_threshold: float = tag(
+        "cliff_detection_threshold", unit="m", doc="A floor at least so far away is a cliff."
+    )
+    bumper: str = tag("bumper_name", doc="A contact sensor.")
+    drop_left: str = tag("wheel_drop_left_sensor_name", doc="A contact sensor of that wheel.")
+    drop_right: str = tag("wheel_drop_right_sensor_name", doc="A contact sensor of that wheel.")
+    imu: str = tag("imu_name", doc="An imu sensor.")
+    publish_tf: bool = tag("publish_tf", default=False, doc="Publish the odometry's transform.")
+    rate: float = tag(
+        "update_rate", default=0.0, unit="Hz", doc="Of all that is told; 0 is every step."
+    )
+
+
+class Kobuki(WheelDrive):
+    """Drives a Kobuki, and tells what its wheels, gyroscope, bumper and cliff sensors do.
+
+    The odometry's way is that of the wheels and its turning that of the gyroscope. Contacts press
+    the left bumper from 90° to 30°, the centre one down to -30°, the right one down to -90°. Events
+    tell what changed. Source: kobuki_gazebo_plugins.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_kobuki.so",)
+    parameters: ClassVar[type] = KobukiParameters
+
+    def configure(self) -> None:
+        config: KobukiParameters = self.config
+        pair = WheelPair(
+            left=config.left_joint,
+            right=config.right_joint,
+            separation=config.separation,
+            diameter=config.diameter,
+        )
+        self._take_wheels([pair], torque=config.torque)
+        self._take_sensors(config)
+        self.joint_states = JointStates(
+            self, self.joints, rate=config.rate or None, velocities=True, efforts=True,
+            frame="base_link",
+        )  # fmt: skip
+        self.odometry = Odometry(
+            self,
+            topic="odom",
+            frame="odom",
+            base="base_footprint",
+            rate=config.rate or None,
+            transform=config.publish_tf,
+            pose_covariance=_POSE_COVARIANCE,
+        )
+        self.subscribe(_BASE + "commands/motor_power", "kobuki_msgs/msg/MotorPower", self._on_power)
+        self.subscribe(
+            _BASE + "commands/reset_odometry",
+            "std_msgs/msg/Empty",
+            lambda _: self._reckoning.restart(),
+        )
+        self.part.schedule(0, before=self._watch)
+        self.part.schedule(config.rate, after=self._sense, active=self._sensed)
+        self._run(
+            command_topic=_BASE + "commands/velocity",
+            base="base_footprint",
+            encoded=True,
+            control_rate=0.0,
+            rate=config.rate,
+        )
+
+    def reset(self) -> None:
+        super().reset()
+        self._power = True
+        self._heard_ns = 0
+        self._cliff = dict.fromkeys(_SIDES, False)
+        self._pressed = dict.fromkeys(_SIDES, False)
+        self._dropped = dict.fromkeys(("left", "right"), False)
+
+    def _take_sensors(self, config: KobukiParameters) -> None:
+        rays = (config.cliff_left, config.cliff_center, config.cliff_right)
+        self._floors = {
+            side: Scanner(self.part, self._sensor(name))
+            for side, name in zip(_SIDES, rays, strict=True)
+        }
+        self._bumper = watched_collisions(self, self._sensor(config.bumper))
+        self._wheels = {
+            "left": watched_collisions(self, self._sensor(config.drop_left)),
+            "right": watched_collisions(self, self._sensor(config.drop_right)),
+        }
+        imu = self._sensor(config.imu)
+        self._unit = InertialUnit(self.part, imu.link, imu.pose, sensor=imu)
+        self._root = self.part.link(self.part.description.canonical_link)
+        self._frame = self.frame("base_link")
+        kinds = {
+            "cliff": "CliffEvent",
+            "bumper": "BumperEvent",
+            "wheel_drop": "WheelDropEvent",
+        }
+        types = {name: f"kobuki_msgs/msg/{kind}" for name, kind in kinds.items()}
+        self._Events = {name: message_class(kind) for name, kind in types.items()}
+        self._events = {
+            name: self.advertise(f"{_BASE}events/{name}", kind) for name, kind in types.items()
+        }
+        rate = config.rate or None
+        self._Imu = message_class("sensor_msgs/msg/Imu")
+        self._Vector3 = message_class("geometry_msgs/msg/Vector3")
+        self._Quaternion = message_class("geometry_msgs/msg/Quaternion")
+        self._imu = self.advertise(_BASE + "sensors/imu_data", "sensor_msgs/msg/Imu", rate=rate)
+        self._Core = message_class("kobuki_msgs/msg/SensorState")
+        self._core = self.advertise(
+            _BASE + "sensors/core", "kobuki_msgs/msg/SensorState", rate=rate
+        )
+
+    def _sensor(self, name: str) -> Sensor:
+        sensors = [sensor for link in self.part.description.links for sensor in link.sensors]
+        found = next((sensor for sensor in sensors if sensor.name == name), None)
+        if found is None:
+            known = [sensor.name for sensor in sensors]
+            raise UnknownNameError("sensor", name, known, origin=self.tag.origin)
+        return found
+
+    def _on_command(self, message: Any) -> None:
+        self._heard_ns = self.part.time_ns
+        super()._on_command(message)
+
+    def _on_power(self, message: Any) -> None:
+        self._power = message.state == message.ON
+
+    def _watch(self) -> None:
+        late = (self.part.time_ns - self._heard_ns) * 1e-9 > self.config.timeout
+        if late or not self._power:
+            self._aim(0.0, 0.0)
+
+    def _integrate(self, seconds: float) -> None:
+        turned = (self.joints[0].position, self.joints[1].position)
+        if self._turned is not None:
+            radius = self._radii[0]
+            left, right = ((turned[i] - self._turned[i]) * radius for i in (0, 1))
+            self._reckoning.go((left + right) / 2, self._unit.rates()[2] * seconds, seconds)
+        self._turned = turned
+
+    def _sensed(self) -> bool:
+        return any(each.wanted for each in (self._imu, self._core, *self._events.values()))
+
+    def _sense(self) -> None:
+        if self._imu.wanted:
+            (x, y, z, w), rate, acceleration = self._unit.measure()
+            self._imu.publish(
+                self._Imu(
+                    header(self.part.time_ns, self._frame),
+                    self._Quaternion(x, y, z, w),
+                    _UNIT_COVARIANCE,
+                    self._Vector3(*rate),
+                    _UNIT_COVARIANCE,
+                    self._Vector3(*acceleration),
+                    np.zeros(9),
+                )
+            )
+        self._look_down()
+        self._feel()
+        if self._core.wanted:
+            self._core.publish(
+                self._Core(
+                    header=header(self.part.time_ns, self._frame),
+                    time_stamp=self.part.time_ns // 1_000_000 % 65536,
+                    bumper=_bits(self._pressed, left=4, center=2, right=1),
+                    wheel_drop=_bits(self._dropped, left=2, right=1),
+                    cliff=_bits(self._cliff, left=4, center=2, right=1),
+                    left_encoder=0,
+                    right_encoder=0,
+                    left_pwm=0,
+                    right_pwm=0,
+                    buttons=0,
+                    charger=0,
+                    battery=0,
+                    bottom=np.zeros(0, np.uint16),
+                    current=np.zeros(0, np.uint8),
+                    over_current=0,
+                    digital_input=0,
+                    analog_input=np.zeros(0, np.uint16),
+                )
+            )
+
+    def _look_down(self) -> None:
+        for index, side in enumerate(_SIDES):
+            scanner = self._floors[side]
+            # The first ray's; what is beyond its reach is as far away as that.
+            floor = min(float(scanner.measure().ranges[0, 0]), scanner.pattern.maximum)
+            cliff = floor >= self.config.cliff_threshold
+            if cliff != self._cliff[side]:
+                self._cliff[side] = cliff
+                # As its converter tells a distance of so many mm.
+                reading = 76123.0 * math.atan2(0.995, max(floor, 0.0) * 1000)
+                self._tell("cliff", index, int(cliff), min(int(reading), _MOST))
+
+    def _feel(self) -> None:
+        place, turned = self._root.place()
+        pressed = dict.fromkeys(_SIDES, False)
+        for contact in self.part.contacts(self._bumper):
+            if _LOWEST <= contact.position[2] - place[2] <= _HIGHEST:
+                side = _bumper_of(contact.normal, yaw_of(turned))
+                if side:
+                    pressed[side] = True
+        self._tell_changes("bumper", self._pressed, pressed)
+        dropped = {
+            side: not self.part.contacts(collisions) for side, collisions in self._wheels.items()
+        }
+        self._tell_changes("wheel_drop", self._dropped, dropped)
+
+    def _tell_changes(self, name: str, before: dict[str, bool], now: dict[str, bool]) -> None:
+        for index, (side, state) in enumerate(now.items()):
+            if before[side] != state:
+                before[side] = state
+                self._tell(name, index, int(state))
+
+    def _tell(self, name: str, *values: int) -> None:
+        if self._events[name].wanted:
+            self._events[name].publish(self._Events[name](*values))
+
+
+def _bumper_of(normal: Array, heading: float) -> str:
+    """Which bumper a contact presses; none behind. Its normal points into the robot."""
+    x, y, _ = (-normal).tolist()
+    angle = math.remainder(math.atan2(y, x) - heading, 2 * math.pi)
+    if abs(angle) > math.pi / 2:
+        return ""
+    if abs(angle) <= math.pi / 6:
+        return "center"
+    return "left" if angle > 0 else "right"
+
+
+def _bits(states: dict[str, bool], **values: int) -> int:
+    return sum(values[side] for side, state in states.items() if state)
