@@ -16,16 +16,6 @@ MESH = '<mesh filename="package://{}/meshes/none.stl"/>'
 BAD = {
     "malformed": ("bad.urdf", "<robot name='x'>\n<link name='a'>\n</robot>", "bad.urdf:3: "),
     "macro": ("bad.xacro", f"{XACRO}\n<xacro:wheel name='a'/>\n</robot>", "bad.xacro:2: "),
-    "package": (
-        "bad.urdf",
-        BOX.replace('<box size="1 1 1"/>', MESH.format("no_such_package")),
-        'bad.urdf:6: the package "no_such_package" was not found',
-    ),
-    "mesh": (
-        "bad.urdf",
-        BOX.replace('<box size="1 1 1"/>', MESH.format("rosbots_description")),
-        "bad.urdf:6: ",
-    ),
     "link": ("bad.urdf", BOX.replace("</robot>", JOINT), "bad.urdf:11: "),
     "kind": ("bad.launch", "<launch>\n</launch>", "bad.launch:1: "),
     "text": ("bad.txt", "robots are nice", "bad.txt:1: "),
@@ -53,6 +43,28 @@ def test_spawn(cart, name):
     assert done.stderr.startswith("error: "), done.stderr
     assert place in done.stderr
     assert "bad" not in cart("models").stdout
+
+
+LOST = {
+    "package": ("no_such_package", 'bad.urdf:6: the package "no_such_package" was not found; '),
+    "mesh": ("rosbots_description", "bad.urdf:6: the mesh "),
+}
+
+
+@pytest.mark.parametrize("name", LOST)
+def test_a_missing_mesh_costs_its_shape_alone(program, name):
+    package, said = LOST[name]
+    text = BOX.replace('<box size="1 1 1"/>', MESH.format(package))
+    (program.folder / "bad.urdf").write_text(text)
+    run = ("run", "bad.urdf", "--headless", "--for", "0.1", "--speed", "max")
+    done = program(*run)
+    assert f"error: {said}" in done.stderr
+    assert 'of link "base" is left out' in done.stderr
+    assert "robot   box, 2 kg, 1 links" in done.stdout
+    strict = program(*run, "--strict", status=2)
+    assert f"error: {said}" in strict.stderr
+    assert strict.stdout == ""
+    assert "[file-missing]" in program("check", "bad.urdf", status=1).stdout
 
 
 def test_a_missing_file(cart):

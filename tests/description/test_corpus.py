@@ -40,28 +40,26 @@ ROBOTS = {
 
 @pytest.mark.parametrize(("name", "links"), ROBOTS.items(), ids=lambda value: str(value)[-40:])
 def test_robots_load(name, links):
-    robot = load_robot(CORPUS / name, meshes="warn")
+    robot = load_robot(CORPUS / name)
     world = any(joint.parent == "world" for joint in robot.joints)
     assert len(robot.links) == links
     assert len(robot.joints) == links - (not world)
     assert robot.mass > 0
-    assert not [each for each in robot.diagnostics if each.severity == "error"]
+    errors = [each.message for each in robot.diagnostics if each.severity == "error"]
+    # Meshes of some megabytes are not in the corpus, nor is a package that holds nothing else.
+    assert not [message for message in errors if " is left out" not in message]
 
 
 def test_missing_meshes_of_the_waffle_are_named():
     path = CORPUS / f"{TURTLEBOT}waffle.urdf.xacro"
-    with pytest.raises(DescriptionError) as caught:
-        load(path)
-    text = str(caught.value)
+    (text,) = [str(each) for each in load(path).diagnostics if each.severity == "error"]
     assert "meshes/bases/waffle_base.stl" in text
     assert "turtlebot3_waffle.urdf.xacro:23: " in text
     assert 'Did you mean "waffle_pi_base.stl"?' in text
-    told = [each.message for each in load(path, meshes="warn").diagnostics]
-    assert any("waffle_base.stl" in message for message in told)
 
 
 def test_mir_s_friction_is_read_from_its_attributes():
-    robot = load_robot(CORPUS / "mir_robot/mir_description/urdf/mir.urdf.xacro", meshes="warn")
+    robot = load_robot(CORPUS / "mir_robot/mir_description/urdf/mir.urdf.xacro")
     assert robot.link("left_wheel_link").collisions[0].surface.mu1 == 200
 
 

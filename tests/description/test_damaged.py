@@ -34,7 +34,7 @@ texts = st.sampled_from([URDF, *SOURCES.values()])
 def survives(text):
     """Loads, or fails as users are told of failures; says which."""
     try:
-        found = load_text(text, file=str(CART), meshes="warn")
+        found = load_text(text, file=str(CART))
     except CartwheelError as error:
         assert str(error)
         assert error.origin is not None

@@ -159,13 +159,13 @@ def test_everything_shipped_loads_without_a_word():
 
 def test_text_finds_packages_around_the_file_it_is_said_to_be(folder):
     write(folder / "package.xml", "<package><name>pkg</name></package>")
-    write(folder / "a.stl", "solid")
+    write(folder / "a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
     text = URDF.replace(
         "</link>",
-        '<visual><geometry><mesh filename="package://pkg/a.stl"/></geometry></visual></link>',
+        '<visual><geometry><mesh filename="package://pkg/a.obj"/></geometry></visual></link>',
     )
     robot = load_text(text, file=str(folder / "r.urdf"))
-    assert robot.links[0].visuals[0].shape.path == folder / "a.stl"
+    assert robot.links[0].visuals[0].shape.path == folder / "a.obj"
 
 
 @pytest.mark.parametrize("text", ["", " ", b""])

@@ -5,7 +5,10 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Iterable, Sequence
-from typing import TextIO
+from typing import TYPE_CHECKING, TextIO
+
+if TYPE_CHECKING:
+    from cartwheel.errors import Diagnostic
 
 _CODES = {"bold": "1", "dim": "2", "red": "31", "green": "32", "yellow": "33", "cyan": "36"}
 
@@ -33,7 +36,7 @@ def note(text: str) -> None:
 
 
 def print_error(text: str) -> None:
-    """What went wrong; the last thing a command says."""
+    """What went wrong."""
     sys.stdout.flush()
     note(paint("error: ", "red", "bold", stream=sys.stderr) + text)
 
@@ -41,6 +44,17 @@ def print_error(text: str) -> None:
 def print_warning(text: str) -> None:
     """What a user should know, though the command goes on."""
     note(paint("warning: ", "yellow", stream=sys.stderr) + text)
+
+
+def print_diagnostic(diagnostic: Diagnostic) -> None:
+    """What is to be known about a file, with which the command goes on all the same."""
+    place = f"{diagnostic.origin}: " if diagnostic.origin else ""
+    if diagnostic.severity == "info":
+        note(f"{paint('info: ', 'dim', stream=sys.stderr)}{place}{diagnostic.message}")
+    elif diagnostic.severity == "warning":
+        print_warning(f"{place}{diagnostic.message}")
+    else:
+        print_error(f"{place}{diagnostic.message}")
 
 
 def table(rows: Iterable[Sequence[str]], *, indent: str = "") -> str:

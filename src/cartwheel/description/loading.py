@@ -10,7 +10,6 @@ from cartwheel.description import xml
 from cartwheel.description.model import RobotDescription, WorldDescription
 from cartwheel.description.packages import Packages
 from cartwheel.description.shipped import find_description
-from cartwheel.description.urdf.link import Meshes
 from cartwheel.description.xml import Node
 from cartwheel.description.xml_text import write_xml
 from cartwheel.errors import DescriptionError, Diagnostic, Origin
@@ -42,7 +41,6 @@ def load(
     *,
     arguments: Mapping[str, str] | None = None,
     package_path: Sequence[Path] = (),
-    meshes: Meshes = "error",
 ) -> RobotDescription | WorldDescription:
     """Reads a xacro, URDF, SDF or world file; its content, not its name, says which it is.
 
@@ -50,12 +48,11 @@ def load(
         path: The file, a folder with a model in it, or the name of something shipped.
         arguments: The values of ``name:=value`` for a xacro.
         package_path: Further folders in which packages and models are looked for.
-        meshes: Whether a URDF's missing mesh is an error, or a warning that costs the shape.
 
     Raises:
         DescriptionError: it cannot be used; says what is wrong, where, and the likely fix.
     """
-    return understand(open_description(path, arguments or {}, package_path), meshes)
+    return understand(open_description(path, arguments or {}, package_path))
 
 
 def load_robot(
@@ -63,10 +60,9 @@ def load_robot(
     *,
     arguments: Mapping[str, str] | None = None,
     package_path: Sequence[Path] = (),
-    meshes: Meshes = "error",
 ) -> RobotDescription:
     """Reads a file as `load` does, one that must describe a robot or model."""
-    found = load(path, arguments=arguments, package_path=package_path, meshes=meshes)
+    found = load(path, arguments=arguments, package_path=package_path)
     if isinstance(found, WorldDescription):
         raise DescriptionError(
             f'describes the world "{found.name}", not a robot',
@@ -99,7 +95,6 @@ def load_text(
     file: str = "<string>",
     arguments: Mapping[str, str] | None = None,
     package_path: Sequence[Path] = (),
-    meshes: Meshes = "error",
 ) -> RobotDescription | WorldDescription:
     """Reads a description that is at hand as text, such as a ``robot_description`` parameter.
 
@@ -108,13 +103,12 @@ def load_text(
         file: What errors call it; where such a file exists, packages are looked for around it.
         arguments: As for `load`.
         package_path: As for `load`.
-        meshes: As for `load`.
     """
     if not text.strip():
         raise DescriptionError("the description is empty", origin=Origin(file=file))
     near = None if file.startswith("<") else Path(file)
     opened = _expand(text, file, Packages(near, package_path), arguments or {})
-    return understand(opened, meshes)
+    return understand(opened)
 
 
 def open_description(
@@ -154,7 +148,7 @@ def _expand(
     return Opened(root=root, packages=packages, text=text, diagnostics=told, files=(file,))
 
 
-def understand(opened: Opened, meshes: Meshes) -> RobotDescription | WorldDescription:
+def understand(opened: Opened) -> RobotDescription | WorldDescription:
     """What an opened description says.
 
     Raises:
@@ -167,7 +161,6 @@ def understand(opened: Opened, meshes: Meshes) -> RobotDescription | WorldDescri
         return read_urdf(
             root,
             opened.packages,
-            meshes=meshes,
             text=opened.text,
             diagnostics=opened.diagnostics,
         )

@@ -72,9 +72,7 @@ class PlayedScene:
             return
         self._texts[topic] = text
         try:
-            found = load_text(
-                text, file=f"<{topic}>", package_path=self._package_path, meshes="warn"
-            )
+            found = load_text(text, file=f"<{topic}>", package_path=self._package_path)
         except CartwheelError as error:
             self._note(f"the robot of {topic} is not shown: {error.message}")
             return

@@ -343,11 +343,6 @@ ERRORS = [
         'a collision of link "a" has no <geometry>',
     ),
     (
-        urdf(OPEN_VISUAL, '<geometry><mesh filename="x.stl"/></geometry>', CLOSE_VISUAL),
-        3,
-        'the mesh "x.stl" does not exist, for a visual of link "a"\n  Looked for ',
-    ),
-    (
         urdf(
             '<link name="a"><visual>',
             '<geometry><mesh filename="x.stl" scale="1 0 1"/></geometry></visual></link>',
@@ -498,28 +493,40 @@ def test_warnings(text, message):
     assert any(each.startswith(message) for each in told(load(text)))
 
 
-def test_missing_mesh_as_a_warning():
-    text = urdf(
-        '<link name="a">' + BODY,
-        '<visual><geometry><mesh filename="package://none/x.stl"/></geometry></visual></link>',
-    )
-    robot = load(text, meshes="warn")
-    assert not robot.links[0].visuals
-    assert told(robot)[0].startswith(
-        'robot.urdf:3: warning: the package "none" was not found: the visual is left out.'
-    )
+@pytest.mark.parametrize(
+    ("kind", "uri", "said"),
+    [
+        ("visual", "package://none/x.stl", 'the package "none" was not found; a visual of link "a"'
+         " is left out. Searched: "),
+        ("visual", "x.stl", 'the mesh "x.stl" does not exist; a visual of link "a" is left out.'
+         " Looked for "),
+        ("collision", "y.stl", 'the mesh "y.stl" does not exist; a collision of link "a" is left'
+         " out and touches nothing. Looked for "),
+        ("collision", "torn.stl", "torn.stl: has no triangles; a collision of link "),
+    ],
+)  # fmt: skip
+def test_a_mesh_that_cannot_be_had_costs_its_shape(kind, uri, said, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("torn.stl").write_text("solid\nfacet")
+    shape = f'<{kind}><geometry><mesh filename="{uri}"/></geometry></{kind}>'
+    box = f'<{kind}><geometry><box size="1 1 1"/></geometry></{kind}>'
+    robot = load(urdf('<link name="a">' + BODY, shape, box + "</link>"))
+    left = robot.links[0].visuals if kind == "visual" else robot.links[0].collisions
+    assert [part.shape for part in left] == [m.Box(size=(1, 1, 1))]
+    (error,) = [each for each in told(robot) if each.startswith("robot.urdf:3: error: ")]
+    assert said in error
 
 
 def test_mesh(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    Path("wheel.dae").touch()
+    Path("wheel.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
     text = urdf(
         '<link name="a">' + BODY,
-        '<visual><geometry><mesh filename="wheel.dae" scale="1 -1 1"/></geometry>',
+        '<visual><geometry><mesh filename="wheel.obj" scale="1 -1 1"/></geometry>',
         '<material name="m"><color rgba="1 0 0 1"/></material></visual></link>',
     )
     (visual,) = load(text).links[0].visuals
-    assert visual.shape == m.Mesh(uri="wheel.dae", path=tmp_path / "wheel.dae", scale=(1, -1, 1))
+    assert visual.shape == m.Mesh(uri="wheel.obj", path=tmp_path / "wheel.obj", scale=(1, -1, 1))
     assert visual.material.yields_to_mesh
 
 

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from cartwheel.cli.commands.grouping import grouped
-from cartwheel.cli.console import note, print_warning
+from cartwheel.cli.console import note, print_diagnostic
 from cartwheel.errors import CartwheelError
 
 
@@ -52,7 +52,7 @@ def _mjcf(file: str, values: Mapping[str, str], package_path: Sequence[Path]) ->
         world, models = WorldDescription(name=found.name), (found,)
     for diagnostic in grouped(found.diagnostics):
         if diagnostic.severity != "info":
-            print_warning(str(diagnostic).replace("warning: ", "", 1))
+            print_diagnostic(diagnostic)
     entries = [ModelEntry(name=model.name, description=model, pose=model.pose) for model in models]
     xml = build(world, entries, xml=True).xml
     assert xml is not None

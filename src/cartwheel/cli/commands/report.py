@@ -8,7 +8,15 @@ from pathlib import Path, PurePath
 from typing import TYPE_CHECKING
 
 from cartwheel.cli.commands.grouping import grouped
-from cartwheel.cli.console import is_terminal, note, paint, print_error, print_warning, say, table
+from cartwheel.cli.console import (
+    is_terminal,
+    paint,
+    print_diagnostic,
+    print_error,
+    print_warning,
+    say,
+    table,
+)
 from cartwheel.control.registry import Running
 from cartwheel.plugins.control.files import ControllerFiles
 
@@ -114,11 +122,8 @@ class Report:
 
     def diagnostic(self, diagnostic: Diagnostic) -> None:
         """Something about a file."""
-        place = f"{diagnostic.origin}: " if diagnostic.origin else ""
-        if diagnostic.severity != "info":
-            print_warning(f"{place}{diagnostic.message}")
-        elif self._verbose:
-            note(f"{paint('info: ', 'dim', stream=sys.stderr)}{place}{diagnostic.message}")
+        if diagnostic.severity != "info" or self._verbose:
+            print_diagnostic(diagnostic)
 
     def ended(self, session: Session, wall: float) -> None:
         """How it went."""

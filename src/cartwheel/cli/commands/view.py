@@ -9,7 +9,7 @@ from pathlib import Path
 from cartwheel.cli import interrupts
 from cartwheel.cli.commands.grouping import grouped
 from cartwheel.cli.commands.ports import refuse_taken
-from cartwheel.cli.console import paint, print_warning, say
+from cartwheel.cli.console import paint, print_diagnostic, say
 
 
 def view(
@@ -28,7 +28,7 @@ def view(
     refuse_taken(host, port)
     for diagnostic in grouped(description.diagnostics):
         if diagnostic.severity != "info":
-            print_warning(str(diagnostic).replace("warning: ", "", 1))
+            print_diagnostic(diagnostic)
     stopped = threading.Event()
     viewer = DescriptionViewer(description, host=host, port=port)
     with interrupts.handled_by(stopped.set, status=0):

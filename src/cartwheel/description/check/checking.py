@@ -105,7 +105,7 @@ def check(
         name = nodes.name_of(nodes.children(opened.root, "light")[0])
         return Report(file=opened.files[0], name=name, findings=(), ignored=0, complete=True)
     if opened.root.tag not in ("robot", "sdf", "gazebo") or _is_empty(opened.root):
-        understand(opened, "warn")  # says what it is instead
+        understand(opened)  # says what it is instead
     subject = _subject(opened, known)
     # Numbers near the largest overflow; no finding comes of what is not a number.
     with np.errstate(all="ignore"):
@@ -154,7 +154,7 @@ def _read(
     while True:
         attempt = replace(opened, root=nodes.copy(tree))
         try:
-            return understand(attempt, "warn"), failures
+            return understand(attempt), failures
         except DescriptionError as error:
             node = nodes.at(tree, error.origin) if error.origin is not None else None
             # What lacks a part that was cut out before has nothing new to say.

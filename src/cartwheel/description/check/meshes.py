@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from pathlib import Path
 from statistics import median
@@ -12,8 +13,7 @@ from cartwheel.description.check import nodes
 from cartwheel.description.check.finding import Remark, rule
 from cartwheel.description.check.solids import Solid
 from cartwheel.description.check.subject import MISSING, Robot, Subject
-from cartwheel.description.meshes import MeshError, load_mesh
-from cartwheel.description.model import Collision, Mesh, Visual
+from cartwheel.description.model import Mesh
 from cartwheel.errors import DescriptionError
 
 GIANT = 30.0
@@ -21,13 +21,14 @@ GIANT = 30.0
 DWARF = 300.0
 HUGE = 100.0
 """m: no link of a robot is as long; millimetres were meant."""
+_LEFT_OUT = re.compile(r"(.* is left out(?: and touches nothing)?)\.?(.*)", re.DOTALL)
 
 
 @rule("file-missing", "error", "a mesh, texture, model or package is not there")
 def file_missing(subject: Subject) -> Iterator[Remark]:
     yield from (each for each in subject.failures if MISSING.search(each.message))
     if not subject.is_urdf:
-        yield from _left_out(subject)
+        yield from _left_out(subject, missing=True)
         return
     told: set[tuple[str, str]] = set()
     for node in nodes.walk(subject.root):
@@ -53,24 +54,7 @@ def file_missing(subject: Subject) -> Iterator[Remark]:
 
 @rule("mesh-unreadable", "error", "a mesh file is damaged, empty, or of an unknown format")
 def mesh_unreadable(subject: Subject) -> Iterator[Remark]:
-    told: set[str] = set()
-    for robot in subject.robots:
-        for link in robot.description.links:
-            parts: tuple[Visual | Collision, ...] = (*link.visuals, *link.collisions)
-            for part in parts:
-                if not isinstance(part.shape, Mesh):
-                    continue
-                try:
-                    load_mesh(part.shape, origin=part.origin)
-                except MeshError as error:
-                    if str(part.origin) not in told:
-                        told.add(str(part.origin))
-                        yield Remark(
-                            message=error.message,
-                            origin=part.origin,
-                            hint=error.hint or "",
-                            mark=part.shape.uri,
-                        )
+    yield from _left_out(subject, missing=False)
 
 
 @rule("shape-size", "warning", "a shape is a giant or a dwarf beside the rest of the robot")
@@ -96,13 +80,19 @@ def shape_size(subject: Subject) -> Iterator[Remark]:
                 yield _remark(robot, solid, factor, usual)
 
 
-def _left_out(subject: Subject) -> Iterator[Remark]:
-    """What the reader of SDF left out for want of its file."""
+def _left_out(subject: Subject, *, missing: bool) -> Iterator[Remark]:
+    """What the readers left out for want of its file, or because the file cannot be used."""
     for diagnostic in subject.read.diagnostics if subject.read is not None else ():
-        message, separator, rest = diagnostic.message.partition(" is left out.")
-        if separator and diagnostic.severity == "error":
+        match = _LEFT_OUT.fullmatch(diagnostic.message)
+        if match is None or diagnostic.severity != "error":
+            continue
+        if missing == bool(MISSING.search(diagnostic.message)):
+            node = nodes.at(subject.root, diagnostic.origin) if diagnostic.origin else None
             yield Remark(
-                message=f"{message} is left out", origin=diagnostic.origin, hint=rest.strip()
+                message=match[1],
+                origin=diagnostic.origin,
+                hint=match[2].strip(),
+                mark=nodes.text_of(node, "filename") if node is not None else "",
             )
 
 

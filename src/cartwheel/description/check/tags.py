@@ -18,6 +18,7 @@ _ELSEWHERE = re.compile(
     r"has no <limit>|has no <inertial>|watches the collision|counts as a frame without mass"
     r"|: the (visual|collision) is left out|is a point mass|^the texture .* does not exist"
     r"|^the package .* was not found|; (visual|collision) \"[^\"]*\" is left out"
+    r"|; a (visual|collision) of link \"[^\"]*\" is left out"
 )
 """What other rules say with more detail."""
 

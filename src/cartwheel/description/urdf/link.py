@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import Literal
 
 from cartwheel.description.inertia import TOLERANCE, impossibility, made_possible, principal_moments
+from cartwheel.description.meshes import load_mesh
 from cartwheel.description.model import (
     Box,
     Capsule,
@@ -25,7 +25,6 @@ from cartwheel.description.xml import Node
 from cartwheel.errors import DescriptionError, Diagnostic, Origin, Severity, suggestion
 from cartwheel.geometry import Pose
 
-Meshes = Literal["error", "warn"]
 SHAPES = ("box", "cylinder", "sphere", "capsule", "mesh")
 
 
@@ -38,8 +37,6 @@ class UrdfContext:
     """What the readers of one URDF share."""
 
     packages: Packages
-    meshes: Meshes = "error"
-    """Whether a missing mesh ends the reading, or costs the one shape."""
     materials: dict[str, Material] = field(default_factory=dict)
     """Those defined for the whole robot."""
     diagnostics: list[Diagnostic] = field(default_factory=list)
@@ -100,7 +97,7 @@ def read_link(node: Node, ctx: UrdfContext) -> ReadLink:
     """A link, its parts named as Gazebo names them.
 
     Raises:
-        DescriptionError: an impossible size, a missing mesh, a number that is none.
+        DescriptionError: an impossible size, a number that is none.
     """
     name = node.require("name").strip()
     visuals: list[Visual] = []
@@ -261,14 +258,19 @@ def _mesh(node: Node, kind: str, link: str, ctx: UrdfContext) -> Mesh | None:
         raise node.fail(f'the scale of a mesh of link "{link}" is {_listed(scale)}: it is flat')
     try:
         path = ctx.packages.resolve(uri, node.origin, what="mesh")
+        mesh = Mesh(uri=uri, path=path, scale=scale)
+        load_mesh(mesh, origin=node.origin)
     except DescriptionError as error:
-        if ctx.meshes == "error":
-            error.message += f', for a {kind} of link "{link}"'
-            raise
+        # As in Gazebo, and as in a world: it costs the one shape.
         hint = f" {error.hint}" if error.hint else ""
-        ctx.tell("warning", f"{error.message}: the {kind} is left out.{hint}", node.origin)
+        loss = " and touches nothing" if kind == "collision" else ""
+        ctx.tell(
+            "error",
+            f'{error.message}; a {kind} of link "{link}" is left out{loss}.{hint}',
+            node.origin,
+        )
         return None
-    return Mesh(uri=uri, path=path, scale=scale)
+    return mesh
 
 
 def _inertial(node: Node) -> Inertial:

@@ -18,7 +18,6 @@ from cartwheel.description.urdf.gazebo_tags import GazeboTags, read_gazebo_tags
 from cartwheel.description.urdf.harmless import HARMLESS
 from cartwheel.description.urdf.joint import check_mimics, read_joint
 from cartwheel.description.urdf.link import (
-    Meshes,
     ReadLink,
     UrdfContext,
     judged_inertia,
@@ -35,7 +34,6 @@ def read_urdf(
     root: Node,
     packages: Packages,
     *,
-    meshes: Meshes = "error",
     text: str = "",
     diagnostics: Iterable[Diagnostic] = (),
 ) -> RobotDescription:
@@ -44,7 +42,6 @@ def read_urdf(
     Args:
         root: Its root, with all xacro expanded.
         packages: Finds the meshes and textures that it names.
-        meshes: Whether a missing mesh ends the reading or only costs the shape.
         text: The expanded XML, kept with the robot.
         diagnostics: Those told before, of the expansion.
 
@@ -55,7 +52,7 @@ def read_urdf(
         raise root.fail(f"expected <robot>, but the file begins with <{root.tag}>")
     name = _name(root)
     root.get("version")
-    ctx = UrdfContext(packages=packages, meshes=meshes, diagnostics=list(diagnostics))
+    ctx = UrdfContext(packages=packages, diagnostics=list(diagnostics))
     read_materials(root, ctx)
     link_nodes = root.all("link")
     if not link_nodes:
