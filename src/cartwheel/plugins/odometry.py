@@ -59,7 +59,7 @@ class Odometry:
     ) -> None:
         self._frame, self._base = plugin.frame(frame), plugin.frame(base)
         self._wheels = wheels
-        self._pose_covariance, self._twist_covariance = pose_covariance, twist_covariance
+        self.pose_covariance, self.twist_covariance = pose_covariance, twist_covariance
         self._Odometry = message_class("nav_msgs/msg/Odometry")
         self._PoseWithCovariance = message_class("geometry_msgs/msg/PoseWithCovariance")
         self._TwistWithCovariance = message_class("geometry_msgs/msg/TwistWithCovariance")
@@ -119,8 +119,8 @@ class Odometry:
                 self._Odometry(
                     head,
                     self._base,
-                    self._PoseWithCovariance(pose, self._pose_covariance),
-                    self._TwistWithCovariance(twist, self._twist_covariance),
+                    self._PoseWithCovariance(pose, self.pose_covariance),
+                    self._TwistWithCovariance(twist, self.twist_covariance),
                 )
             )
 

@@ -39,6 +39,7 @@ def plugins() -> dict[str, type[Plugin[object]]]:
     from cartwheel.plugins.diff_drive import DiffDrive
     from cartwheel.plugins.elevator import Elevator
     from cartwheel.plugins.force import Force
+    from cartwheel.plugins.force_based_move import ForceBasedMove
     from cartwheel.plugins.ft_sensor import FtSensor
     from cartwheel.plugins.gps import GpsSensor, HectorGps
     from cartwheel.plugins.grasp_fix import GraspFix
@@ -78,6 +79,7 @@ def plugins() -> dict[str, type[Plugin[object]]]:
         TricycleDrive,
         AckermannDrive,
         PlanarMove,
+        ForceBasedMove,
         Kobuki,
         GzDiffDrive,
         GzAckermann,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import math
 import zlib
 from collections.abc import Callable, Collection, Iterator
 from typing import Any
@@ -40,6 +41,8 @@ from cartwheel.world.entry import BodyDrive, CameraMount, ModelEntry, Motor, sco
 
 _DRIVE_WEIGHTS = 5.0
 """What a servo of a whole model may push, in its weights: well above any friction."""
+_DRIVE_BAND = 0.05
+"""m/s or rad/s of difference at which it pushes with all of that."""
 _DRIVE_ARM = 0.1
 """m; the least arm of that push that its torque corresponds to."""
 
@@ -163,10 +166,17 @@ class Part:
             self.joint(name, origin=origin)
         self._entry.mimics[joint] = mimic
 
-    def body_drive(self, *, origin: Origin | None = None) -> BodyDriveHandle:
+    def body_drive(
+        self, *, gains: tuple[float, float] | None = None, origin: Origin | None = None
+    ) -> BodyDriveHandle:
         """A servo that moves the model as a whole, by its canonical link.
 
-        It pushes at the centre of mass with at most `_DRIVE_WEIGHTS` times the model's weight.
+        It pushes at the centre of mass.
+
+        Args:
+            gains: Force in N s/m and torque in N m s/rad, without a limit; None is as stiff as
+                can be, with at most `_DRIVE_WEIGHTS` times the model's weight.
+            origin: Place of an error.
 
         Raises:
             PluginError: The model cannot move, or has no mass.
@@ -190,12 +200,16 @@ class Part:
             centre += mass / description.mass * np.array(place)
         for mass, place in places:
             reach += mass / description.mass * float(np.sum((np.array(place) - centre) ** 2))
-        force = _DRIVE_WEIGHTS * 9.8 * description.mass
+        band = _DRIVE_BAND if gains is None else math.inf
+        if gains is None:
+            force = _DRIVE_WEIGHTS * 9.8 * description.mass / _DRIVE_BAND
+            gains = (force, force * max(_DRIVE_ARM, 2 * reach**0.5))
         drive = BodyDrive(
             link=link.name,
             centre=(float(centre[0]), float(centre[1]), float(centre[2])),
-            max_force=force,
-            max_torque=force * max(_DRIVE_ARM, 2 * reach**0.5),
+            force_gain=gains[0],
+            torque_gain=gains[1],
+            band=band,
         )
         self._entry.drives.append(drive)
         handle = BodyDriveHandle(self.name, drive)

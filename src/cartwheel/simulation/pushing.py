@@ -13,8 +13,6 @@ from cartwheel.world.entry import DRIVE_AXES, BodyDrive, scoped
 
 _OBJ = mujoco.mjtObj
 _FREE: tuple[float | None, ...] = (None,) * 6
-VELOCITY_ERROR = 0.05
-"""m/s or rad/s at which a servo of a whole model gives all of its force or torque."""
 
 
 class BodyDriveHandle:
@@ -69,8 +67,10 @@ class BodyDriveHandle:
 
     def _enable(self) -> None:
         for row, value in zip(self._rows, self._velocity, strict=False):
-            limit = self.drive.max_force if row - self._rows[0] < 3 else self.drive.max_torque
-            gain = 0.0 if value is None else limit / VELOCITY_ERROR
+            linear = row - self._rows[0] < 3
+            gain = self.drive.force_gain if linear else self.drive.torque_gain
+            if value is None:
+                gain = 0.0
             self._gain[row, 0], self._bias[row, 2] = gain, -gain
 
     def hold(self) -> None:
@@ -87,7 +87,7 @@ class BodyDriveHandle:
         target = np.array([*(rotate(axes, wanted[:3]) + np.cross(spin, arm)), *spin])
         now = np.array([*(self._linear + np.cross(turning, arm)), *turning])
         # A limit on the force itself would let a servo overshoot by what a step can do.
-        self._ctrl[:] = now + np.clip(target - now, -VELOCITY_ERROR, VELOCITY_ERROR)
+        self._ctrl[:] = now + np.clip(target - now, -self.drive.band, self.drive.band)
 
 
 class WrenchHandle:

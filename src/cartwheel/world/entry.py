@@ -51,10 +51,12 @@ class BodyDrive:
     link: str
     centre: Vec3
     """Where it pushes, in the link: at the model's centre of mass it tips nothing over."""
-    max_force: float
-    """N, along each axis."""
-    max_torque: float
-    """N m, about each axis."""
+    force_gain: float
+    """N s/m, along each axis."""
+    torque_gain: float
+    """N m s/rad, about each axis."""
+    band: float
+    """m/s or rad/s: a larger difference of velocities counts as this one."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
