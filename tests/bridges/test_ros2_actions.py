@@ -266,3 +266,24 @@ def test_what_others_see_of_it(peer: Peer) -> None:
     assert (
         readers[f"rq{base}/cancel_goalRequest"][0] == "action_msgs::srv::dds_::CancelGoal_Request_"
     )
+
+
+def test_controllers_are_listed_and_switched(peer: Peer) -> None:
+    """As ``ros2 control`` and a spawner do it."""
+    package, manager = "controller_manager_msgs_ros2/srv", "/controller_manager"
+    listed = peer.call(f"{manager}/list_controllers", f"{package}/ListControllers", {})
+    assert {each.name: each.state for each in listed.controller} == {
+        "arm_controller": "active",
+        "gripper": "active",
+    }
+    name = {"name": "gripper"}
+    assert peer.call(f"{manager}/configure_controller", f"{package}/ConfigureController", name).ok
+    assert peer.call(
+        f"{manager}/switch_controller",
+        f"{package}/SwitchController",
+        {"activate_controllers": ["gripper"], "strictness": 2, "activate_asap": True},
+    ).ok
+    parts = peer.call(
+        f"{manager}/list_hardware_components", f"{package}/ListHardwareComponents", {}
+    )
+    assert [each.state.label for each in parts.component] == ["active"]

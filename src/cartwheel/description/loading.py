@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from cartwheel.description import xml
@@ -34,6 +34,8 @@ class Opened:
     diagnostics: tuple[Diagnostic, ...]
     files: tuple[str, ...]
     """The xacro files that made it; but for these, the one file itself."""
+    arguments: Mapping[str, str] = field(default_factory=dict)
+    """Of the xacro, with those that have their defaults."""
 
 
 def load(
@@ -135,6 +137,7 @@ def _expand(
             text=write_xml(expansion.root),
             diagnostics=expansion.diagnostics,
             files=expansion.files,
+            arguments=expansion.arguments,
         )
     text = content if isinstance(content, str) else content.decode("utf-8", "replace")
     told = tuple(
@@ -158,12 +161,13 @@ def understand(opened: Opened) -> RobotDescription | WorldDescription:
     if root.tag == "robot":
         from cartwheel.description.urdf import read_urdf
 
-        return read_urdf(
+        made = read_urdf(
             root,
             opened.packages,
             text=opened.text,
             diagnostics=opened.diagnostics,
         )
+        return replace(made, arguments=opened.arguments)
     if root.tag in ("sdf", "gazebo"):
         from cartwheel.description.sdf import read_sdf
 

@@ -9,7 +9,7 @@ Every element carries the place in the user's file that made it.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
@@ -384,6 +384,8 @@ class RobotDescription:
     diagnostics: tuple[Diagnostic, ...] = ()
     text: str = ""
     """The expanded XML, what ROS calls robot_description."""
+    arguments: Mapping[str, str] = field(default_factory=dict, compare=False)
+    """Of its xacro, by name, with those that have their defaults."""
     origin: Origin
 
     def link(self, name: str) -> Link | None:

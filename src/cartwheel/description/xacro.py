@@ -55,6 +55,8 @@ class Expansion:
     """The arguments that it, or a file it includes, declares or uses."""
     files: tuple[str, ...]
     """It and the files that it includes, each once."""
+    arguments: Mapping[str, str]
+    """Values of all arguments, given or not."""
 
 
 def expand(
@@ -77,12 +79,17 @@ def expand(
         module = _private_xacro()
         with _bound(module, run):
             run.execute(module, content)
+            values = {
+                name: str(value)
+                for name, value in module.substitution_args_context.get("arg", {}).items()
+            }
             root = _to_node(run.document.documentElement)
     return Expansion(
         root=root,
         diagnostics=(*run.diagnostics, *_unknown_arguments(run, arguments)),
         declared=tuple(sorted(run.declared)),
         files=tuple(dict.fromkeys(run.files)),
+        arguments=values,
     )
 
 

@@ -171,6 +171,14 @@ class Controller:
         self.interfaces[joint] = interface
         return hardware
 
+    def state_interfaces(self) -> list[str]:
+        """What it measures, for listings: ``joint/position``; of the joints that it commands."""
+        return [
+            f"{joint.name}/{kind}"
+            for joint in self.claims.values()
+            for kind in joint.interfaces.states
+        ]
+
     def resolve(self, name: str) -> str:
         """A name of a topic: below the controller's own unless it begins with ``/``."""
         full = resolve_name(name, f"{self.rig.namespace.strip('/')}/{self.name}")

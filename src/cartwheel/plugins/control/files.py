@@ -10,6 +10,8 @@ from typing import Any
 
 from cartwheel.errors import Origin, PluginError
 from cartwheel.graph import Graph
+from cartwheel.plugins.control.settings import Settings, merge
+from cartwheel.plugins.control.substitution import substitute
 
 _ROS2 = "ros__parameters"
 
@@ -24,6 +26,14 @@ class ControllerEntry:
     namespace: str
     """As the file has it, without slashes at its ends."""
     source: str
+    shared: tuple[str, ...] = ()
+    """Parameters that the file gives to all nodes: those that it does not know are no fault."""
+
+    def settings(self) -> Settings:
+        """Its parameters, to be read."""
+        made = Settings(self.values, self.name, self.source)
+        made.ignore("use_sim_time", *self.shared)
+        return made
 
 
 class ControllerFiles:
@@ -104,6 +114,25 @@ def read_yaml(path: Path) -> dict[str, Any]:
     return content
 
 
+def read_ros2(path: Path, arguments: Mapping[str, str]) -> dict[str, Any]:
+    """A file of ROS 2's nodes, with what launch files put into it.
+
+    Args:
+        path: Of the file.
+        arguments: Of the robot, by name.
+
+    Raises:
+        PluginError: As `read_yaml` and `substitute`, or it is no such file.
+    """
+    content: dict[str, Any] = substitute(read_yaml(path), path, arguments)
+    if content and not is_ros2(content):
+        raise PluginError(
+            f"{path} has no ros__parameters, and the robot has ros2_control",
+            hint="In ROS 2 a node's parameters stand under its name and ros__parameters.",
+        )
+    return content
+
+
 def ros1_entries(content: Mapping[str, Any], source: str) -> list[ControllerEntry]:
     """The controllers of a file for rosparam: mappings with a ``type``, wherever they are."""
     return list(_ros1_entries(content, (), source))
@@ -134,6 +163,10 @@ class Ros2File:
     """Parameters of the controller manager."""
     nodes: Mapping[str, Mapping[str, Any]]
     """Parameters of the other nodes, by name."""
+    shared: Mapping[str, Any]
+    """Parameters of all nodes."""
+    elsewhere: tuple[str, ...]
+    """Nodes of other namespaces."""
 
 
 def is_ros2(content: Mapping[str, Any]) -> bool:
@@ -159,19 +192,54 @@ def ros2_file(
     """
     shared: dict[str, Any] = {}
     nodes: dict[str, dict[str, Any]] = {}
+    elsewhere = []
     wanted = namespace.strip("/")
     for content in contents:
         for path, values in _ros2_nodes(content, ()):
             *space, name = path
-            if name in ("**", "*"):
-                shared.update(values)
-                continue
             inside = "/".join(space)
             if inside and inside != wanted and "**" not in space and "*" not in space:
-                continue
-            nodes.setdefault(name, {}).update(values)
+                elsewhere.append("/".join(("", *path)))
+            elif name in ("**", "*"):
+                merge(shared, _copy(values))
+            else:
+                merge(nodes.setdefault(name, {}), _copy(values))
     own = {**shared, **nodes.pop(manager, {})}
-    return Ros2File(manager=own, nodes=nodes)
+    return Ros2File(manager=own, nodes=nodes, shared=shared, elsewhere=tuple(elsewhere))
+
+
+def _copy(values: Mapping[str, Any]) -> dict[str, Any]:
+    """One that can be changed; lists stay what they are."""
+    return {key: _copy(one) if isinstance(one, Mapping) else one for key, one in values.items()}
+
+
+def controller_entries(found: Ros2File, namespace: str, source: str) -> list[ControllerEntry]:
+    """The controllers whose type the manager's or their own parameters state."""
+    manager = Settings(found.manager, "controller_manager", source)
+    return [
+        entry
+        for name in dict.fromkeys((*manager.names(), *found.nodes))
+        if (entry := controller_entry(found, name, namespace, source)).type
+    ]
+
+
+def controller_entry(found: Ros2File, name: str, namespace: str, source: str) -> ControllerEntry:
+    """A controller by its name; its type is empty where nothing states it."""
+    own = found.nodes.get(name, {})
+    listed = Settings(found.manager, "controller_manager", source).raw(name)
+    kind = own.get("type")
+    if isinstance(listed, Mapping) and isinstance(listed.get("type"), str):
+        kind = listed["type"]
+    values = _copy(found.shared)
+    merge(values, _copy(own))
+    return ControllerEntry(
+        name=name,
+        type=kind if isinstance(kind, str) else "",
+        values=values,
+        namespace=namespace,
+        source=source,
+        shared=tuple(key for key in found.shared if key not in own),
+    )
 
 
 def _ros2_nodes(

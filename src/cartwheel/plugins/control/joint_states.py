@@ -75,6 +75,11 @@ class JointStateController(Controller):
                 )
         return found
 
+    def state_interfaces(self) -> list[str]:
+        return [
+            f"{joint.name}/{kind}" for joint in self._joints for kind in joint.interfaces.states
+        ]
+
     def start(self, time_ns: int) -> None:
         self._rhythm.start(time_ns)
 

@@ -33,6 +33,10 @@ class ControllerManager:
         """All that are loaded, in that order."""
         return list(self._controllers.values())
 
+    def find(self, name: str) -> Controller | None:
+        """The controller of that name, if it is loaded."""
+        return self._controllers.get(name)
+
     def state(self, controller: Controller) -> str:
         """``initialized``, ``running`` or ``stopped``."""
         if controller.running:

@@ -11,7 +11,6 @@ from cartwheel.plugins.control.controller import Rig, SensedLink
 from cartwheel.plugins.control.files import ControllerEntry, ControllerFiles
 from cartwheel.plugins.control.manager import ControllerManager
 from cartwheel.plugins.control.mecanum import MecanumDriveController
-from cartwheel.plugins.control.settings import Settings
 from cartwheel.simulation.pushing import BodyDriveHandle
 
 _SENSED = ("imu", "force_torque")
@@ -76,9 +75,7 @@ class ControlPlugin(Plugin[Any]):
         assert manager is not None
         for entry in entries:
             try:
-                manager.load(
-                    entry.name, Settings(entry.values, entry.name, entry.source), entry.type
-                )
+                manager.load(entry.name, entry.settings(), entry.type)
                 manager.switch([entry.name], [])
             except CartwheelError as error:
                 hint = f". {error.hint}" if error.hint else ""

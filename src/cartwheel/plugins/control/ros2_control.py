@@ -10,13 +10,12 @@ from typing import Any, ClassVar
 
 from cartwheel.description.model import Element
 from cartwheel.errors import PluginError
+from cartwheel.plugins.control.components import HardwareComponents
 from cartwheel.plugins.control.controller import Rig
 from cartwheel.plugins.control.files import (
-    ControllerEntry,
     ControllerFiles,
-    Ros2File,
-    is_ros2,
-    read_yaml,
+    controller_entries,
+    read_ros2,
     ros2_file,
 )
 from cartwheel.plugins.control.hardware import Hardware
@@ -29,6 +28,7 @@ from cartwheel.plugins.control.interfaces import (
 )
 from cartwheel.plugins.control.pid import Gains
 from cartwheel.plugins.control.plugin import ControlPlugin
+from cartwheel.plugins.control.ros2_services import Ros2ManagerServices
 from cartwheel.plugins.control.settings import Settings
 from cartwheel.plugins.parameters import tag
 
@@ -78,17 +78,15 @@ class Ros2Control(ControlPlugin):
         part = self.part
         self.namespace = self.namespace.strip("/")
         own = ControllerFiles.of(self.graph).take()
-        contents = []
-        for path in (*(self._path(text) for text in config.files), *own):
-            content = read_yaml(path)
-            if content and not is_ros2(content):
-                raise PluginError(
-                    f"{path} has no ros__parameters, and the robot has ros2_control",
-                    hint="In ROS 2 a node's parameters stand under its name and ros__parameters.",
-                )
-            contents.append(content)
+        paths = [*(self._path(text) for text in config.files), *own]
+        contents = [read_ros2(path, part.description.arguments) for path in paths]
         found = ros2_file(contents, self.namespace, config.manager)
-        source = ", ".join(str(path) for path in (*config.files, *own))
+        source = ", ".join(str(path) for path in paths)
+        if found.elsewhere and not found.manager:
+            self.warn(
+                f"the files hold {', '.join(found.elsewhere)}, and the controller manager is "
+                f'"/{self.namespace}/{config.manager}": they start nothing'.replace("//", "/")
+            )
         settings = Settings(found.manager, config.manager, source)
         rate = settings.number("update_rate", 100.0)
         if rate <= 0:
@@ -108,7 +106,7 @@ class Ros2Control(ControlPlugin):
                     "so nothing measures",
                     at=sensor.origin,
                 )
-        entries = self._entries(settings, found, source)
+        entries = controller_entries(found, self.namespace, source)
         hardware = Hardware(self, joints, _gains(joints, found.nodes))
         hardware.holds = config.hold_joints
         rig = Rig(
@@ -119,29 +117,15 @@ class Ros2Control(ControlPlugin):
             sensors=self._sensors(),
             push=self._push(entry.type for entry in entries),
         )
-        self._run(rig, rate)
+        manager = self._run(rig, rate)
         self._start(entries)
-
-    def _entries(self, manager: Settings, found: Ros2File, source: str) -> list[ControllerEntry]:
-        """Controllers whose type the manager's or their own parameters state."""
-        types: dict[str, str] = {}
-        for name in (*manager.names(), *found.nodes):
-            stated = found.nodes.get(name, {}).get("type")
-            listed = manager.raw(name)
-            if isinstance(listed, Mapping) and isinstance(listed.get("type"), str):
-                stated = listed["type"]
-            if isinstance(stated, str):
-                types[name] = stated
-        return [
-            ControllerEntry(
-                name=name,
-                type=type_name,
-                values=found.nodes.get(name, {}),
-                namespace=self.namespace,
-                source=source,
-            )
-            for name, type_name in types.items()
-        ]
+        Ros2ManagerServices(
+            self,
+            manager,
+            name=config.manager,
+            entries=entries,
+            components=HardwareComponents(simulated_systems(part.description), joints, sensors),
+        )
 
     def _path(self, text: str) -> Path:
         text = text.strip()

@@ -21,6 +21,7 @@ from cartwheel.plugins.control.pid import Gains
 from cartwheel.plugins.control.plugin import ControlPlugin
 from cartwheel.plugins.control.services import ManagerServices
 from cartwheel.plugins.control.settings import Settings
+from cartwheel.plugins.control.substitution import substitute
 from cartwheel.plugins.parameters import tag
 
 _PLAIN = ("gazebo_ros_control/DefaultRobotHWSim", "DefaultRobotHWSim", "")
@@ -65,7 +66,8 @@ class RosControl(ControlPlugin):
             )
         self.namespace = self.namespace.strip("/")
         contents = [
-            (str(path), read_parameters(path)) for path in ControllerFiles.of(self.graph).take()
+            (str(path), substitute(read_parameters(path), path, part.description.arguments))
+            for path in ControllerFiles.of(self.graph).take()
         ]
         entries = [entry for path, content in contents for entry in self._load(path, content)]
         joints, notes = transmissions(part.description)

@@ -179,17 +179,18 @@ def _nested(values: Mapping[str, Any]) -> dict[str, Any]:
         if isinstance(value, Mapping):
             below = node.setdefault(last, {})
             if isinstance(below, dict):
-                _merge(below, _nested(value))
+                merge(below, _nested(value))
         else:
             node[last] = value
     return tree
 
 
-def _merge(tree: dict[str, Any], other: Mapping[str, Any]) -> None:
+def merge(tree: dict[str, Any], other: Mapping[str, Any]) -> None:
+    """Puts values into a tree, beside those that it has; where both have one, `other` wins."""
     for key, value in other.items():
         below = tree.get(key)
         if isinstance(below, dict) and isinstance(value, Mapping):
-            _merge(below, value)
+            merge(below, value)
         else:
             tree[key] = value
 

@@ -1,0 +1,280 @@
+"""The services of ROS 2's controller manager: what ``ros2 control`` and ``spawner`` call."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from cartwheel.errors import CartwheelError, GraphError
+from cartwheel.messages import message_class
+from cartwheel.plugins.base import Plugin
+from cartwheel.plugins.control.catalogue import controller_types, find_type
+from cartwheel.plugins.control.components import HardwareComponents
+from cartwheel.plugins.control.controller import Controller
+from cartwheel.plugins.control.files import (
+    ControllerEntry,
+    controller_entry,
+    read_ros2,
+    ros2_file,
+)
+from cartwheel.plugins.control.manager import ControllerManager, tell
+from cartwheel.plugins.control.ros2_parameters import ParameterServices
+
+_MESSAGES = "controller_manager_msgs_ros2"
+_BASE = "controller_interface::ControllerInterface"
+
+
+class Ros2ManagerServices:
+    """``controller_manager/list_controllers`` and the others, in the manager's namespace.
+
+    A controller is unconfigured, inactive or active; those that are configured are the
+    manager's. What runs from the start is taken for what a launch file is about to start: to
+    configure it makes it inactive, and then it is as if the spawner had loaded it. Source:
+    ros2_control, controller_manager.
+
+    Args:
+        plugin: Whose services they are.
+        manager: Has the controllers.
+        name: Of the manager's node.
+        entries: The controllers that the robot's files name.
+        components: The hardware.
+    """
+
+    def __init__(
+        self,
+        plugin: Plugin[Any],
+        manager: ControllerManager,
+        *,
+        name: str,
+        entries: Sequence[ControllerEntry],
+        components: HardwareComponents,
+    ) -> None:
+        self._manager = manager
+        self._components = components
+        self._entries = {entry.name: entry for entry in entries}
+        self._by_itself = {each.name for each in manager.controllers}
+        """Controllers that nobody but the files asked for yet."""
+        self._unconfigured: dict[str, ControllerEntry] = {}
+        self._name = name
+        namespace = manager.rig.namespace.strip("/")
+        prefix = f"/{namespace}/{name}" if namespace else f"/{name}"
+        self._parameters = ParameterServices(plugin, prefix)
+        handlers: dict[str, Callable[[Any], Any]] = {
+            "ListControllers": self._list,
+            "ListControllerTypes": self._types,
+            "LoadController": self._answer("LoadController", self._load),
+            "ConfigureController": self._answer("ConfigureController", self._configure),
+            "CleanupController": self._answer("CleanupController", self._cleanup),
+            "UnloadController": self._answer("UnloadController", self._unload),
+            "ReloadControllerLibraries": self._answer("ReloadControllerLibraries", self._reload),
+            "SwitchController": self._switch,
+            "ListHardwareInterfaces": self._list_interfaces,
+            "ListHardwareComponents": self._list_components,
+            "SetHardwareComponentState": self._set_component,
+        }
+        for kind, handler in handlers.items():
+            plugin.serve(f"{prefix}/{_snake(kind)}", f"{_MESSAGES}/srv/{kind}", handler)
+
+    # -- controllers
+
+    def _list(self, request: Any) -> Any:  # noqa: ARG002
+        found = [self._state(each) for each in self._manager.controllers]
+        found += [
+            _controller_state(name=entry.name, type=entry.type, state="unconfigured")
+            for entry in self._unconfigured.values()
+        ]
+        return _response("ListControllers")(controller=found)
+
+    def _state(self, controller: Controller) -> Any:
+        commands = [f"{joint}/{kind}" for joint, kind in controller.interfaces.items()]
+        return _controller_state(
+            name=controller.name,
+            type=controller.type,
+            state="active" if controller.running else "inactive",
+            update_rate=self._rate,
+            claimed_interfaces=commands if controller.running else [],
+            required_command_interfaces=commands,
+            required_state_interfaces=controller.state_interfaces(),
+        )
+
+    @property
+    def _rate(self) -> int:
+        period_ns = self._manager.rig.period_ns
+        return round(1e9 / period_ns) if period_ns else 0
+
+    def _types(self, request: Any) -> Any:  # noqa: ARG002
+        types = sorted(controller_types())
+        return _response("ListControllerTypes")(types=types, base_classes=[_BASE] * len(types))
+
+    def _load(self, request: Any) -> None:
+        name = request.name
+        if name in self._unconfigured or self._manager.find(name) is not None:
+            raise GraphError(f'controller "{name}" is loaded already')
+        entry = self._entry(name)
+        find_type(entry.type, ros2=True)
+        self._unconfigured[name] = entry
+
+    def _entry(self, name: str) -> ControllerEntry:
+        """What files and parameters say of a controller; the parameters win.
+
+        Raises:
+            CartwheelError: They do not name its type, or a file cannot be read.
+        """
+        stated = self._parameters.below(name)
+        namespace = self._manager.rig.namespace
+        found = self._entries.get(name)
+        if found is None:
+            found = ControllerEntry(
+                name=name, type="", values={}, namespace=namespace, source="parameters"
+            )
+        files = stated.get("params_file", [])
+        paths = [Path(each) for each in ([files] if isinstance(files, str) else files)]
+        if paths:
+            arguments = self._manager.rig.plugin.part.description.arguments
+            contents = [read_ros2(path, arguments) for path in paths]
+            read = ros2_file(contents, namespace, self._name)
+            more = controller_entry(read, name, namespace, ", ".join(map(str, paths)))
+            values = {**found.values, **more.values}
+            found = replace(more, type=more.type or found.type, values=values)
+        kind = stated.get("type") or found.type
+        if not kind:
+            raise GraphError(
+                f'controller "{name}": there is no parameter {name}.type',
+                hint="Name it in a file of <parameters>, or give the spawner --param-file.",
+            )
+        return replace(found, type=kind)
+
+    def _configure(self, request: Any) -> None:
+        name = request.name
+        controller = self._manager.find(name)
+        if controller is None:
+            if name not in self._unconfigured:
+                raise GraphError(f'controller "{name}" is not loaded')
+            self._make(self._unconfigured[name])
+            del self._unconfigured[name]
+        elif name in self._by_itself:
+            self._by_itself.discard(name)
+            if controller.running:
+                self._manager.switch([], [name])
+        elif controller.running:
+            raise GraphError(f'controller "{name}" is active: it cannot be configured')
+        else:
+            entry = replace(self._entry(name), type=controller.type)
+            self._manager.unload(name)
+            self._unconfigured[name] = entry
+            self._make(entry)
+            del self._unconfigured[name]
+
+    def _make(self, entry: ControllerEntry) -> None:
+        self._manager.load(entry.name, entry.settings(), entry.type)
+
+    def _cleanup(self, request: Any) -> None:
+        if request.name in self._unconfigured:
+            return
+        entry = self._entry(request.name)
+        self._manager.unload(request.name)
+        self._by_itself.discard(request.name)
+        self._unconfigured[request.name] = entry
+
+    def _unload(self, request: Any) -> None:
+        if self._unconfigured.pop(request.name, None) is None:
+            self._manager.unload(request.name)
+            self._by_itself.discard(request.name)
+
+    def _reload(self, request: Any) -> None:
+        running = [each.name for each in self._manager.controllers if each.running]
+        if running and not request.force_kill:
+            raise GraphError(f"controllers are active: {', '.join(running)}")
+        self._manager.switch([], running)
+        for each in self._manager.controllers:
+            self._manager.unload(each.name)
+        self._unconfigured.clear()
+        self._by_itself.clear()
+
+    def _switch(self, request: Any) -> Any:
+        strict = request.strictness not in (0, request.BEST_EFFORT)
+        start, stop = list(request.activate_controllers), list(request.deactivate_controllers)
+        try:
+            unready = [name for name in start if name in self._unconfigured]
+            away = [name for name in start if self._components.lacks(self._manager.find(name))]
+            if strict and unready:
+                raise GraphError(f'controller "{unready[0]}" is not configured')
+            if strict and away:
+                raise GraphError(f'controller "{away[0]}": its hardware is not active')
+            wanted = [name for name in start if name not in (*unready, *away)]
+            self._manager.switch(wanted, stop, strict=strict)
+        except CartwheelError as error:
+            tell(self._manager.rig, error)
+            return _response("SwitchController")(ok=False, message=error.message)
+        self._by_itself.difference_update(start, stop)
+        return _response("SwitchController")(ok=True, message="")
+
+    # -- hardware
+
+    def _list_interfaces(self, request: Any) -> Any:  # noqa: ARG002
+        commands, states = self._components.interfaces(self._manager.controllers)
+        return _response("ListHardwareInterfaces")(
+            command_interfaces=commands, state_interfaces=states
+        )
+
+    def _list_components(self, request: Any) -> Any:  # noqa: ARG002
+        return _response("ListHardwareComponents")(
+            component=self._components.messages(self._manager.controllers, self._rate)
+        )
+
+    def _set_component(self, request: Any) -> Any:
+        try:
+            self._components.change(request.name, request.target_state)
+            away = [
+                each.name
+                for each in self._manager.controllers
+                if each.running and self._components.lacks(each)
+            ]
+            self._manager.switch([], away)
+        except CartwheelError as error:
+            tell(self._manager.rig, error)
+            return _response("SetHardwareComponentState")(
+                ok=False, state=self._components.state(request.name)
+            )
+        return _response("SetHardwareComponentState")(
+            ok=True, state=self._components.state(request.name)
+        )
+
+    def _answer(self, kind: str, function: Callable[[Any], None]) -> Callable[[Any], Any]:
+        """A service that says ``ok`` or not; why not is reported."""
+
+        def handler(request: Any) -> Any:
+            try:
+                function(request)
+            except CartwheelError as error:
+                tell(self._manager.rig, error)
+                return _response(kind)(ok=False)
+            return _response(kind)(ok=True)
+
+        return handler
+
+
+def _controller_state(**fields: Any) -> Any:
+    empty: Mapping[str, Any] = {
+        "is_async": False,
+        "update_rate": 0,
+        "claimed_interfaces": [],
+        "required_command_interfaces": [],
+        "required_state_interfaces": [],
+        "is_chainable": False,
+        "is_chained": False,
+        "exported_state_interfaces": [],
+        "reference_interfaces": [],
+        "chain_connections": [],
+    }
+    return message_class(f"{_MESSAGES}/msg/ControllerState")(**{**empty, **fields})
+
+
+def _response(service: str) -> Any:
+    return message_class(f"{_MESSAGES}/srv/{service}_Response")
+
+
+def _snake(name: str) -> str:
+    return "".join(f"_{each.lower()}" if each.isupper() else each for each in name).lstrip("_")
