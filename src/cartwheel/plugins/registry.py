@@ -30,12 +30,14 @@ def short_name(filename: str) -> str:
 def plugins() -> dict[str, type[Plugin[object]]]:
     """All plugins by short name: ours, and those of installed packages."""
     from cartwheel.plugins.ackermann import AckermannDrive, GzAckermann
+    from cartwheel.plugins.battery import Battery
     from cartwheel.plugins.block_laser import BlockLaser
     from cartwheel.plugins.camera import Camera, Prosilica, TriggeredCamera
     from cartwheel.plugins.contact import Bumper
     from cartwheel.plugins.control.ros2_control import Ros2Control
     from cartwheel.plugins.control.ros_control import RosControl
     from cartwheel.plugins.depth_camera import DepthCamera, OpenniKinect
+    from cartwheel.plugins.detachable_joint import DetachableJoint
     from cartwheel.plugins.diff_drive import DiffDrive
     from cartwheel.plugins.elevator import Elevator
     from cartwheel.plugins.force import Force
@@ -64,6 +66,7 @@ def plugins() -> dict[str, type[Plugin[object]]]:
     from cartwheel.plugins.mimic_joint import MimicJoint
     from cartwheel.plugins.p3d import P3D, OdometryPublisher
     from cartwheel.plugins.planar_move import PlanarMove, VelocityControl
+    from cartwheel.plugins.pose_publisher import PosePublisher
     from cartwheel.plugins.range import HectorSonar, Range
     from cartwheel.plugins.ray_sensor import RaySensor
     from cartwheel.plugins.skid_steer import SkidSteerDrive
@@ -89,6 +92,8 @@ def plugins() -> dict[str, type[Plugin[object]]]:
     states: tuple[type[Plugin[Any]], ...] = (
         P3D,
         OdometryPublisher,
+        PosePublisher,
+        Battery,
         JointStatePublisher,
         GzJointStatePublisher,
         JointPositionController,
@@ -110,6 +115,7 @@ def plugins() -> dict[str, type[Plugin[object]]]:
         VacuumGripper,
         LinkAttacher,
         LinkAttacherRos2,
+        DetachableJoint,
     )
     lasers = (Laser, RaySensor, BlockLaser, VelodyneLaser, Range, HectorSonar)
     cameras = (Camera, DepthCamera, OpenniKinect, TriggeredCamera, Prosilica)

@@ -223,6 +223,11 @@ class MotorHandle:
         self._qvel, self._dof = data.qvel, int(model.jnt_dofadr[self.id])
         self.command(self.target)
 
+    @property
+    def turns(self) -> bool:
+        """Whether it is told to turn."""
+        return self.target != 0.0
+
     def command(self, target: float) -> None:
         """Sets the target, rad/s or m/s."""
         self.target = target

@@ -79,6 +79,13 @@ class Part:
         return self._engine.world
 
     @property
+    def driven(self) -> bool:
+        """Whether a plugin of this model turns a joint at this moment."""
+        return any(
+            handle.turns for handle in self.handles if isinstance(handle, MotorHandle | ServoHandle)
+        )
+
+    @property
     def time_ns(self) -> int:
         """Simulation time of the state that is being read or controlled."""
         return self._engine.time_ns

@@ -88,6 +88,11 @@ class ServoHandle:
         self._lead()
 
     @property
+    def turns(self) -> bool:
+        """Whether it gives an effort or turns the joint."""
+        return self.mode != "idle" and (self._law[0] != 0.0 or self._turning != 0.0)
+
+    @property
     def follows(self) -> bool:
         """Whether `follow` has anything to do."""
         return self.mode == "position"

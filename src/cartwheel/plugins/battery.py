@@ -1,0 +1,202 @@
+"""``gz-sim-linearbatteryplugin-system``: a battery that runs down."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import partial
+from typing import Any, ClassVar
+
+import numpy as np
+
+from cartwheel.errors import PluginError
+from cartwheel.messages import header, message_class
+from cartwheel.plugins.base import Plugin
+from cartwheel.plugins.gz_drive import gz_name
+from cartwheel.plugins.parameters import tag
+
+_RATE = 50.0
+"""Hz."""
+_CHARGED = 0.9
+"""Of the capacity, up to which it is charged."""
+_HOUR = 3600.0
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class BatteryParameters:
+    name: str = tag("battery_name", doc="Of the battery.")
+    voltage: float = tag("voltage", unit="V", doc="At first.")
+    constant: float | None = tag(
+        "open_circuit_voltage_constant_coef",
+        default=None,
+        unit="V",
+        doc="Of a full battery; voltage when missing.",
+    )
+    linear: float = tag(
+        "open_circuit_voltage_linear_coef",
+        default=0.0,
+        unit="V",
+        doc="What an empty one has more: below 0.",
+    )
+    capacity: float = tag("capacity", unit="A h", doc="Of a full battery.")
+    charge: float | None = tag(
+        "initial_charge", default=None, unit="A h", doc="At first; full when missing."
+    )
+    resistance: float = tag("resistance", default=0.0, unit="Ω", doc="Inside it.")
+    smoothing: float = tag(
+        "smooth_current_tau", default=1.0, unit="s", doc="Time constant of the current."
+    )
+    power: float = tag("power_load", default=0.0, unit="W", doc="What it gives while it drains.")
+    draining: bool = tag("start_draining", default=False, doc="Drain from the start.")
+    drain_topics: tuple[str, ...] = tag(
+        "power_draining_topic",
+        default=(),
+        doc="Any message on it starts draining; of Empty where nobody else has the topic.",
+    )
+    stop_topics: tuple[str, ...] = tag(
+        "stop_power_draining_topic", default=(), doc="Any message on it ends draining."
+    )
+    rechargeable: bool = tag(
+        "enable_recharge", default=False, doc="Charge it by recharge/start and recharge/stop."
+    )
+    by_topic: bool = tag("recharge_by_topic", default=False, doc="Accepted: they are topics.")
+    charging_time: float = tag(
+        "charging_time", default=0.0, unit="h", doc="From empty to full; with enable_recharge."
+    )
+    invert: bool = tag(
+        "invert_current_sign", default=False, doc="A current that drains is below 0, as ROS has it."
+    )
+    fixed: bool = tag("fix_issue_225", default=False, doc="Accepted: it is always so.")
+
+
+class Battery(Plugin[BatteryParameters]):
+    """Runs a battery down by a constant power from the moment that the robot is driven.
+
+    ``open circuit voltage = constant + linear (1 - charge / capacity)``, less what the resistance
+    takes. The percentage is from 0 to 1, as ROS has it. An empty battery is told, and stops
+    nothing. Source: gz-sim, LinearBatteryPlugin.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = (
+        "gz-sim-linearbatteryplugin-system",
+        "gz-sim-linear-battery-plugin-system",
+    )
+    parameters: ClassVar[type] = BatteryParameters
+
+    def configure(self) -> None:
+        config, origin = self.config, self.tag.origin
+        full = config.capacity
+        charge = full if config.charge is None else config.charge
+        if full <= 0 or config.voltage <= 0 or config.smoothing <= 0:
+            raise PluginError(
+                "<capacity>, <voltage> and <smooth_current_tau> must be above 0", origin=origin
+            )
+        if not 0 <= charge <= full:
+            self.warn(f"<initial_charge> {charge:g} is not between 0 and the capacity {full:g}")
+        rechargeable = config.rechargeable and config.charging_time > 0
+        if config.rechargeable and not rechargeable:
+            self.warn("<enable_recharge> has no effect without a <charging_time> above 0")
+        self._first = min(max(charge, 0.0), full)
+        self._State = message_class("sensor_msgs/msg/BatteryState")
+        base = f"/model/{self.part.name}/battery/{config.name}"
+        self._publisher = self.advertise(
+            gz_name(self, f"{base}/state", ""), "sensor_msgs/msg/BatteryState", rate=_RATE
+        )
+        if rechargeable:
+            for what, charging in (("start", True), ("stop", False)):
+                self.subscribe(
+                    gz_name(self, f"{base}/recharge/{what}", ""),
+                    "std_msgs/msg/Bool",
+                    partial(self._charge_it, on=charging),
+                )
+        self._watches = False
+        self.reset()
+        self.part.schedule(_RATE, after=self._go_on)
+
+    def reset(self) -> None:
+        self._draining, self._charging = self.config.draining, False
+        self._charge, self._voltage, self._current = self._first, self.config.voltage, 0.0
+        self._told_empty = False
+        self._before_ns = self.part.time_ns
+
+    def _watch_topics(self) -> None:
+        """Hears topics of any type, which is known once all plugins are made."""
+        config = self.config
+        known = {topic.name: topic.type for topic in self.graph.topics()}
+        for topics, on in ((config.drain_topics, True), (config.stop_topics, False)):
+            for topic in topics:
+                name = gz_name(self, topic, "")
+                kind = known.get(name, "std_msgs/msg/Empty")
+                self.subscribe(name, kind, partial(self._drain, on=on))
+
+    def _drain(self, _: Any, *, on: bool) -> None:
+        self._draining = on
+
+    def _charge_it(self, _: Any, *, on: bool) -> None:
+        self._charging = on
+
+    def _go_on(self) -> None:
+        if not self._watches:
+            self._watches = True
+            self._watch_topics()
+        now = self.part.time_ns
+        seconds = (now - self._before_ns) * 1e-9
+        self._before_ns = now
+        self._draining = self._draining or self.part.driven
+        if self._draining or self._charging:
+            self._flow(seconds)
+        if self._publisher.wanted:
+            self._publish()
+
+    def _flow(self, seconds: float) -> None:
+        """Lets the current flow for a time."""
+        config = self.config
+        empty = self._charge <= 0
+        wanted = config.power / self._voltage if self._draining and not empty else 0.0
+        if self._charging and self._charge < _CHARGED * config.capacity:
+            wanted -= config.capacity / config.charging_time
+        share = 1 - math.exp(-seconds / config.smoothing)
+        self._current += share * (wanted - self._current)
+        if empty and wanted >= 0:
+            self._current = 0.0
+        self._charge = max(self._charge - self._current * seconds / _HOUR, 0.0)
+        left = self._charge / config.capacity
+        full = config.voltage if config.constant is None else config.constant
+        voltage = full + config.linear * (1 - left) - config.resistance * self._current
+        # A load beyond what it can give would turn it round.
+        self._voltage = max(voltage, 1e-3)
+        if self._charge <= 0 and not self._told_empty:
+            self._told_empty = True
+            self.warn(f'battery "{config.name}" of model "{self.part.name}" is empty')
+
+    def _publish(self) -> None:
+        config, state = self.config, self._State
+        full = self._charge / config.capacity
+        status = state.POWER_SUPPLY_STATUS_NOT_CHARGING
+        if self._charging:
+            status = state.POWER_SUPPLY_STATUS_CHARGING
+        elif self._draining:
+            status = state.POWER_SUPPLY_STATUS_DISCHARGING
+        elif full > _CHARGED:
+            status = state.POWER_SUPPLY_STATUS_FULL
+        nothing = np.zeros(0, np.float32)
+        self._publisher.publish(
+            state(
+                header=header(self.part.time_ns, ""),
+                voltage=self._voltage,
+                temperature=math.nan,
+                current=-self._current if config.invert else self._current,
+                charge=self._charge,
+                capacity=config.capacity,
+                design_capacity=math.nan,
+                percentage=full,
+                power_supply_status=status,
+                power_supply_health=state.POWER_SUPPLY_HEALTH_UNKNOWN,
+                power_supply_technology=state.POWER_SUPPLY_TECHNOLOGY_UNKNOWN,
+                present=True,
+                cell_voltage=nothing,
+                cell_temperature=nothing,
+                location="",
+                serial_number="",
+            )
+        )
