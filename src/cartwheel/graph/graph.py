@@ -44,12 +44,14 @@ class Topic:
         self.type = type_name
         self.publishers: tuple[Publisher, ...] = ()
         self.subscriptions: tuple[Subscription, ...] = ()
+        self.callbacks: tuple[Callback, ...] = ()
+        """Those of the subscriptions."""
         self.latched: Any = None
 
     def deliver(self, message: Any) -> None:
         """Hands a message to every subscriber; on the owner's thread."""
-        for subscription in self.subscriptions:
-            subscription.callback(message)
+        for callback in self.callbacks:
+            callback(message)
 
 
 class Publisher:
@@ -82,9 +84,12 @@ class Publisher:
     def publish(self, message: Any) -> None:
         """Delivers to all subscribers at once; on the owner's thread."""
         self.sent += 1
+        topic = self._topic
         if self.qos == "latched":
-            self._topic.latched = message
-        self._topic.deliver(message)
+            topic.latched = message
+        # `deliver`, a call less for each message.
+        for callback in topic.callbacks:
+            callback(message)
 
     def close(self) -> None:
         """Takes the publisher off the graph."""
@@ -387,6 +392,7 @@ class Graph:
             callback()
 
     def _changed(self, topic: Topic) -> None:
+        topic.callbacks = tuple(subscription.callback for subscription in topic.subscriptions)
         # Told to the publishers, who look several times for each message.
         for publisher in topic.publishers:
             publisher.wanted = bool(topic.subscriptions) or publisher.qos == "latched"

@@ -79,19 +79,20 @@ class _ImuBase(Plugin[Any]):
         self.part.schedule(rate, after=self._measure, active=lambda: self._publisher.wanted)
 
     def _measure(self) -> None:
-        (x, y, z, w), rate, acceleration = self._unit.measure()
+        orientation, rate, acceleration = self._unit.measure()
         if self._noise > 0:
             random = self.part.random(f"imu {self._publisher.topic}")
             rate = (rate + random.normal(0.0, self._noise, 3)).tolist()
             acceleration = (acceleration + random.normal(0.0, self._noise, 3)).tolist()
+        Imu, Vector3, Quaternion = self._Imu, self._Vector3, self._Quaternion
         self._publisher.publish(
-            self._Imu(
+            Imu(
                 header(self.part.time_ns, self._frame),
-                self._Quaternion(x, y, z, w),
+                Quaternion(*orientation),
                 self._covariance,
-                self._Vector3(*rate),
+                Vector3(*rate),
                 self._rate_covariance,
-                self._Vector3(*acceleration),
+                Vector3(*acceleration),
                 self._accel_covariance,
             )
         )

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from cartwheel.description.model import Sensor
 from cartwheel.errors import Origin
-from cartwheel.geometry import Pose, Quat, matrix_from_quat, quat_multiply
+from cartwheel.geometry import IDENTITY, Pose, Quat, matrix_from_quat, quat_multiply
 from cartwheel.plugins.noise import VectorNoise, read_noise
 from cartwheel.simulation import Part
 
@@ -34,6 +34,7 @@ class InertialUnit:
         self._link = part.link(link, origin=origin)
         self._mount = mount
         self._turn = matrix_from_quat(mount.orientation).T.tolist()
+        self._aligned = mount.orientation == IDENTITY
         self.rate_noise: VectorNoise | None = None
         self.acceleration_noise: VectorNoise | None = None
         element = sensor.element.find("imu") if sensor is not None else None
@@ -67,5 +68,7 @@ class InertialUnit:
 
     def _turned(self, vector: Sequence[float]) -> Sequence[float]:
         """A vector of the link in the unit's axes."""
+        if self._aligned:
+            return vector
         x, y, z = vector
         return [a * x + b * y + c * z for a, b, c in self._turn]

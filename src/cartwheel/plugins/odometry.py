@@ -100,27 +100,34 @@ class Odometry:
             angular: Turning in the base's axes, rad/s.
         """
         # The path of most messages. Fields are given by position, in the order of their
-        # definition, and parts that say the same are one object: both halve its cost.
-        Vector3 = self._Vector3
-        head, rotation = header(time_ns, self._frame), self._Quaternion(*turn)
+        # definition, and parts that say the same are one object: both halve its cost. So
+        # does a class in a local name a little: Python looks up anew what is called by a dot.
+        Vector3, Quaternion = self._Vector3, self._Quaternion
+        head, rotation = header(time_ns, self._frame), Quaternion(*turn)
         if self._tf is not None and self._tf.wanted:
             sent = []
             if self._moved is not None:
+                Transform, TransformStamped = self._Transform, self._TransformStamped
                 where, turned = self._moved.place(place, turn)
-                moved = self._Transform(Vector3(*where), self._Quaternion(*turned))
-                sent.append(self._TransformStamped(head, self._moved.child, moved))
+                turning = rotation if turned is turn else Quaternion(*turned)
+                moved = Transform(Vector3(*where), turning)
+                sent.append(TransformStamped(head, self._moved.child, moved))
             if self._wheels is not None:
                 sent += self._wheels.at(time_ns)
-            self._tf.publish(self._TFMessage(sent))
+            TFMessage = self._TFMessage
+            self._tf.publish(TFMessage(sent))
         if self._odometry is not None and self._odometry.wanted:
-            pose = self._Pose(self._Point(*place), rotation)
-            twist = self._Twist(Vector3(*linear), Vector3(*angular))
+            Odometry, Pose, Point, Twist = self._Odometry, self._Pose, self._Point, self._Twist
+            PoseWithCovariance = self._PoseWithCovariance
+            TwistWithCovariance = self._TwistWithCovariance
+            pose = Pose(Point(*place), rotation)
+            twist = Twist(Vector3(*linear), Vector3(*angular))
             self._odometry.publish(
-                self._Odometry(
+                Odometry(
                     head,
                     self._base,
-                    self._PoseWithCovariance(pose, self.pose_covariance),
-                    self._TwistWithCovariance(twist, self.twist_covariance),
+                    PoseWithCovariance(pose, self.pose_covariance),
+                    TwistWithCovariance(twist, self.twist_covariance),
                 )
             )
 
@@ -133,7 +140,7 @@ class Odometry:
 def planar_motion(base: LinkHandle) -> tuple[Vec3, Quat, Vec3, Vec3]:
     """True pose of a link in the world, its velocity along its heading, its turning about z."""
     place, turned = base.place()
-    (vx, vy, _), (_, _, turn_rate) = base.motion(local=False)
+    (vx, vy, _), (_, _, turn_rate) = base.motion_at(place)
     yaw = yaw_of(turned)
     cos, sin = math.cos(yaw), math.sin(yaw)
     return place, turned, (cos * vx + sin * vy, cos * vy - sin * vx, 0.0), (0.0, 0.0, turn_rate)

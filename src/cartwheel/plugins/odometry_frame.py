@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from cartwheel.description.kinematics import fixed_chain, link_poses
-from cartwheel.geometry import Pose, Quat, Vec3
+from cartwheel.geometry import IDENTITY, Pose, Quat, Vec3, quat_multiply, rotate
 from cartwheel.graph import StaticTransforms
 from cartwheel.messages import header, message_class
 
@@ -34,6 +34,7 @@ class OdometryFrame:
         self.child = plugin.frame(base)
         """``child_frame_id`` of the transform."""
         self._to_root: Pose | None = None
+        self._turned = False
         if not chain:
             return
         self.child = plugin.frame(chain[0].parent)
@@ -41,6 +42,7 @@ class OdometryFrame:
         to_root = poses[base].inverse() @ poses[chain[0].parent]
         # Bits are kept where the two coincide.
         self._to_root = None if to_root == Pose() else to_root
+        self._turned = to_root.orientation != IDENTITY
         for joint in chain:
             between = poses[joint.parent].inverse() @ poses[joint.child]
             self._sent.append(
@@ -58,11 +60,18 @@ class OdometryFrame:
         StaticTransforms.of(self._graph).put(self, self._sent)
 
     def place(self, position: Vec3, orientation: Quat) -> tuple[Vec3, Quat]:
-        """Where `child` is, given where the base link is."""
+        """Where `child` is, given where the base link is.
+
+        An orientation that is the same is the very same tuple.
+        """
         if self._to_root is None:
             return position, orientation
-        pose = Pose(position, orientation) @ self._to_root
-        return pose.position, pose.orientation
+        # As poses multiply, without making any: it is asked for each message.
+        x, y, z = position
+        dx, dy, dz = rotate(orientation, self._to_root.position)
+        if self._turned:
+            orientation = quat_multiply(orientation, self._to_root.orientation)
+        return (x + dx, y + dy, z + dz), orientation
 
     def close(self) -> None:
         """The robot leaves the world."""

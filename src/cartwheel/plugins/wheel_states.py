@@ -37,13 +37,17 @@ class WheelTransforms:
 
     def at(self, time_ns: int) -> list[Any]:
         """``TransformStamped`` of the present state."""
-        sent = []
+        Vector3, Quaternion, Transform = self._Vector3, self._Quaternion, self._Transform
+        TransformStamped = self._TransformStamped
+        sent, of, head = [], None, None
         for joint, parent, child in self._wheels:
+            if parent != of:
+                # robot_state_publisher makes transforms of the same wheels, stamped as our
+                # joint states: a nanosecond apart, neither is repeated data to tf.
+                of, head = parent, header(time_ns + 1, parent)
             where, turned = joint.child_place()
-            moved = self._Transform(self._Vector3(*where), self._Quaternion(*turned))
-            # robot_state_publisher makes transforms of the same wheels, stamped as our
-            # joint states: a nanosecond apart, neither is repeated data to tf.
-            sent.append(self._TransformStamped(header(time_ns + 1, parent), child, moved))
+            moved = Transform(Vector3(*where), Quaternion(*turned))
+            sent.append(TransformStamped(head, child, moved))
         return sent
 
 
@@ -71,7 +75,7 @@ class JointStates:
         efforts: bool = False,
         frame: str = "",
     ) -> None:
-        self._joints = list(joints)
+        self._joints = plugin.part.together(joints)
         self._names = [joint.name for joint in joints]
         self._velocities, self._efforts = velocities, efforts
         self._frame = plugin.frame(frame) if frame else ""
@@ -84,15 +88,11 @@ class JointStates:
 
     def publish(self, time_ns: int) -> None:
         """Publishes the present state."""
-        joints = self._joints
-        positions = np.array([joint.position for joint in joints])
-        velocities, efforts = _NOTHING, _NOTHING
-        if self._velocities:
-            velocities = np.array([joint.velocity for joint in joints])
-        if self._efforts:
-            efforts = np.array([joint.effort for joint in joints])
+        joints, JointState = self._joints, self._JointState
+        velocities = joints.velocities() if self._velocities else _NOTHING
+        efforts = joints.efforts() if self._efforts else _NOTHING
         self._publisher.publish(
-            self._JointState(
-                header(time_ns, self._frame), self._names, positions, velocities, efforts
+            JointState(
+                header(time_ns, self._frame), self._names, joints.positions(), velocities, efforts
             )
         )

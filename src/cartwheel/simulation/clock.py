@@ -9,6 +9,8 @@ from fractions import Fraction
 NANOSECONDS = 1_000_000_000
 _NEVER = 1 << 40
 """Steps."""
+_KEPT = 1 << 15
+"""Steps of a cycle."""
 
 
 def to_ns(seconds: float) -> int:
@@ -69,28 +71,28 @@ class Beat:
         offset: Steps of this length between time zero and step zero.
     """
 
-    __slots__ = ("_denominator", "_numerator", "_offset", "due", "period")
+    __slots__ = ("_denominator", "_numerator", "_offset", "cycle", "period")
 
     def __init__(self, period: Fraction, offset: Fraction = Fraction(0)) -> None:
         self.period = period
+        self.cycle = period.numerator
+        """Steps after which the due ones come again."""
         if period == 1:
             offset = Fraction(0)
-        # Integers from here on: fractions would cost more than most tasks do.
         self._denominator = math.lcm(period.denominator, offset.denominator)
         self._numerator = int(period * self._denominator)
         self._offset = int(offset * self._denominator)
-        self.due = 0
-        """The next of them."""
-        self.seek(0)
 
-    def seek(self, step: int) -> None:
-        """Makes the next due step the first one at or after `step`."""
+    def due(self, step: int) -> int:
+        """The first due step at or after `step`."""
         count = ((step - 1) * self._denominator + self._offset) // self._numerator + 1
-        self.due = -((self._offset - count * self._numerator) // self._denominator)
+        return -((self._offset - count * self._numerator) // self._denominator)
 
 
 class Schedule:
-    """Tasks by period, so that a moment costs one look at each period instead of each task.
+    """Tasks by period: what is due together comes again after a cycle of all periods.
+
+    So a step costs one look into a table, however many tasks and periods there are.
 
     Args:
         tasks: In any order.
@@ -105,23 +107,34 @@ class Schedule:
         self._beats = [
             Beat(period, offset) for period in {period: None for _, period in self._tasks}
         ]
+        self._cycle = math.lcm(*(beat.cycle for beat in self._beats))
+        self._met: dict[int, tuple[tuple[Task, ...], int]] = {}
+        """What was found at steps of the cycle: due tasks, and steps to the next ones."""
         self._together: dict[int, tuple[Task, ...]] = {}
         """Tasks of the periods that are due together, by the bits of these periods."""
 
     def at(self, step: int) -> tuple[tuple[Task, ...], int]:
         """The tasks due at a step, in their order, and the next step at which any are."""
+        place = step % self._cycle
+        met = self._met.get(place)
+        if met is None:
+            # Odd rates make long cycles.
+            if len(self._met) >= _KEPT:
+                self._met.clear()
+            met = self._met[place] = self._look(step)
+        tasks, gap = met
+        return tasks, step + gap
+
+    def _look(self, step: int) -> tuple[tuple[Task, ...], int]:
         due, bit, upcoming = 0, 1, step + _NEVER
         for beat in self._beats:
-            if beat.due < step:
-                beat.seek(step)
-            if beat.due == step:
+            if beat.due(step) == step:
                 due |= bit
-                beat.seek(step + 1)
-            upcoming = min(upcoming, beat.due)
+            upcoming = min(upcoming, beat.due(step + 1))
             bit <<= 1
         tasks = self._together.get(due)
         if tasks is None:
             periods = {beat.period for i, beat in enumerate(self._beats) if due >> i & 1}
             tasks = tuple(task for task, period in self._tasks if period in periods)
             self._together[due] = tasks
-        return tasks, upcoming
+        return tasks, upcoming - step

@@ -34,6 +34,8 @@ class Engine:
         self.world = world
         self.seed = seed
         self.step_ns = to_ns(step_of(world))
+        self.time_ns = 0
+        """Simulation time."""
         self.step = 0
         """Steps made since `origin_ns`."""
         self.origin_ns = 0
@@ -50,11 +52,6 @@ class Engine:
         self.on_entries: list[Callable[[], None]] = []
         """Called after something more was asked to be built into a model that stands already."""
         self._orders = itertools.count()
-
-    @property
-    def time_ns(self) -> int:
-        """Simulation time."""
-        return self.origin_ns + self.step * self.step_ns
 
     def steps_until(self, time_ns: int) -> int:
         """Steps that bring time to `time_ns`, or just beyond it."""
@@ -109,6 +106,7 @@ class Engine:
                 the integration is missing. Both ways give the same bits.
         """
         self.step += count
+        self.time_ns += count * self.step_ns
         if forwarded:
             mujoco.mj_Euler(self.model, self.data)
             count -= 1
@@ -122,7 +120,7 @@ class Engine:
         if keep_time:
             self.data.time = time
         else:
-            self.step = self.origin_ns = 0
+            self.time_ns = self.step = self.origin_ns = 0
             self.rewinds += 1
         self.forward()
 

@@ -36,40 +36,48 @@ class Guard:
         self._states: deque[tuple[float, Any, Any]] = deque(maxlen=_KEPT)
         self._seen: dict[int, int] = {}
 
-    def keep(self, data: Any) -> None:
-        """Remembers a state for the dump."""
-        self._states.append((data.time, data.qpos.copy(), data.qvel.copy()))
+    def bind(self, model: Any, data: Any) -> None:
+        """Goes on with a new model, which has moved the indices."""
+        self._model, self._data = model, data
+        self._qpos, self._qvel = data.qpos, data.qvel
+        self._counts = data.warning.number
+        self.forget()
+
+    def keep(self) -> None:
+        """Remembers the state for the dump."""
+        self._states.append((self._data.time, self._qpos.copy(), self._qvel.copy()))
 
     def forget(self) -> None:
-        """Drops what was kept: a new model has moved the indices, or time began anew."""
+        """Drops what was kept: time began anew."""
         self._states.clear()
         self._seen.clear()
 
-    def check(self, model: Any, data: Any) -> list[str]:
+    def check(self) -> list[str]:
         """Warnings that can be lived with, each once; none is the rule.
 
         Raises:
             SimulationError: The state is no longer finite.
         """
         # One number that is not finite spoils the sum: cheaper than a look at each.
-        size = float(data.qpos.dot(data.qpos) + data.qvel.dot(data.qvel))
+        size = self._qpos.dot(self._qpos) + self._qvel.dot(self._qvel)
         if not size < _HUGE**2:
-            raise self._diverged(model, data)
-        if not data.warning.number.any():
+            raise self._diverged()
+        counts = self._counts.tolist()
+        if not any(counts):
             return []
         messages = []
-        for kind in range(int(_WARNING.mjNWARNING)):
-            count = int(data.warning[kind].number)
+        for kind, count in enumerate(counts):
             if count and kind not in self._seen:
                 if _WARNING(kind) in _UNSTABLE:
-                    raise self._diverged(model, data)
-                text = mujoco.mju_warningText(kind, int(data.warning[kind].lastinfo))
+                    raise self._diverged()
+                text = mujoco.mju_warningText(kind, int(self._data.warning[kind].lastinfo))
                 messages.append(str(text).strip())
             self._seen[kind] = count
         return messages
 
-    def _diverged(self, model: Any, data: Any) -> SimulationError:
-        self.keep(data)
+    def _diverged(self) -> SimulationError:
+        self.keep()
+        model, data = self._model, self._data
         with tempfile.NamedTemporaryFile(
             prefix="cartwheel-diverged-", suffix=".npz", delete=False
         ) as file:
@@ -79,15 +87,16 @@ class Guard:
                 qpos=np.array([state[1] for state in self._states]),
                 qvel=np.array([state[2] for state in self._states]),
             )
-        body = self._culprit(model, data)
+        body = self._culprit()
         name = mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_BODY, body) or "world"
         return SimulationError(
             f'the simulation diverged by {data.time:.3f} s, first at "{name}"',
             hint=f"{_likely(model, body)} The last states are in {Path(file.name)}.",
         )
 
-    def _culprit(self, model: Any, data: Any) -> int:
+    def _culprit(self) -> int:
         """The body that moved fastest when all was still finite, of those that no longer are."""
+        model, data = self._model, self._data
         if not model.nv:
             return 0
         lost = ~np.isfinite(data.qvel) | (np.abs(data.qvel) >= _HUGE)

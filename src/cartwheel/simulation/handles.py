@@ -46,6 +46,8 @@ class LinkHandle:
         self._position, self._quaternion = data.xpos[self.id], data.xquat[self.id]
         self._spatial = data.cvel[self.id]
         self._centre = data.subtree_com[model.body_rootid[self.id]]
+        self.moves = bool(model.body_treeid[self.id] >= 0)
+        """Whether it can move at all: neither static nor bolted to the world."""
 
     @property
     def pose(self) -> Pose:
@@ -64,10 +66,18 @@ class LinkHandle:
             mujoco.mj_objectVelocity(self._model, self._data, _XBODY, self.id, self._six, 1)
             wx, wy, wz, vx, vy, vz = self._six.tolist()
             return (vx, vy, vz), (wx, wy, wz)
+        return self.motion_at(self._position.tolist())
+
+    def motion_at(self, point: Sequence[float]) -> tuple[Vec3, Vec3]:
+        """Velocity of a point of the link, and its turning, in the world's axes.
+
+        Args:
+            point: In the world, m.
+        """
         # What mj_objectVelocity does without turning, for less than the call costs: MuJoCo
         # keeps a body's velocity as that of the point at the centre of mass of its model.
         wx, wy, wz, vx, vy, vz = self._spatial.tolist()
-        x, y, z = self._position.tolist()
+        x, y, z = point
         cx, cy, cz = self._centre.tolist()
         x, y, z = x - cx, y - cy, z - cz
         return (vx - (y * wz - z * wy), vy - (z * wx - x * wz), vz - (x * wy - y * wx)), (
@@ -91,7 +101,7 @@ class LinkHandle:
         Args:
             offset: Where it sits in the link, m.
         """
-        if self._model.body_treeid[self.id] < 0:
+        if not self.moves:
             # The engine works out nothing for what cannot move: it bears its weight.
             turn: Array = self._data.xmat[self.id].reshape(3, 3)
             weight: Array = -turn.T @ self._model.opt.gravity
@@ -122,11 +132,6 @@ class LinkHandle:
         torque = torque - np.cross(about - self._centre, force)
         return -turn.T @ force, -turn.T @ torque
 
-    @property
-    def moves(self) -> bool:
-        """Whether it can move at all: neither static nor bolted to the world."""
-        return bool(self._model.body_treeid[self.id] >= 0)
-
 
 class JointHandle:
     """A joint of one degree of freedom."""
@@ -140,6 +145,8 @@ class JointHandle:
         self.id = mujoco.mj_name2id(model, _OBJ.mjOBJ_JOINT, scoped(self.model_name, self.name))
         self._data = data
         self._qpos, self._qvel = data.qpos, data.qvel
+        # Python's own floats, for less than an index costs.
+        self._position_at, self._velocity_at = data.qpos.item, data.qvel.item
         rotor = scoped(self.model_name, self.name, ROTOR)
         self._motor = mujoco.mj_name2id(model, _OBJ.mjOBJ_TENDON, rotor)
         self._position_index = int(model.jnt_qposadr[self.id])
@@ -149,13 +156,21 @@ class JointHandle:
         self._rest_turn = from_wxyz(model.body_quat[body].tolist())
         self._anchor: Vec3 = tuple(model.jnt_pos[self.id].tolist())
         self._axis: Vec3 = tuple(model.jnt_axis[self.id].tolist())
+        self._off_centre = any(self._anchor)
         self._slides = bool(model.jnt_type[self.id] == _JOINT.mjJNT_SLIDE)
         self._zero = float(model.qpos0[self._position_index])
 
     @property
+    def places(self) -> tuple[int, int]:
+        """Where its position and its velocity stand among those of the model."""
+        return self._position_index, self._velocity_index
+
+    @property
     def position(self) -> float:
         """rad or m."""
-        return float(self._qpos[self._position_index])
+        read = self._position_at
+        position: float = read(self._position_index)
+        return position
 
     @position.setter
     def position(self, value: float) -> None:
@@ -164,7 +179,9 @@ class JointHandle:
     @property
     def velocity(self) -> float:
         """rad/s or m/s."""
-        return float(self._qvel[self._velocity_index])
+        read = self._velocity_at
+        velocity: float = read(self._velocity_index)
+        return velocity
 
     @velocity.setter
     def velocity(self, value: float) -> None:
@@ -185,7 +202,8 @@ class JointHandle:
 
         From the joint's position alone: exact wherever in the world the two are.
         """
-        moved = self.position - self._zero
+        read = self._position_at
+        moved = read(self._position_index) - self._zero
         x, y, z = self._axis
         if self._slides:
             dx, dy, dz = rotate(self._rest_turn, (x * moved, y * moved, z * moved))
@@ -193,13 +211,45 @@ class JointHandle:
             return (px + dx, py + dy, pz + dz), self._rest_turn
         sin = math.sin(moved / 2)
         turn = quat_multiply(self._rest_turn, (x * sin, y * sin, z * sin, math.cos(moved / 2)))
-        if not any(self._anchor):
+        if not self._off_centre:
             return self._rest, turn
         # The anchor stays where it is.
         px, py, pz = self._rest
         ax, ay, az = rotate(self._rest_turn, self._anchor)
         dx, dy, dz = rotate(turn, self._anchor)
         return (px + ax - dx, py + ay - dy, pz + az - dz), turn
+
+
+class JointsHandle:
+    """Joints that are read together, for less than they cost one by one.
+
+    Args:
+        joints: Of one model; each bound before this is.
+    """
+
+    def __init__(self, joints: Sequence[JointHandle]) -> None:
+        self._joints = tuple(joints)
+
+    def bind(self, model: Any, data: Any) -> None:  # noqa: ARG002 - all handles bind alike
+        """Takes the places of their numbers in a compiled model."""
+        self._qpos, self._qvel = data.qpos, data.qvel
+        places = [joint.places for joint in self._joints]
+        self._positions_at = np.array([position for position, _ in places], dtype=np.intp)
+        self._velocities_at = np.array([velocity for _, velocity in places], dtype=np.intp)
+
+    def positions(self) -> Array:
+        """rad or m, a new array of shape (joints,)."""
+        positions: Array = self._qpos[self._positions_at]
+        return positions
+
+    def velocities(self) -> Array:
+        """rad/s or m/s, a new array of shape (joints,)."""
+        velocities: Array = self._qvel[self._velocities_at]
+        return velocities
+
+    def efforts(self) -> Array:
+        """N m or N, a new array of shape (joints,); see `JointHandle.effort`."""
+        return np.array([joint.effort for joint in self._joints])
 
 
 class MotorHandle:
@@ -251,6 +301,7 @@ class CameraHandle:
 Handle = (
     LinkHandle
     | JointHandle
+    | JointsHandle
     | MotorHandle
     | ServoHandle
     | CameraHandle

@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import math
 import zlib
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection, Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -29,6 +29,7 @@ from cartwheel.simulation.handles import (
     CameraHandle,
     Handle,
     JointHandle,
+    JointsHandle,
     LinkHandle,
     MotorHandle,
 )
@@ -128,6 +129,12 @@ class Part:
         if name not in movable:
             raise UnknownNameError("movable joint", name, movable, origin=origin)
         handle = JointHandle(self.name, name)
+        self.handles.append(handle)
+        return handle
+
+    def together(self, joints: Sequence[JointHandle]) -> JointsHandle:
+        """Joints of this model, to be read at once."""
+        handle = JointsHandle(joints)
         self.handles.append(handle)
         return handle
 

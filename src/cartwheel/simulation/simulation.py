@@ -134,26 +134,31 @@ class Simulation:
         Raises:
             SimulationError: The state is no longer finite.
         """
-        engine, forces = self.engine, self.forces
-        while engine.steps_until(target_ns) > 0:
-            rewinds = engine.rewinds
-            self.drain()
-            if engine.rewinds != rewinds:
-                return
+        engine, forces, separation = self.engine, self.forces, self._separation
+        self.owner = threading.get_ident()
+        left = engine.steps_until(target_ns)
+        while left > 0:
+            if not self.commands.empty():
+                rewinds = engine.rewinds
+                self.drain()
+                if engine.rewinds != rewinds:
+                    return
             if self.run_state is not RunState.RUNNING and not self.steps_allowed:
                 return
             change = forces.serve() if forces.active else None
             due, forwarded = self._serve()
             if change is not None:
                 due = min(due, change)
-            left = min(engine.steps_until(target_ns), due - engine.step)
-            count = 1 if self._separation.active else left
+            # Asked again: what was due may have changed the length of a step.
+            left = engine.steps_until(target_ns)
+            count = 1 if separation.active else min(left, due - engine.step)
             if self.steps_allowed is not None:
                 count = min(count, self.steps_allowed)
                 self.steps_allowed -= count
             engine.advance(count, forwarded=forwarded)
-            if self._separation.active:
-                self._separation.limit(engine.model, engine.data)
+            left -= count
+            if separation.active:
+                separation.limit(engine.model, engine.data)
             if engine.step >= self._guard_due:
                 self._watch()
 
@@ -173,11 +178,12 @@ class Simulation:
         tasks, upcoming = self._schedule.at(self.engine.step)
         afters = []
         for task in tasks:
-            if task.active is always or task.active():
-                if task.before is not None:
-                    task.before()
-                if task.after is not None:
-                    afters.append(task.after)
+            active, before, after = task.active, task.before, task.after
+            if active is always or active():
+                if before is not None:
+                    before()
+                if after is not None:
+                    afters.append(after)
         if afters:
             self.engine.forward()
             for after in afters:
@@ -186,9 +192,9 @@ class Simulation:
 
     def _watch(self) -> None:
         self._guard_due = self.engine.step + max(1, _GUARD_INTERVAL_NS // self.step_ns)
-        for message in self._guard.check(self.model, self.data):
+        for message in self._guard.check():
             self.engine.report(Diagnostic(severity="warning", message=message))
-        self._guard.keep(self.data)
+        self._guard.keep()
 
     def refresh(self) -> None:
         """Makes poses and contacts those of the present state, for reading between steps."""
@@ -623,7 +629,7 @@ class Simulation:
             self.engine.set_step(step_ns)
         self._residents = residents
         self._guard_due = 0
-        self._guard.forget()
+        self._guard.bind(self.model, self.data)
         self.forces.bind()
         for resident in self._inhabitants():
             for handle in resident.part.handles:

@@ -262,14 +262,15 @@ class Rhythm:
             Fraction(NANOSECONDS) / Fraction(rate).limit_denominator(1_000_000) if rate > 0 else 1
         )
         self._beat = Beat(max(Fraction(period), Fraction(1)))
+        self._due = 0
 
     def start(self, time_ns: int) -> None:
         """Is due at the first multiple from now on."""
-        self._beat.seek(time_ns)
+        self._due = self._beat.due(time_ns)
 
     def due(self, time_ns: int) -> bool:
         """Whether it is due since the last time it was asked; the next is then."""
-        if self._beat.due > time_ns:
+        if self._due > time_ns:
             return False
-        self._beat.seek(time_ns + 1)
+        self._due = self._beat.due(time_ns + 1)
         return True
