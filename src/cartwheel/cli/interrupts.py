@@ -55,6 +55,7 @@ def install() -> None:
     threading.Thread(target=_watch, args=(reader, writer), name="signals", daemon=True).start()
     signal.signal(signal.SIGINT, _on_signal)
     signal.signal(signal.SIGTERM, _on_signal)
+    sys.unraisablehook = _on_unraisable
 
 
 @contextlib.contextmanager
@@ -125,6 +126,16 @@ def _on_signal(number: int, _: FrameType | None) -> None:
     elif _state.count == 1:
         _state.status = 128 + number
         raise Interrupted(number)
+
+
+def _on_unraisable(unraisable: sys.UnraisableHookArgs) -> None:
+    """Ends the process where the interpreter would report `Interrupted` and go on without it.
+
+    It does so in callbacks of its own, those of weak references for one, as while importing.
+    """
+    if isinstance(unraisable.exc_value, Interrupted):
+        leave(128 + unraisable.exc_value.number, patience=PATIENCE)
+    sys.__unraisablehook__(unraisable)
 
 
 def _watch(reader: socket.socket, _writer: socket.socket) -> None:
