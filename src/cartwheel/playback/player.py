@@ -14,7 +14,7 @@ from cartwheel.bridges.recording.decoding import Decode, decoder
 from cartwheel.bridges.recording.reading import Recorded, RecordedTopic, Recording, span_of
 from cartwheel.description.model import WorldDescription
 from cartwheel.errors import CartwheelError, Diagnostic, RecordingError
-from cartwheel.geometry import Pose
+from cartwheel.geometry import Pose, Vec3
 from cartwheel.graph import Graph, Publisher
 from cartwheel.playback.scene import STATE, STRING, PlayedScene
 from cartwheel.simulation.snapshot import RunState, Scene, Snapshot
@@ -102,6 +102,10 @@ class Player:
     def pose(self, name: str) -> Pose:
         """Where a model is."""
         return self._played.pose(name)
+
+    def in_sight(self, _name: str, eyes: Sequence[Vec3], _target: Vec3) -> list[bool]:
+        """From where a model is seen: from everywhere, as far as a recording knows."""
+        return [True] * len(eyes)
 
     def pause(self) -> None:
         """Holds time."""

@@ -23,6 +23,7 @@ from cartwheel.simulation.part import Part
 from cartwheel.simulation.placing import place_model, with_mimics
 from cartwheel.simulation.resident import Attach, Resident, world_resident
 from cartwheel.simulation.separation import Separation
+from cartwheel.simulation.sight import in_sight
 from cartwheel.simulation.snapshot import RunState, Scene, Snapshot
 from cartwheel.world import build, unused
 from cartwheel.world.build import step_of
@@ -334,6 +335,10 @@ class Simulation:
         description = self._resident(name).entry.description
         link = self.engine.link_pose(name, description.canonical_link)
         return link @ description.canonical_pose.inverse()
+
+    def in_sight(self, name: str, eyes: Sequence[Vec3], target: Vec3) -> list[bool]:
+        """From which points, m in the world, nothing hides a point of a model."""
+        return in_sight(self.engine.model, self.engine.data, name, eyes, target)
 
     def set_pose(self, name: str, pose: Pose) -> None:
         """Moves a model's frame, and with it the model, at rest.

@@ -5,9 +5,9 @@ from __future__ import annotations
 import time
 from typing import Any
 
-from cartwheel.description.model import RobotDescription
 from cartwheel.session import Session
-from cartwheel.simulation.snapshot import Scene, Snapshot
+from cartwheel.simulation.snapshot import Snapshot
+from cartwheel.viewer.framing import Framing, robot_of
 from cartwheel.viewer.overlays import Overlays
 from cartwheel.viewer.page import Page
 from cartwheel.viewer.panels.base import Panel
@@ -41,6 +41,7 @@ class Desk:
         self.robot: str | None = None
         """The model that the camera follows and that things are inserted in front of."""
         self.scene = SceneView(page)
+        self.framing = Framing(page, session.simulation)
         self.overlays = Overlays(self)
         self._panels = self.build()
         self._graph_changed = -1
@@ -111,14 +112,3 @@ class Desk:
         lower.dock_below(left)
         panels.append(Scans(self))
         return panels
-
-
-def robot_of(scene: Scene) -> str | None:
-    """The first model that does something by itself, else the first that can move."""
-    movable = [model for model in scene.models if not model.description.static]
-    active = [model for model in movable if _is_active(model.description)]
-    return next((model.name for model in (*active, *movable)), None)
-
-
-def _is_active(description: RobotDescription) -> bool:
-    return bool(description.plugins) or any(link.sensors for link in description.links)

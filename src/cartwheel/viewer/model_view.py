@@ -278,20 +278,21 @@ def inertia_box(inertial: Inertial) -> tuple[Pose, tuple[float, float, float]]:
 
 def footprint(description: RobotDescription) -> tuple[float, float]:
     """How far it reaches from its frame's origin in the plane, and how far below it, m."""
-    bounds = _bounds(description)
-    if bounds is None:
+    found = bounds(description)
+    if found is None:
         return 0.1, 0.0
-    low, high = bounds
+    low, high = found
     reach = float(np.linalg.norm(np.maximum(np.abs(low), np.abs(high))[:2]))
     return reach, float(-low[2])
 
 
 def _size_of(description: RobotDescription) -> float:
-    bounds = _bounds(description)
-    return 0.3 if bounds is None else float(np.max(bounds[1] - bounds[0]))
+    found = bounds(description)
+    return 0.3 if found is None else float(np.max(found[1] - found[0]))
 
 
-def _bounds(description: RobotDescription) -> tuple[Any, Any] | None:
+def bounds(description: RobotDescription) -> tuple[Any, Any] | None:
+    """The corners of a box around its collisions, in its frame, m; None where it has none."""
     corners: list[Surface] = []
     for link in description.links:
         for collision in link.collisions:

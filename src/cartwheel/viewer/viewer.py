@@ -23,8 +23,9 @@ RATE = 30.0
 class Viewer:
     """Shows a session and takes requests, at `url`; one more client of its graph.
 
-    The simulation's thread only leaves its newest snapshot here, and nothing at all while no
-    browser is connected. Everything else happens on a thread of the viewer's own.
+    The simulation's thread only leaves its newest snapshot here; while no browser is connected,
+    only one whose models are others than before. Everything else happens on a thread of the
+    viewer's own.
 
     Args:
         session: To show.
@@ -49,6 +50,7 @@ class Viewer:
         self._make_desk = desk
         self._host, self._port = host, port
         self._slot: Snapshot | None = None
+        self._version = -1
         self._page: Page | None = None
         self._ready = threading.Event()
         self._stopped = threading.Event()
@@ -87,7 +89,12 @@ class Viewer:
     def _listen(self, snapshot: Snapshot) -> None:
         """On the simulation's thread: leaves the newest snapshot, and a note if none lies there."""
         page = self._page
-        if page is None or not page.clients or self._stopped.is_set():
+        if page is None or self._stopped.is_set():
+            return
+        if snapshot.scene.version != self._version:
+            self._version = snapshot.scene.version
+            page.post(lambda: self._desk.framing.update(snapshot))
+        if not page.clients:
             return
         first = self._slot is None
         self._slot = snapshot

@@ -1,0 +1,38 @@
+"""What stands between a point and a model: for views of it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import mujoco
+import numpy as np
+
+from cartwheel.geometry import Vec3
+from cartwheel.world.bodies import VISUAL_GROUP
+from cartwheel.world.entry import scoped
+
+_GROUPS = np.zeros(mujoco.mjNGROUP, dtype=np.uint8)
+_GROUPS[VISUAL_GROUP] = 1
+
+
+def in_sight(model: Any, data: Any, name: str, eyes: Sequence[Vec3], target: Vec3) -> list[bool]:
+    """Whether nothing but a model's own visuals lies between each point and a target.
+
+    Args:
+        model: The compiled world.
+        data: Its state, as of a forward pass.
+        name: Of the model that may be in the way.
+        eyes: Where to look from, m, in the world.
+        target: Where to look at, m, in the world.
+    """
+    own = scoped(name, "")
+    hit = np.zeros(1, dtype=np.int32)
+    clear = []
+    for eye in eyes:
+        way = np.subtract(target, eye)
+        length = float(np.linalg.norm(way))
+        distance = mujoco.mj_ray(model, data, eye, way / length, _GROUPS, 1, -1, hit, None)
+        body = int(model.geom_bodyid[hit[0]]) if hit[0] >= 0 else 0
+        clear.append(not 0 <= distance < length or model.body(body).name.startswith(own))
+    return clear
