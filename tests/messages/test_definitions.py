@@ -79,6 +79,7 @@ MESSAGES = {
     "gazebo_msgs/SensorPerformanceMetric": "01762ded18cfe9ebc7c8222667c99547",
     "gazebo_msgs/WorldState": "de1a9de3ab7ba97ac0e9ec01a4eb481e",
     "gazebo_grasp_plugin_ros/GazeboGraspEvent": "a5b6c6f554465c6bcbcad9409a41137a",
+    "hector_uav_msgs/Altimeter": "c785451e2f67a76b902818138e9b53c6",
     "kobuki_msgs/BumperEvent": "ffe360cd50f14f9251d9844083e72ac5",
     "kobuki_msgs/CliffEvent": "c5b106efbb1427a94f517c5e05f06295",
     "kobuki_msgs/MotorPower": "8f77c0161e0f2021493136bb5f3f0e51",

@@ -40,6 +40,7 @@ def plugins() -> dict[str, type[Plugin[object]]]:
     from cartwheel.plugins.detachable_joint import DetachableJoint
     from cartwheel.plugins.diff_drive import DiffDrive
     from cartwheel.plugins.elevator import Elevator
+    from cartwheel.plugins.f3d import F3D
     from cartwheel.plugins.force import Force
     from cartwheel.plugins.force_based_move import ForceBasedMove
     from cartwheel.plugins.ft_sensor import FtSensor
@@ -51,6 +52,8 @@ def plugins() -> dict[str, type[Plugin[object]]]:
         JointController,
         JointPositionController,
     )
+    from cartwheel.plugins.hand_of_god import HandOfGod
+    from cartwheel.plugins.hector_baro import HectorBaro
     from cartwheel.plugins.hector_imu import HectorImu
     from cartwheel.plugins.imu import Imu, ImuSensor
     from cartwheel.plugins.joint_pose_trajectory import JointPoseTrajectory
@@ -102,13 +105,16 @@ def plugins() -> dict[str, type[Plugin[object]]]:
         JointPoseTrajectory,
         MimicJoint,
         FtSensor,
+        F3D,
         Force,
+        HandOfGod,
         Imu,
         ImuSensor,
         HectorImu,
         GpsSensor,
         HectorGps,
         HectorMagnetic,
+        HectorBaro,
     )
     joining: tuple[type[Plugin[Any]], ...] = (
         GraspFix,

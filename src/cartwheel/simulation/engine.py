@@ -97,6 +97,12 @@ class Engine:
         """Makes poses, contacts and forces those of the present state; changes no state."""
         mujoco.mj_forward(self.model, self.data)
 
+    def locate(self) -> None:
+        """Makes poses and velocities those of the present state, and nothing else."""
+        mujoco.mj_kinematics(self.model, self.data)
+        mujoco.mj_comPos(self.model, self.data)
+        mujoco.mj_comVel(self.model, self.data)
+
     def advance(self, count: int, *, forwarded: bool) -> None:
         """Makes steps.
 

@@ -14,7 +14,16 @@ import mujoco
 import numpy as np
 
 from cartwheel.description.model import CameraIntrinsics
-from cartwheel.geometry import Array, Pose, Quat, Vec3, from_wxyz, quat_multiply, rotate
+from cartwheel.geometry import (
+    Array,
+    Pose,
+    Quat,
+    Vec3,
+    from_wxyz,
+    matrix_from_quat,
+    quat_multiply,
+    rotate,
+)
 from cartwheel.simulation.attaching import AttachmentHandle, SurroundingsHandle
 from cartwheel.simulation.pushing import BodyDriveHandle, WrenchHandle
 from cartwheel.simulation.servo import ServoHandle
@@ -131,6 +140,29 @@ class LinkHandle:
         about = self._position + turn @ np.asarray(point, dtype=float)
         torque = torque - np.cross(about - self._centre, force)
         return -turn.T @ force, -turn.T @ torque
+
+    def load(self) -> tuple[Array, Array]:
+        """What contacts, pushes and attachments exert on the link: force in N, torque in N m.
+
+        Each has shape (3,), in the world's axes; the torque is about its centre of mass.
+        """
+        mujoco.mj_rnePostConstraint(self._model, self._data)
+        # MuJoCo keeps it about the model's centre of mass.
+        torque, force = self._data.cfrc_ext[self.id, :3], self._data.cfrc_ext[self.id, 3:]
+        arm = self._data.xipos[self.id] - self._centre
+        return force.copy(), torque - np.cross(arm, force)
+
+    @property
+    def mass(self) -> float:
+        """kg."""
+        return float(self._model.body_mass[self.id])
+
+    @property
+    def inertia(self) -> Array:
+        """About the link's own axes, at its centre of mass, kg m², shape (3,)."""
+        turn = matrix_from_quat(from_wxyz(self._model.body_iquat[self.id].tolist()))
+        moments: Array = (turn**2) @ self._model.body_inertia[self.id]
+        return moments
 
 
 class JointHandle:

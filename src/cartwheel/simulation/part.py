@@ -293,6 +293,10 @@ class Part:
         self.handles.append(handle)
         return handle
 
+    def locate(self) -> None:
+        """Before a step: makes what links tell of themselves that of now, not a step old."""
+        self._engine.locate()
+
     def schedule(
         self,
         rate: float,

@@ -1,0 +1,46 @@
+"""``libgazebo_ros_f3d.so``: what acts on a link."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from cartwheel.messages import header, message_class
+from cartwheel.plugins.base import Plugin
+from cartwheel.plugins.parameters import tag
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class F3DParameters:
+    body: str = tag("bodyName", doc="Link.")
+    topic: str = tag("topicName", default="f3d", doc="WrenchStamped. Must be in Gazebo.")
+    frame: str = tag(
+        "frameName",
+        default="world",
+        doc="Frame id of the messages; their values are in the world's axes.",
+    )
+
+
+class F3D(Plugin[F3DParameters]):
+    """Publishes what contacts, attachments and pushes exert on a link, at each step.
+
+    Force and torque about its centre of mass, in the world's axes; neither gravity nor what its
+    joints exert. Source: gazebo_plugins, gazebo_ros_f3d.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_f3d.so",)
+    parameters: ClassVar[type] = F3DParameters
+
+    def configure(self) -> None:
+        self._link = self.part.link(self.config.body, origin=self.tag.origin)
+        self._frame = self.frame(self.config.frame)
+        self._WrenchStamped = message_class("geometry_msgs/msg/WrenchStamped")
+        self._Wrench = message_class("geometry_msgs/msg/Wrench")
+        self._Vector3 = message_class("geometry_msgs/msg/Vector3")
+        self._publisher = self.advertise(self.config.topic, "geometry_msgs/msg/WrenchStamped")
+        self.part.schedule(0, after=self._publish, active=lambda: self._publisher.wanted)
+
+    def _publish(self) -> None:
+        force, torque = self._link.load()
+        wrench = self._Wrench(self._Vector3(*force.tolist()), self._Vector3(*torque.tolist()))
+        self._publisher.publish(self._WrenchStamped(header(self.part.time_ns, self._frame), wrench))
