@@ -5,14 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-import numpy as np
-
+from cartwheel.description.model import Sensor
 from cartwheel.errors import PluginError, UnknownNameError
 from cartwheel.geometry import matrix_from_quat, quat_conjugate, quat_multiply
 from cartwheel.messages import header, message_class
 from cartwheel.plugins.base import Plugin
 from cartwheel.plugins.noise import VectorNoise, read_noise
 from cartwheel.plugins.parameters import tag
+from cartwheel.simulation import Part
 
 _AXES = "xyz"
 
@@ -112,6 +112,54 @@ class FtSensor(_JointWrench):
         return values
 
 
+class JointLoad:
+    """What a ``force_torque`` sensor measures of its joint, as its ``<force_torque>`` says.
+
+    Args:
+        part: The robot's.
+        sensor: Inside a joint.
+
+    Raises:
+        PluginError: A word or a noise that there is not.
+    """
+
+    def __init__(self, part: Part, sensor: Sensor) -> None:
+        element = sensor.element.find("force_torque") or sensor.element
+        self.axes = _word(element, "frame", ("child", "parent", "sensor"))
+        """In whose axes it measures."""
+        self._sign = 1.0
+        if _word(element, "measure_direction", ("child_to_parent", "parent_to_child")) == (
+            "parent_to_child"
+        ):
+            self._sign = -1.0
+        noises = [
+            read_noise(element.find(f"{what}/{axis}/noise"))
+            for what in ("force", "torque")
+            for axis in _AXES
+        ]
+        self._noise = VectorNoise(part, f"force {sensor.name}", noises)
+        joint = part.description.joint(sensor.joint or "")
+        assert joint is not None
+        self._child = part.link(joint.child)
+        known = part.description.link(joint.parent) is not None
+        self._parent = part.link(joint.parent) if known else None
+        self._anchor = joint.pose.position
+        self._turn = quat_conjugate((joint.pose @ sensor.pose).orientation)
+
+    def measure(self) -> list[float]:
+        """Force in N, then torque in N m about the joint."""
+        force, torque = self._child.reaction(self._anchor)
+        turn = (0.0, 0.0, 0.0, 1.0)
+        if self.axes == "sensor":
+            turn = self._turn
+        elif self.axes == "parent":
+            back = quat_conjugate(self._parent.place()[1]) if self._parent is not None else turn
+            turn = quat_multiply(back, self._child.place()[1])
+        matrix = self._sign * matrix_from_quat(turn)
+        both = [*(matrix @ force).tolist(), *(matrix @ torque).tolist()]
+        return list(self._noise.add(both))
+
+
 @dataclass(frozen=True, kw_only=True, slots=True)
 class GzForceTorqueParameters:
     topic: str = tag("topic", default="", doc="WrenchStamped; Gazebo's long name when empty.")
@@ -144,40 +192,18 @@ class GzForceTorque(_JointWrench):
                 f'sensor "{sensor.name}" measures a joint: write it inside one',
                 origin=sensor.origin,
             )
-        element = sensor.element.find("force_torque") or sensor.element
-        self._axes = _word(element, "frame", ("child", "parent", "sensor"))
-        self._sign = 1.0
-        if _word(element, "measure_direction", ("child_to_parent", "parent_to_child")) == (
-            "parent_to_child"
-        ):
-            self._sign = -1.0
         config: GzForceTorqueParameters = self.config
         scope = f"/world/{self.part.world.name}/model/{self.part.name}/joint/{sensor.joint}"
         topic = config.topic or f"{scope}/sensor/{sensor.name}/forcetorque"
-        noises = [
-            read_noise(element.find(f"{what}/{axis}/noise"))
-            for what in ("force", "torque")
-            for axis in _AXES
-        ]
-        self._noise = VectorNoise(self.part, f"force {sensor.name}", noises)
+        self._load = JointLoad(self.part, sensor)
         joint = self.part.description.joint(sensor.joint)
         frame = config.frame
-        if not frame and joint is not None and self._axes == "parent":
+        if not frame and joint is not None and self._load.axes == "parent":
             frame = joint.parent
         self._take(sensor.joint, topic=topic, frame=frame, rate=sensor.update_rate)
 
     def _measure(self) -> list[float]:
-        values = np.array(super()._measure()) * self._sign
-        turn = (0.0, 0.0, 0.0, 1.0)
-        assert self.sensor is not None
-        if self._axes == "sensor":
-            turn = quat_conjugate((self._anchor @ self.sensor.pose).orientation)
-        elif self._axes == "parent":
-            back = quat_conjugate(self._parent.place()[1]) if self._parent is not None else turn
-            turn = quat_multiply(back, self._child.place()[1])
-        matrix = matrix_from_quat(turn)
-        both = [*(matrix @ values[:3]).tolist(), *(matrix @ values[3:]).tolist()]
-        return list(self._noise.add(both))
+        return self._load.measure()
 
 
 def _word(element: Any, name: str, allowed: tuple[str, ...]) -> str:

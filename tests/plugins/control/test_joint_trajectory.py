@@ -112,6 +112,19 @@ def test_goals_that_cannot_be_followed_are_rejected(arm):
     assert arm.position("a_joint") == pytest.approx(0.0, abs=1e-3)
 
 
+def test_a_point_at_no_time_is_gone_to_as_fast_as_the_joints_may(bench):
+    """0.5 rad at 1 rad/s take half a second, and no goal is missed before."""
+    made = bench(urdf(limit='lower="-3" upper="3" effort="100" velocity="1"'), controllers())
+    made.results = made.box("/arm_controller/follow_joint_trajectory/result")
+    made.world.run(0.1)
+    send(made, point(0, 0.0, 0.5), goal_tolerance=[{"name": "a_joint", "position": 0.01}])
+    made.world.run(0.3)
+    assert made.position("a_joint") == pytest.approx(0.3, abs=0.05)
+    assert results(made.results) == []
+    made.world.run(0.6)
+    assert results(made.results) == [("one", SUCCEEDED, 0)]
+
+
 def test_a_path_that_the_joint_cannot_keep_is_aborted(bench):
     """At 1 rad/s at most it is more than 0.1 rad behind a line of 4 rad/s after 0.04 s."""
     made = bench(
@@ -136,7 +149,7 @@ def test_a_goal_that_is_not_reached_in_time_is_aborted(bench):
     box = made.box("/arm_controller/follow_joint_trajectory/result")
     made.world.run(0.1)
     send(made, point(0.5, 0.0, 2.0))
-    made.world.run(0.7)
+    made.world.run(1.0)
     assert results(box) == []
     made.world.run(0.3)
     assert results(box) == [("one", ABORTED, -5)]

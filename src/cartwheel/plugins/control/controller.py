@@ -13,9 +13,10 @@ from cartwheel.graph import Graph, Publisher, Qos, Service, resolve_name
 from cartwheel.plugins.base import Plugin
 from cartwheel.plugins.control.hardware import Hardware, JointHardware
 from cartwheel.plugins.control.settings import Settings
+from cartwheel.plugins.ft_sensor import JointLoad
+from cartwheel.plugins.inertial_unit import InertialUnit
 from cartwheel.simulation import Part
 from cartwheel.simulation.clock import NANOSECONDS, Beat
-from cartwheel.simulation.handles import LinkHandle
 from cartwheel.simulation.pushing import BodyDriveHandle
 
 
@@ -26,8 +27,9 @@ class SensedLink:
     name: str
     type: str
     """imu or force_torque."""
-    link: LinkHandle
     sensor: Sensor
+    unit: InertialUnit | JointLoad
+    """Measures, whichever controller asks."""
 
 
 class Closable(Protocol):

@@ -12,6 +12,7 @@ from cartwheel.plugins.control.settings import Settings
 from cartwheel.plugins.control.wheels import (
     TwistCommand,
     WheelOdometry,
+    frame_prefix,
     joint_place,
     wheel_radius,
 )
@@ -51,17 +52,11 @@ class DiffDriveController(Controller):
         stamped = ros2 and settings.boolean("use_stamped_vel", True)
         topic = "cmd_vel_unstamped" if ros2 and not stamped else "cmd_vel"
         self._command = TwistCommand(self, topic, timeout=timeout, stamped=stamped)
-        prefix = ""
-        if ros2:
-            wanted = settings.boolean("tf_frame_prefix_enable", True)
-            own = settings.text("tf_frame_prefix", "")
-            space = own or self.rig.namespace.strip("/")
-            prefix = f"{space.strip('/')}/" if wanted and space.strip("/") else ""
         self._odometry = WheelOdometry(
             self,
             settings,
             transform=settings.boolean("enable_odom_tf", True),
-            prefix=prefix,
+            prefix=frame_prefix(self, settings) if ros2 else "",
         )
         told = settings.boolean("publish_limited_velocity" if ros2 else "publish_cmd", False)
         self._out = (

@@ -28,7 +28,7 @@ from cartwheel.plugins.control.trajectory_reading import (
     TrajectoryReader,
 )
 
-_SETTLING_NS = 100_000_000
+_SETTLING_NS = 300_000_000
 """What a joint that stops gets to stand still, before a goal counts as missed."""
 
 

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from typing import ClassVar
 
+from cartwheel.geometry import Vec3
 from cartwheel.plugins.control.controller import Controller
+from cartwheel.plugins.control.limiter import Limiter
 from cartwheel.plugins.control.settings import Settings
 from cartwheel.plugins.control.wheels import (
     TwistCommand,
     WheelOdometry,
+    frame_prefix,
     joint_place,
     wheel_radius,
 )
@@ -58,12 +62,19 @@ class MecanumDriveController(Controller):
         self._radius *= settings.number("wheel_radius_multiplier", 1.0)
         if self._radius <= 0 or self._reach <= 0:
             raise settings.error("the wheels' radius and separations must be above 0")
-        settings.ignore("kinematics", "linear", "angular", "open_loop", "twist_input")
+        offset = settings.section("kinematics/base_frame_offset")
+        self._offset = tuple(offset.number(axis, 0.0) for axis in ("x", "y", "theta"))
+        self._limits = [
+            Limiter.read(settings.section(name)) for name in ("linear/x", "linear/y", "angular/z")
+        ]
+        self._history = [(0.0, 0.0, 0.0), (0.0, 0.0, 0.0)]
         stamped = ros2 and settings.boolean("use_stamped_vel", True)
         topic = "cmd_vel"
         if ros2:
             topic = "reference" if stamped else "reference_unstamped"
-        timeout = settings.number("reference_timeout" if ros2 else "cmd_vel_timeout", 0.5)
+        # In ROS 2 a command counts for ever where nothing else is stated.
+        limit = ("reference_timeout", 0.0) if ros2 else ("cmd_vel_timeout", 0.5)
+        timeout = settings.number(*limit)
         self._command = TwistCommand(self, topic, timeout=timeout, stamped=stamped)
         self._odometry = WheelOdometry(
             self,
@@ -71,6 +82,7 @@ class MecanumDriveController(Controller):
             topic="odometry" if ros2 else "odom",
             tf_topic="tf_odometry" if ros2 else "/tf",
             transform=settings.boolean("enable_odom_tf", True),
+            prefix=frame_prefix(self, settings) if ros2 else "",
         )
         self._turned = [0.0] * 4
         if self.rig.push is None:
@@ -81,6 +93,7 @@ class MecanumDriveController(Controller):
 
     def start(self, time_ns: int) -> None:
         self._command.stop()
+        self._history = [(0.0, 0.0, 0.0), (0.0, 0.0, 0.0)]
         self._odometry.start(time_ns)
         self._turned = [wheel.position for wheel in self._wheels]
 
@@ -90,14 +103,45 @@ class MecanumDriveController(Controller):
         self._turned = turned
         across = sum(sign * way for sign, way in zip(_SIDEWAYS, ways, strict=True)) / 4
         around = sum(sign * way for sign, way in zip(_AROUND, ways, strict=True)) / 4
-        self._odometry.go(sum(ways) / 4, around / self._reach, seconds, sideways=across)
+        self._reckon(sum(ways) / 4, across, around / self._reach, seconds)
         self._odometry.tell(time_ns)
-        forward, sideways, turn = self._command.at(time_ns)
+        command = self._limited(self._command.at(time_ns), seconds)
+        forward, sideways, turn = self._at_centre(command)
         for wheel, side, round_ in zip(self._wheels, _SIDEWAYS, _AROUND, strict=True):
             speed = forward + side * sideways + round_ * self._reach * turn
             wheel.command = speed / self._radius
         if self.rig.push is not None:
+            forward, sideways, turn = command
             self.rig.push.command((forward, sideways, None), (None, None, turn))
+
+    def _limited(self, wanted: tuple[float, float, float], seconds: float) -> Vec3:
+        before, last = self._history
+        x, y, turn = (
+            limit.limit(wanted[axis], last[axis], before[axis], seconds)
+            for axis, limit in enumerate(self._limits)
+        )
+        self._history = [last, (x, y, turn)]
+        return x, y, turn
+
+    def _at_centre(self, command: Vec3) -> Vec3:
+        """The motion of the wheels' centre where the base frame moves by a command."""
+        x, y, theta = self._offset
+        forward, sideways, turn = command
+        cos, sin = math.cos(theta), math.sin(theta)
+        return (
+            cos * forward - sin * sideways + y * turn,
+            sin * forward + cos * sideways - x * turn,
+            turn,
+        )
+
+    def _reckon(self, forward: float, sideways: float, turn: float, seconds: float) -> None:
+        """The base frame's way from that of the wheels' centre: `_at_centre` backwards."""
+        x, y, theta = self._offset
+        forward, sideways = forward - y * turn, sideways + x * turn
+        cos, sin = math.cos(theta), math.sin(theta)
+        self._odometry.go(
+            cos * forward + sin * sideways, turn, seconds, sideways=cos * sideways - sin * forward
+        )
 
     def stop(self, time_ns: int) -> None:  # noqa: ARG002
         for wheel in self._wheels:

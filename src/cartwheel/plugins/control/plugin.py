@@ -5,15 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
+from cartwheel.description.model import Sensor
 from cartwheel.errors import CartwheelError
 from cartwheel.plugins.base import Plugin
 from cartwheel.plugins.control.controller import Rig, SensedLink
 from cartwheel.plugins.control.files import ControllerEntry, ControllerFiles
 from cartwheel.plugins.control.manager import ControllerManager
 from cartwheel.plugins.control.mecanum import MecanumDriveController
+from cartwheel.plugins.ft_sensor import JointLoad
+from cartwheel.plugins.inertial_unit import InertialUnit
 from cartwheel.simulation.pushing import BodyDriveHandle
-
-_SENSED = ("imu", "force_torque")
 
 
 class ControlPlugin(Plugin[Any]):
@@ -55,13 +56,18 @@ class ControlPlugin(Plugin[Any]):
     def _sensors(self) -> list[SensedLink]:
         """The robot's sensors that a broadcaster can tell of."""
         return [
-            SensedLink(
-                name=sensor.name, type=sensor.type, link=self.part.link(link.name), sensor=sensor
-            )
+            SensedLink(name=each.name, type=each.type, sensor=each, unit=self._unit(each))
             for link in self.part.description.links
-            for sensor in link.sensors
-            if sensor.type in _SENSED
+            for each in link.sensors
+            if each.type == "imu" or (each.type == "force_torque" and each.joint)
         ]
+
+    def _unit(self, sensor: Sensor) -> InertialUnit | JointLoad:
+        if sensor.type == "force_torque":
+            return JointLoad(self.part, sensor)
+        return InertialUnit(
+            self.part, sensor.link, sensor.pose, sensor=sensor, origin=sensor.origin
+        )
 
     def _push(self, types: Iterable[str]) -> BodyDriveHandle | None:
         """A servo of the whole robot where a controller among these needs one."""

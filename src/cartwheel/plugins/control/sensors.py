@@ -7,11 +7,13 @@ from typing import Any, ClassVar
 import numpy as np
 
 from cartwheel.errors import UnknownNameError
-from cartwheel.geometry import Array, matrix_from_quat, quat_multiply
+from cartwheel.geometry import Array
 from cartwheel.graph import Publisher
 from cartwheel.messages import header, message_class
 from cartwheel.plugins.control.controller import Controller, Rhythm, SensedLink
 from cartwheel.plugins.control.settings import Settings
+from cartwheel.plugins.ft_sensor import JointLoad
+from cartwheel.plugins.inertial_unit import InertialUnit
 
 
 class _SensorBroadcaster(Controller):
@@ -74,8 +76,8 @@ class _SensorBroadcaster(Controller):
 class ImuBroadcaster(_SensorBroadcaster):
     """Publishes Imu: ROS 2 on ``imu`` below its name, ROS 1 on the sensor's name.
 
-    Rates and proper acceleration in the sensor's axes, orientation against the world (REP
-    145). Source: imu_sensor_broadcaster, imu_sensor_controller.
+    Rates and proper acceleration in the sensor's axes, with its noise; orientation against the
+    world (REP 145). Source: imu_sensor_broadcaster, imu_sensor_controller.
     """
 
     types: ClassVar[tuple[str, ...]] = (
@@ -93,31 +95,27 @@ class ImuBroadcaster(_SensorBroadcaster):
         ]
 
     def measure(self, sensed: SensedLink, head: Any) -> Any:
-        mount = sensed.sensor.pose
-        turn = matrix_from_quat(mount.orientation).T
-        _, turned = sensed.link.place()
-        _, rate = sensed.link.motion(local=True)
-        acceleration = turn @ sensed.link.proper_acceleration(mount.position)
+        assert isinstance(sensed.unit, InertialUnit)
+        turned, rate, acceleration = sensed.unit.measure()
         Vector3 = message_class("geometry_msgs/msg/Vector3")
-        orientation, rates, accelerations = self._covariances
+        of_orientation, of_rates, of_accelerations = self._covariances
         return message_class("sensor_msgs/msg/Imu")(
             header=head,
-            orientation=message_class("geometry_msgs/msg/Quaternion")(
-                *quat_multiply(turned, mount.orientation)
-            ),
-            orientation_covariance=orientation,
-            angular_velocity=Vector3(*(turn @ np.array(rate)).tolist()),
-            angular_velocity_covariance=rates,
-            linear_acceleration=Vector3(*acceleration.tolist()),
-            linear_acceleration_covariance=accelerations,
+            orientation=message_class("geometry_msgs/msg/Quaternion")(*turned),
+            orientation_covariance=of_orientation,
+            angular_velocity=Vector3(*rate),
+            angular_velocity_covariance=of_rates,
+            linear_acceleration=Vector3(*acceleration),
+            linear_acceleration_covariance=of_accelerations,
         )
 
 
 class ForceTorqueBroadcaster(_SensorBroadcaster):
     """Publishes WrenchStamped: what a joint's child exerts on its parent, in the child's axes.
 
-    ROS 2 on ``wrench`` below its name, ROS 1 on the sensor's name. Source:
-    force_torque_sensor_broadcaster, force_torque_sensor_controller.
+    The sensor's ``<frame>``, ``<measure_direction>`` and noise count. ROS 2 on ``wrench`` below
+    its name, ROS 1 on the sensor's name. Source: force_torque_sensor_broadcaster,
+    force_torque_sensor_controller.
     """
 
     types: ClassVar[tuple[str, ...]] = (
@@ -130,16 +128,23 @@ class ForceTorqueBroadcaster(_SensorBroadcaster):
 
     def take(self, settings: Settings) -> None:
         settings.ignore("interface_names")
+        names = [f"{what}/{axis}" for what in ("force", "torque") for axis in "xyz"]
+        self._offsets = [settings.number(f"offset/{name}", 0.0) for name in names]
+        self._factors = [settings.number(f"multiplier/{name}", 1.0) for name in names]
 
     def measure(self, sensed: SensedLink, head: Any) -> Any:
-        joint = self.part.description.joint(sensed.sensor.joint or "")
-        anchor = joint.pose.position if joint is not None else (0.0, 0.0, 0.0)
-        force, torque = sensed.link.reaction(anchor)
+        assert isinstance(sensed.unit, JointLoad)
+        values = [
+            factor * value + offset
+            for value, factor, offset in zip(
+                sensed.unit.measure(), self._factors, self._offsets, strict=True
+            )
+        ]
         Vector3 = message_class("geometry_msgs/msg/Vector3")
         return message_class("geometry_msgs/msg/WrenchStamped")(
             header=head,
             wrench=message_class("geometry_msgs/msg/Wrench")(
-                force=Vector3(*force.tolist()), torque=Vector3(*torque.tolist())
+                force=Vector3(*values[:3]), torque=Vector3(*values[3:])
             ),
         )
 

@@ -90,8 +90,8 @@ class TrajectoryReader:
             if moved > 1e-9:
                 points.append(made)
             elif number == len(message.points) - 1 and stamp_ns == 0:
-                # At once, as far as the joints can.
-                return Trajectory(time_ns, [replace(made, time=0.0)])
+                # At once, as fast as the joints can: it ends when they may be there.
+                return Trajectory(time_ns, [replace(made, time=self._shortest(made))])
         if not points:
             raise InvalidTrajectoryError(OLD_HEADER, "all of its points lie in the past")
         if self._must_stop and any(abs(rate) > _STILL for rate in points[-1].velocity):
@@ -104,6 +104,11 @@ class TrajectoryReader:
             acceleration=begin.acceleration,
         )
         return Trajectory(begin_ns, [first, *points])
+
+    def _shortest(self, point: Waypoint) -> float:
+        """s that the joints need for a way at least."""
+        ways = zip(point.position, self._joints, strict=True)
+        return max(abs(place - joint.position) / joint.velocity_limit for place, joint in ways)
 
     def _order(self, names: list[str]) -> list[int]:
         """Where each of our joints is in a message; -1 where it is not."""

@@ -43,6 +43,14 @@ def wheel_radius(description: RobotDescription, joint: str) -> float | None:
     return None
 
 
+def frame_prefix(controller: Controller, settings: Settings) -> str:
+    """What ROS 2's drives put before their frames: ``tf_frame_prefix``, or the namespace."""
+    wanted = settings.boolean("tf_frame_prefix_enable", True)
+    own = settings.text("tf_frame_prefix", "")
+    space = (own or controller.rig.namespace).strip("/")
+    return f"{space}/" if wanted and space else ""
+
+
 class TwistCommand:
     """The last Twist heard, which counts for a limited time.
 

@@ -1,0 +1,105 @@
+"""Mecanum wheels: what each does for a motion, and the motion that they tell of."""
+
+import math
+
+import pytest
+from tests.plugins.control.cars import BASE, RADIUS, TRACK, Car, four_wheels, heading
+
+REACH = (BASE + TRACK) / 2
+NAMES = ("front_left", "front_right", "rear_left", "rear_right")
+
+
+@pytest.fixture
+def drive(make, tmp_path):
+    def made(**more):
+        settings = {
+            "type": "mecanum_drive_controller/MecanumDriveController",
+            **{f"{name}_wheel_command_joint_name": f"{name}_joint" for name in NAMES},
+            "kinematics": {
+                "wheels_radius": RADIUS,
+                "sum_of_robot_center_projection_on_X_Y_axis": REACH,
+                **more.pop("kinematics", {}),
+            },
+            **more,
+        }
+        return Car(make, tmp_path, four_wheels(), "reference", **settings)
+
+    return made
+
+
+def wheels(x, y, turn):
+    """The rim of each wheel goes as the rollers' axes, at 45°, let it: rad/s."""
+    signs = ((-1, -1), (1, 1), (1, -1), (-1, 1))
+    return [(x + side * y + round_ * REACH * turn) / RADIUS for side, round_ in signs]
+
+
+@pytest.mark.parametrize(
+    "motion", [(0.3, 0.0, 0.0), (0.0, 0.3, 0.0), (0.0, 0.0, 0.6), (0.2, -0.1, 0.4)]
+)
+def test_each_wheel_turns_as_the_kinematics_say(drive, motion):
+    made = drive()
+    made.go(0.3, *motion)
+    found = made.speeds(*(f"{name}_joint" for name in NAMES))
+    assert found == pytest.approx(wheels(*motion), abs=0.05)
+
+
+def test_it_goes_sideways_and_its_odometry_knows(drive):
+    made = drive()
+    x, y, _ = made.place
+    made.go(2.0, y=0.3)
+    end = made.place
+    assert end[1] - y == pytest.approx(0.6, rel=0.05)
+    assert abs(end[0] - x) < 0.02
+    assert abs(end[2]) < 0.03
+    told = made.odometry()
+    assert told.pose.pose.position.y == pytest.approx(0.6, rel=0.08)
+    assert told.twist.twist.linear.y == pytest.approx(0.3, rel=0.05)
+
+
+def test_a_circle_sideways_closes(drive):
+    """Going left and turning left: a circle of radius v / w, its centre ahead or behind."""
+    made = drive()
+    start = made.place
+    made.go(2 * math.pi / 0.8, y=0.2, turn=0.8)
+    assert math.dist(made.place[:2], start[:2]) < 0.05
+
+
+def test_a_command_counts_until_the_next_unless_a_time_is_stated(drive):
+    made = drive()
+    made.send(x=0.2)
+    made.world.run(3.0)
+    assert made.speeds("front_left_joint")[0] == pytest.approx(2.0, rel=0.02)
+
+
+def test_with_a_time_stated_it_ends(drive):
+    made = drive(reference_timeout=0.5)
+    made.send(x=0.2)
+    made.world.run(1.0)
+    assert made.speeds("front_left_joint")[0] == pytest.approx(0.0, abs=0.02)
+
+
+def test_limits_bind_in_all_three_directions(drive):
+    limits = {
+        "linear.x.max_velocity": 0.1,
+        "linear.y.max_velocity": 0.2,
+        "angular.z.max_velocity": 0.3,
+    }
+    made = drive(**limits)
+    made.go(0.5, 1.0, 1.0, 1.0)
+    found = made.speeds(*(f"{name}_joint" for name in NAMES))
+    assert found == pytest.approx(wheels(0.1, 0.2, 0.3), abs=0.05)
+
+
+def test_the_base_frame_may_be_off_the_wheels_centre(drive):
+    """To turn about a point 0.2 m behind it, the wheels' centre goes sideways as well."""
+    made = drive(kinematics={"base_frame_offset": {"x": 0.2, "y": 0.0, "theta": 0.0}})
+    made.go(1.0, turn=0.5)
+    found = made.speeds(*(f"{name}_joint" for name in NAMES))
+    assert found == pytest.approx(wheels(0.0, -0.2 * 0.5, 0.5), abs=0.05)
+    told = made.odometry()
+    # The base frame itself only turns.
+    assert abs(told.twist.twist.linear.x) < 0.01
+    assert abs(told.twist.twist.linear.y) < 0.01
+    assert told.twist.twist.angular.z == pytest.approx(0.5, rel=0.05)
+    assert math.hypot(told.pose.pose.position.x, told.pose.pose.position.y) < 0.01
+    assert heading(told) == pytest.approx(0.5 * 1.15, rel=0.15)

@@ -1,0 +1,139 @@
+"""Drives that steer: the angles and speeds of their wheels, the circle that they drive."""
+
+import math
+
+import pytest
+from tests.plugins.control.cars import BASE, RADIUS, TRACK, Car, four_wheels, heading
+
+SPEED, TURN = 0.4, 0.4
+CIRCLE = SPEED / TURN
+"""m: radius of the circle of the rear axle's middle."""
+MIDDLE = math.atan(BASE / CIRCLE)
+"""rad: how a wheel in the middle of the front axle points, about the same centre."""
+REAR = {"rear_left": (-BASE / 2, TRACK / 2, False), "rear_right": (-BASE / 2, -TRACK / 2, False)}
+FRONT = {"front": (BASE / 2, 0.0, True)}
+
+
+@pytest.fixture
+def ackermann(make, tmp_path):
+    def made(**more):
+        settings = {
+            "type": "ackermann_steering_controller/AckermannSteeringController",
+            "traction_joints_names": ["rear_right_joint", "rear_left_joint"],
+            "steering_joints_names": ["front_right_steer", "front_left_steer"],
+            "wheelbase": BASE,
+            "traction_track_width": TRACK,
+            "steering_track_width": TRACK,
+            "traction_wheels_radius": RADIUS,
+            **more,
+        }
+        return Car(make, tmp_path, four_wheels(steered=True), "reference", **settings)
+
+    return made
+
+
+def test_both_front_wheels_point_about_one_centre_and_rear_ones_differ(ackermann):
+    """The centre is on the rear axle's line, a circle's radius to the left."""
+    made = ackermann()
+    made.go(1.0, x=SPEED, turn=TURN)
+    left = math.atan(BASE / (CIRCLE - TRACK / 2))
+    right = math.atan(BASE / (CIRCLE + TRACK / 2))
+    assert made.joint("front_left_steer") == pytest.approx(left, abs=1e-3)
+    assert made.joint("front_right_steer") == pytest.approx(right, abs=1e-3)
+    rims = [TURN * (CIRCLE + side * TRACK / 2) / RADIUS for side in (-1, 1)]
+    assert made.speeds("rear_left_joint", "rear_right_joint") == pytest.approx(rims, rel=0.01)
+
+
+def test_it_drives_that_circle_and_tells_so(ackermann):
+    made = ackermann()
+    # Into the curve; the circle counts from there.
+    made.go(0.5, x=SPEED, turn=TURN)
+    x, y, yaw = made.place
+    first = made.odometry()
+    before = made.place[2]
+    made.go(2.0, x=SPEED, turn=TURN)
+    turned = made.place[2] - before
+    assert turned == pytest.approx(2.0 * TURN, rel=0.05)
+    told = made.odometry()
+    assert heading(told) - heading(first) == pytest.approx(2.05 * TURN, rel=0.02)
+    assert told.twist.twist.linear.x == pytest.approx(SPEED, rel=0.02)
+    assert told.twist.twist.angular.z == pytest.approx(TURN, rel=0.02)
+    assert (told.header.frame_id, told.child_frame_id) == ("odom", "base_link")
+    # From the rear axle's middle at the start, the centre is a radius to the left.
+    rear = (x - BASE / 2 * math.cos(yaw), y - BASE / 2 * math.sin(yaw))
+    centre = (rear[0] - CIRCLE * math.sin(yaw), rear[1] + CIRCLE * math.cos(yaw))
+    assert math.dist(made.place[:2], centre) == pytest.approx(
+        math.hypot(CIRCLE, BASE / 2), rel=0.05
+    )
+
+
+def test_a_command_counts_for_a_second(ackermann):
+    made = ackermann()
+    made.send(x=SPEED)
+    made.world.run(0.5)
+    assert made.speeds("rear_left_joint")[0] == pytest.approx(SPEED / RADIUS, rel=0.01)
+    made.world.run(0.6)
+    assert made.speeds("rear_left_joint")[0] == pytest.approx(0.0, abs=0.01)
+
+
+def test_odometry_of_commands_needs_no_wheels(ackermann):
+    made = ackermann(open_loop=True)
+    made.go(1.0, x=SPEED, turn=TURN)
+    assert heading(made.odometry()) == pytest.approx(1.0 * TURN, abs=0.03)
+
+
+def test_a_bicycle_has_one_wheel_of_each(make, tmp_path):
+    """A trike's middle wheels alone are commanded; its outer ones only carry."""
+    wheels = {**FRONT, **REAR}
+    made = Car(
+        make, tmp_path, wheels, "reference",
+        type="bicycle_steering_controller/BicycleSteeringController",
+        traction_joints_names=["rear_left_joint"], steering_joints_names=["front_steer"],
+        wheelbase=BASE, traction_wheel_radius=RADIUS,
+    )  # fmt: skip
+    made.send(x=SPEED, turn=TURN)
+    made.world.run(0.5)
+    assert made.joint("front_steer") == pytest.approx(MIDDLE, abs=1e-3)
+    assert made.speeds("rear_left_joint")[0] == pytest.approx(SPEED / RADIUS, rel=0.01)
+    # Without speed there is nothing but to point across.
+    made.go(0.5, turn=0.5)
+    assert made.joint("front_steer") == pytest.approx(1.4, abs=0.01)
+
+
+def test_a_tricycle_steers_one_wheel_and_drives_two(make, tmp_path):
+    wheels = {**FRONT, **REAR}
+    made = Car(
+        make, tmp_path, wheels, "reference",
+        type="tricycle_steering_controller/TricycleSteeringController",
+        traction_joints_names=["rear_right_joint", "rear_left_joint"],
+        steering_joints_names=["front_steer"],
+        wheelbase=BASE, traction_track_width=TRACK, traction_wheels_radius=RADIUS,
+    )  # fmt: skip
+    made.go(1.0, x=SPEED, turn=-TURN)
+    assert made.joint("front_steer") == pytest.approx(-MIDDLE, abs=1e-3)
+    rims = [TURN * (CIRCLE + side * TRACK / 2) / RADIUS for side in (1, -1)]
+    assert made.speeds("rear_left_joint", "rear_right_joint") == pytest.approx(rims, rel=0.01)
+    before = made.place[2]
+    made.go(1.0, x=SPEED, turn=-TURN)
+    assert made.place[2] - before == pytest.approx(-TURN, rel=0.06)
+
+
+def test_a_tricycle_of_one_driven_wheel(make, tmp_path):
+    """``tricycle_controller``: the front wheel's rim goes a longer way than the rear axle."""
+    wheels = {**FRONT, **REAR}
+    made = Car(
+        make, tmp_path, wheels, "cmd_vel",
+        type="tricycle_controller/TricycleController",
+        traction_joint_name="front_joint", steering_joint_name="front_steer",
+        wheelbase=BASE, wheel_radius=RADIUS, cmd_vel_timeout=500,
+    )  # fmt: skip
+    made.go(1.0, x=SPEED, turn=TURN)
+    assert made.joint("front_steer") == pytest.approx(MIDDLE, abs=1e-3)
+    rim = SPEED / math.cos(MIDDLE) / RADIUS
+    assert made.speeds("front_joint")[0] == pytest.approx(rim, rel=0.01)
+    before = made.place[2]
+    made.go(1.0, x=SPEED, turn=TURN)
+    assert made.place[2] - before == pytest.approx(TURN, rel=0.06)
+    told = made.odometry("/base/odom")
+    assert told.twist.twist.linear.x == pytest.approx(SPEED, rel=0.03)
+    assert told.twist.twist.angular.z == pytest.approx(TURN, rel=0.03)
