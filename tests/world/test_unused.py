@@ -33,8 +33,11 @@ def notes(tags: str) -> list[str]:
     [
         ("<minDepth>0.001</minDepth>", "r.urdf:4: info: min_depth has no effect (2 times)"),
         ("<maxVel>1</maxVel>", "r.urdf:4: info: max_vel has no effect (2 times)"),
-        ("<fdir1>1 0 0</fdir1>", "r.urdf:4: info: fdir1 has no effect (2 times)"),
-        ("<mu1>1</mu1><mu2>0.5</mu2>", "r.urdf:4: info: mu2 unlike mu1 has no effect (2 times)"),
+        (
+            "<collision><surface><friction><ode><slip1>0.1</slip1><slip2>0</slip2></ode></friction>"
+            "</surface></collision>",
+            "r.urdf:4: info: slip1 has no effect (2 times)",
+        ),
         ("<dampingFactor>0.1</dampingFactor>", "r.urdf:2: info: velocity decay has no effect"),
     ],
 )
@@ -43,5 +46,11 @@ def test_a_tag_that_does_nothing_is_told_at_its_first_place(tags: str, said: str
 
 
 def test_a_velocity_limit_is_told_and_nothing_else_is() -> None:
-    (only,) = notes("<mu1>1</mu1><mu2>1</mu2><kp>1e6</kp><kd>100</kd>")
+    surface = (
+        "<collision><surface><friction><ode><slip1>0</slip1></ode><torsional><coefficient>1"
+        "</coefficient><patch_radius>0.1</patch_radius></torsional></friction><bounce>"
+        "<restitution_coefficient>0</restitution_coefficient></bounce><contact>"
+        "<collide_bitmask>1</collide_bitmask></contact></surface></collision>"
+    )
+    (only,) = notes(f"<mu1>1</mu1><mu2>2</mu2><fdir1>1 0 0</fdir1><kp>1e6</kp>{surface}")
     assert only.startswith("r.urdf:10: info: a joint's velocity limit has no effect: ")

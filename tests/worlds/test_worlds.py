@@ -117,7 +117,7 @@ def test_a_cart_drives_through_the_office_from_the_hall_into_a_room():
 
 
 def test_large_worlds_state_no_more_pairs_than_they_may():
-    from cartwheel.world.contact import MOST_PAIRS
+    from cartwheel.world.pairs import MOST_PAIRS
 
     with opened("willowgarage") as world:
         world.spawn(cart(), z=0.1)

@@ -165,9 +165,17 @@ class Surface:
     mu1: float | None = None
     mu2: float | None = None
     fdir1: Vec3 | None = None
+    """The direction in which mu1 counts, mu2 across it; the world's axes where there is none."""
+    fdir1_frame: str | None = None
+    """The link in whose axes `fdir1` is; None for the collision's own."""
     slip1: float | None = None
     slip2: float | None = None
     torsional: float | None = None
+    """What a turn on the spot meets, a coefficient; 1 where a `patch_radius` alone is stated."""
+    patch_radius: float | None = None
+    """m, of the area that touches."""
+    surface_radius: float | None = None
+    """m, of the surface's curvature, where that area follows from the depth instead."""
     kp: float | None = None
     """N/m."""
     kd: float | None = None
@@ -179,6 +187,9 @@ class Surface:
     max_contacts: int | None = None
     restitution: float | None = None
     collide_bitmask: int | None = None
+    """32 bits: what it touches, by their category."""
+    category_bitmask: int | None = None
+    """32 bits: `collide_bitmask` where not stated."""
     collide_without_contact: bool = False
 
 

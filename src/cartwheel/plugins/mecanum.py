@@ -43,9 +43,9 @@ class MecanumParameters(GzDriveParameters):
 class MecanumDrive(Plugin[MecanumParameters]):
     """Moves the robot along, sideways and around by Twist, and turns its wheels accordingly.
 
-    Friction here is the same in all directions, so the rollers are not what moves it: a servo
-    pushes the robot as `PlanarMove` does. The odometry is what the wheels turn. Source: gz-sim,
-    MecanumDrive.
+    A servo pushes the robot as `PlanarMove` does, whatever friction its wheels have: few that
+    are published state the directions of their rollers. The odometry is what the wheels turn.
+    Source: gz-sim, MecanumDrive.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("gz-sim-mecanum-drive-system",)

@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import mujoco
 
 from cartwheel.description.model import WorldDescription
-from cartwheel.errors import Diagnostic
+from cartwheel.errors import Diagnostic, SimulationError
 from cartwheel.geometry import Pose, Vec3, from_wxyz, quat_conjugate, rotate, to_wxyz
 from cartwheel.simulation.clock import Task, to_ns
+from cartwheel.simulation.directions import Directions
 from cartwheel.simulation.rendering import Renderer
 from cartwheel.world.build import step_of
 from cartwheel.world.entry import scoped
+from cartwheel.world.pairs import Alignment
 
 _OBJ = mujoco.mjtObj
 _STILL: Vec3 = (0.0, 0.0, 0.0)
@@ -84,13 +86,23 @@ class Engine:
         for callback in self.on_diagnostic:
             callback(diagnostic)
 
-    def replace(self, model: Any) -> None:
-        """Goes on with another model, with the state of every joint that both have."""
+    def replace(self, model: Any, alignments: Sequence[Alignment] = ()) -> None:
+        """Goes on with another model, with the state of every joint that both have.
+
+        Args:
+            model: MuJoCo's.
+            alignments: In which directions friction counts.
+        """
         model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_AUTORESET
         data = mujoco.MjData(model)
         if self.model is not None:
             _carry_over(self.model, self.data, model, data)
         self.model, self.data = model, data
+        try:
+            self._directions = Directions(model, data, alignments)
+        except SimulationError as error:
+            hint = f" {error.hint}" if error.hint else ""
+            self.report(Diagnostic(severity="warning", message=f"{error.message}.{hint}"))
         self.renderer.bind(model)
 
     def forward(self) -> None:

@@ -628,7 +628,8 @@ class Simulation:
     def _compile(self, residents: dict[str, Resident]) -> None:
         """Compiles a new set of models and carries over the state of those that stay."""
         entries = [resident.entry for resident in residents.values()]
-        self.engine.replace(build(self.world, [self._house.entry, *entries]).model)
+        built = build(self.world, [self._house.entry, *entries])
+        self.engine.replace(built.model, built.alignments)
         step_ns = to_ns(step_of(self.world))
         if step_ns != self.engine.step_ns:
             self.engine.set_step(step_ns)

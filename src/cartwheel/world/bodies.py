@@ -9,6 +9,7 @@ import numpy as np
 
 from cartwheel.description import meshes
 from cartwheel.description.model import (
+    Collision,
     Inertial,
     Joint,
     Link,
@@ -22,8 +23,10 @@ from cartwheel.geometry import (
     IDENTITY,
     Array,
     Pose,
+    Vec3,
     matrix_from_quat,
     quat_from_matrix,
+    rotate,
     to_wxyz,
 )
 from cartwheel.world import contact, joints
@@ -152,12 +155,15 @@ class BodyBuilder:
             parts = solids(shape, collision.pose, collision.origin, self._assets, moves=whole)
             friction = contact.friction(collision.surface)
             reference = contact.reference(collision.surface, entry.description.mass, self._step)
+            category, collide = contact.masks(collision.surface)
             for number, (arguments, pose) in enumerate(parts):
                 geom = body.add_geom(
                     name=part_name(name, number),
                     group=COLLISION_GROUP,
                     density=0,
                     condim=3,
+                    contype=category,
+                    conaffinity=collide,
                     friction=list(friction),
                     solref=list(reference),
                     solimp=list(contact.IMPEDANCE),
@@ -174,6 +180,8 @@ class BodyBuilder:
                         rolls=contact.rolls(joint),
                         friction=friction,
                         reference=reference,
+                        surface=collision.surface,
+                        direction=_direction(entry, link, collision),
                     )
                 )
 
@@ -310,6 +318,17 @@ class BodyBuilder:
             fovy=float(np.degrees(fovy)),
             **pose_arguments(turned),
         )
+
+
+def _direction(entry: ModelEntry, link: Link, collision: Collision) -> tuple[str, Vec3] | None:
+    """Along which mu1 counts, with the body in whose axes it is."""
+    surface = collision.surface
+    if surface.fdir1 is None:
+        return None
+    carrier = entry.description.link(surface.fdir1_frame or "")
+    if carrier is not None:
+        return scoped(entry.name, carrier.name), surface.fdir1
+    return scoped(entry.name, link.name), rotate(collision.pose.orientation, surface.fdir1)
 
 
 def _possible(tensor: Array) -> Array:

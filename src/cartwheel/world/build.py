@@ -13,7 +13,7 @@ import numpy as np
 from cartwheel.description.model import Light, WorldDescription
 from cartwheel.errors import Origin, WorldError
 from cartwheel.geometry import rotate
-from cartwheel.world import chains, contact, joints
+from cartwheel.world import chains, contact, joints, pairs
 from cartwheel.world.bodies import ROTOR_INERTIA, BodyBuilder
 from cartwheel.world.entry import ModelEntry, scoped
 from cartwheel.world.shapes import Assets
@@ -33,6 +33,8 @@ class Build:
     """A compiled world."""
 
     model: mujoco.MjModel
+    alignments: tuple[pairs.Alignment, ...] = ()
+    """In which directions friction counts where it is not the same in all."""
     xml: str | None = None
 
 
@@ -65,17 +67,11 @@ def build(world: WorldDescription, entries: Iterable[ModelEntry], *, xml: bool =
     ranks = contact.priorities(surface.friction[0] for surface in bodies.surfaces)
     for surface in bodies.surfaces:
         surface.geom.priority = ranks[surface.friction[0]]
-    for still, mover, rules in contact.standing_pairs(bodies.surfaces):
-        sliding, torsional, rolling = rules.friction
-        spec.add_pair(
-            geomname1=still.name,
-            geomname2=mover.name,
-            condim=3,
-            friction=[sliding, sliding, torsional, rolling, rolling],
-            solref=list(rules.reference),
-            solreffriction=[contact.FRICTION_TIME_CONSTANT, 1.0],
-            solimp=list(contact.IMPEDANCE),
-        )
+    alignments = []
+    for pair in pairs.stated_pairs(bodies.surfaces):
+        spec.add_pair(**pair.arguments())
+        if pair.alignment is not None:
+            alignments.append(pair.alignment)
     try:
         model = spec.compile()
     except (ValueError, mujoco.FatalError) as error:
@@ -87,7 +83,7 @@ def build(world: WorldDescription, entries: Iterable[ModelEntry], *, xml: bool =
         # For the text alone: the compiled model has it.
         made = spec.joint(model.joint(joint).name)
         made.damping = [made.damping[0], made.damping[1], coefficient]
-    return Build(model=model, xml=spec.to_xml() if xml else None)
+    return Build(model=model, alignments=tuple(alignments), xml=spec.to_xml() if xml else None)
 
 
 def _judge_without_rotors(model: mujoco.MjModel) -> None:

@@ -13,14 +13,12 @@ Derivations stand in ``docs/physics.md``. In short:
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
-import mujoco
-
 from cartwheel.description.model import Collision, Cylinder, Ellipsoid, Joint, Shape, Surface
-from cartwheel.geometry import rotate
+from cartwheel.geometry import Vec3, rotate
 
 DEFAULT_MU = 1.0
 """Where a description states none, as in Gazebo."""
@@ -34,9 +32,10 @@ IMPEDANCE = (0.95, 0.99, 0.0005, 0.5, 2.0)
 """MuJoCo's solimp: how much of the constraint is kept at and beyond 0.5 mm of depth."""
 FRICTION_TIME_CONSTANT = 0.03
 """s; in which a slip that the friction can hold dies out. Below mu g T/2 friction is viscous."""
-MOST_PAIRS = 500
-"""Pairs with a friction of their own; each costs 6 ns a step."""
-_MESH_AREA = 1.0
+TORSION = 0.005
+"""m; MuJoCo's own, which no contact of three dimensions looks at."""
+ALL_BITS = 0xFFFF
+"""SDF's default of both bitmasks."""
 FRICTION_IMPEDANCE_RATIO = 100.0
 """How much harder friction holds than the normal direction: less creep under a steady load."""
 
@@ -54,17 +53,45 @@ class BuiltSurface:
     """Whether it is a wheel."""
     friction: tuple[float, float, float]
     reference: tuple[float, float]
+    surface: Surface
+    direction: tuple[str, Vec3] | None = None
+    """Along which mu1 counts, in the axes of a body; None where the description states none."""
 
 
 def friction(surface: Surface) -> tuple[float, float, float]:
     """Sliding, torsional and rolling friction of a geom.
 
-    The isotropic cone takes the mean of mu and mu2 where they differ.
+    Where mu1 and mu2 differ it is their mean, for contacts that no pair is stated for.
     """
+    return (sum(coefficients(surface)) / 2, TORSION, 0.0001)
+
+
+def coefficients(surface: Surface) -> tuple[float, float]:
+    """mu1 and mu2; a surface that states one of them has it in both directions."""
     mu1 = DEFAULT_MU if surface.mu1 is None else surface.mu1
     mu2 = mu1 if surface.mu2 is None else surface.mu2
     # A coefficient beyond 100 only spoils the conditioning: no wheel slips at 100.
-    return (min(max((mu1 + mu2) / 2, 0.0), 100.0), 0.005, 0.0001)
+    return min(mu1, 100.0), min(mu2, 100.0)
+
+
+def masks(surface: Surface) -> tuple[int, int]:
+    """MuJoCo's contype and conaffinity: what a surface is, and what it touches."""
+    if surface.collide_without_contact:
+        return 0, 0
+    collide = ALL_BITS if surface.collide_bitmask is None else surface.collide_bitmask
+    category = collide if surface.category_bitmask is None else surface.category_bitmask
+    return _signed(category), _signed(collide)
+
+
+def masks_fit(first: Surface, second: Surface) -> bool:
+    """Whether two surfaces may touch: one of them is of what the other touches."""
+    (category, collide), (other, others) = masks(first), masks(second)
+    return bool(category & others or other & collide)
+
+
+def _signed(bits: int) -> int:
+    """32 bits as the engine's integers hold them."""
+    return bits - (1 << 32) if bits >= 1 << 31 else bits
 
 
 def reference(surface: Surface, mass: float, step: float) -> tuple[float, float]:
@@ -112,45 +139,6 @@ def rolls(joint: Joint | None) -> bool:
         return False
     unlimited = joint.axis.lower is None and joint.axis.upper is None
     return joint.type == "continuous" or (joint.type == "revolute" and unlimited)
-
-
-def standing_pairs(
-    surfaces: Iterable[BuiltSurface],
-) -> Iterator[tuple[BuiltSurface, BuiltSurface, BuiltSurface]]:
-    """Moving geoms with standing ones of other models, and which of both rules.
-
-    In MuJoCo's convex contact model a sliding body is lifted: one that slides at v hovers at
-    mu v b/k, with b the damping of friction and k the stiffness of the normal, and skips. Only
-    a pair stated by itself can have a b of its own; what slides, slides on what stands.
-    A wheel keeps the hard one: in a turn at rate ω it slips sideways by ω v/b.
-
-    Each pair is looked at in each step, near or far: a world with more than `MOST_PAIRS` states
-    those of its largest floors, and what slides on something smaller is lifted.
-    """
-    surfaces = list(surfaces)
-    movers = [surface for surface in surfaces if surface.moves and not surface.rolls]
-    standing = [surface for surface in surfaces if not surface.moves]
-    if movers and len(movers) * len(standing) > MOST_PAIRS:
-        standing.sort(key=_floor_area, reverse=True)
-        standing = standing[: max(1, MOST_PAIRS // len(movers))]
-    for mover in movers:
-        for still in standing:
-            if still.model != mover.model:
-                rules = still if still.friction[0] < mover.friction[0] else mover
-                yield still, mover, rules
-
-
-def _floor_area(surface: BuiltSurface) -> float:
-    """How much there is to slide on, m²: of a box the largest face that may lie level."""
-    geom, kind = surface.geom, mujoco.mjtGeom
-    if geom.type in (kind.mjGEOM_PLANE, kind.mjGEOM_HFIELD):
-        return math.inf
-    if geom.type == kind.mjGEOM_BOX:
-        return float(4 * geom.size[0] * geom.size[1])
-    if geom.type == kind.mjGEOM_CYLINDER:
-        return float(math.pi * geom.size[0] ** 2)
-    # A mesh's size is known to the compiler alone; it may well be a floor.
-    return _MESH_AREA if geom.type == kind.mjGEOM_MESH else 0.0
 
 
 def priorities(coefficients: Iterable[float]) -> dict[float, int]:

@@ -9,15 +9,14 @@ from cartwheel.description.model import Mesh, RobotDescription
 from cartwheel.errors import Diagnostic, Origin
 
 _SURFACE = {
-    "fdir1": "friction is the same in all directions",
     "slip1": "friction is Coulomb's",
     "slip2": "friction is Coulomb's",
-    "torsional": "a standing turn meets no friction of its own",
     "min_depth": "contacts are as hard as the step allows",
     "max_vel": "contacts part as fast as they must",
     "max_contacts": "all contacts count",
     "restitution": "nothing bounces",
-    "collide_bitmask": "all collide with all",
+    "surface_radius": "the patch that touches does not grow with depth: state a patch_radius",
+    "collide_without_contact": "it touches nothing, and a contact sensor does not see it",
 }
 
 
@@ -37,10 +36,9 @@ def unused(description: RobotDescription) -> Iterator[Diagnostic]:
                 note("the surface of a mesh", collision.origin, why)
             surface = collision.surface
             for field, why in _SURFACE.items():
-                if getattr(surface, field) is not None:
+                # 0 is what Gazebo writes where nothing is asked for.
+                if getattr(surface, field):
                     note(field, collision.origin, why)
-            if None not in (surface.mu1, surface.mu2) and surface.mu1 != surface.mu2:
-                note("mu2 unlike mu1", collision.origin, "their mean counts in all directions")
         if link.linear_damping or link.angular_damping:
             note("velocity decay", link.origin, "the air does not brake")
         for light in link.lights:

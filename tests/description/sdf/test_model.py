@@ -250,7 +250,8 @@ def test_surface():
     assert collision.laser_retro == 7
     assert collision.surface == m.Surface(
         mu1=0.5, mu2=0.25, fdir1=(0, 1, 0), slip1=0.1, slip2=0.2, torsional=0.75, kp=1e6, kd=100,
-        min_depth=0.001, max_vel=0.1, max_contacts=4, restitution=0.5, collide_bitmask=15,
+        min_depth=0.001, max_vel=0.1, max_contacts=4, restitution=0.5,
+        collide_bitmask=15, patch_radius=0,
     )  # fmt: skip
     assert found.diagnostics == ()
 

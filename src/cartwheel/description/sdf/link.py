@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 from cartwheel.description.model import (
     Collision,
@@ -27,8 +28,10 @@ from cartwheel.description.sdf.light import read_light
 from cartwheel.description.sdf.material import read_material
 from cartwheel.description.sdf.sensors import read_sensor
 from cartwheel.description.sdf.shapes import read_shape
+from cartwheel.description.sdf.surface import read_surface
 from cartwheel.description.xml import Node
-from cartwheel.geometry import Pose, Vec3
+from cartwheel.errors import DescriptionError
+from cartwheel.geometry import Pose, rotate
 
 _WITHOUT_COUNTERPART = (
     "must_be_base_link", "enable_wind", "audio_sink", "audio_source", "projector", "battery",
@@ -56,7 +59,25 @@ def read_link(node: Node, ctx: Context, frames: Frames) -> Link:
         return pose.inverse() @ frames.placed(own, relative_to, part.origin)
 
     visuals = [_visual(each, ctx, place) for each in node.all("visual")]
-    collisions = [_collision(each, ctx, place) for each in node.all("collision")]
+
+    def directed(fields: dict[str, Any], part: Node) -> None:
+        """A friction direction's frame as the link that carries it."""
+        frame = fields.get("fdir1_frame")
+        if frame is None or fields.get("fdir1") is None:
+            return
+        try:
+            carrier = frames.link_of(frame, part.origin)
+            there = frames.pose(carrier, part.origin).inverse() @ frames.pose(frame, part.origin)
+        except DescriptionError as error:
+            hint = f" {error.hint}" if error.hint else ""
+            message = f"{error.message}: fdir1 is taken in the collision's own axes.{hint}"
+            ctx.tell("warning", message, part.origin)
+            del fields["fdir1_frame"]
+            return
+        fields["fdir1_frame"] = carrier
+        fields["fdir1"] = rotate(there.orientation, fields["fdir1"])
+
+    collisions = [_collision(each, ctx, place, directed) for each in node.all("collision")]
     sensors = [_sensor(each, name, place) for each in node.all("sensor")]
     lights = [_light(each, place) for each in node.all("light")]
     check_unique("visual", [(v.name, v.origin) for v in visuals if v])
@@ -189,10 +210,15 @@ def _visual(node: Node, ctx: Context, place: Place) -> Visual | None:
     )
 
 
-def _collision(node: Node, ctx: Context, place: Place) -> Collision | None:
+def _collision(
+    node: Node, ctx: Context, place: Place, directed: Callable[[dict[str, Any], Node], None]
+) -> Collision | None:
     name = require_name(node)
     limit = node.child("max_contacts")
-    surface = _surface(node.child("surface"), limit.integer() if limit is not None else None, ctx)
+    stated = node.child("surface")
+    fields = read_surface(stated, ctx) if stated is not None else {}
+    directed(fields, node)
+    surface = Surface(max_contacts=limit.integer() if limit is not None else None, **fields)
     retro = node.optional_number_at("laser_retro")
     pose = place(node)
     for tag in ("density", "auto_inertia_params"):
@@ -204,89 +230,6 @@ def _collision(node: Node, ctx: Context, place: Place) -> Collision | None:
     return Collision(
         name=name, pose=pose, shape=shape, surface=surface, laser_retro=retro, origin=node.origin
     )
-
-
-def _surface(node: Node | None, max_contacts: int | None, ctx: Context) -> Surface:
-    """Friction and contact of ODE; those of other engines count where ODE's are not stated."""
-    if node is None:
-        return Surface(max_contacts=max_contacts)
-    # Stiffness as ODE's solver parameters, which kp and kd say as well.
-    for path in ("contact/ode/soft_cfm", "contact/ode/soft_erp", "bounce/threshold",
-                 "contact/collide_without_contact_bitmask", "contact/category_bitmask",
-                 "contact/poissons_ratio", "contact/elastic_modulus"):  # fmt: skip
-        node.find(path)
-    for tag in ("friction/bullet", "contact/bullet", "soft_contact"):
-        part = node.find(tag)
-        if part is not None:
-            part.mark()
-    direction = node.find("friction/ode/fdir1")
-    fdir1: Vec3 | None = direction.vec3() if direction is not None else None
-    if fdir1 is not None and not any(fdir1):
-        fdir1 = None  # what Gazebo writes where no direction is asked for
-    if direction is not None:
-        for prefix in ("gz", "ignition"):
-            direction.get(f"{prefix}:expressed_in")
-    torsional = node.find("friction/torsional")
-    coefficient: float | None = None
-    if torsional is not None:
-        for tag in ("use_patch_radius", "patch_radius", "surface_radius", "ode"):
-            part = torsional.child(tag)
-            if part is not None:
-                part.mark()
-        coefficient = torsional.optional_number_at("coefficient")
-    mask = node.find("contact/collide_bitmask")
-    numbers = {
-        key: _not_negative(node, path, ctx)
-        for key, path in (
-            ("mu1", "friction/ode/mu"),
-            ("mu2", "friction/ode/mu2"),
-            ("slip1", "friction/ode/slip1"),
-            ("slip2", "friction/ode/slip2"),
-            ("kp", "contact/ode/kp"),
-            ("kd", "contact/ode/kd"),
-            ("min_depth", "contact/ode/min_depth"),
-            ("restitution", "bounce/restitution_coefficient"),
-        )
-    }
-    return Surface(
-        fdir1=fdir1,
-        torsional=coefficient,
-        max_vel=node.optional_number_at("contact/ode/max_vel", infinite=True),
-        max_contacts=max_contacts,
-        collide_bitmask=_bitmask(mask),
-        collide_without_contact=node.boolean_at("contact/collide_without_contact", False),
-        mu1=numbers["mu1"],
-        mu2=numbers["mu2"],
-        slip1=numbers["slip1"],
-        slip2=numbers["slip2"],
-        kp=numbers["kp"],
-        kd=numbers["kd"],
-        min_depth=numbers["min_depth"],
-        restitution=numbers["restitution"],
-    )
-
-
-def _not_negative(node: Node, path: str, ctx: Context) -> float | None:
-    """A coefficient; -1, which some files write for "the default", is as if not stated."""
-    found = node.find(path)
-    if found is None:
-        return None
-    value = found.number(infinite=True)
-    if value < 0:
-        ctx.tell(
-            "warning", f"{found.tag} {found.text} is below 0: the default counts", found.origin
-        )
-        return None
-    return value
-
-
-def _bitmask(node: Node | None) -> int | None:
-    if node is None:
-        return None
-    try:
-        return int(node.text, 0)
-    except ValueError:
-        raise node.fail(f'collide_bitmask "{node.text}" is no whole number') from None
 
 
 def _sensor(node: Node, link: str, place: Place) -> Sensor:

@@ -330,6 +330,12 @@ def _flatten(model: Model, inner: Model) -> None:
             link,
             name=scoped(link.name),
             pose=base @ link.pose,
+            collisions=tuple(
+                replace(each, surface=replace(each.surface, fdir1_frame=scoped(frame)))
+                if (frame := each.surface.fdir1_frame)
+                else each
+                for each in link.collisions
+            ),
             sensors=tuple(
                 replace(
                     each, link=scoped(each.link), joint=scoped(each.joint) if each.joint else None

@@ -11,6 +11,7 @@ from cartwheel.description.sdf.context import Context, read_pose
 from cartwheel.description.sdf.light import read_light
 from cartwheel.description.sdf.material import read_material
 from cartwheel.description.sdf.sensors import read_sensor
+from cartwheel.description.sdf.surface import not_negative, read_surface
 from cartwheel.description.urdf.link import UrdfContext
 from cartwheel.description.xml import Node
 
@@ -39,18 +40,6 @@ _SURFACE = {
     "kd": "kd",
     "maxVel": "max_vel",
     "minDepth": "min_depth",
-}
-_SDF_SURFACE = {
-    "friction/ode/mu": "mu1",
-    "friction/ode/mu2": "mu2",
-    "friction/ode/slip1": "slip1",
-    "friction/ode/slip2": "slip2",
-    "friction/torsional/coefficient": "torsional",
-    "contact/ode/kp": "kp",
-    "contact/ode/kd": "kd",
-    "contact/ode/max_vel": "max_vel",
-    "contact/ode/min_depth": "min_depth",
-    "bounce/restitution_coefficient": "restitution",
 }
 
 
@@ -111,7 +100,11 @@ def read_link_tags(node: Node, link: str, tags: LinkTags, ctx: UrdfContext) -> N
         tags: What the tags before it said.
         ctx: Finds textures, and takes the diagnostics.
     """
-    _read_surface(node, _SURFACE, tags, ctx)
+    sdf = Context(ctx.packages, (1, 9), ctx.diagnostics)
+    for tag, name in _SURFACE.items():
+        value = not_negative(node.child(tag), sdf)
+        if value is not None:
+            tags.surface[name] = value
     contacts = node.child("maxContacts")
     if contacts is not None:
         tags.surface["max_contacts"] = contacts.integer()
@@ -123,14 +116,13 @@ def read_link_tags(node: Node, link: str, tags: LinkTags, ctx: UrdfContext) -> N
     if retro is not None:
         tags.laser_retro = retro
     _read_motion(node, tags)
-    sdf = Context(ctx.packages, (1, 9), ctx.diagnostics)
     material = node.child("material")
     if material is not None:
         tags.material = _material(material, sdf, ctx)
     for visual in node.all("visual"):
         _read_visual(visual, tags, sdf)
     for collision in node.all("collision"):
-        _read_collision(collision, tags, ctx)
+        _read_collision(collision, tags, sdf)
     seen = {sensor.name for sensor in tags.sensors}
     for sensor in node.all("sensor"):
         read = read_sensor(sensor, link)
@@ -149,20 +141,6 @@ def read_link_tags(node: Node, link: str, tags: LinkTags, ctx: UrdfContext) -> N
         for child in node.all(tag):
             child.mark()
             ctx.tell("warning", f"<{tag}> has no effect here: {reason}", child.origin)
-
-
-def _read_surface(node: Node, paths: dict[str, str], tags: LinkTags, ctx: UrdfContext) -> None:
-    for path, name in paths.items():
-        found = node.find(path)
-        if found is None:
-            continue
-        value = found.number()
-        if value < 0:
-            ctx.tell(
-                "warning", f"{found.tag} {found.text} is below 0: the default counts", found.origin
-            )
-            continue
-        tags.surface[name] = value
 
 
 def _read_motion(node: Node, tags: LinkTags) -> None:
@@ -222,7 +200,7 @@ def _read_visual(node: Node, tags: LinkTags, sdf: Context) -> None:
         tags.visual["laser_retro"] = retro
 
 
-def _read_collision(node: Node, tags: LinkTags, ctx: UrdfContext) -> None:
+def _read_collision(node: Node, tags: LinkTags, sdf: Context) -> None:
     contacts = node.child("max_contacts")
     if contacts is not None:
         tags.surface["max_contacts"] = contacts.integer()
@@ -232,13 +210,4 @@ def _read_collision(node: Node, tags: LinkTags, ctx: UrdfContext) -> None:
     surface = node.child("surface")
     if surface is None:
         return
-    _read_surface(surface, _SDF_SURFACE, tags, ctx)
-    bitmask = surface.find("contact/collide_bitmask")
-    if bitmask is not None:
-        try:
-            tags.surface["collide_bitmask"] = int(bitmask.text, 0)
-        except ValueError:
-            raise bitmask.fail(f'collide_bitmask "{bitmask.text}" is no whole number') from None
-    tags.surface["collide_without_contact"] = surface.boolean_at(
-        "contact/collide_without_contact", False
-    )
+    tags.surface.update(read_surface(surface, sdf))

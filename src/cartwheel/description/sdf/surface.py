@@ -1,0 +1,101 @@
+"""SDF's ``<surface>``: how a collision touches."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from cartwheel.description.sdf.context import Context
+from cartwheel.description.xml import Node
+
+_NUMBERS = {
+    "friction/ode/mu": "mu1",
+    "friction/ode/mu2": "mu2",
+    "friction/ode/slip1": "slip1",
+    "friction/ode/slip2": "slip2",
+    "friction/torsional/coefficient": "torsional",
+    "contact/ode/kp": "kp",
+    "contact/ode/kd": "kd",
+    "contact/ode/min_depth": "min_depth",
+    "bounce/restitution_coefficient": "restitution",
+}
+_BITMASKS = {
+    "contact/collide_bitmask": "collide_bitmask",
+    "contact/category_bitmask": "category_bitmask",
+}
+_OTHERWISE = (
+    # Stiffness as ODE's solver parameters, which kp and kd say as well.
+    "contact/ode/soft_cfm", "contact/ode/soft_erp", "contact/poissons_ratio",
+    "contact/elastic_modulus", "contact/collide_without_contact_bitmask",
+    "bounce/threshold",
+    # Of other engines.
+    "friction/bullet", "contact/bullet", "soft_contact", "friction/torsional/ode",
+)  # fmt: skip
+_BITS = 0xFFFFFFFF
+
+
+def read_surface(node: Node, ctx: Context) -> dict[str, Any]:
+    """The fields of `Surface` that a ``<surface>`` states: friction and contact as ODE has them.
+
+    Raises:
+        DescriptionError: a value that makes no sense.
+    """
+    for path in _OTHERWISE:
+        part = node.find(path)
+        if part is not None:
+            part.mark()
+    fields: dict[str, Any] = {}
+    for path, name in _NUMBERS.items():
+        value = not_negative(node.find(path), ctx)
+        if value is not None:
+            fields[name] = value
+    for path, name in _BITMASKS.items():
+        found = node.find(path)
+        if found is not None:
+            fields[name] = _bitmask(found)
+    limit = node.find("contact/ode/max_vel")
+    if limit is not None:
+        fields["max_vel"] = limit.number(infinite=True)
+    without = node.find("contact/collide_without_contact")
+    if without is not None:
+        fields["collide_without_contact"] = without.boolean()
+    direction = node.find("friction/ode/fdir1")
+    if direction is not None:
+        vector = direction.vec3()
+        # 0 0 0 is what Gazebo writes where no direction is asked for.
+        fields["fdir1"] = vector if any(vector) else None
+        for prefix in ("gz", "ignition"):
+            stated = (direction.get(f"{prefix}:expressed_in") or "").strip()
+            if stated:
+                fields["fdir1_frame"] = stated
+    fields.update(_patch(node))
+    return fields
+
+
+def not_negative(node: Node | None, ctx: Context) -> float | None:
+    """A coefficient; -1, which some files write for "the default", is as if not stated."""
+    if node is None:
+        return None
+    value = node.number(infinite=True)
+    if value < 0:
+        ctx.tell("warning", f"{node.tag} {node.text} is below 0: the default counts", node.origin)
+        return None
+    return value
+
+
+def _patch(node: Node) -> dict[str, Any]:
+    """The size of the area on which a surface touches, which decides what a turn meets."""
+    torsional = node.find("friction/torsional")
+    if torsional is None:
+        return {}
+    patch = torsional.number_at("patch_radius", 0.0)
+    surface = torsional.number_at("surface_radius", 0.0)
+    if torsional.boolean_at("use_patch_radius", True):
+        return {"patch_radius": max(0.0, patch)}
+    return {"surface_radius": surface} if surface > 0 else {}
+
+
+def _bitmask(node: Node) -> int:
+    try:
+        return int(node.text, 0) & _BITS
+    except ValueError:
+        raise node.fail(f'{node.tag} "{node.text}" is no whole number') from None

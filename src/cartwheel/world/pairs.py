@@ -1,0 +1,155 @@
+"""Pairs of geoms that are stated one by one: what two surfaces have of each other.
+
+MuJoCo takes a contact's parameters from one of its geoms. Three things a pair has to say itself:
+a softer friction where a body slides, friction that differs by direction, and friction against
+turning on the spot.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import mujoco
+
+from cartwheel.geometry import Vec3
+from cartwheel.world import contact
+from cartwheel.world.contact import BuiltSurface
+
+MOST_PAIRS = 500
+"""Pairs with parameters of their own; each costs 6 ns a step."""
+_MESH_AREA = 1.0
+_PATCH = 3 * math.pi / 16
+"""Of a round patch pressed as a sphere presses: the mean arm of its friction, of its radius."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Alignment:
+    """In which directions the two coefficients of a pair count."""
+
+    first: str
+    second: str
+    """Geoms."""
+    body: str | None
+    """Whose axes `direction` is in; None for the world's, chosen as ODE does."""
+    direction: Vec3
+    across: bool
+    """Whether the pair's first coefficient counts across the direction, not along it."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Pair:
+    """Two geoms that may touch, and how."""
+
+    first: BuiltSurface
+    second: BuiltSurface
+    friction: tuple[float, float]
+    """The larger coefficient first: the engine scales by it."""
+    torsion: float
+    """m; the greatest torque about the normal, of the normal force."""
+    reference: tuple[float, float]
+    friction_time: float | None
+    """s, in which a slip dies out; None for as hard as the contact."""
+    alignment: Alignment | None = None
+
+    def arguments(self) -> dict[str, Any]:
+        """Of ``MjSpec.add_pair``."""
+        _, _, rolling = contact.friction(self.first.surface)
+        found: dict[str, Any] = {
+            "geomname1": self.first.name,
+            "geomname2": self.second.name,
+            "condim": 4 if self.torsion else 3,
+            "friction": [*self.friction, self.torsion or contact.TORSION, rolling, rolling],
+            "solref": list(self.reference),
+            "solimp": list(contact.IMPEDANCE),
+        }
+        if self.friction_time is not None:
+            found["solreffriction"] = [self.friction_time, 1.0]
+        return found
+
+
+def stated_pairs(surfaces: Iterable[BuiltSurface]) -> Iterator[Pair]:
+    """Moving geoms with those of other models, where the two have something of their own.
+
+    In MuJoCo's convex contact model a sliding body is lifted: one that slides at v hovers at
+    mu v b/k, with b the damping of friction and k the stiffness of the normal, and skips. Only
+    a pair stated by itself can have a b of its own; what slides, slides on what stands.
+    A wheel keeps the hard one: in a turn at rate ω it slips sideways by ω v/b.
+
+    Each pair is looked at in each step, near or far: a world with more than `MOST_PAIRS` states
+    those of its largest floors, and what slides on something smaller is lifted.
+    """
+    surfaces = list(surfaces)
+    special = any(map(_special, surfaces))
+    movers = [each for each in surfaces if each.moves and (special or not each.rolls)]
+    standing = [each for each in surfaces if not each.moves]
+    if movers and len(movers) * len(standing) > MOST_PAIRS:
+        standing.sort(key=_floor_area, reverse=True)
+        standing = standing[: max(1, MOST_PAIRS // len(movers))]
+    count = 0
+    for mover in movers:
+        for still in standing:
+            if (pair := _pair(still, mover)) is not None:
+                count += 1
+                yield pair
+    for index, first in enumerate(movers if special else ()):
+        for second in movers[index + 1 :]:
+            if count >= MOST_PAIRS:
+                return
+            if _special(first) or _special(second):
+                pair = _pair(first, second)
+                if pair is not None:
+                    count += 1
+                    yield pair
+
+
+def _special(surface: BuiltSurface) -> bool:
+    mu1, mu2 = contact.coefficients(surface.surface)
+    return mu1 != mu2 or bool(surface.surface.patch_radius)
+
+
+def _pair(first: BuiltSurface, second: BuiltSurface) -> Pair | None:
+    if first.model == second.model or not contact.masks_fit(first.surface, second.surface):
+        return None
+    a, b = first.surface, second.surface
+    rules = first if first.friction[0] < second.friction[0] else second
+    mu1, mu2 = map(min, contact.coefficients(a), contact.coefficients(b))
+    torsion = min(1.0 if s.torsional is None else s.torsional for s in (a, b))
+    torsion *= _PATCH * max(s.patch_radius or 0.0 for s in (a, b))
+    slides = not first.moves and not second.rolls
+    if mu1 == mu2 and not torsion and not slides:
+        return None
+    return Pair(
+        first=first,
+        second=second,
+        friction=(max(mu1, mu2), min(mu1, mu2)),
+        torsion=torsion,
+        reference=rules.reference,
+        friction_time=contact.FRICTION_TIME_CONSTANT if slides else None,
+        alignment=_alignment(first, second, across=mu2 > mu1) if mu1 != mu2 else None,
+    )
+
+
+def _alignment(first: BuiltSurface, second: BuiltSurface, *, across: bool) -> Alignment:
+    """By the direction of the surface with the smaller mu1 where both have one, as Gazebo means."""
+    by_mu1 = sorted((first, second), key=lambda each: contact.coefficients(each.surface)[0])
+    stated = [each.direction for each in by_mu1 if each.direction is not None]
+    body, direction = stated[0] if stated else (None, (0.0, 0.0, 0.0))
+    return Alignment(
+        first=first.name, second=second.name, body=body, direction=direction, across=across
+    )
+
+
+def _floor_area(surface: BuiltSurface) -> float:
+    """How much there is to slide on, m²: of a box the largest face that may lie level."""
+    geom, kind = surface.geom, mujoco.mjtGeom
+    if geom.type in (kind.mjGEOM_PLANE, kind.mjGEOM_HFIELD):
+        return math.inf
+    if geom.type == kind.mjGEOM_BOX:
+        return float(4 * geom.size[0] * geom.size[1])
+    if geom.type == kind.mjGEOM_CYLINDER:
+        return float(math.pi * geom.size[0] ** 2)
+    # A mesh's size is known to the compiler alone; it may well be a floor.
+    return _MESH_AREA if geom.type == kind.mjGEOM_MESH else 0.0
