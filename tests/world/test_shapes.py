@@ -1,6 +1,7 @@
 """Shapes that the engine takes only after they are made over."""
 
 import mujoco
+import numpy as np
 import pytest
 
 
@@ -43,3 +44,77 @@ def test_what_turns_without_end_about_its_own_axis_has_a_tyre(make, kind, limit,
     geom = make.world(cart).session.simulation.model.geom("cart::wheel::c")
     kinds = mujoco.mjtGeom
     assert geom.type == (kinds.mjGEOM_ELLIPSOID if crowned else kinds.mjGEOM_CYLINDER)
+
+
+def wheel(make, geometry, *, pose="0 0 0 -1.5708 0 0", fixed=False):
+    """The type and the half sizes of a wheel's geom that turns about y; maybe fixed to its hub."""
+    tyre = f'<collision name="c"><pose>{pose}</pose><geometry>{geometry}</geometry></collision>'
+    turning = (
+        '<joint name="j" type="continuous"><parent>base</parent><child>{}</child>'
+        "<axis><xyz>0 1 0</xyz></axis></joint>"
+    )
+    parts = f'<link name="wheel">{tyre}</link>' + turning.format("wheel")
+    if fixed:
+        parts = (
+            '<link name="hub"><pose>0 0.2 0 0 0 0.5</pose></link>' + turning.format("hub")
+            + f'<link name="wheel"><pose>0 0.2 0 0 0 0.5</pose>{tyre}</link><joint name="k" '
+            'type="fixed"><parent>hub</parent><child>wheel</child></joint>'
+        )  # fmt: skip
+    cart = make.sdf(f'<model name="cart"><link name="base"/>{parts}</model>')
+    model = make.world(cart).session.simulation.model
+    geom = model.geom("cart::wheel::c")
+    return geom.type[0], geom.size, geom.pos
+
+
+CYLINDER = "<cylinder><radius>0.1</radius><length>0.04</length></cylinder>"
+
+
+@pytest.mark.parametrize(
+    ("pose", "crowned"),
+    [
+        ("0.001 0 0 -1.57 0 0", True),
+        ("0 0.05 0 -1.5708 0 0", True),
+        ("0.03 0 0 -1.5708 0 0", False),
+        ("0 0 0 -1.3 0 0", False),
+    ],
+)
+def test_a_wheel_may_be_drawn_a_little_askew(make, pose, crowned):
+    kind, _, place = wheel(make, CYLINDER, pose=pose)
+    assert (kind == mujoco.mjtGeom.mjGEOM_ELLIPSOID) == crowned
+    assert place == pytest.approx([float(value) for value in pose.split()[:3]])
+
+
+def test_a_tyre_that_is_fixed_to_its_hub_is_one(make):
+    kind, size, _ = wheel(make, CYLINDER, fixed=True)
+    assert kind == mujoco.mjtGeom.mjGEOM_ELLIPSOID
+    assert size == pytest.approx([0.1, 0.1, 0.02])
+
+
+def prism(tmp_path, sides, *, hub=0.0):
+    """A mesh about y of that many sides, radius 0.1 m from y = 0.01 to 0.05, and a thin hub."""
+    lines = []
+    rings = [(0.1, 0.01), (0.1, 0.05)] + ([(0.02, 0.05 + hub)] if hub else [])
+    for radius, y in rings:
+        for i in range(sides):
+            a = 2 * np.pi * i / sides
+            lines.append(f"v {radius * np.cos(a)} {y} {radius * np.sin(a)}")
+    for ring in range(len(rings) - 1):
+        for i in range(sides):
+            a, b = ring * sides + i + 1, ring * sides + (i + 1) % sides + 1
+            lines += [f"f {a} {b} {a + sides}", f"f {b} {b + sides} {a + sides}"]
+    path = tmp_path / f"prism{sides}.obj"
+    path.write_text("\n".join(lines))
+    return f"<mesh><uri>{path}</uri></mesh>"
+
+
+@pytest.mark.parametrize("hub", [0.0, 0.03])
+def test_a_mesh_that_is_round_about_its_axle_is_a_tyre_as_wide_as_its_tread(make, tmp_path, hub):
+    kind, size, place = wheel(make, prism(tmp_path, 32, hub=hub), pose="0 0 0 0 0 0")
+    assert kind == mujoco.mjtGeom.mjGEOM_ELLIPSOID
+    assert size == pytest.approx([0.1, 0.1, 0.02], rel=1e-3)
+    assert place == pytest.approx([0, 0.03, 0], abs=1e-6)
+
+
+def test_a_mesh_with_corners_stays_one(make, tmp_path):
+    kind, _, _ = wheel(make, prism(tmp_path, 6), pose="0 0 0 0 0 0")
+    assert kind == mujoco.mjtGeom.mjGEOM_MESH

@@ -41,6 +41,7 @@ from cartwheel.world.entry import (
     scoped,
 )
 from cartwheel.world.shapes import Assets, place, pose_arguments, solids
+from cartwheel.world.tyres import Axle, axle_of, tyre
 
 VISUAL_GROUP = 1
 COLLISION_GROUP = 4
@@ -91,7 +92,8 @@ class BodyBuilder:
         links = {link.name: link for link in description.links}
         senses = bool(description.plugins) or any(link.sensors for link in description.links)
 
-        def grow(link: Link, parent: Any, pose: Pose, joint: Joint | None, moves: bool) -> None:
+        def grow(link: Link, parent: Any, pose: Pose, moves: bool, axle: Axle | None) -> None:
+            joint = inbound.get(link.name)
             body = parent.add_body(name=scoped(entry.name, link.name), **pose_arguments(pose))
             bodies[link.name] = body
             roots = moves and joint is None
@@ -102,17 +104,20 @@ class BodyBuilder:
             if roots and senses:
                 # A body asleep has no accelerations and no contacts to be read.
                 body.sleep = mujoco.mjtSleepPolicy.mjSLEEP_NEVER
-            self._fill(entry, body, link, joint, moves=moves)
+            # A tyre may be fixed to a hub.
+            held = joint is not None and joint.type == "fixed" and axle is not None
+            axle = axle.seen_from(pose) if held and axle is not None else axle_of(joint)
+            self._fill(entry, body, link, axle, moves=moves)
             for next_joint in children.get(link.name, ()):
                 child = links[next_joint.child]
-                grow(child, body, link.pose.inverse() @ child.pose, next_joint, moves)
+                grow(child, body, link.pose.inverse() @ child.pose, moves, axle)
 
         for link in description.links:
             if link.name in inbound and inbound[link.name].parent != "world":
                 continue
             anchor = inbound.get(link.name)
             free = anchor is None and not description.static and not link.kinematic
-            grow(link, self._spec.worldbody, entry.pose @ link.pose, anchor, free)
+            grow(link, self._spec.worldbody, entry.pose @ link.pose, free, None)
             if free:
                 bodies[link.name].add_freejoint(name=scoped(entry.name, link.name))
         lost = [link for link in description.links if link.name not in bodies]
@@ -133,7 +138,7 @@ class BodyBuilder:
             self._add_camera(entry, bodies[camera.link], camera)
 
     def _fill(
-        self, entry: ModelEntry, body: Any, link: Link, joint: Joint | None, *, moves: bool
+        self, entry: ModelEntry, body: Any, link: Link, axle: Axle | None, *, moves: bool
     ) -> None:
         if link.inertial is not None:
             _set_inertial(body, link.inertial)
@@ -143,7 +148,7 @@ class BodyBuilder:
             self._add_visual(body, visual)
         for collision in link.collisions:
             name = scoped(entry.name, link.name, collision.name)
-            shape = contact.tyre(collision, joint)
+            shape, place = tyre(collision, axle)
             if isinstance(shape, Plane) and not entry.description.static:
                 raise WorldError(
                     f'collision "{collision.name}": an endless plane must be static',
@@ -152,7 +157,7 @@ class BodyBuilder:
                 )
             # The base of an arm is its hull as its other links are: nothing is put into one.
             whole = moves or not entry.description.static
-            parts = solids(shape, collision.pose, collision.origin, self._assets, moves=whole)
+            parts = solids(shape, place, collision.origin, self._assets, moves=whole)
             friction = contact.friction(collision.surface)
             reference = contact.reference(collision.surface, entry.description.mass, self._step)
             category, collide = contact.masks(collision.surface)
@@ -177,7 +182,7 @@ class BodyBuilder:
                         name=part_name(name, number),
                         model=entry.name,
                         moves=moves,
-                        rolls=contact.rolls(joint),
+                        rolls=axle is not None,
                         friction=friction,
                         reference=reference,
                         surface=collision.surface,

@@ -17,8 +17,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
-from cartwheel.description.model import Collision, Cylinder, Ellipsoid, Joint, Shape, Surface
-from cartwheel.geometry import Vec3, rotate
+from cartwheel.description.model import Surface
+from cartwheel.geometry import Vec3
 
 DEFAULT_MU = 1.0
 """Where a description states none, as in Gazebo."""
@@ -109,36 +109,6 @@ def reference(surface: Surface, mass: float, step: float) -> tuple[float, float]
     shortest = max(STIFFEST_TIME_CONSTANT, 2 * step)
     constant = min(max(1 / (ratio * omega), shortest), SOFTEST_TIME_CONSTANT)
     return constant, min(ratio, 10.0)
-
-
-def tyre(collision: Collision, joint: Joint | None) -> Shape:
-    """The shape that collides: a cylinder that turns about its own axis touches as a tyre does.
-
-    A cylinder meets the ground in two points, at the ends of a line. In a turn both must
-    slide, in opposite senses, and any traction then makes one of them stick: the wheel
-    turns about the one or the other end and the cart's heading depends on which. A crowned
-    tyre, an ellipsoid of the same radius and width, touches in the middle.
-    """
-    shape = collision.shape
-    if not isinstance(shape, Cylinder) or joint is None or not rolls(joint):
-        return shape
-    axis = rotate(joint.pose.orientation, joint.axis.xyz)
-    own = rotate(collision.pose.orientation, (0.0, 0.0, 1.0))
-    along = sum(a * b for a, b in zip(axis, own, strict=True))
-    arm = [a - b for a, b in zip(collision.pose.position, joint.pose.position, strict=True)]
-    on_axis = sum(a * b for a, b in zip(arm, axis, strict=True))
-    off_axis = math.sqrt(max(0.0, sum(a * a for a in arm) - on_axis**2))
-    if abs(along) < 0.9999 or off_axis > 1e-3 * shape.radius:
-        return shape
-    return Ellipsoid(radii=(shape.radius, shape.radius, shape.length / 2))
-
-
-def rolls(joint: Joint | None) -> bool:
-    """Whether a joint turns without end, as a wheel's: in SDF a revolute one without limits."""
-    if joint is None:
-        return False
-    unlimited = joint.axis.lower is None and joint.axis.upper is None
-    return joint.type == "continuous" or (joint.type == "revolute" and unlimited)
 
 
 def priorities(coefficients: Iterable[float]) -> dict[float, int]:
