@@ -2,9 +2,10 @@
 VENV ?= .venv
 BIN = $(VENV)/bin
 ARGS ?=
+FOLDER ?= robots
 export VENV
 
-.PHONY: run test lint format bench docs ros1 clean
+.PHONY: run test lint format bench corpus docs ros1 clean
 
 run: ## the cart in the browser, with a post before its camera
 	@tools/setup.sh run
@@ -28,6 +29,10 @@ format: ## rewrite the sources in the house's format
 bench: ## speed against the bare physics loop, as a table and benchmarks/results/*.json
 	@tools/setup.sh test
 	@$(BIN)/python -m benchmarks $(ARGS)
+
+corpus: ## a table of all robots below FOLDER: do they load, stand, publish, drive and reach?
+	@tools/setup.sh run
+	@$(BIN)/cartwheel corpus $(FOLDER) $(ARGS)
 
 docs: ## the parts of docs/ that are made from the code
 	@tools/setup.sh lint

@@ -25,6 +25,7 @@ MAY_IMPORT = {
     "gazebo": {"description", "world", "simulation", "messages", "graph", "plugins", "session"},
     "bridges": {"messages", "graph"},
     "playback": {"description", "simulation", "messages", "graph", "bridges"},
+    "corpus": {"description", "simulation", "messages", "graph", "plugins", "api"},
     "cli": {
         "description",
         "world",
@@ -39,6 +40,7 @@ MAY_IMPORT = {
         "playback",
         "api",
         "plugins",
+        "corpus",
     },
 }
 

@@ -9,6 +9,7 @@ import typer
 from cartwheel.cli import (
     check,
     control,
+    corpus,
     files,
     info,
     model,
@@ -51,6 +52,7 @@ def options(
 run.add_to(app)
 files.add_to(app)
 check.add_to(app)
+corpus.add_to(app)
 info.add_to(app)
 play.add_to(app)
 model.add_to(app)

@@ -80,7 +80,7 @@ class Report:
                 self._line("robot", f"{name}, {description.mass:.4g} kg, {parts}")
         started = ControllerFiles.of(session.graph).started
         if started:
-            self._line("control", ", ".join(started))
+            self._line("control", ", ".join(each.name for each in started))
         elif name is not None and not ros:
             self._controllers(session, name)
         told = session.diagnostics if self._verbose else grouped(session.diagnostics)

@@ -6,12 +6,17 @@ import weakref
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
+from cartwheel.description.model import RobotDescription
 from cartwheel.errors import Origin, PluginError
 from cartwheel.graph import Graph
+from cartwheel.plugins.control.launch_arguments import launch_arguments
 from cartwheel.plugins.control.settings import Settings, merge
 from cartwheel.plugins.control.substitution import substitute
+
+if TYPE_CHECKING:
+    from cartwheel.plugins.control.controller import Controller
 
 _ROS2 = "ros__parameters"
 
@@ -44,8 +49,8 @@ class ControllerFiles:
 
     def __init__(self) -> None:
         self.paths: tuple[Path, ...] = ()
-        self.started: list[str] = []
-        """What managers took from them, for those who tell the user."""
+        self.started: list[Controller] = []
+        """What managers started by themselves, for those who tell the user."""
 
     @classmethod
     def of(cls, graph: Graph) -> ControllerFiles:
@@ -114,17 +119,28 @@ def read_yaml(path: Path) -> dict[str, Any]:
     return content
 
 
-def read_ros2(path: Path, arguments: Mapping[str, str]) -> dict[str, Any]:
+def for_robot(content: dict[str, Any], path: Path, robot: RobotDescription) -> dict[str, Any]:
+    """A file's content with what launch files put into it.
+
+    Raises:
+        PluginError: As `substitute`.
+    """
+    arguments = launch_arguments(content, robot)
+    filled: dict[str, Any] = substitute(content, path, arguments)
+    return filled
+
+
+def read_ros2(path: Path, robot: RobotDescription) -> dict[str, Any]:
     """A file of ROS 2's nodes, with what launch files put into it.
 
     Args:
         path: Of the file.
-        arguments: Of the robot, by name.
+        robot: Whose controllers it has.
 
     Raises:
-        PluginError: As `read_yaml` and `substitute`, or it is no such file.
+        PluginError: As `read_yaml` and `for_robot`, or it is no such file.
     """
-    content: dict[str, Any] = substitute(read_yaml(path), path, arguments)
+    content = for_robot(read_yaml(path), path, robot)
     if content and not is_ros2(content):
         raise PluginError(
             f"{path} has no ros__parameters, and the robot has ros2_control",

@@ -81,10 +81,10 @@ class ControlPlugin(Plugin[Any]):
         assert manager is not None
         for entry in entries:
             try:
-                manager.load(entry.name, entry.settings(), entry.type)
+                controller = manager.load(entry.name, entry.settings(), entry.type)
                 manager.switch([entry.name], [])
             except CartwheelError as error:
                 hint = f". {error.hint}" if error.hint else ""
                 self.warn(f"controller {entry.name} was not started: {error.message}{hint}")
             else:
-                ControllerFiles.of(self.graph).started.append(entry.name)
+                ControllerFiles.of(self.graph).started.append(controller)

@@ -79,7 +79,7 @@ class Ros2Control(ControlPlugin):
         self.namespace = self.namespace.strip("/")
         own = ControllerFiles.of(self.graph).take()
         paths = [*(self._path(text) for text in config.files), *own]
-        contents = [read_ros2(path, part.description.arguments) for path in paths]
+        contents = [read_ros2(path, part.description) for path in paths]
         found = ros2_file(contents, self.namespace, config.manager)
         source = ", ".join(str(path) for path in paths)
         if found.elsewhere and not found.manager:

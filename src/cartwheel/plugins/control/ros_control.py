@@ -11,6 +11,7 @@ from cartwheel.plugins.control.controller import Rig
 from cartwheel.plugins.control.files import (
     ControllerEntry,
     ControllerFiles,
+    for_robot,
     is_ros2,
     read_parameters,
     ros1_entries,
@@ -21,7 +22,6 @@ from cartwheel.plugins.control.pid import Gains
 from cartwheel.plugins.control.plugin import ControlPlugin
 from cartwheel.plugins.control.services import ManagerServices
 from cartwheel.plugins.control.settings import Settings
-from cartwheel.plugins.control.substitution import substitute
 from cartwheel.plugins.parameters import tag
 
 _PLAIN = ("gazebo_ros_control/DefaultRobotHWSim", "DefaultRobotHWSim", "")
@@ -66,7 +66,7 @@ class RosControl(ControlPlugin):
             )
         self.namespace = self.namespace.strip("/")
         contents = [
-            (str(path), substitute(read_parameters(path), path, part.description.arguments))
+            (str(path), for_robot(read_parameters(path), path, part.description))
             for path in ControllerFiles.of(self.graph).take()
         ]
         entries = [entry for path, content in contents for entry in self._load(path, content)]

@@ -1,0 +1,169 @@
+"""A table of robots: loaded, mass, plugins, standing, driving, speed; or the same as JSON."""
+
+from __future__ import annotations
+
+import json as json_module
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from cartwheel.cli.console import note, paint, say, table
+from cartwheel.corpus import Verdict, robots_in, try_robot
+from cartwheel.description.xml import shown_path
+from cartwheel.errors import CartwheelError
+
+SCHEMA = 1
+_HEAD = (
+    "robot", "loaded", "mass", "stands", "drives", "turns", "reaches", "topics", "speed", "plugins",
+)  # fmt: skip
+
+
+def corpus(
+    folders: Sequence[Path], package_path: Sequence[Path], *, json: bool, standing: float
+) -> int:
+    """Tries all robots; returns the status: 0 where all are good, else 1.
+
+    Args:
+        folders: With robots at any depth, or single files.
+        package_path: Where packages are looked for first.
+        json: Whether a program reads it.
+        standing: s that each is left alone.
+
+    Raises:
+        CartwheelError: There is no robot.
+    """
+    files = [file for folder in folders for file in _robots(folder, package_path)]
+    verdicts = []
+    for number, file in enumerate(files, start=1):
+        note(paint(f"{number} of {len(files)}: {shown_path(file)}", "dim"))
+        verdicts.append(_tried(file, package_path, standing))
+    if json:
+        say(json_module.dumps([as_mapping(verdict) for verdict in verdicts], indent=2))
+    else:
+        _show(verdicts)
+    return int(not all(verdict.good for verdict in verdicts))
+
+
+def as_mapping(verdict: Verdict) -> dict[str, Any]:
+    """A verdict in the form that docs/corpus.md promises."""
+    stand = verdict.stand
+    return {
+        "schema": SCHEMA,
+        "file": str(verdict.file),
+        "name": verdict.name,
+        "good": verdict.good,
+        "loaded": verdict.loaded,
+        "error": verdict.error,
+        "mass": _number(verdict.mass),
+        "links": verdict.links,
+        "missing_meshes": verdict.missing_meshes,
+        "plugins": list(verdict.plugins),
+        "missing_plugins": list(verdict.missing),
+        "controllers": list(verdict.controllers),
+        "controller_files": [str(path) for path in verdict.controller_files],
+        "stands": stand and {
+            "state": stand.state,
+            "sunk": stand.sunk,
+            "tilt": stand.tilt,
+            "speed": stand.speed,
+            "turn": stand.turn,
+        },
+        "topics": verdict.topics,
+        "silent_topics": list(verdict.silent),
+        "drives": [
+            {
+                "topic": each.topic,
+                "commanded": each.commanded,
+                "measured": each.measured,
+                "commanded_turn": each.commanded_turn,
+                "measured_turn": each.measured_turn,
+            }
+            for each in verdict.drives
+        ],
+        "reaches": [
+            {
+                "controller": each.controller,
+                "joint": each.joint,
+                "target": each.target,
+                "reached": each.reached,
+            }
+            for each in verdict.reaches
+        ],
+        "speed": _number(verdict.speed),
+        "diagnostics": [str(each) for each in verdict.diagnostics],
+    }  # fmt: skip
+
+
+def _robots(folder: Path, package_path: Sequence[Path]) -> list[Path]:
+    if not folder.exists():
+        raise CartwheelError(f"{folder} does not exist")
+    found = robots_in(folder, package_path=package_path)
+    if not found:
+        raise CartwheelError(
+            f"{folder} holds no robot", hint="Expected are .xacro, .urdf or .sdf files below it."
+        )
+    return found
+
+
+def _tried(file: Path, package_path: Sequence[Path], standing: float) -> Verdict:
+    try:
+        return try_robot(file, package_path=package_path, standing=standing)
+    except Exception as error:  # noqa: BLE001 - the others are tried all the same
+        return replace(Verdict(file=file), error=f"a fault of Cartwheel: {error!r}")
+
+
+def _show(verdicts: Sequence[Verdict]) -> None:
+    head, *lines = table([_HEAD, *map(_row, verdicts)]).splitlines()
+    say(paint(head, "dim"))
+    for line in lines:
+        say(line)
+    failed = [verdict for verdict in verdicts if verdict.error]
+    if failed:
+        say()
+    for verdict in failed:
+        say(f"{paint(shown_path(verdict.file), 'bold')}: {paint('error:', 'red', 'bold')}")
+        say(f"  {verdict.error}")
+    missing = sorted({name for verdict in verdicts for name in verdict.missing})
+    if missing:
+        say()
+        for name in missing:
+            users = sum(name in verdict.missing for verdict in verdicts)
+            say(f"missing plugin {name}: {users} robot{'s' if users != 1 else ''}")
+    good = sum(verdict.good for verdict in verdicts)
+    say(f"\n{good} of {len(verdicts)} robots load and do all they should")
+
+
+def _row(verdict: Verdict) -> tuple[str, ...]:
+    loaded = "yes" if verdict.loaded else "no"
+    if verdict.loaded and verdict.missing_meshes:
+        loaded = f"{verdict.missing_meshes} meshes missing"
+    stand = verdict.stand
+    state = stand.state if stand is not None else "-"
+    if verdict.loaded and verdict.error and stand is None:
+        state = "diverges"
+    worst = max(verdict.reaches, key=lambda each: abs(each.error), default=None)
+    plugins = f"{len(verdict.plugins)} act"
+    if verdict.missing:
+        plugins += f", missing {', '.join(verdict.missing)}"
+    return (
+        shown_path(verdict.file),
+        loaded,
+        "-" if math.isnan(verdict.mass) else f"{verdict.mass:.4g} kg",
+        state,
+        _listed([f"{each.error:+.1%}" for each in verdict.drives]),
+        _listed([f"{each.error_turn:+.1%}" for each in verdict.drives]),
+        "-" if worst is None else f"{abs(worst.error):.3f} {'rad' if worst.angular else 'm'}",
+        f"{verdict.topics - len(verdict.silent)} of {verdict.topics}",
+        "-" if math.isnan(verdict.speed) else f"{verdict.speed:.3g}x",
+        plugins,
+    )
+
+
+def _listed(words: Sequence[str]) -> str:
+    return ", ".join(words) or "-"
+
+
+def _number(value: float) -> float | None:
+    return None if math.isnan(value) else value

@@ -1,0 +1,7 @@
+"""Robots that somebody else wrote, tried one by one: what `cartwheel corpus` tells of a folder."""
+
+from cartwheel.corpus.finding import robots_in
+from cartwheel.corpus.trial import try_robot
+from cartwheel.corpus.verdict import Drive, Reach, Stand, Verdict
+
+__all__ = ["Drive", "Reach", "Stand", "Verdict", "robots_in", "try_robot"]

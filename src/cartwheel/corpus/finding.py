@@ -1,0 +1,88 @@
+"""The robots in a folder: the files that a user would name, not those that these include."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from cartwheel.description.loading import open_description, understand
+from cartwheel.errors import DescriptionError
+
+_SUFFIXES = (".xacro", ".urdf", ".sdf")
+_SKIPPED = frozenset({"build", "devel", "install", "log", "node_modules", "__pycache__", "worlds"})
+_COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
+_ROOT = re.compile(r"<(robot|sdf|gazebo)\b")
+_INCLUDE = re.compile(
+    r"""<(?:xacro:)?include\b[^>]*?\bfilename\s*=\s*["']([^"']+)["']""", re.DOTALL
+)
+_FIND = re.compile(r"\$\(find(?:-pkg-share)?\s+([^\s()]+)\s*\)")
+_VARIABLE = re.compile(r"\$\{[^}]*\}|\$\([^)]*\)")
+
+
+def robots_in(folder: Path, *, package_path: Sequence[Path] = ()) -> list[Path]:
+    """The descriptions in a folder and below that stand for themselves, in order of their paths.
+
+    Left out are worlds, files that only define macros, and parts: what another description of
+    the folder includes and is no whole robot without it. Any other file that cannot be read is
+    kept: its trial says why.
+
+    Args:
+        folder: Or one description, which is then the only one.
+        package_path: Further folders in which packages are looked for.
+    """
+    if folder.is_file():
+        return [folder]
+    texts = {path: text for path in _files(folder) if (text := _text(path)) is not None}
+    names = {name for text in texts.values() for name in _INCLUDE.findall(text)}
+    included = [pattern for name in names if (pattern := _pattern(name)) is not None]
+    return [
+        path
+        for path in texts
+        if _is_robot(path, package_path, part=any(one.search(path.as_posix()) for one in included))
+    ]
+
+
+def _files(folder: Path) -> Iterator[Path]:
+    for root, folders, names in os.walk(folder):
+        folders[:] = sorted(
+            name for name in folders if not name.startswith(".") and name not in _SKIPPED
+        )
+        for name in sorted(names):
+            if name.endswith(_SUFFIXES):
+                yield Path(root, name)
+
+
+def _text(path: Path) -> str | None:
+    """A description's text without its comments; None for any other file."""
+    try:
+        text = _COMMENT.sub("", path.read_text(encoding="utf-8", errors="replace"))
+    except OSError:
+        return None
+    return text if _ROOT.search(text) else None
+
+
+def _pattern(name: str) -> re.Pattern[str] | None:
+    """What the path of an included file ends with; None where nothing of it is known."""
+    known = _VARIABLE.sub("*", _FIND.sub(r"\1", name.strip()))
+    known = known.removeprefix("file://").removeprefix("package://").lstrip("./")
+    parts = [re.escape(part).replace(r"\*", "[^/]*") for part in known.split("/") if part]
+    if not re.search(r"\w", known.removesuffix(".xacro").removesuffix(".urdf")):
+        return None
+    return re.compile("/" + "/".join(parts) + "$")
+
+
+def _is_robot(path: Path, package_path: Sequence[Path], *, part: bool) -> bool:
+    try:
+        opened = open_description(path, {}, package_path)
+        root = opened.root
+        if root.tag != "robot":
+            return root.tag in ("sdf", "gazebo") and bool(root.all("model"))
+        if not root.all("link"):
+            return False
+        if part:
+            understand(opened, "warn")
+    except DescriptionError:
+        return not part
+    return True

@@ -1,0 +1,183 @@
+"""Measurements on one robot in a world of its own: standing, driving, reaching."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Iterator
+from typing import Any
+
+from cartwheel.api import Model, World
+from cartwheel.corpus.verdict import Drive, Reach, Stand
+from cartwheel.description.model import Joint, RobotDescription
+from cartwheel.geometry import Pose, rotate
+from cartwheel.graph import TopicInfo
+from cartwheel.plugins.control.controller import Controller
+from cartwheel.plugins.control.files import ControllerFiles
+from cartwheel.simulation.clock import NANOSECONDS
+
+VELOCITY, TURN = 0.2, 0.4
+"""m/s and rad/s that a base is told: slow enough for the smallest."""
+_SPEED_UP = 4.0
+"""s until a base has the speed it was told, whatever its limits of acceleration."""
+_MEASURED = 2.0
+_RATE = 20.0
+"""Hz of commands."""
+_STAMPED = "geometry_msgs/msg/TwistStamped"
+_TWISTS = ("geometry_msgs/msg/Twist", _STAMPED)
+_STEP, _SLIDE = 0.2, 0.02
+"""rad and m by which a joint is moved."""
+_TRAJECTORY = 2.0
+"""s that a trajectory takes."""
+_REACHING = 5.0
+_SLICE = 0.5
+"""s between two looks at the wall clock."""
+
+
+def stand(world: World, model: Model, description: RobotDescription, seconds: float) -> Stand:
+    """Lets time go on, and tells how the robot stood.
+
+    A simulation that is much slower than real time is not waited for: it gets as many seconds
+    of wall time as it was to simulate, and at least the last one simulated is looked at.
+
+    Raises:
+        SimulationError: The simulation diverged.
+    """
+    start, begun, from_ns = model.pose, time.perf_counter(), world.session.simulation.time_ns
+    left = round((seconds - 1.0) / _SLICE)
+    while left > 0 and time.perf_counter() - begun < seconds:
+        world.run(_SLICE)
+        left -= 1
+    before = model.pose
+    world.run(1.0)
+    after = model.pose
+    simulated = (world.session.simulation.time_ns - from_ns) / NANOSECONDS
+    return Stand(
+        fixed=description.static or not world.session.simulation.moves(model.name),
+        simulated=simulated,
+        wall=time.perf_counter() - begun,
+        sunk=start.z - after.z,
+        tilt=_between(rotate(start.orientation, (0, 0, 1)), rotate(after.orientation, (0, 0, 1))),
+        speed=math.dist(before.position, after.position),
+        turn=_turned(before, after),
+    )
+
+
+def drives(world: World, model: Model) -> Iterator[Drive]:
+    """Drives by each topic that takes velocities, ahead and around, each from the start."""
+    for info in world.graph.topics():
+        if info.type not in _TWISTS or not info.subscribers:
+            continue
+        ahead, _ = _driven(world, model, info, (VELOCITY, 0.0))
+        _, turn = _driven(world, model, info, (0.0, TURN))
+        yield Drive(
+            topic=info.name,
+            commanded=VELOCITY,
+            measured=ahead,
+            commanded_turn=TURN,
+            measured_turn=turn,
+        )
+    world.reset()
+
+
+def reaches(world: World, model: Model, description: RobotDescription) -> list[Reach]:
+    """Commands all controllers of positions at once, and tells where their joints came."""
+    world.reset()
+    world.run(1.0)
+    joints = {joint.name: joint for joint in description.joints}
+    told: list[tuple[Controller, Joint, float]] = []
+    for controller in ControllerFiles.of(world.graph).started:
+        names = [name for name in controller.claims if name in joints]
+        targets = {name: _target(joints[name], model.joint(name)) for name in names}
+        if targets and _command(world, controller, targets):
+            told += [(controller, joints[name], value) for name, value in targets.items()]
+    if told:
+        world.run(_REACHING)
+    return [
+        Reach(
+            controller=controller.name,
+            joint=joint.name,
+            target=target,
+            reached=model.joint(joint.name),
+            angular=joint.type != "prismatic",
+        )
+        for controller, joint, target in told
+    ]
+
+
+def _driven(
+    world: World, model: Model, topic: TopicInfo, command: tuple[float, float]
+) -> tuple[float, float]:
+    """m/s ahead and rad/s to the left of a base that is told so for a while."""
+    world.reset()
+    world.run(0.5)
+    _drive_on(world, topic, command, _SPEED_UP)
+    before = model.pose
+    _drive_on(world, topic, command, _MEASURED)
+    after = model.pose
+    yaw = _yaw(before)
+    dx, dy = after.x - before.x, after.y - before.y
+    turned = math.remainder(_yaw(after) - yaw, 2 * math.pi)
+    return (math.cos(yaw) * dx + math.sin(yaw) * dy) / _MEASURED, turned / _MEASURED
+
+
+def _drive_on(world: World, topic: TopicInfo, command: tuple[float, float], seconds: float) -> None:
+    twist = {"linear": {"x": command[0]}, "angular": {"z": command[1]}}
+    for _ in range(round(seconds * _RATE)):
+        said: dict[str, Any] = twist
+        if topic.type == _STAMPED:
+            now, rest = divmod(world.session.simulation.time_ns, NANOSECONDS)
+            said = {"header": {"stamp": {"sec": now, "nanosec": rest}}, "twist": twist}
+        world.publish(topic.name, said)
+        world.run(1.0 / _RATE)
+
+
+def _command(world: World, controller: Controller, targets: dict[str, float]) -> bool:
+    """Tells a controller of positions where to take its joints; False for any other."""
+    kind = controller.type.rpartition("/")[2]
+    positions = set(controller.interfaces.values()) == {"position"}
+    values = list(targets.values())
+    if kind == "JointTrajectoryController":
+        point = {
+            "positions": values,
+            "velocities": [0.0] * len(values),
+            "time_from_start": {"sec": int(_TRAJECTORY), "nanosec": 0},
+        }
+        topic = "joint_trajectory" if controller.rig.ros2 else "command"
+        world.publish(controller.resolve(topic), {"joint_names": list(targets), "points": [point]})
+    elif kind == "JointPositionController":
+        world.publish(controller.resolve("command"), {"data": values[0]})
+    elif kind == "JointGroupPositionController" or (
+        positions and kind == "ForwardCommandController"
+    ):
+        topic = "commands" if controller.rig.ros2 else "command"
+        world.publish(controller.resolve(topic), {"data": values})
+    else:
+        return False
+    return True
+
+
+def _target(joint: Joint, position: float) -> float:
+    """A place that is near, and within the joint's limits."""
+    step = _SLIDE if joint.type == "prismatic" else _STEP
+    lower, upper = joint.axis.lower, joint.axis.upper
+    if joint.type == "continuous" or lower is None or upper is None:
+        return position + step
+    step = min(step, 0.25 * (upper - lower))
+    return position + step if position < (lower + upper) / 2 else position - step
+
+
+def _yaw(pose: Pose) -> float:
+    x, y, _ = rotate(pose.orientation, (1, 0, 0))
+    return math.atan2(y, x)
+
+
+def _turned(one: Pose, other: Pose) -> float:
+    """rad between two orientations."""
+    w = abs(sum(a * b for a, b in zip(one.orientation, other.orientation, strict=True)))
+    return 2 * math.acos(min(1.0, w))
+
+
+def _between(one: tuple[float, float, float], other: tuple[float, float, float]) -> float:
+    cosine = sum(a * b for a, b in zip(one, other, strict=True))
+    return math.acos(max(-1.0, min(1.0, cosine)))

@@ -1,0 +1,150 @@
+"""One robot tried as its user would: loaded, left standing, listened to, driven, and moved."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from cartwheel.api import Model, World
+from cartwheel.corpus import motion
+from cartwheel.corpus.verdict import Verdict
+from cartwheel.description import load_robot
+from cartwheel.description.check.solids import bounds, solid_of
+from cartwheel.description.model import RobotDescription
+from cartwheel.errors import CartwheelError
+from cartwheel.geometry import Pose
+from cartwheel.plugins.control.files import ControllerFiles
+from cartwheel.plugins.control.suggestion import files_for
+from cartwheel.plugins.gz_sensor import SYSTEMS
+from cartwheel.plugins.registry import plugins, short_name
+
+STANDING = 10.0
+"""s that a robot is left alone."""
+_LISTENING = 1.0
+"""s in which a topic that states a rate of some Hz has something to say."""
+_LONGEST = 5.0
+
+
+def try_robot(
+    file: Path,
+    *,
+    arguments: Mapping[str, str] | None = None,
+    package_path: Sequence[Path] = (),
+    controllers: Sequence[Path] | None = None,
+    standing: float = STANDING,
+) -> Verdict:
+    """Tries a description, with its default arguments where none are given.
+
+    Args:
+        file: A xacro, URDF or SDF.
+        arguments: Of the xacro.
+        package_path: Folders in which packages are looked for first.
+        controllers: YAML files whose controllers start; None takes those beside the robot that
+            `cartwheel run` would name.
+        standing: s that it is left alone.
+
+    Returns:
+        What was found, errors of the description included.
+    """
+    verdict = Verdict(file=file)
+    try:
+        robot = load_robot(
+            file, arguments=arguments or {}, package_path=package_path, meshes="warn"
+        )
+        verdict = _described(verdict, robot)
+        if controllers is None:
+            controllers = _controllers(robot)
+        with World() as world:
+            pose = _place(robot)
+            model = world.spawn(
+                robot, x=pose.x, y=pose.y, z=pose.z, roll=pose.rpy[0], pitch=pose.rpy[1],
+                yaw=pose.rpy[2], controllers=controllers,
+            )  # fmt: skip
+            verdict = replace(
+                verdict,
+                loaded=True,
+                controllers=tuple(each.name for each in ControllerFiles.of(world.graph).started),
+                controller_files=tuple(controllers),
+            )
+            for found in _moved(verdict, world, model, robot, standing):
+                verdict = replace(found, diagnostics=world.diagnostics)
+    except CartwheelError as error:
+        return replace(verdict, error=str(error))
+    return verdict
+
+
+def _described(verdict: Verdict, robot: RobotDescription) -> Verdict:
+    """What is known without a world."""
+    tags = [
+        *robot.plugins,
+        *(tag for link in robot.links for one in link.sensors for tag in one.plugins),
+    ]
+    names = list(dict.fromkeys(short_name(tag.filename) for tag in tags))
+    known = {name for name in names if name in plugins() or name in SYSTEMS}
+    return replace(
+        verdict,
+        name=robot.name,
+        mass=robot.mass,
+        links=len(robot.links),
+        plugins=tuple(name for name in names if name in known),
+        missing=tuple(name for name in names if name not in known),
+        missing_meshes=sum("the mesh" in each.message for each in robot.diagnostics),
+        diagnostics=robot.diagnostics,
+    )
+
+
+def _controllers(robot: RobotDescription) -> list[Path]:
+    """The files beside a robot of ros_control, which in ROS a launch file names."""
+    if not any(short_name(tag.filename) == "gazebo_ros_control" for tag in robot.plugins):
+        return []
+    joints = [joint.name for joint in robot.joints if joint.type != "fixed"]
+    return files_for(Path(robot.origin.file), joints)
+
+
+def _place(robot: RobotDescription) -> Pose:
+    """Where the lowest of its collisions touches the ground; its own place where it is fixed."""
+    held = robot.static or any(joint.parent == "world" for joint in robot.joints)
+    clouds = [
+        solid.placed(robot.pose @ link.pose)
+        for link in robot.links
+        for collision in link.collisions
+        if (solid := solid_of(collision, link.name)) is not None
+    ]
+    box = bounds(clouds)
+    if held or box is None:
+        return robot.pose
+    x, y, z = robot.pose.position
+    return Pose((x, y, z - float(np.round(box[0][2], 6))), robot.pose.orientation)
+
+
+def _moved(
+    verdict: Verdict, world: World, model: Model, robot: RobotDescription, standing: float
+) -> Iterator[Verdict]:
+    """The verdict after each part of the trial, so that what was found outlives an error."""
+    stood = motion.stand(world, model, robot, standing)
+    verdict = replace(verdict, stand=stood)
+    yield verdict
+    topics, silent = _listened(world)
+    verdict = replace(verdict, topics=topics, silent=silent)
+    yield verdict
+    if not stood.fixed:
+        verdict = replace(verdict, drives=tuple(motion.drives(world, model)))
+        yield verdict
+    yield replace(verdict, reaches=tuple(motion.reaches(world, model, robot)))
+
+
+def _listened(world: World) -> tuple[int, tuple[str, ...]]:
+    """How many topics state a rate, and those of them that carried nothing."""
+    graph = world.graph
+    rated = {each.topic: each for each in graph.publishers() if each.rate}
+    boxes = {topic: world.mailbox(topic, size=1) for topic in rated}
+    slowest = min([each.rate or 1.0 for each in rated.values()], default=1.0)
+    if rated:
+        world.run(min(_LONGEST, max(_LISTENING, 3.0 / slowest)))
+    silent = tuple(sorted(topic for topic, box in boxes.items() if not box.drain()))
+    for box in boxes.values():
+        box.close()
+    return len(rated), silent

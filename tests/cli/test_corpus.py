@@ -1,0 +1,41 @@
+"""``cartwheel corpus``: status, table and JSON."""
+
+import json
+
+BOX = """<robot name="box"><link name="box">
+<inertial><mass value="3"/><inertia ixx="0.5" iyy="0.5" izz="0.5"/></inertial>
+<collision><geometry><box size="1 1 1"/></geometry></collision></link>
+<gazebo><plugin name="p" filename="libunheard_of.so"/></gazebo></robot>
+"""
+
+
+def test_a_folder_gives_a_line_for_each_robot(program, tmp_path):
+    (tmp_path / "box.urdf").write_text(BOX)
+    (tmp_path / "bad.urdf").write_text('<robot name="bad"><link name="a">')
+    done = program("corpus", tmp_path, "--for", "1", status=1)
+    head, bad, good, *rest = done.stdout.splitlines()
+    assert head.split()[:4] == ["robot", "loaded", "mass", "stands"]
+    assert bad.split()[1:4] == ["no", "-", "-"]
+    assert good.split()[1:5] == ["yes", "3", "kg", "yes"]
+    assert good.endswith("missing unheard_of")
+    text = "\n".join(rest)
+    assert "bad.urdf: error:" in text
+    assert "missing plugin unheard_of: 1 robot\n" in text
+    assert text.endswith("1 of 2 robots load and do all they should")
+
+
+def test_json_has_the_same(program, tmp_path):
+    (tmp_path / "box.urdf").write_text(BOX)
+    found = json.loads(program("corpus", tmp_path, "--for", "1", "--json").stdout)
+    (box,) = found
+    assert box["schema"] == 1
+    assert box["good"]
+    assert box["mass"] == 3
+    assert box["missing_plugins"] == ["unheard_of"]
+    assert box["stands"]["state"] == "yes"
+    assert box["speed"] > 0
+
+
+def test_a_folder_without_robots_is_an_error(program, tmp_path):
+    assert "holds no robot" in program("corpus", tmp_path, status=2).stderr
+    assert "does not exist" in program("corpus", tmp_path / "no", status=2).stderr

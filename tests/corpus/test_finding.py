@@ -1,0 +1,84 @@
+"""Which files of a folder are robots."""
+
+import pytest
+
+from cartwheel.corpus import robots_in
+
+LINK = (
+    '<link name="{}"><inertial><mass value="1"/>'
+    '<inertia ixx="1" iyy="1" izz="1"/></inertial></link>'
+)
+XACRO = '<robot xmlns:xacro="http://www.ros.org/wiki/xacro"{}>{}</robot>'
+WHEEL = '<xacro:macro name="wheel" params="name">' + LINK.format("${name}") + "</xacro:macro>"
+
+
+@pytest.fixture
+def folder(tmp_path):
+    def write(**files):
+        for name, text in files.items():
+            path = tmp_path / name.replace("__", "/").replace("_dot_", ".")
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(text)
+        return [str(each.relative_to(tmp_path)) for each in robots_in(tmp_path)]
+
+    return write
+
+
+def test_files_that_only_define_macros_are_no_robots(folder):
+    assert folder(wheel_dot_xacro=XACRO.format("", WHEEL)) == []
+
+
+def test_a_part_that_is_included_is_no_robot_without_it(folder):
+    arm = LINK.format("arm") + (
+        '<joint name="shoulder" type="fixed"><parent link="base"/><child link="arm"/></joint>'
+    )
+    whole = '<xacro:include filename="arm.xacro"/>' + LINK.format("base")
+    found = folder(
+        arm_dot_xacro=XACRO.format("", arm), cart_dot_xacro=XACRO.format(' name="cart"', whole)
+    )
+    assert found == ["cart.xacro"]
+
+
+def test_a_whole_robot_that_another_includes_is_one_as_well(folder):
+    found = folder(
+        base__urdf__base_dot_urdf_dot_xacro=XACRO.format(' name="base"', LINK.format("base")),
+        base__package_dot_xml="<package><name>base</name></package>",
+        gazebo__gazebo_dot_xacro=XACRO.format(
+            ' name="gazebo"', '<xacro:include filename="$(find base)/urdf/base.urdf.xacro"/>'
+        ),
+    )
+    assert found == ["base/urdf/base.urdf.xacro", "gazebo/gazebo.xacro"]
+
+
+def test_an_include_with_a_variable_name_counts_for_all_that_it_may_mean(folder):
+    part = '<joint name="a" type="fixed"><parent link="base"/><child link="a"/></joint>'
+    whole = (
+        '<xacro:arg name="kind" default="one"/><xacro:include filename="parts/$(arg kind).xacro"/>'
+    )
+    found = folder(
+        parts__one_dot_xacro=XACRO.format("", part + LINK.format("a")),
+        parts__two_dot_xacro=XACRO.format("", part + LINK.format("a")),
+        cart_dot_xacro=XACRO.format(' name="cart"', whole + LINK.format("base")),
+    )
+    assert found == ["cart.xacro"]
+
+
+def test_models_are_robots_and_worlds_are_not(folder):
+    model = '<sdf version="1.6"><model name="box"><link name="a"/></model></sdf>'
+    world = '<sdf version="1.6"><world name="w"/></sdf>'
+    assert folder(box__model_dot_sdf=model, w_dot_sdf=world) == ["box/model.sdf"]
+
+
+def test_what_cannot_be_read_is_kept_for_its_trial_to_tell(folder):
+    assert folder(bad_dot_urdf='<robot name="bad"><link name="a">') == ["bad.urdf"]
+
+
+def test_other_xml_and_what_was_built_are_passed_over(folder):
+    robot = f'<robot name="a">{LINK.format("a")}</robot>'
+    assert folder(note_dot_xacro="<note/>", build__a_dot_urdf=robot) == []
+
+
+def test_a_file_is_taken_as_it_is(tmp_path):
+    path = tmp_path / "anything.txt"
+    path.write_text("")
+    assert robots_in(path) == [path]

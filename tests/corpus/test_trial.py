@@ -1,0 +1,170 @@
+"""What a trial tells of robots whose faults are known."""
+
+import math
+
+import pytest
+
+from cartwheel.api import World
+from cartwheel.corpus import try_robot
+from cartwheel.corpus.trial import _listened
+
+INERTIA = '<inertial><mass value="{m}"/><inertia ixx="{i}" iyy="{i}" izz="{i}"/></inertial>'
+BOX = (
+    '<link name="{name}"><inertial><origin xyz="{at}"/><mass value="2"/>'
+    '<inertia ixx="0.02" iyy="0.02" izz="0.02"/></inertial><collision>'
+    '<geometry><box size="{size}"/></geometry></collision></link>'
+)
+WHEEL = (
+    '<link name="{name}"><inertial><mass value="0.2"/><inertia ixx="1e-4" iyy="1e-4" izz="2e-4"/>'
+    '</inertial><collision><geometry><cylinder radius="0.05" length="0.02"/></geometry>'
+    "</collision></link>"
+    '<joint name="{name}_joint" type="continuous"><parent link="base"/><child link="{name}"/>'
+    '<origin xyz="0 {y} -0.02" rpy="-1.5708 0 0"/><axis xyz="0 0 1"/></joint>'
+)
+DRIVE = (
+    '<gazebo><plugin name="drive" filename="libgazebo_ros_diff_drive.so"><legacyMode>false'
+    "</legacyMode><leftJoint>left_joint</leftJoint><rightJoint>right_joint</rightJoint>"
+    "<wheelSeparation>0.2</wheelSeparation><wheelDiameter>{diameter}</wheelDiameter>"
+    "</plugin></gazebo>"
+)
+CASTER = (
+    '<link name="caster"><collision><geometry><sphere radius="0.03"/></geometry></collision></link>'
+    '<joint name="caster_joint" type="fixed"><parent link="base"/><child link="caster"/>'
+    '<origin xyz="{x} 0 -0.04"/></joint>'
+    '<gazebo reference="caster"><mu1>0</mu1><mu2>0</mu2></gazebo>'
+)
+ARM = (
+    '<link name="world"/><link name="base"/><link name="upper">'
+    '<inertial><origin xyz="0 0 0.1"/><mass value="1"/>'
+    '<inertia ixx="0.01" iyy="0.01" izz="0.01"/></inertial></link>'
+    '<joint name="stand" type="fixed"><parent link="world"/><child link="base"/></joint>'
+    '<joint name="shoulder" type="revolute"><parent link="base"/><child link="upper"/>'
+    '<axis xyz="0 1 0"/><limit lower="-1" upper="1" effort="50" velocity="2"/></joint>'
+    '<transmission name="t"><type>transmission_interface/SimpleTransmission</type>'
+    '<joint name="shoulder"><hardwareInterface>hardware_interface/{kind}JointInterface'
+    '</hardwareInterface></joint><actuator name="m"/></transmission>'
+    '<gazebo><plugin name="control" filename="libgazebo_ros_control.so"/></gazebo>'
+)
+
+
+@pytest.fixture
+def tried(tmp_path):
+    def run(*parts, **more):
+        path = tmp_path / "robot.urdf"
+        path.write_text(f'<robot name="robot">{"".join(parts)}</robot>')
+        return try_robot(path, standing=2.0, **more)
+
+    return run
+
+
+def cart(diameter: float) -> str:
+    parts = BOX.format(name="base", at="0 0 0", size="0.3 0.15 0.06")
+    parts += WHEEL.format(name="left", y=0.1) + WHEEL.format(name="right", y=-0.1)
+    parts += CASTER.format(x=0.12).replace("caster", "front") + CASTER.format(x=-0.12)
+    return parts + DRIVE.format(diameter=diameter)
+
+
+def test_a_cart_stands_publishes_and_drives_as_it_is_told(tried):
+    verdict = tried(cart(0.1))
+    assert verdict.good, verdict
+    assert verdict.mass == pytest.approx(2.4)
+    assert verdict.plugins == ("gazebo_ros_diff_drive",)
+    assert verdict.missing == ()
+    assert verdict.stand.state == "yes"
+    assert verdict.topics > 0
+    (drive,) = verdict.drives
+    assert drive.topic == "/cmd_vel"
+    assert abs(drive.error) < 0.02
+    assert abs(drive.error_turn) < 0.05
+
+
+def test_a_wheel_of_half_the_stated_diameter_drives_half_as_fast(tried):
+    verdict = tried(cart(0.2))
+    (drive,) = verdict.drives
+    assert drive.error == pytest.approx(-0.5, abs=0.02)
+    assert not drive.follows
+    assert not verdict.good
+
+
+def test_what_is_top_heavy_tips(tried):
+    # Its centre of mass lies beyond the edge of what it stands on.
+    verdict = tried(BOX.format(name="base", at="0.2 0 0", size="0.1 0.1 0.3"))
+    assert verdict.stand.state in ("tips", "moves")
+    assert verdict.stand.tilt > 1.0
+    assert not verdict.good
+
+
+def test_what_has_nothing_to_stand_on_sinks(tried):
+    link = f'<link name="base">{INERTIA.format(m=1, i=0.1)}</link>'
+    verdict = tried(link)
+    # Free fall for two seconds: g t² / 2.
+    assert verdict.stand.sunk == pytest.approx(0.5 * 9.8 * 4, rel=0.02)
+    assert verdict.stand.state == "moves"
+
+
+def test_what_the_world_holds_is_fixed(tried):
+    verdict = tried('<link name="world"/>', BOX.format(name="base", at="0 0 0", size="1 1 1"), (
+        '<joint name="j" type="fixed"><parent link="world"/><child link="base"/></joint>'
+    ))  # fmt: skip
+    assert verdict.stand.state == "fixed"
+    assert verdict.good
+    assert verdict.drives == ()
+
+
+@pytest.mark.parametrize("name", ["arm.yaml", "config.yml"])
+def test_the_controllers_beside_a_robot_take_its_joint_where_they_are_told(tmp_path, tried, name):
+    (tmp_path / "package.xml").write_text("<package><name>arm</name></package>")
+    (tmp_path / "config").mkdir()
+    (tmp_path / "config" / name).write_text(
+        "arm_controller:\n  type: position_controllers/JointTrajectoryController\n"
+        "  joints: [shoulder]\n"
+    )
+    verdict = tried(ARM.format(kind="Position"))
+    assert verdict.controllers == ("arm_controller",)
+    (reach,) = verdict.reaches
+    # The target is 0.2 rad from where it stood, and it bears the weight.
+    assert reach.target == pytest.approx(-0.2, abs=1e-3)
+    assert abs(reach.error) < 1e-3
+    assert reach.arrived
+    assert verdict.good
+
+
+def test_a_joint_that_is_too_weak_does_not_arrive(tmp_path, tried):
+    path = tmp_path / "weak.yaml"
+    path.write_text(
+        "arm_controller:\n  type: effort_controllers/JointPositionController\n"
+        "  joint: shoulder\n  pid: {p: 1.0, d: 1.0}\n"
+    )
+    verdict = tried(ARM.format(kind="Effort"), controllers=[path])
+    (reach,) = verdict.reaches
+    # m g l is 0.98 N m/rad: a spring of 1 N m/rad hardly holds it, and leaves it far off.
+    assert not reach.arrived
+    assert not verdict.good
+
+
+def test_plugins_that_are_not_there_are_listed_and_cost_nothing_else(tried):
+    extra = '<gazebo><plugin name="x" filename="libmy_own_thing.so"/></gazebo>'
+    verdict = tried(cart(0.1), extra)
+    assert verdict.missing == ("my_own_thing",)
+    assert verdict.good
+
+
+def test_a_missing_mesh_is_counted_and_the_rest_is_tried(tried):
+    visual = '<visual><geometry><mesh filename="file:///no/such.stl"/></geometry></visual></link>'
+    verdict = tried(BOX.format(name="base", at="0 0 0", size="1 1 1").replace("</link>", visual))
+    assert verdict.missing_meshes == 1
+    assert verdict.loaded
+    assert verdict.stand.state == "yes"
+
+
+def test_a_description_that_is_wrong_says_why(tried):
+    verdict = tried('<link name="a"/><link name="a"/>')
+    assert not verdict.loaded
+    assert "robot.urdf:1" in verdict.error
+    assert math.isnan(verdict.speed)
+
+
+def test_a_topic_that_states_a_rate_and_is_silent_is_named():
+    with World() as world:
+        world.graph.advertise("/never", "std_msgs/msg/Float64", rate=10.0)
+        assert _listened(world) == (2, ("/never",))
