@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from cartwheel.description import xml
+from cartwheel.description import load_text, xml
 from cartwheel.description.packages import Packages
 from cartwheel.description.xacro import expand
 from cartwheel.errors import DescriptionError
@@ -391,3 +391,12 @@ def test_what_is_deprecated_and_works_is_a_note(folder):
     (told,) = found.diagnostics
     assert (told.severity, told.origin.line) == ("info", 2)
     assert "deprecated" in told.message
+
+
+def test_a_robot_keeps_the_values_of_its_arguments_given_or_not():
+    text = (
+        '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro"><link name="a"/>'
+        '<xacro:arg name="one" default="1"/><xacro:arg name="two" default="$(arg one)2"/></robot>'
+    )
+    assert load_text(text).arguments == {"one": "1", "two": "12"}
+    assert load_text(text, arguments={"one": "3"}).arguments == {"one": "3", "two": "32"}

@@ -79,17 +79,13 @@ def expand(
         module = _private_xacro()
         with _bound(module, run):
             run.execute(module, content)
-            values = {
-                name: str(value)
-                for name, value in module.substitution_args_context.get("arg", {}).items()
-            }
             root = _to_node(run.document.documentElement)
     return Expansion(
         root=root,
         diagnostics=(*run.diagnostics, *_unknown_arguments(run, arguments)),
         declared=tuple(sorted(run.declared)),
         files=tuple(dict.fromkeys(run.files)),
-        arguments=values,
+        arguments=dict(run.values),
     )
 
 
@@ -131,6 +127,8 @@ class _Run:
     file: str
     packages: Packages
     arguments: dict[str, str]
+    values: dict[str, str] = field(default_factory=dict)
+    """Of the arguments, given or by their defaults, as far as they were met."""
     diagnostics: list[Diagnostic] = field(default_factory=list)
     declared: set[str] = field(default_factory=set)
     files: list[str] = field(default_factory=list)
@@ -150,7 +148,9 @@ class _Run:
         self.document = _parse(content, self.file, self)
         self.place = self.document.documentElement
         try:
-            module.process_doc(self.document, mappings=dict(self.arguments), verbosity=0)
+            # xacro puts the defaults in there, and forgets the mapping in the end.
+            self.values = dict(self.arguments)
+            module.process_doc(self.document, mappings=self.values, verbosity=0)
         except CartwheelError as error:
             raise self._placed(error) from error
         except Exception as error:

@@ -132,8 +132,8 @@ class Ros2ManagerServices:
         files = stated.get("params_file", [])
         paths = [Path(each) for each in ([files] if isinstance(files, str) else files)]
         if paths:
-            arguments = self._manager.rig.plugin.part.description.arguments
-            contents = [read_ros2(path, arguments) for path in paths]
+            robot = self._manager.rig.plugin.part.description
+            contents = [read_ros2(path, robot) for path in paths]
             read = ros2_file(contents, namespace, self._name)
             more = controller_entry(read, name, namespace, ", ".join(map(str, paths)))
             values = {**found.values, **more.values}
