@@ -87,7 +87,7 @@ def test_a_published_robot_does_what_it_should(name, expected):
 
 @pytest.mark.parametrize("name", ROBOTS, ids=lambda name: name[-40:])
 def test_masses_and_places_are_those_that_another_reader_computes(name):
-    robot = load_robot(CORPUS / name, meshes="warn")
+    robot = load_robot(CORPUS / name)
     other = yourdfpy.URDF.load(
         io.BytesIO(robot.text.encode()),
         load_meshes=False,

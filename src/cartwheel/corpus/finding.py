@@ -82,7 +82,7 @@ def _is_robot(path: Path, package_path: Sequence[Path], *, part: bool) -> bool:
         if not root.all("link"):
             return False
         if part:
-            understand(opened, "warn")
+            understand(opened)
     except DescriptionError:
         return not part
     return True

@@ -51,9 +51,7 @@ def try_robot(
     """
     verdict = Verdict(file=file)
     try:
-        robot = load_robot(
-            file, arguments=arguments or {}, package_path=package_path, meshes="warn"
-        )
+        robot = load_robot(file, arguments=arguments or {}, package_path=package_path)
         verdict = _described(verdict, robot)
         if controllers is None:
             controllers = _controllers(robot)
