@@ -149,7 +149,9 @@ def _kind(kind: Any) -> str:
     if type(None) in options:
         return _kind(next(option for option in options if option is not type(None)))
     if typing.get_origin(kind) is tuple:
-        return "texts" if options == (str, Ellipsis) else f"{len(options)} numbers"
+        if options[-1] is Ellipsis:
+            return "texts" if options[0] is str else "numbers"
+        return f"{len(options)} numbers"
     names = {bool: "true or false", float: "number", int: "whole number", str: "text"}
     return names.get(kind, getattr(kind, "__name__", str(kind)))
 

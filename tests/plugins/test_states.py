@@ -104,6 +104,17 @@ def test_p3d_noise_has_its_spread_and_seed(make, read):
     assert not np.array_equal(values, noise(2))
 
 
+def test_pal_s_world_odometry_tells_the_twist_in_the_link_s_axes(make, read):
+    """It lies on its side, with its z axis along the world's y: it falls along its own y."""
+    model = p3d("").replace("libgazebo_ros_p3d.so", "libgazebo_world_odometry.so")
+    world = make.world(ground=None)
+    world.session.spawn(make.sdf(model), pose=Pose((0, 0, 50), quat_from_rpy(-math.pi / 2, 0, 0)))
+    message = read(world, "/truth", 0.5)[-1]
+    time = message.header.stamp.nanosec * 1e-9
+    assert vector(message.twist.twist.linear) == pytest.approx([0, G * time, 0], abs=1e-6)
+    assert message.child_frame_id == "link"
+
+
 def test_p3d_of_a_frame_that_is_no_link_is_told(make, read):
     world = make.world(make.sdf(p3d("<frameName>odom_combined</frameName>")), ground=None)
     assert any("is no link" in d.message for d in world.diagnostics)

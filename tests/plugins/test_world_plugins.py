@@ -37,6 +37,7 @@ def test_a_plugin_that_does_nothing_is_told(filename, reason):
         "gz-sim-physics-system",
         "ignition-gazebo-user-commands-system",
         "libgazebo_ros_factory.so",
+        "libgazebo_ros_state.so",
         "gz-sim-sensors-system",
     ],
 )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Protocol
 
 from cartwheel.errors import PluginError
 from cartwheel.plugins.base import Plugin
@@ -50,10 +50,29 @@ class JointVelocityParameters(_Gains):
     initial: float = tag("initial_velocity", default=0.0, doc="Held from the start.")
 
 
-class _Pid:
+class PidGains(Protocol):
+    """What a `GzPid` is made of; bounds may be infinite."""
+
+    @property
+    def p(self) -> float: ...
+    @property
+    def i(self) -> float: ...
+    @property
+    def i_max(self) -> float: ...
+    @property
+    def i_min(self) -> float: ...
+    @property
+    def cmd_max(self) -> float: ...
+    @property
+    def cmd_min(self) -> float: ...
+    @property
+    def cmd_offset(self) -> float: ...
+
+
+class GzPid:
     """Force from an error, with an integral that is bounded."""
 
-    def __init__(self, gains: _Gains) -> None:
+    def __init__(self, gains: PidGains) -> None:
         self._gains = gains
         self._integral = 0.0
 
@@ -96,7 +115,7 @@ class _JointController(Plugin[Any]):
 
     def reset(self) -> None:
         self._target = float(self.config.initial)
-        self._pids = [_Pid(self.config) for _ in self._joints]
+        self._pids = [GzPid(self.config) for _ in self._joints]
         self._before_ns: int | None = None
 
     def _default_topic(self) -> str:

@@ -76,6 +76,8 @@ class P3D(Plugin[P3DParameters]):
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_p3d.so",)
     parameters: ClassVar[type] = P3DParameters
+    in_link: ClassVar[bool] = False
+    """Whether the twist is in the link's axes, and not in the frame's."""
 
     def configure(self) -> None:
         config, part = self.config, self.part
@@ -118,6 +120,8 @@ class P3D(Plugin[P3DParameters]):
             back = quat_conjugate(turned)
             linear = np.array(rotate(back, (linear - np.array(moved)).tolist()))
             angular = np.array(rotate(back, (angular - np.array(spun)).tolist()))
+        if self.in_link:
+            linear, angular = (np.array(v) for v in self._link.motion(local=True))
         if any(config.xyz_offset):
             x, y, z = (a + b for a, b in zip(place, config.xyz_offset, strict=True))
             place = (x, y, z)
@@ -137,6 +141,16 @@ class P3D(Plugin[P3DParameters]):
                 self._TwistWithCovariance(twist, self._covariance),
             )
         )
+
+
+class WorldOdometry(P3D):
+    """As libgazebo_ros_p3d.so, with the twist in the link's axes.
+
+    Source: pal_gazebo_plugins, gazebo_world_odometry.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ("libgazebo_world_odometry.so",)
+    in_link: ClassVar[bool] = True
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -52,6 +52,7 @@ def plugins() -> dict[str, type[Plugin[object]]]:
         JointController,
         JointPositionController,
     )
+    from cartwheel.plugins.gz_joint_trajectory import GzJointTrajectory
     from cartwheel.plugins.hand_of_god import HandOfGod
     from cartwheel.plugins.hector_baro import HectorBaro
     from cartwheel.plugins.hector_imu import HectorImu
@@ -67,7 +68,8 @@ def plugins() -> dict[str, type[Plugin[object]]]:
     from cartwheel.plugins.magnetic import HectorMagnetic
     from cartwheel.plugins.mecanum import MecanumDrive
     from cartwheel.plugins.mimic_joint import MimicJoint
-    from cartwheel.plugins.p3d import P3D, OdometryPublisher
+    from cartwheel.plugins.multi_wheel import MultiWheelDrive
+    from cartwheel.plugins.p3d import P3D, OdometryPublisher, WorldOdometry
     from cartwheel.plugins.planar_move import PlanarMove, VelocityControl
     from cartwheel.plugins.pose_publisher import PosePublisher
     from cartwheel.plugins.range import HectorSonar, Range
@@ -82,6 +84,7 @@ def plugins() -> dict[str, type[Plugin[object]]]:
     drives: tuple[type[Plugin[Any]], ...] = (
         DiffDrive,
         SkidSteerDrive,
+        MultiWheelDrive,
         TricycleDrive,
         AckermannDrive,
         PlanarMove,
@@ -94,6 +97,7 @@ def plugins() -> dict[str, type[Plugin[object]]]:
     )
     states: tuple[type[Plugin[Any]], ...] = (
         P3D,
+        WorldOdometry,
         OdometryPublisher,
         PosePublisher,
         Battery,
@@ -102,6 +106,7 @@ def plugins() -> dict[str, type[Plugin[object]]]:
         JointPositionController,
         JointController,
         ApplyJointForce,
+        GzJointTrajectory,
         JointPoseTrajectory,
         MimicJoint,
         FtSensor,

@@ -1,0 +1,216 @@
+"""``gz-sim-joint-trajectory-controller-system``: joints that follow a trajectory's points."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from cartwheel.errors import PluginError
+from cartwheel.messages import message_class
+from cartwheel.plugins.base import Plugin
+from cartwheel.plugins.gz_drive import gz_name
+from cartwheel.plugins.gz_joint_controller import GzPid
+from cartwheel.plugins.parameters import tag
+from cartwheel.simulation.clock import NANOSECONDS
+
+_KINDS = ("position", "velocity")
+
+
+def _gains(kind: str, name: str, doc: str) -> Any:
+    return tag(f"{kind}_{name}", default=(), doc=f"{doc} of {kind}, for each joint.")
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class JointTrajectoryParameters:
+    topic: str = tag(
+        "topic",
+        default="",
+        doc="JointTrajectory; /model/<name>/joint_trajectory when empty.",
+    )
+    header_start: bool = tag(
+        "use_header_start_time",
+        default=False,
+        doc="Times count from the header's stamp, not from when it is heard.",
+    )
+    joints: tuple[str, ...] = tag(
+        "joint_name", default=(), doc="Joint; once for each. All of one axis when missing."
+    )
+    initial: tuple[float, ...] = tag(
+        "initial_position", default=(), unit="rad or m", doc="Held at first, for each joint; 0."
+    )
+    position_p_gain: tuple[float, ...] = _gains("position", "p_gain", "Proportional gain")
+    position_i_gain: tuple[float, ...] = _gains("position", "i_gain", "Integral gain")
+    position_d_gain: tuple[float, ...] = _gains("position", "d_gain", "Derivative gain")
+    position_i_min: tuple[float, ...] = _gains("position", "i_min", "Least that the integral gives")
+    position_i_max: tuple[float, ...] = _gains("position", "i_max", "Most that the integral gives")
+    position_cmd_min: tuple[float, ...] = _gains("position", "cmd_min", "Least force")
+    position_cmd_max: tuple[float, ...] = _gains("position", "cmd_max", "Most force")
+    position_cmd_offset: tuple[float, ...] = _gains("position", "cmd_offset", "Force always added")
+    velocity_p_gain: tuple[float, ...] = _gains("velocity", "p_gain", "Proportional gain")
+    velocity_i_gain: tuple[float, ...] = _gains("velocity", "i_gain", "Integral gain")
+    velocity_d_gain: tuple[float, ...] = _gains("velocity", "d_gain", "Derivative gain, no effect,")
+    velocity_i_min: tuple[float, ...] = _gains("velocity", "i_min", "Least that the integral gives")
+    velocity_i_max: tuple[float, ...] = _gains("velocity", "i_max", "Most that the integral gives")
+    velocity_cmd_min: tuple[float, ...] = _gains("velocity", "cmd_min", "Least force")
+    velocity_cmd_max: tuple[float, ...] = _gains("velocity", "cmd_max", "Most force")
+    velocity_cmd_offset: tuple[float, ...] = _gains("velocity", "cmd_offset", "Force always added")
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class _Gains:
+    """Of one PID; a lower bound above its upper one is none."""
+
+    p: float
+    i: float
+    d: float
+    i_min: float
+    i_max: float
+    cmd_min: float
+    cmd_max: float
+    cmd_offset: float
+
+
+@dataclass(kw_only=True, slots=True)
+class _Target:
+    position: float
+    velocity: float = 0.0
+    effort: float = 0.0
+
+
+class GzJointTrajectory(Plugin[JointTrajectoryParameters]):
+    """Drives joints to a trajectory's points, each until its time has come.
+
+    Nothing lies between two points: send as many as shall be smooth. The forces of both PIDs and
+    the point's effort add up; a gain that is not stated is 0. ``<topic>_progress`` tells the share
+    of the points. Source: gz-sim, JointTrajectoryController.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ("gz-sim-joint-trajectory-controller-system",)
+    parameters: ClassVar[type] = JointTrajectoryParameters
+
+    def configure(self) -> None:
+        config, part, origin = self.config, self.part, self.tag.origin
+        names = [name.strip() for name in config.joints] or [
+            joint.name
+            for joint in part.description.joints
+            if joint.type in ("revolute", "continuous", "prismatic")
+        ]
+        if not names:
+            raise PluginError("there is no joint of one axis to follow a trajectory", origin=origin)
+        self._joints = {name: part.joint(name, origin=origin) for name in names}
+        self._servos = {name: part.servo(name, max_effort=None, origin=origin) for name in names}
+        self._gains = {
+            name: [self._read(kind, index) for kind in _KINDS] for index, name in enumerate(names)
+        }
+        if not any(gains.p or gains.i for both in self._gains.values() for gains in both):
+            self.warn("no gain is above 0: the joints follow efforts alone")
+        self._initial = {
+            name: config.initial[index] if index < len(config.initial) else 0.0
+            for index, name in enumerate(names)
+        }
+        topic = gz_name(self, config.topic, "joint_trajectory")
+        self.subscribe(topic, "trajectory_msgs/msg/JointTrajectory", self._on_trajectory)
+        self._Float = message_class("std_msgs/msg/Float32")
+        self._progress = self.advertise(f"{topic}_progress", "std_msgs/msg/Float32")
+        self.reset()
+        part.schedule(0, before=self._follow)
+
+    def reset(self) -> None:
+        self._targets = {name: _Target(position=at) for name, at in self._initial.items()}
+        self._pids = {name: [GzPid(each) for each in both] for name, both in self._gains.items()}
+        self._names: list[str] = []
+        self._points: list[Any] = []
+        self._index = 0
+        self._start_ns = 0
+        self._before_ns: int | None = None
+
+    def _read(self, kind: str, index: int) -> _Gains:
+        """The gains of a joint by its number; 0 where fewer are stated."""
+
+        def number(name: str, default: float = 0.0) -> float:
+            numbers: tuple[float, ...] = getattr(self.config, f"{kind}_{name}")
+            return numbers[index] if index < len(numbers) else default
+
+        bounds = {}
+        for name in ("i", "cmd"):
+            low, high = number(f"{name}_min"), number(f"{name}_max", -1.0)
+            bounds[name] = (low, high) if low <= high else (-math.inf, math.inf)
+        return _Gains(
+            p=number("p_gain"),
+            i=number("i_gain"),
+            d=number("d_gain"),
+            i_min=bounds["i"][0],
+            i_max=bounds["i"][1],
+            cmd_min=bounds["cmd"][0],
+            cmd_max=bounds["cmd"][1],
+            cmd_offset=number("cmd_offset"),
+        )
+
+    def _on_trajectory(self, message: Any) -> None:
+        names = list(message.joint_names)
+        known = [name for name in names if name in self._joints]
+        if not known:
+            self.warn(f"a trajectory was ignored: it names none of {', '.join(self._joints)}")
+            return
+        for point in message.points:
+            for what in ("positions", "velocities", "effort"):
+                values = getattr(point, what)
+                if len(values) not in (0, len(names)):
+                    self.warn(
+                        f"a trajectory was ignored: a point has {len(values)} {what} for "
+                        f"{len(names)} joints"
+                    )
+                    return
+        self._names, self._points, self._index = names, list(message.points), 0
+        self._start_ns = self.part.time_ns
+        if self.config.header_start:
+            stamp = message.header.stamp
+            self._start_ns = stamp.sec * NANOSECONDS + stamp.nanosec
+        if self._points:
+            self._aim()
+
+    def _aim(self) -> None:
+        """Takes the present point for the target."""
+        point = self._points[self._index]
+        for number, name in enumerate(self._names):
+            target = self._targets.get(name)
+            if target is None:
+                continue
+            if len(point.positions):
+                target.position = float(point.positions[number])
+            if len(point.velocities):
+                target.velocity = float(point.velocities[number])
+            if len(point.effort):
+                target.effort = float(point.effort[number])
+        if self._progress.wanted:
+            self._progress.publish(self._Float((self._index + 1) / len(self._points)))
+
+    def _follow(self) -> None:
+        now = self.part.time_ns
+        before = self._index
+        while self._index + 1 < len(self._points):
+            due = self._points[self._index].time_from_start
+            if due.sec * NANOSECONDS + due.nanosec >= now - self._start_ns:
+                break
+            self._index += 1
+        if self._index != before:
+            self._aim()
+        seconds = 0.0 if self._before_ns is None else (now - self._before_ns) * 1e-9
+        self._before_ns = now
+        for name, target in self._targets.items():
+            self._drive(name, target, seconds)
+
+    def _drive(self, name: str, target: _Target, seconds: float) -> None:
+        joint, (position, velocity) = self._joints[name], self._pids[name]
+        gains = self._gains[name]
+        effort = target.effort + position.force(target.position - joint.position, seconds)
+        damping = gains[0].d
+        if math.isinf(gains[1].cmd_max):
+            # A gain on the velocity is a damping, which the servo takes without delay.
+            damping += gains[1].p
+            slowed = gains[1].p * joint.velocity
+            effort += velocity.force(target.velocity - joint.velocity, seconds) + slowed
+        else:
+            effort += velocity.force(target.velocity - joint.velocity, seconds)
+        self._servos[name].command_effort(effort, damping=damping)
