@@ -592,12 +592,10 @@ class Simulation:
             int(self.model.body_rootid[self.engine.body_id(name, link.name)])
             for link in description.links
         }
-        later = {other.name for other in before}
-        overlaps = [
-            (other, depth)
-            for other, depth in self._separation.begin(self.model, self.data, roots)
-            if other.partition("::")[0] not in later
-        ]
+        overlaps = list(self._separation.begin(self.model, self.data, roots))
+        if overlaps:
+            later = {other.name for other in before}
+            overlaps = [each for each in overlaps if each[0].partition("::")[0] not in later]
         if overlaps:
             others = ", ".join(f"{other} by {depth * 100:.0f} cm" for other, depth in overlaps)
             floor = max((d for other, d in overlaps if other.startswith("ground")), default=0.0)

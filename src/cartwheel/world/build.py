@@ -74,6 +74,11 @@ def build(world: WorldDescription, entries: Iterable[ModelEntry], *, xml: bool =
             alignments.append(pair.alignment)
     try:
         model = spec.compile()
+        # The engine reserves memory by degrees of freedom, and needs it by pairs of bodies, too.
+        pairs_of_bodies = 2 * model.nbody**2
+        if pairs_of_bodies > model.narena / 2:
+            spec.memory = model.narena + 2 * pairs_of_bodies
+            model = spec.compile()
     except (ValueError, mujoco.FatalError) as error:
         raise _explain(str(error), entries) from None
     # What has no extent is as far from rest as its speed says, and not asleep while it spins.

@@ -289,13 +289,6 @@ def test_a_model_without_links_is_left_out():
     assert 'model "empty" has no links; it is left out' in told.message
 
 
-def test_models_of_one_name_are_told_apart():
-    found = world(box("a") + box("a") + box("a_1"))
-    assert [model.name for model in found.models] == ["a_2", "a", "a_1"]
-    (told,) = found.diagnostics
-    assert told.severity == "warning"
-
-
 def test_only_the_first_world_is_run():
     found = world(box("a") + "</world><world name='b'><x/>")
     assert found.name == "w"
@@ -396,3 +389,12 @@ def test_worlds_of_others_load_or_lack_something():
             if told.severity == "error":
                 assert "was not found" in told.message or "does not exist" in told.message
     assert loaded >= 20
+
+
+def test_of_models_of_one_name_the_first_keeps_it():
+    names = ("a", "b", "a", "a_1", "a", "b")
+    found = world("".join(map(box, names)))
+    assert [each.name for each in found.models] == ["a", "b", "a_2", "a_1", "a_3", "b_1"]
+    told = [each.message for each in found.diagnostics if "name of another" in each.message]
+    assert told[0] == 'model "a" has the name of another model: it is called "a_2" here'
+    assert len(told) == 3

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Collection
+from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass, field, replace
 
 from cartwheel.description.inertia import impossibility, made_possible, principal_moments
@@ -112,17 +112,22 @@ class Model:
             )
 
 
-def name_apart(model: Model, taken: list[str], ctx: Context) -> None:
-    """Gives a model another name where its own is taken, as Gazebo Classic does."""
-    if model.name not in taken:
-        return
-    free = next(name for i in itertools.count(1) if (name := f"{model.name}_{i}") not in taken)
-    ctx.tell(
-        "warning",
-        f'model "{model.name}" has the name of another model: it is called "{free}" here',
-        model.origin,
-    )
-    model.name = free
+def name_apart(models: Iterable[Model], ctx: Context) -> None:
+    """Gives models another name where one before them has their own, as Gazebo Classic does."""
+    models = list(models)
+    taken = {model.name for model in models}
+    numbers: dict[str, Iterator[int]] = {}
+    for model in models:
+        name = model.name
+        if name not in numbers:
+            numbers[name] = itertools.count(1)
+            continue
+        model.name = next(free for i in numbers[name] if (free := f"{name}_{i}") not in taken)
+        ctx.tell(
+            "warning",
+            f'model "{name}" has the name of another model: it is called "{model.name}" here',
+            model.origin,
+        )
 
 
 def read_included(included: Included) -> Model:
@@ -165,9 +170,8 @@ def read_model(node: Node, ctx: Context, included: Included | None = None, depth
         if found.node.tag == "light":
             raise each.fail("a light cannot be included in a model", "Include it in the world.")
         nested.append(read_included(found))
+    name_apart((inner for inner in nested if not inner.merge), ctx)
     for inner in nested:
-        if not inner.merge:
-            name_apart(inner, [each.name for each in nested if each is not inner], ctx)
         _add_nested(frames, inner)
     _set_canonical(node, frames, link_nodes, nested)
     for each in node.all("frame"):

@@ -50,8 +50,8 @@ def read_world(node: Node, ctx: Context) -> WorldDescription:
     name = (node.get("name") or "").strip() or "default"
     frames = Frames(WORLD, name)
     models, light_nodes = _contents(node, ctx)
+    name_apart(models, ctx)
     for model in models:
-        name_apart(model, [other.name for other in models if other is not model], ctx)
         frames.add_scope(model.name, model.frames, model.pose, model.relative_to, model.origin)
     for each in node.all("frame"):
         stated = each.child("pose")
