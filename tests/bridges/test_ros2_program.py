@@ -6,10 +6,12 @@ import os
 import signal
 import subprocess
 from collections.abc import Callable, Iterator
+from pathlib import Path
 
 import pytest
 from tests.bridges.ros1_peers import PROGRAM, wait_for
 from tests.bridges.ros2_peers import DOMAIN, REASON, Peer
+from tests.bridges.test_recording import read_with_mcap
 
 pytestmark = pytest.mark.skipif(bool(REASON), reason=REASON)
 
@@ -90,6 +92,27 @@ def test_it_makes_way_for_a_robot_state_publisher(start: Start, peer: Peer) -> N
         ),
         "that it steps in again",
     )
+
+
+def test_a_recorded_robot_is_described_once(start: Start, peer: Peer, tmp_path: Path) -> None:
+    path = tmp_path / "run.mcap"
+    process = start("--record", str(path), "--record-topics", "/robot_description")
+    peer.subscribe("/robot_description", STRING, transient=True)
+    peer.subscribe("/clock", CLOCK)
+    wait_for(lambda: peer.received("/robot_description"), "the description")
+    peer.publish("/robot_description", STRING, {"data": "<robot name='another'/>"})
+    wait_for(
+        lambda: any(line[:2] == ["NO_WRITER", "rt/robot_description"] for line in peer.lines),
+        "that it makes way",
+    )
+    before = len(peer.received("/clock"))
+    wait_for(lambda: len(peer.received("/clock")) > before + 50, "half a second more")
+    process.send_signal(signal.SIGINT)
+    _, errors = process.communicate(timeout=30)
+    assert process.returncode == 0, errors
+    ours = [head for _, head in peer.received("/robot_description") if b'"rosbots"' in head]
+    assert len(ours) == 1
+    assert len(read_with_mcap(path)["/robot_description"]) == 1
 
 
 def test_two_simulations_live_in_one_domain(start: Start, peer: Peer) -> None:

@@ -11,6 +11,7 @@ import pytest
 from cartwheel.description import load_robot, load_text, load_world
 from cartwheel.gazebo.robot_states import RobotStates
 from cartwheel.geometry import Pose
+from cartwheel.plugins.robot_descriptions import RobotDescriptions
 from cartwheel.session import Session
 
 TF = "tf2_msgs/msg/TFMessage"
@@ -57,6 +58,11 @@ class Listener:
         return pose
 
 
+def states_of(session: Session) -> RobotStates:
+    descriptions = RobotDescriptions(session.simulation, session.graph)
+    return RobotStates(session.simulation, session.graph, descriptions)
+
+
 def session_with(*robots: tuple[str, Any]) -> Session:
     session = Session(load_world("empty"))
     for name, robot in robots:
@@ -66,7 +72,7 @@ def session_with(*robots: tuple[str, Any]) -> Session:
 
 def test_the_cart_is_one_tree_and_nothing_is_told_twice() -> None:
     session = session_with(("rosbots", load_robot("rosbots.xacro")))
-    RobotStates(session.simulation, session.graph)
+    states_of(session)
     heard = Listener(session)
     session.simulation.advance(2 * 10**9)
     parents: dict[str, set[str]] = {}
@@ -89,7 +95,7 @@ def test_the_cart_is_one_tree_and_nothing_is_told_twice() -> None:
 
 def test_a_joint_is_where_it_was_turned_to() -> None:
     session = session_with(("arm", load_text(ARM, file="arm.urdf")))
-    RobotStates(session.simulation, session.graph)
+    states_of(session)
     heard = Listener(session)
     session.simulation.set_joint_positions("arm", {"shoulder": 0.7})
     session.simulation.advance(10**8)
@@ -103,29 +109,47 @@ def test_a_joint_is_where_it_was_turned_to() -> None:
 
 def test_it_makes_way_and_steps_in() -> None:
     session = session_with(("arm", load_text(ARM, file="arm.urdf")))
-    states = RobotStates(session.simulation, session.graph)
+    states = states_of(session)
     heard = Listener(session)
     descriptions: list[Any] = []
     session.graph.subscribe("/robot_description", descriptions.append, node="test")
     session.simulation.advance(10**8)
-    assert descriptions[0].data == load_text(ARM, file="arm.urdf").text
+    assert [each.data for each in descriptions] == [load_text(ARM, file="arm.urdf").text]
     assert {one.child_frame_id for one in heard.static} == {"tip"}
-    states.deactivate()
+    states.leave_to_others(frozenset({"/robot_description"}))
     before = len(heard.moving)
     session.simulation.advance(3 * 10**8)
     assert (len(heard.moving), heard.static) == (before, [])
-    assert not session.graph.topic("/robot_description").publishers
-    states.activate()
+    # Those who show the robot, or record it, go by it still.
+    assert session.graph.topic("/robot_description").publishers
+    assert not session.graph.topic("/tf").publishers
+    states.leave_to_others(frozenset())
     session.simulation.advance(5 * 10**8)
     assert len(heard.moving) > before
     assert {one.child_frame_id for one in heard.static} == {"tip"}
     session.close()
 
 
+def test_a_robot_that_another_describes_is_left_to_it_alone() -> None:
+    session = Session(load_world("empty"))
+    robot = load_text(ARM, file="arm.urdf")
+    for name in ("a", "b"):
+        session.spawn(robot, name=name, namespace=name, frame_prefix=f"{name}/")
+    states = states_of(session)
+    heard = Listener(session)
+    session.simulation.advance(10**8)
+    assert {one.child_frame_id for one in heard.static} == {"a/tip", "b/tip"}
+    states.leave_to_others(frozenset({"/b/robot_description"}))
+    heard.moving.clear()
+    session.simulation.advance(3 * 10**8)
+    assert {one.child_frame_id for one in (*heard.static, *heard.moving)} == {"a/upper", "a/tip"}
+    session.close()
+
+
 def test_a_second_robot_of_the_same_frames_is_left_out_and_told_of() -> None:
     arm = load_text(ARM, file="arm.urdf")
     session = session_with(("one", arm), ("two", arm))
-    RobotStates(session.simulation, session.graph)
+    states_of(session)
     told = [
         each.message for each in session.diagnostics if "frames of the same names" in each.message
     ]
@@ -136,7 +160,7 @@ def test_a_second_robot_of_the_same_frames_is_left_out_and_told_of() -> None:
 
 def test_nothing_is_made_for_nobody_and_a_deleted_robot_is_gone() -> None:
     session = session_with(("arm", load_text(ARM, file="arm.urdf")))
-    states = RobotStates(session.simulation, session.graph)
+    states = states_of(session)
     assert not states._wanted()
     heard = Listener(session)
     assert states._wanted()

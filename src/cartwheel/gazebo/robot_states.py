@@ -1,8 +1,8 @@
-"""robot_state_publisher's work, where nobody else does it: ``/robot_description`` and ``/tf``."""
+"""robot_state_publisher's work, where nobody else does it: where each link is, on ``/tf``."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,7 +12,7 @@ from cartwheel.errors import Diagnostic
 from cartwheel.geometry import Pose
 from cartwheel.graph import Graph, Publisher, StaticTransforms, resolve_frame
 from cartwheel.messages import header, message_class
-from cartwheel.plugins.robot_descriptions import RobotDescriptions, is_robot
+from cartwheel.plugins.robot_descriptions import TOPIC, RobotDescriptions, is_robot
 from cartwheel.simulation import Simulation
 
 NODE = "robot_state_publisher"
@@ -44,59 +44,61 @@ class RobotStates:
     Args:
         simulation: Whose robots.
         graph: To publish on.
+        descriptions: Where the robots are described.
     """
 
-    def __init__(self, simulation: Simulation, graph: Graph) -> None:
+    def __init__(
+        self, simulation: Simulation, graph: Graph, descriptions: RobotDescriptions
+    ) -> None:
         self._simulation = simulation
         self._graph = graph
-        self._descriptions: RobotDescriptions | None = None
+        self._descriptions = descriptions
         self._publisher: Publisher | None = None
+        self._others: frozenset[str] = frozenset()
         self._told: dict[str, _Told] = {}
         self._version = -1
         self._warned: set[str] = set()
-        self._looking = simulation.schedule(_LOOK, before=self._look, active=self._is_active)
+        self._looking = simulation.schedule(_LOOK, before=self._look, active=self._is_due)
         self._telling = simulation.schedule(RATE, after=self._publish, active=self._wanted)
-        self.activate()
+        self._look()
 
-    def activate(self) -> None:
-        """Does the work, from now on."""
-        if self._publisher is None:
-            self._publisher = self._graph.advertise(
-                "/tf", "tf2_msgs/msg/TFMessage", node=NODE, rate=RATE
-            )
-            self._descriptions = RobotDescriptions(self._simulation, self._graph)
-            self._version = -1
+    def leave_to_others(self, topics: frozenset[str]) -> None:
+        """Leaves the robots to others that these describe, and tells of all the rest.
+
+        Args:
+            topics: On which others publish descriptions; ``/robot_description`` is any robot's.
+        """
+        if topics != self._others:
+            self._others = topics
             self._look()
-
-    def deactivate(self) -> None:
-        """Leaves the work to another."""
-        if self._publisher is None:
-            return
-        for name in self._told:
-            StaticTransforms.of(self._graph).remove((NODE, name))
-        self._told.clear()
-        self._publisher.close()
-        self._publisher = None
-        if self._descriptions is not None:
-            self._descriptions.close()
-            self._descriptions = None
 
     def close(self) -> None:
         """Ends it."""
-        self.deactivate()
+        self._tell_of({})
         self._simulation.unschedule(self._looking)
         self._simulation.unschedule(self._telling)
 
-    def _is_active(self) -> bool:
-        return self._publisher is not None and self._version != self._simulation.scene.version
+    def _is_due(self) -> bool:
+        return self._version != self._simulation.scene.version
 
     def _wanted(self) -> bool:
-        return self._publisher is not None and self._publisher.wanted and bool(self._told)
+        return self._publisher is not None and self._publisher.wanted
+
+    def _is_anothers(self, name: str) -> bool:
+        return TOPIC in self._others or self._descriptions.topic(name) in self._others
 
     def _look(self) -> None:
         scene = self._simulation.scene
         self._version = scene.version
-        robots = {one.name: one.description for one in scene.models if is_robot(one.description)}
+        self._tell_of(
+            {
+                one.name: one.description
+                for one in scene.models
+                if is_robot(one.description) and not self._is_anothers(one.name)
+            }
+        )
+
+    def _tell_of(self, robots: Mapping[str, RobotDescription]) -> None:
         static = StaticTransforms.of(self._graph)
         for name in list(self._told):
             if robots.get(name) is not self._told[name].description:
@@ -108,7 +110,7 @@ class RobotStates:
             prefix = self._simulation.frame_prefix(name)
             joints = _tree(description)
             children = frozenset(resolve_frame(joint.child, prefix) for joint in joints)
-            if self._are_anothers(name, children):
+            if self._are_told(name, children):
                 continue
             by_plugins = _told_by_plugins(description)
             moving = tuple(
@@ -121,8 +123,16 @@ class RobotStates:
             if fixed:
                 poses = link_poses(description, {})
                 static.put((NODE, name), _transforms(0, fixed, poses, prefix))
+        # Who tells nothing publishes nothing: so /tf shows whose it is.
+        if self._told and self._publisher is None:
+            self._publisher = self._graph.advertise(
+                "/tf", "tf2_msgs/msg/TFMessage", node=NODE, rate=RATE
+            )
+        elif not self._told and self._publisher is not None:
+            self._publisher.close()
+            self._publisher = None
 
-    def _are_anothers(self, name: str, children: frozenset[str]) -> bool:
+    def _are_told(self, name: str, children: frozenset[str]) -> bool:
         for other, told in self._told.items():
             shared = sorted(told.children & children)
             if not shared:
@@ -156,15 +166,6 @@ class RobotStates:
             transforms += _transforms(simulation.time_ns, told.moving, poses, told.prefix)
         if transforms:
             self._publisher.publish(message_class("tf2_msgs/msg/TFMessage")(transforms))
-
-
-def follow(states: RobotStates, simulation: Simulation) -> Callable[[bool], None]:
-    """A function for any thread: told whether another does the work, it makes way or steps in."""
-
-    def told(another: bool) -> None:
-        simulation.post(states.deactivate if another else states.activate)
-
-    return told
 
 
 def _tree(description: RobotDescription) -> list[Joint]:

@@ -10,6 +10,8 @@ from cartwheel.messages import message_class
 from cartwheel.simulation import Simulation
 
 STRING = "std_msgs/msg/String"
+TOPIC = "/robot_description"
+"""Of a robot without a namespace."""
 _RATE = 10.0
 """Hz of simulated time at which new models are looked for."""
 
@@ -18,7 +20,8 @@ class RobotDescriptions:
     """Publishes the expanded XML of each model that is a robot, latched.
 
     A topic is ``robot_description`` in the robot's namespace, as ROS's tools expect it; that of
-    a further robot there is ``/<model>/robot_description``. For the owner's thread.
+    a further robot there is ``/<model>/robot_description``. One of these does for all who show
+    robots: two would publish each of them twice. For the owner's thread.
 
     Args:
         simulation: Whose models.
@@ -32,6 +35,12 @@ class RobotDescriptions:
         self._version = -1
         self._look()
         self._task = simulation.schedule(_RATE, before=self._look)
+
+    def topic(self, name: str) -> str | None:
+        """Where a model is described; None where that is no robot."""
+        self._look()
+        found = self._published.get(name)
+        return found[1].topic if found else None
 
     def close(self) -> None:
         """Takes them off the graph."""
@@ -58,12 +67,9 @@ class RobotDescriptions:
     def _publish(self, name: str, description: RobotDescription) -> Publisher:
         taken = {publisher.topic for _, publisher in self._published.values()}
         space = self._simulation.namespace(name).strip("/")
-        first = f"/{space}/robot_description" if space else "/robot_description"
-        topic = (
-            first
-            if first not in taken
-            else f"/{re.sub('[^0-9A-Za-z_]', '_', name)}/robot_description"
-        )
+        topic = f"/{space}{TOPIC}" if space else TOPIC
+        if topic in taken:
+            topic = f"/{re.sub('[^0-9A-Za-z_]', '_', name)}{TOPIC}"
         publisher = self._graph.advertise(topic, STRING, node=name, qos="latched")
         publisher.publish(message_class(STRING)(data=description.text))
         return publisher

@@ -88,6 +88,7 @@ class Ros2Bridge:
         self._subscriptions: dict[str, _Subscription] = {}
         self._services: dict[str, _Offered] = {}
         self._actions: dict[str, OfferedAction] = {}
+        self._theirs: frozenset[str] = frozenset()
         self._due = False
         self._closed = False
         self._calls = 0
@@ -128,11 +129,21 @@ class Ros2Bridge:
         """Says something on ``/rosout``; from any thread."""
         self._log.write(diagnostic)
 
-    def watch_others(self, topic: str, told: Callable[[bool], None]) -> None:
-        """Tells from then on whether another node publishes a topic; on the loop's thread."""
+    def make_way(self, last: str, told: Callable[[frozenset[str]], None]) -> None:
+        """Leaves topics to other nodes as long as those publish them.
+
+        Args:
+            last: Last part of the topics' names.
+            told: From then on told which ones that are; on the loop's thread.
+        """
 
         def look() -> None:
-            told(self.middleware.has_other_publisher(topic))
+            theirs = self.middleware.topics_of_others()
+            found = frozenset(one for one in theirs if one.rpartition("/")[2] == last)
+            if found != self._theirs:
+                self._theirs = found
+                self._mirror()
+                told(found)
 
         self.middleware.on_others = look
         self._loop.post(look)
@@ -160,7 +171,9 @@ class Ros2Bridge:
         if self._closed:
             return
         found = survey(self._graph.topics(), known=self._is_known)
-        self._mirror_publications(found.sent)
+        self._mirror_publications(
+            {name: info for name, info in found.sent.items() if name not in self._theirs}
+        )
         self._mirror_subscriptions(found.read)
         self._mirror_services(
             {one.name: one for one in self._graph.services() if self._is_known_service(one)}

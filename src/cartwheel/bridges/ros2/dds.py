@@ -130,14 +130,15 @@ class Dds:
         """See `Middleware`."""
         return _Service(self, name, type_, answer=answer, fits=fits)
 
-    def has_other_publisher(self, topic: str) -> bool:
+    def topics_of_others(self) -> set[str]:
         """See `Middleware`."""
         writers, _ = self.participant.others()
         # Not another simulation's: the two would make way for each other, in turns.
-        return any(
-            writer.topic == f"rt{topic}" and not writer.guid.startswith(wire.VENDOR)
+        return {
+            writer.topic.removeprefix("rt")
             for writer in writers
-        )
+            if writer.topic.startswith("rt/") and not writer.guid.startswith(wire.VENDOR)
+        }
 
     def _found_others(self) -> None:
         self.on_others()

@@ -94,8 +94,8 @@ class Middleware(Protocol):
     ) -> Closable:
         """Offers a service; `fits` tells whether bytes can be a request."""
 
-    def has_other_publisher(self, topic: str) -> bool:
-        """Whether another node publishes a topic."""
+    def topics_of_others(self) -> set[str]:
+        """The topics that other nodes publish; another simulation's do not count."""
 
     on_others: Callable[[], None]
     """Told when what other nodes offer has changed."""

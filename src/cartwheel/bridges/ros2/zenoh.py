@@ -135,9 +135,9 @@ class Zenoh:
         del fits
         return _Service(self, name, type_, answer)
 
-    def has_other_publisher(self, topic: str) -> bool:
+    def topics_of_others(self) -> set[str]:
         """See `Middleware`."""
-        return topic in self._others.values()
+        return set(self._others.values())
 
     # -- names
 

@@ -8,8 +8,9 @@ from pathlib import Path
 from cartwheel.bridges.ros2 import Parameter, Rmw, Ros2Bridge
 from cartwheel.cli.commands.report import Report
 from cartwheel.errors import CartwheelError
-from cartwheel.gazebo.robot_states import RobotStates, follow
+from cartwheel.gazebo.robot_states import RobotStates
 from cartwheel.gazebo.ros2_api import Ros2Api
+from cartwheel.plugins.robot_descriptions import TOPIC, RobotDescriptions
 from cartwheel.session import CLOCK_RATE, Session
 from cartwheel.simulation import RunState
 
@@ -24,6 +25,7 @@ class Ros2:
         node: Name of the node.
         rmw: The middleware.
         package_path: Where models that are spawned look for packages first.
+        descriptions: Of the robots.
         report: Tells the user.
 
     Raises:
@@ -37,12 +39,13 @@ class Ros2:
         node: str,
         rmw: Rmw,
         package_path: Sequence[Path],
+        descriptions: RobotDescriptions,
         report: Report,
     ) -> None:
         self._session = session
+        self._descriptions = descriptions
         self._report = report
         self._api = Ros2Api(session, package_path=package_path)
-        self._states: RobotStates | None = None
         simulation = session.simulation
         self._bridge = Ros2Bridge(
             session.graph,
@@ -61,9 +64,12 @@ class Ros2:
         """
         self._api.start()
         simulation = self._session.simulation
-        self._states = RobotStates(simulation, self._session.graph)
+        states = RobotStates(simulation, self._session.graph, self._descriptions)
         self._bridge.start()
-        self._bridge.watch_others("/robot_description", follow(self._states, simulation))
+        self._bridge.make_way(
+            TOPIC.strip("/"),
+            lambda topics: simulation.post(lambda: states.leave_to_others(topics)),
+        )
         self._report.joined_ros2(self._bridge.name, self._bridge.description)
         for diagnostic in simulation.engine.diagnostics:
             self._bridge.log(diagnostic)

@@ -20,6 +20,7 @@ from cartwheel.errors import CartwheelError
 if TYPE_CHECKING:
     from cartwheel.control.server import ControlServer
     from cartwheel.description.model import RobotDescription, WorldDescription
+    from cartwheel.plugins.robot_descriptions import RobotDescriptions
     from cartwheel.session import Session
 
 ROBOT, WORLD = "rosbots.xacro", "post"
@@ -120,8 +121,8 @@ def simulate(options: Options) -> None:
             report.loaded(session, name, ros=options.ros1_node is not None)
             with (
                 _joined_to_ros1(session, server, options, remappings, report),
-                _joined_to_ros2(session, options, report),
-                _described(session, options),
+                _described(session, options) as descriptions,
+                _joined_to_ros2(session, options, descriptions, report),
                 _shown_by_foxglove(session, options, report),
                 recorded(session, options, report, lambda: _stop(session)),
             ):
@@ -156,8 +157,10 @@ def _joined_to_ros1(
 
 
 @contextlib.contextmanager
-def _joined_to_ros2(session: Session, options: Options, report: Report) -> Iterator[None]:
-    if options.ros2_node is None:
+def _joined_to_ros2(
+    session: Session, options: Options, descriptions: RobotDescriptions | None, report: Report
+) -> Iterator[None]:
+    if options.ros2_node is None or descriptions is None:
         yield
         return
     from cartwheel.cli.commands.ros2 import Ros2
@@ -167,6 +170,7 @@ def _joined_to_ros2(session: Session, options: Options, report: Report) -> Itera
         node=options.ros2_node,
         rmw=options.rmw,
         package_path=options.package_path,
+        descriptions=descriptions,
         report=report,
     )
     with interrupts.finally_do(ros2.close):
@@ -186,15 +190,14 @@ def _shown_by_foxglove(session: Session, options: Options, report: Report) -> It
 
 
 @contextlib.contextmanager
-def _described(session: Session, options: Options) -> Iterator[None]:
+def _described(session: Session, options: Options) -> Iterator[RobotDescriptions | None]:
     """Publishes what the robots are, where somebody shows them elsewhere."""
-    if options.record is None and options.foxglove_port is None:
-        yield
+    if options.record is None and options.foxglove_port is None and options.ros2_node is None:
+        yield None
         return
     from cartwheel.plugins.robot_descriptions import RobotDescriptions
 
-    RobotDescriptions(session.simulation, session.graph)
-    yield
+    yield RobotDescriptions(session.simulation, session.graph)
 
 
 def _stop(session: Session) -> None:
