@@ -89,6 +89,10 @@ if [ "$purpose" = test ]; then
     has_library libatomic.so.1 || wanted="$wanted libatomic1"
     # A peer for the tests of ROS 2, which Debian has as of ROS 2's default middleware.
     [ -e /usr/include/fastdds/dds/domain/DomainParticipant.hpp ] || wanted="$wanted g++ libfastrtps-dev"
+    # Another, which needs Rust 1.88: Debian 12 has a new one beside its old one.
+    if ! command -v cargo >/dev/null 2>&1; then
+        if in_archive cargo-web; then wanted="$wanted cargo-web"; else wanted="$wanted cargo"; fi
+    fi
     [ "$wanted" = "$before" ] || loss="Going on without: tests of cameras or the browser may fail or be skipped."
 fi
 if [ "$purpose" = test ] || [ "$purpose" = ros1 ]; then

@@ -41,7 +41,9 @@ client.on("advertiseServices", (list) => {
 });
 client.on("unadvertiseServices", (ids) => tell("servicesGone", { ids }));
 client.on("message", ({ subscriptionId, timestamp, data }) => {
-  const { topic, reader } = subscriptions.get(subscriptionId);
+  const one = subscriptions.get(subscriptionId);
+  if (!one) return; // It was on its way when we unsubscribed.
+  const { topic, reader } = one;
   tell("message", { topic, time: timestamp, at: Date.now(), size: data.byteLength, message: reader.readMessage(data) });
 });
 client.on("time", ({ timestamp }) => tell("time", { time: timestamp }));
