@@ -103,6 +103,34 @@ def test_topics_are_read_lazily_and_attachments_count(bridged: Ros2Bridged, sess
     wait_for(lambda: not bridged.wanted("/odom"), "that nothing is published for nobody")
 
 
+def test_what_is_read_here_too_comes_once_and_is_not_sent_for_that(
+    bridged: Ros2Bridged, session: Any
+) -> None:
+    stamps: list[int] = []
+
+    def take(message: Any) -> None:
+        stamps.append(message.header.stamp.sec * 10**9 + message.header.stamp.nanosec)
+
+    tokens: list[str] = []
+    watch = session.liveliness().declare_subscriber(
+        "@ros2_lv/7/*/*/*/MS/**", lambda sample: tokens.append(str(sample.key_expr)), history=True
+    )
+    inner = bridged.graph.subscribe("/odom", take, node="test")
+    # A reader here listens to others as well: that must not be mistaken for one of theirs.
+    wait_for(lambda: any("/%odom/" in token for token in tokens), "the reader of /odom")
+    wait_for(lambda: len(stamps) > 20, "odometry")
+    assert "ros2" not in bridged.graph.topic("/odom").subscribers
+    outer: list[bytes] = []
+    subscriber = session.declare_subscriber(
+        ODOM, lambda sample: outer.append(sample.payload.to_bytes())
+    )
+    wait_for(lambda: len(outer) > 50, "odometry for another")
+    inner.close()
+    subscriber.undeclare()
+    watch.undeclare()
+    assert len(set(stamps)) == len(stamps)
+
+
 def test_images_arrive_whole(session: Any) -> None:
     sizes: list[int] = []
     subscriber = session.declare_subscriber(

@@ -122,10 +122,13 @@ class Zenoh:
                 self._session,
                 key,
                 taken,
+                allowed_origin=self._zenoh.Locality.REMOTE,
                 history=self._zenoh.ext.HistoryConfig(detect_late_publishers=True),
             )
         else:
-            subscriber = self._session.declare_subscriber(key, taken)
+            subscriber = self._session.declare_subscriber(
+                key, taken, allowed_origin=self._zenoh.Locality.REMOTE
+            )
         return _Declared(token, subscriber)
 
     def serve(
@@ -254,19 +257,24 @@ class _Outlet:
         api, session = zenoh._zenoh, zenoh._session
         # Nobody can make us wait: what a reader does not take is dropped.
         drop = api.CongestionControl.DROP
+        # What is read here is read from the graph, which gives it to whom it is for.
+        others = api.Locality.REMOTE
         self._closed = False
         if profile.transient_local:
             self._publisher = api.ext.declare_advanced_publisher(
                 session,
                 key,
                 congestion_control=drop,
+                allowed_destination=others,
                 cache=api.ext.CacheConfig(max_samples=profile.depth),
                 publisher_detection=True,
             )
             # Who comes late asks the cache, which must have something.
             on_readers(True)
             return
-        self._publisher = session.declare_publisher(key, congestion_control=drop)
+        self._publisher = session.declare_publisher(
+            key, congestion_control=drop, allowed_destination=others
+        )
 
         def matched(status: Any) -> None:
             there = bool(status.matching)
