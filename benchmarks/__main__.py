@@ -12,11 +12,17 @@ os.environ.setdefault("MUJOCO_GL", "egl")
 
 from rich.console import Console
 
-from benchmarks import camera, headless, process, scans
+from benchmarks import camera, headless, process, scans, wires
 from benchmarks.figure import FULL, QUICK
 from benchmarks.report import machine, show, write
 
-_PARTS = {"headless": headless, "camera": camera, "scans": scans, "process": process}
+_PARTS = {
+    "headless": headless,
+    "camera": camera,
+    "scans": scans,
+    "process": process,
+    "wires": wires,
+}
 
 
 def main() -> None:

@@ -8,7 +8,6 @@ from typing import Any
 from cartwheel.control.parameters import Parameters
 from cartwheel.control.protocol import Connection, pack
 from cartwheel.graph import Mailbox, TopicInfo
-from cartwheel.messages import CdrCache
 from cartwheel.session import Session
 
 _LOOK = 0.2
@@ -32,7 +31,6 @@ class Streams:
     def __init__(self, session: Session, closed: threading.Event) -> None:
         self._session = session
         self._closed = closed
-        self._cache = CdrCache(depth=8)
 
     def serve(self, client: Connection, topic: TopicInfo, parameters: Parameters) -> None:
         """Sends a topic's messages until the client or the simulation ends.
@@ -60,18 +58,17 @@ class Streams:
             while not self._closed.is_set():
                 first = box.get(_LOOK)
                 if first is not None:
-                    self._send(client, topic.name, [first, *box.drain()], box.dropped)
+                    self._send(client, [first, *box.drain()], box.dropped)
                 elif client.has_ended():
                     return
         finally:
             subscription.close()
-            self._cache.forget(topic.name)
 
-    def _send(self, client: Connection, topic: str, items: list[Any], dropped: int) -> None:
+    def _send(self, client: Connection, items: list[Any], dropped: int) -> None:
         batch: list[bytes] = []
         size = 0
         for time_ns, message in items:
-            data = b"" if message is None else self._cache.encode(topic, message)
+            data = b"" if message is None else self._session.graph.cdr.encode(message)
             batch.append(pack({"time_ns": time_ns, "dropped": dropped}, data))
             size += len(batch[-1])
             if size > _BATCH:

@@ -17,6 +17,7 @@ from cartwheel.graph.action import Action
 from cartwheel.graph.mailbox import Mailbox
 from cartwheel.graph.names import resolve_name
 from cartwheel.graph.parameters import Parameters
+from cartwheel.messages import CdrCache
 
 Callback = Callable[[Any], None]
 Handler = Callable[[Any], Any]
@@ -144,6 +145,8 @@ class Graph:
         self._services: dict[str, Service] = {}
         self._actions: dict[str, Action] = {}
         self.parameters = Parameters()
+        self.cdr = CdrCache()
+        """Packs messages for all wires, each once."""
         self.static_transforms: Any = None
         """See `StaticTransforms`, which puts itself here."""
         self.changed: int = 0

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import threading
-from collections import deque
 from typing import Any
 
 from cartwheel.errors import GraphError
@@ -30,34 +29,34 @@ def decode_cdr(data: bytes | memoryview, type_name: str) -> Any:
 
 
 class CdrCache:
-    """The bytes of the last messages of each topic; for any thread.
+    """The bytes of the last messages; for any thread.
 
-    A message goes to all readers of its wire as the same object: its identity tells that
-    it is the one whose bytes are there already.
+    A message goes to all readers as the same object: its identity tells that it is the one whose
+    bytes are there already, on whichever wire they go out.
 
     Args:
-        depth: How many messages of a topic to keep; more than 1 where readers may lag
-            behind each other.
+        count: How many messages to keep: more than 1, as readers lag behind each other.
+        room: Bytes to keep at most.
     """
 
-    def __init__(self, *, depth: int = 1) -> None:
-        self._depth = depth
+    def __init__(self, *, count: int = 64, room: int = 32 << 20) -> None:
+        self._count = count
+        self._room = room
         self._lock = threading.Lock()
-        self._kept: dict[str, deque[tuple[Any, bytes]]] = {}
+        self._kept: dict[int, tuple[Any, bytes]] = {}
+        self._size = 0
 
-    def encode(self, topic: str, message: Any) -> bytes:
-        """The message's CDR bytes."""
+    def encode(self, message: Any) -> bytes:
+        """The message's CDR bytes, as of `encode_cdr`."""
         with self._lock:
-            kept = self._kept.setdefault(topic, deque(maxlen=self._depth))
-            for known, data in kept:
-                if known is message:
-                    return data
+            known = self._kept.get(id(message))
+            if known is not None:
+                return known[1]
             data = encode_cdr(message)
             # Holding the message keeps its identity from being given to another.
-            kept.append((message, data))
+            self._kept[id(message)] = (message, data)
+            self._size += len(data)
+            while len(self._kept) > self._count or (self._size > self._room and self._kept):
+                _, oldest = self._kept.pop(next(iter(self._kept)))
+                self._size -= len(oldest)
             return data
-
-    def forget(self, topic: str) -> None:
-        """Drops what is kept of a topic that nobody reads any more."""
-        with self._lock:
-            self._kept.pop(topic, None)

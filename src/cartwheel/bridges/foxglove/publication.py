@@ -6,7 +6,6 @@ from collections.abc import Callable
 from typing import Any
 
 from cartwheel.graph import Graph, Mailbox, Subscription, TopicInfo
-from cartwheel.messages import encode_cdr
 from cartwheel.messages.ros2 import ros2_definition
 from cartwheel.messages.ros2_types import ros2_name
 
@@ -84,7 +83,7 @@ class Publication:
         for time_ns, message in self._box.drain():
             if not self._readers:
                 return
-            data = encode_cdr(message)
+            data = self._graph.cdr.encode(message)
             if self.latched:
                 self._last = (time_ns, data)
             self.channel.log(data, log_time=time_ns)

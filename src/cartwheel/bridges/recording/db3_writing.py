@@ -8,7 +8,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from cartwheel.bridges.recording.encoding import codec
+from cartwheel.bridges.recording.encoding import Pack, codec
 from cartwheel.bridges.recording.qos import qos_text
 from cartwheel.bridges.recording.rosbag2_metadata import TopicCount, as_yaml, metadata
 
@@ -39,16 +39,17 @@ class Db3Writer:
     Args:
         path: Made anew.
         notes: Kept among its metadata.
+        pack: Makes the bytes of a message.
 
     Raises:
         OSError: The file cannot be written.
     """
 
-    def __init__(self, path: Path, *, notes: Mapping[str, str]) -> None:
+    def __init__(self, path: Path, *, notes: Mapping[str, str], pack: Pack) -> None:
         self.path = path
         self.kept_ns = 0
         self._notes = notes
-        self._codec = codec("ros2")
+        self._codec = codec("ros2", pack)
         self._topics: list[TopicCount] = []
         self._types: set[str] = set()
         self._span: tuple[int, int] | None = None

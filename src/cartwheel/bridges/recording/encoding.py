@@ -12,6 +12,8 @@ from cartwheel.messages.ros1 import encode_ros1, ros1_type
 from cartwheel.messages.ros2 import ros2_definition, ros2_hash
 from cartwheel.messages.ros2_types import ros2_name
 
+Pack = Callable[[Any], bytes]
+
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Schema:
@@ -38,9 +40,21 @@ class Codec:
     schema: Callable[[str], Schema]
 
 
-def codec(encoding: Encoding) -> Codec:
-    """The codec of an encoding."""
-    return _ROS1 if encoding == "ros1" else _ROS2
+def codec(encoding: Encoding, pack: Pack = encode_cdr) -> Codec:
+    """The codec of an encoding.
+
+    Args:
+        encoding: Which one.
+        pack: Makes ROS 2's bytes.
+    """
+    if encoding == "ros1":
+        return _ROS1
+    return Codec(
+        messages="cdr",
+        schemas="ros2msg",
+        encode=lambda message, _: pack(message),
+        schema=_ros2_schema,
+    )
 
 
 def _ros1_schema(name: str) -> Schema:
@@ -58,10 +72,4 @@ _ROS1 = Codec(
     schemas="ros1msg",
     encode=lambda message, seq: encode_ros1(message, seq=seq),
     schema=_ros1_schema,
-)
-_ROS2 = Codec(
-    messages="cdr",
-    schemas="ros2msg",
-    encode=lambda message, _: encode_cdr(message),
-    schema=_ros2_schema,
 )

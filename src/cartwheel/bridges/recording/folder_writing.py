@@ -7,7 +7,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from cartwheel.bridges.recording.encoding import codec
+from cartwheel.bridges.recording.encoding import Pack, codec
 from cartwheel.bridges.recording.mcap_writing import McapWriter
 from cartwheel.bridges.recording.rosbag2_metadata import TopicCount, as_yaml, metadata
 
@@ -18,18 +18,19 @@ class FolderWriter:
     Args:
         path: Made anew.
         notes: Kept among its metadata.
+        pack: Makes the bytes of a message.
 
     Raises:
         OSError: It cannot be written.
     """
 
-    def __init__(self, path: Path, *, notes: Mapping[str, str]) -> None:
+    def __init__(self, path: Path, *, notes: Mapping[str, str], pack: Pack) -> None:
         self.path = path
         path.unlink(missing_ok=True)
         path.mkdir()
         self._notes = notes
         self._file = path / f"{path.name}_0.mcap"
-        self._mcap = McapWriter(self._file, "ros2", notes=notes)
+        self._mcap = McapWriter(self._file, "ros2", notes=notes, pack=pack)
         self._topics: list[TopicCount] = []
         self._span: tuple[int, int] | None = None
         self._tell()

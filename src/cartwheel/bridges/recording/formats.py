@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import shutil
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, Literal, Protocol
 
@@ -116,7 +116,12 @@ def check_writable(path: Path, *, overwrite: bool) -> None:
 
 
 def open_writer(
-    path: Path, encoding: Encoding, *, overwrite: bool, notes: Mapping[str, str]
+    path: Path,
+    encoding: Encoding,
+    *,
+    overwrite: bool,
+    notes: Mapping[str, str],
+    pack: Callable[[Any], bytes],
 ) -> Writer:
     """Begins a recording.
 
@@ -125,6 +130,7 @@ def open_writer(
         encoding: Of its messages.
         overwrite: Whether to replace what is there.
         notes: To be kept with it, where the form can.
+        pack: Makes ROS 2's bytes of a message.
 
     Raises:
         RecordingError: It cannot be written there.
@@ -133,7 +139,7 @@ def open_writer(
     try:
         if path.is_dir():
             shutil.rmtree(path)
-        return _opened(path, encoding, notes)
+        return _opened(path, encoding, notes, pack)
     except OSError as error:
         raise RecordingError(f'"{path}" cannot be written: {reason_of(error)}') from error
 
@@ -143,12 +149,14 @@ def reason_of(error: OSError) -> str:
     return error.strerror or str(error)
 
 
-def _opened(path: Path, encoding: Encoding, notes: Mapping[str, str]) -> Writer:
+def _opened(
+    path: Path, encoding: Encoding, notes: Mapping[str, str], pack: Callable[[Any], bytes]
+) -> Writer:
     form = form_of(path)
     if form == "mcap":
         from cartwheel.bridges.recording.mcap_writing import McapWriter
 
-        return McapWriter(path, encoding, notes=notes)
+        return McapWriter(path, encoding, notes=notes, pack=pack)
     if form == "bag":
         from cartwheel.bridges.recording.bag_writing import BagWriter
 
@@ -156,10 +164,10 @@ def _opened(path: Path, encoding: Encoding, notes: Mapping[str, str]) -> Writer:
     if form == "db3":
         from cartwheel.bridges.recording.db3_writing import Db3Writer
 
-        return Db3Writer(path, notes=notes)
+        return Db3Writer(path, notes=notes, pack=pack)
     from cartwheel.bridges.recording.folder_writing import FolderWriter
 
-    return FolderWriter(path, notes=notes)
+    return FolderWriter(path, notes=notes, pack=pack)
 
 
 def _is_bag2(folder: Path) -> bool:

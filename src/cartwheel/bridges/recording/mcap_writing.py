@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from cartwheel.bridges.recording.encoding import codec
+from cartwheel.bridges.recording.encoding import Pack, codec
 from cartwheel.bridges.recording.formats import Encoding
 from cartwheel.bridges.recording.mcap_format import (
     MAGIC,
@@ -51,15 +51,18 @@ class McapWriter:
         path: Made anew.
         encoding: Of the messages.
         notes: Kept as the metadata ``cartwheel``.
+        pack: Makes ROS 2's bytes of a message.
 
     Raises:
         OSError: The file cannot be written.
     """
 
-    def __init__(self, path: Path, encoding: Encoding, *, notes: Mapping[str, str]) -> None:
+    def __init__(
+        self, path: Path, encoding: Encoding, *, notes: Mapping[str, str], pack: Pack
+    ) -> None:
         self.path = path
         self.kept_ns = 0
-        self._codec = codec(encoding)
+        self._codec = codec(encoding, pack)
         self._profile = encoding
         self._channels: list[_Channel] = []
         self._schemas: dict[str, tuple[int, bytes]] = {}

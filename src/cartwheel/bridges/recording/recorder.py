@@ -339,7 +339,11 @@ class Recorder:
     def _begin(self, path: Path) -> None:
         self._channels.clear()
         self._writer = open_writer(
-            path, self._encoding, overwrite=self._overwrite, notes=self._notes
+            path,
+            self._encoding,
+            overwrite=self._overwrite,
+            notes=self._notes,
+            pack=self._graph.cdr.encode,
         )
         self._files.append(path)
 

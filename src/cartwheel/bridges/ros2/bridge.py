@@ -362,7 +362,7 @@ class _Publication:
         if self._outlet is None:
             return
         try:
-            self._outlet.send(encode_cdr(message))
+            self._outlet.send(self._bridge._graph.cdr.encode(message))
         except Exception as error:  # noqa: BLE001 - rosbags lets whatever it meets through
             if not self._faulty:
                 self._faulty = True

@@ -1,0 +1,218 @@
+"""One simulation with some of the wires, and readers at their other ends.
+
+python -m benchmarks.wire_load WIRE... [--pairs N]
+"""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import gc
+import json
+import sys
+import tempfile
+import threading
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from benchmarks.carts import READ, Listener, driving
+from benchmarks.wire_readers import IMAGE, SENSORS, TYPES, Reader
+from cartwheel.messages import header, zero
+from cartwheel.simulation import RunState
+
+WIRES = ("ros1", "ros2", "foxglove", "record", "zenoh")
+_RATES = {topic: 30.0 if topic == IMAGE else 100.0 for topic in TYPES}
+"""Hz of wall time."""
+_PATIENCE = 30.0
+_TRANSFORMS = 10
+
+
+class Load:
+    """Publishes what robots publish, at rates of wall time, on the simulation's thread.
+
+    The images are made beforehand: what is measured is the way out, and not the renderer.
+
+    Attributes:
+        loud: Whether it does so on the topics that the wires have, or on others like them that
+            are read in process alone.
+    """
+
+    def __init__(self, world: Any) -> None:
+        graph = world.session.graph
+        self._post = world.session.simulation.post
+        self.loud = False
+        self._publishers = {
+            (topic, loud): graph.advertise(
+                topic if loud else f"/quiet{topic}",
+                kind,
+                rate=_RATES[topic],
+                qos="sensor" if topic in SENSORS else "default",
+            )
+            for topic, kind in TYPES.items()
+            for loud in (False, True)
+        }
+        for publisher in self._publishers.values():
+            graph.subscribe(publisher.topic, lambda _: None)
+        self._pixels = _picture().ravel()
+        self._ended = threading.Event()
+        self._late = dict.fromkeys(TYPES, False)
+        threading.Thread(target=self._tick, daemon=True).start()
+
+    def close(self) -> None:
+        """Ends it."""
+        self._ended.set()
+
+    def _tick(self) -> None:
+        due = dict.fromkeys(TYPES, time.monotonic())
+        while not self._ended.wait(max(0.0, min(due.values()) - time.monotonic())):
+            for topic, when in due.items():
+                if when <= time.monotonic():
+                    due[topic] = when + 1 / _RATES[topic]
+                    if not self._late[topic]:
+                        self._late[topic] = True
+                        self._post(lambda topic=topic: self._publish(topic))
+
+    def _publish(self, topic: str) -> None:
+        self._late[topic] = False
+        message = zero(TYPES[topic])
+        stamped = header(time.time_ns(), "frame")
+        if TYPES[topic].endswith("TFMessage"):
+            message.transforms = [
+                zero("geometry_msgs/msg/TransformStamped") for _ in range(_TRANSFORMS)
+            ]
+            message.transforms[0].header = stamped
+        else:
+            message.header = stamped
+        if topic == IMAGE:
+            message.width, message.height, message.step = 640, 480, 1920
+            message.encoding, message.data = "rgb8", self._pixels
+        self._publishers[topic, self.loud].publish(message)
+
+
+def _waited() -> float:
+    """s that this thread was ready to run and others had the cores."""
+    return int(Path("/proc/thread-self/schedstat").read_text().split()[1]) / 1e9
+
+
+def _picture() -> Any:
+    """Boxes before a sky: it packs as well as what a simulation draws."""
+    generator = np.random.default_rng(0)
+    picture = np.empty((480, 640, 3), np.uint8)
+    picture[:] = np.linspace(250, 120, 480).astype(np.uint8)[:, None, None]
+    for _ in range(200):
+        x, y = generator.integers(0, 600), generator.integers(150, 460)
+        shade = np.linspace(0.6, 1.0, 60)[: 640 - x, None] * generator.integers(20, 255, 3)
+        picture[y : y + 40, x : x + 60] = shade.astype(np.uint8)
+    return picture
+
+
+def run(wires: list[str], pairs: int) -> dict[str, Any]:
+    """Seconds in turn with the same topics in process alone, and on the wires.
+
+    Returns:
+        For `real` time and `full` speed, for each pair of seconds, of the first and the second:
+        CPU seconds of the process in a second, and simulated seconds in one that the simulation's
+        thread did not wait for a core: others use the machine as well. And how late messages were.
+    """
+    with contextlib.ExitStack() as stack:
+        world = driving()
+        stack.callback(world.close)
+        session, simulation = world.session, world.session.simulation
+        # What a simulation's thread usually does beside.
+        Listener(world, READ)
+        load = Load(world)
+        stack.callback(load.close)
+        gc.collect()
+        gc.freeze()
+
+        def go(speed: float | None, seconds: float = 1.0, *, loud: bool = True) -> list[float]:
+            """Runs for some seconds of wall time."""
+            load.loud = loud
+            simulation.set_speed(speed)
+            simulation.run_state = RunState.RUNNING
+            threading.Timer(seconds, lambda: simulation.post(simulation.stop)).start()
+            before = simulation.time_ns
+            cpu, wall, waited = time.process_time(), time.perf_counter(), _waited()
+            session.pacer().run()
+            wall = time.perf_counter() - wall
+            cpu, waited = time.process_time() - cpu, _waited() - waited
+            return [cpu / wall, (simulation.time_ns - before) / 1e9 / (wall - waited)]
+
+        def compare(speed: float | None) -> list[list[list[float]]]:
+            return [[go(speed, loud=loud) for loud in (False, True)] for _ in range(pairs)]
+
+        def go_until(condition: Callable[[], bool]) -> None:
+            deadline = time.monotonic() + _PATIENCE
+            while not condition():
+                if time.monotonic() > deadline:
+                    sys.exit("the readers do not come")
+                go(1.0, 0.2)
+
+        readers = _attach(world, wires, stack)
+        names = {"record": "recorder", "zenoh": "ros2"}
+        expected = {names.get(wire, wire) for wire in wires}
+        graph = session.graph
+        go_until(lambda: all(expected <= set(graph.topic(t).subscribers) for t in TYPES))
+        go(1.0, 1.0)
+        for reader in readers.values():
+            reader.ages()
+        real = compare(1.0)
+        return {
+            "real": real,
+            "ages": {wire: reader.ages() for wire, reader in readers.items()},
+            "full": compare(None),
+        }
+
+
+def _attach(world: Any, wires: list[str], stack: contextlib.ExitStack) -> dict[str, Reader]:
+    """Bridges, and a reader of each."""
+    from cartwheel.bridges.foxglove import FoxgloveBridge
+    from cartwheel.bridges.recording import Recorder
+    from cartwheel.bridges.ros1 import Ros1Bridge
+    from cartwheel.bridges.ros2 import Ros2Bridge
+    from cartwheel.cli.commands.foxglove import SimulationControls
+
+    graph, simulation = world.session.graph, world.session.simulation
+    readers: dict[str, Reader] = {}
+
+    def tell(found: Any) -> None:
+        print(found.message, file=sys.stderr)
+
+    for wire in wires:
+        made: Any
+        address = ""
+        if wire == "ros1":
+            made = Ros1Bridge(graph, report=tell)
+            address = made.uri
+        elif wire == "foxglove":
+            controls = SimulationControls(simulation)
+            made = FoxgloveBridge(graph, name="load", port=0, controls=controls, report=tell)
+        elif wire == "record":
+            folder = stack.enter_context(tempfile.TemporaryDirectory())
+            made = Recorder(
+                graph,
+                Path(folder) / "load.mcap",
+                time_ns=lambda: simulation.time_ns,
+                topics=["/load/*"],
+                report=tell,
+            )
+        else:
+            made = Ros2Bridge(graph, rmw="zenoh" if wire == "zenoh" else "dds", report=tell)
+        made.start()
+        stack.callback(made.close)
+        if wire != "record":
+            readers[wire] = Reader(wire, made.url if wire == "foxglove" else address)
+            stack.callback(readers[wire].close)
+    return readers
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("wires", nargs="+", choices=WIRES)
+    parser.add_argument("--pairs", type=int, default=8)
+    given = parser.parse_args()
+    print(json.dumps(run(given.wires, given.pairs)))
