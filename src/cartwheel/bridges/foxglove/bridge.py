@@ -211,7 +211,7 @@ class FoxgloveBridge:
                 self._warn(f"a fault of the bridge: {type(error).__name__}: {error}")
 
     def _tell_time(self) -> None:
-        self._server.broadcast_time(self._controls.state().time_ns)
+        self._server.broadcast_time(self._controls.time_ns)
 
     def _send(self, topic: str) -> None:
         self._pending.discard(topic)
@@ -247,7 +247,7 @@ class FoxgloveBridge:
                     self._graph,
                     info,
                     context=self._context,
-                    time_ns=lambda: self._controls.state().time_ns,
+                    time_ns=lambda: self._controls.time_ns,
                     wake=lambda name=name: self._wake(name),  # type: ignore[misc]
                     tell=self._warn,
                 )

@@ -19,6 +19,10 @@ class TimeState:
 class Controls(Protocol):
     """Time in the simulation's hands; called on any thread."""
 
+    @property
+    def time_ns(self) -> int:
+        """What time it is; asked for each message."""
+
     def state(self) -> TimeState:
         """How it goes now."""
 

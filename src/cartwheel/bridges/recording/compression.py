@@ -14,9 +14,10 @@ def _zstd() -> Any:
     return zstd
 
 
-def compress(data: bytes | bytearray, *, level: int) -> bytes:
+def compress(data: bytes, *, level: int) -> bytes:
     """Bytes as zstd packs them."""
-    return bytes(_zstd().compress(bytes(data), level=level))
+    packed: bytes = _zstd().compress(data, level=level)
+    return packed
 
 
 def decompress(data: bytes, kind: str) -> bytes:

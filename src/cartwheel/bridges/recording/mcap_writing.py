@@ -27,6 +27,7 @@ from cartwheel.bridges.recording.sink import Sink
 
 CHUNK = 1 << 20
 """Bytes of messages that are compressed together at most, but for a message that is larger."""
+_HEAD = struct.Struct(f"{RECORD.format}{MESSAGE.format.removeprefix('<')}")
 _LEVEL = 1
 """Of zstd: images of a simulation shrink well at any."""
 
@@ -68,7 +69,10 @@ class McapWriter:
         self._schemas: dict[str, tuple[int, bytes]] = {}
         self._stated: set[int] = set()
         """Channels whose records are in the file."""
-        self._chunk = bytearray()
+        self._chunk: list[bytes] = []
+        """The records of the chunk at hand, in pieces: images are copied once."""
+        self._size = 0
+        """Bytes of them."""
         self._span: tuple[int, int] | None = None
         """Times of the first and last message of the chunk at hand."""
         self._whole: tuple[int, int] | None = None
@@ -108,16 +112,20 @@ class McapWriter:
     def write(self, channel: int, time_ns: int, message: Any) -> int:
         into = self._channels[channel]
         data = self._codec.encode(message, into.count + 1)
-        if self._chunk and len(self._chunk) + len(data) > CHUNK:
+        if self._chunk and self._size + len(data) > CHUNK:
             self.flush()
         if into.number not in self._stated:
             self._stated.add(into.number)
-            self._chunk += into.schema + into.record
+            self._chunk += (into.schema, into.record)
+            self._size += len(into.schema) + len(into.record)
         into.count += 1
-        into.index.append((time_ns, len(self._chunk)))
-        self._chunk += RECORD.pack(Op.MESSAGE, MESSAGE.size + len(data))
-        self._chunk += MESSAGE.pack(into.number, into.count & 0xFFFFFFFF, time_ns, time_ns)
-        self._chunk += data
+        into.index.append((time_ns, self._size))
+        number = into.count & 0xFFFFFFFF
+        head = _HEAD.pack(
+            Op.MESSAGE, MESSAGE.size + len(data), into.number, number, time_ns, time_ns
+        )
+        self._chunk += (head, data)
+        self._size += len(head) + len(data)
         first, last = self._span or (time_ns, time_ns)
         self._span = (min(first, time_ns), max(last, time_ns))
         return len(data)
@@ -143,10 +151,11 @@ class McapWriter:
         from cartwheel.bridges.recording.compression import compress
 
         first, last = self._span
-        packed = compress(self._chunk, level=_LEVEL)
+        whole = b"".join(self._chunk)
+        packed = compress(whole, level=_LEVEL)
         chunk = record(
             Op.CHUNK,
-            struct.pack("<QQQI", first, last, len(self._chunk), zlib.crc32(self._chunk)),
+            struct.pack("<QQQI", first, last, len(whole), zlib.crc32(whole)),
             text("zstd"),
             struct.pack("<Q", len(packed)),
             packed,
@@ -168,7 +177,7 @@ class McapWriter:
             blob(b"".join(offsets)),
             struct.pack("<Q", len(indexes)),
             text("zstd"),
-            struct.pack("<QQ", len(packed), len(self._chunk)),
+            struct.pack("<QQ", len(packed), len(whole)),
         )
         begun, ended = self._whole or self._span
         self._whole = (min(begun, first), max(ended, last))
@@ -214,7 +223,8 @@ class McapWriter:
     def _forget_chunk(self) -> None:
         for channel in self._channels:
             channel.index.clear()
-        self._chunk = bytearray()
+        self._chunk = []
+        self._size = 0
         self._span = None
 
     def _note(self, name: str, values: Mapping[str, str]) -> None:

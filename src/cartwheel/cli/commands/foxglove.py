@@ -63,6 +63,11 @@ class SimulationControls:
     def __init__(self, simulation: Simulation) -> None:
         self._simulation = simulation
 
+    @property
+    def time_ns(self) -> int:
+        """What time it is."""
+        return self._simulation.time_ns
+
     def state(self) -> TimeState:
         """How it goes; numbers that may be read while they change."""
         from cartwheel.bridges.foxglove.controls import TimeState
