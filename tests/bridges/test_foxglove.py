@@ -357,6 +357,7 @@ def test_a_frozen_client_stalls_nobody(served: Served, folder: Path) -> None:
     assert time.monotonic() - wall < 20
     awake.wait("message", lambda e: e["topic"] == "/clock" and e["time"] > begin + 4 * 10**9)
     assert len(awake.of("message")) > count + 200
+    until(lambda: any("too slow" in each.message for each in served.reports), "the report")
     frozen.close()
     awake.close()
 

@@ -159,6 +159,8 @@ def test_a_reader_that_fails_disturbs_nobody(bridge: Bridge, master: Master, end
             publication = run.bridge._node.publications["/big"]
             assert sum(link._queued for link in publication.links) < 20 << 20
             assert run.told("too slowly") == 1
+            (count,) = run.graph.topic("/big").dropped
+            assert count > 0
     finally:
         reader.kill()
         reader.communicate()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+import time
 from collections.abc import Sequence
 
 import pytest
@@ -124,6 +125,35 @@ def test_who_asks_for_what_is_no_more_is_told_and_it_is_counted() -> None:
     (gap,) = [each for each in contents if isinstance(each, wire.Gap)]
     assert (gap.start, gap.base) == (1, 4)
     assert told == [1, 2, 3]
+
+
+def test_what_a_frozen_reader_misses_is_counted_once() -> None:
+    told: list[int] = []
+    writer = Writer(endpoint(OURS + WRITER, depth=2), lambda *_: None)
+    writer.on_silence = lambda: told.append(writer.dropped)
+    writer.match(endpoint(THEIRS + READER), HERE)
+    payload = bytes([0, 1, 0, 0, 0, 0, 0, 0])
+    for _ in range(3):
+        writer.write(payload)
+    writer.take_acknack(THEIRS + READER, wire.Acknack(READER, WRITER, 4, (), 1, True))
+    for _ in range(7):
+        writer.write(payload)
+    now = time.monotonic() + 1.0
+    writer.remind(now)
+    assert writer.dropped == 0
+    # It has 3 of 10, and 2 are kept for it.
+    writer.remind(now + 4.0)
+    assert told == [5]
+    writer.write(payload)
+    writer.remind(now + 20.0)
+    writer.remind(now + 30.0)
+    assert told == [5, 6]
+    # It wakes, and asks for what is gone.
+    asked = wire.Acknack(READER, WRITER, 4, tuple(range(4, 12)), 2, True)
+    writer.take_acknack(THEIRS + READER, asked)
+    assert writer.dropped == 6
+    writer.remind(now + 31.0)
+    assert writer.dropped == 6
 
 
 def test_a_response_goes_to_whom_it_is_for_and_others_do_not_wait_for_it() -> None:

@@ -193,6 +193,13 @@ def test_a_frozen_reader_holds_nobody_up(bridged: Ros2Bridged) -> None:
             for message in other.messages("/odom", ODOMETRY)
         ]
         assert np.diff(stamps).max() == np.diff(stamps).min()
+        wait_for(
+            lambda: any("does not answer" in each.message for each in bridged.reports),
+            "the report of who is frozen",
+        )
+        (missed,) = bridged.graph.topic("/odom").dropped
+        assert missed > 0
+        assert bridged.graph.topic("/odom").readers == (f"ros2 ({missed} dropped)",)
         os.kill(frozen.process.pid, signal.SIGCONT)
         after = len(frozen.received("/odom"))
         wait_for(lambda: len(frozen.received("/odom")) > after + 100, "that it goes on")

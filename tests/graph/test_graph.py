@@ -139,6 +139,17 @@ def test_listing():
         graph.topic("/c")
 
 
+def test_what_readers_miss_is_listed():
+    graph = Graph()
+    graph.advertise("/text", TEXT)
+    slow = graph.subscribe("/text", lambda _: None, node="slow")
+    graph.subscribe("/text", lambda _: None, node="quick")
+    assert graph.topic("/text").readers == ("slow", "quick")
+    slow.dropped = lambda: 7
+    assert graph.topic("/text").dropped == (7, 0)
+    assert graph.topic("/text").readers == ("slow (7 dropped)", "quick")
+
+
 def test_changes_are_counted():
     graph = Graph()
     counts = [graph.changed]

@@ -1,6 +1,7 @@
 """What panels make of messages, without a browser."""
 
 import math
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -95,6 +96,10 @@ def test_topics_show_type_and_stated_rate():
     assert "/imu/data" in shown
     assert "sensor_msgs/Imu" in shown
     assert "100 Hz" in shown
+    assert "dropped" not in shown
+    slow = replace(info, subscribers=("a", "b"), dropped=(0, 3))
+    assert "3 dropped</span>" in list_html([slow])
+    assert "a, b (3 dropped)" in list_html([slow])
 
 
 def test_warnings_stand_before_remarks_with_their_place():

@@ -24,6 +24,7 @@ class Tap:
         ignored: Whether a message came from outside in the first place.
         take: Takes each message.
         tell: Takes a warning.
+        beyond: How many messages were dropped after they were taken; asked on any thread.
     """
 
     def __init__(
@@ -37,6 +38,7 @@ class Tap:
         ignored: Callable[[Any], bool],
         take: Callable[[Any], None],
         tell: Callable[[str], None],
+        beyond: Callable[[], int] = lambda: 0,
     ) -> None:
         self._loop = loop
         self._graph = graph
@@ -46,6 +48,7 @@ class Tap:
         self._ignored = ignored
         self._take = take
         self._tell = tell
+        self._beyond = beyond
         self._box = Mailbox(_WAITING)
         self._due = False
         self._late = False
@@ -53,8 +56,8 @@ class Tap:
 
     @property
     def dropped(self) -> int:
-        """Messages that were published faster than they could be sent."""
-        return self._box.dropped
+        """Messages that were published faster than they could be sent, or than others read."""
+        return self._box.dropped + self._beyond()
 
     def open(self) -> None:
         """Subscribes, where that is not done yet."""
@@ -62,6 +65,7 @@ class Tap:
             self._subscription = self._graph.subscribe(
                 self._topic, self._put, type_name=self._type_name, node=self._reader
             )
+            self._subscription.dropped = lambda: self.dropped
 
     def close(self) -> None:
         """Leaves the graph."""

@@ -266,6 +266,7 @@ def _described(topic: TopicInfo) -> Answer:
         "type": topic.type,
         "publishers": list(topic.publishers),
         "subscribers": list(topic.subscribers),
+        "readers": list(topic.readers),
         "rate": topic.rate,
         "qos": topic.qos,
     }

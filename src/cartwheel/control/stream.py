@@ -53,6 +53,7 @@ class Streams:
         subscription = self._session.graph.subscribe(
             topic.name, put, type_name=topic.type, node="cartwheel topic"
         )
+        subscription.dropped = lambda: box.dropped
         try:
             client.send({"ok": {"topic": topic.name, "type": topic.type}})
             while not self._closed.is_set():

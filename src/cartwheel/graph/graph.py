@@ -35,6 +35,17 @@ class TopicInfo:
     rate: float | None
     """Hz as stated by its publisher; None where it has none."""
     qos: Qos
+    dropped: tuple[int, ...] = ()
+    """How many messages each of the subscribers has missed, as far as it counts them."""
+
+    @property
+    def readers(self) -> tuple[str, ...]:
+        """The subscribers, with what they have missed."""
+        dropped = self.dropped or (0,) * len(self.subscribers)
+        return tuple(
+            f"{name} ({count} dropped)" if count else name
+            for name, count in zip(self.subscribers, dropped, strict=True)
+        )
 
 
 class Topic:
@@ -105,6 +116,8 @@ class Subscription:
         self._topic = topic
         self.callback = callback
         self.node = node
+        self.dropped: Callable[[], int] = lambda: 0
+        """Tells, on any thread, how many messages its reader has missed because it was slow."""
 
     @property
     def topic(self) -> str:
@@ -364,6 +377,7 @@ class Graph:
             subscribers=tuple(subscription.node for subscription in topic.subscriptions),
             rate=next((p.rate for p in topic.publishers if p.rate), None),
             qos=topic.publishers[0].qos if topic.publishers else "default",
+            dropped=tuple(subscription.dropped() for subscription in topic.subscriptions),
         )
 
     def _topic(self, name: str, type_name: str) -> Topic:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 import queue
+import re
 import threading
 import time
 from collections.abc import Callable
@@ -20,12 +21,13 @@ from cartwheel.graph import Graph, Service, Subscription, TopicInfo
 PORT = 8765
 """Foxglove's own."""
 BACKLOG = 256
-"""Messages that may wait for a client. The oldest is dropped then; and a client that has let
-as many words about time and topics wait is sent away, which frees what waits for it."""
+"""Messages that may wait for a client; the oldest is dropped then."""
 _TIME_RATE = 10.0
 """Hz of wall time at which clients are told the time."""
 _STRING = "std_msgs/msg/String"
 _TOLD = 500
+_SLOW = logging.getLogger("foxglove.websocket.connected_client.send_lossy")
+_FULL = re.compile(r"client (\S+) full")
 
 Report = Callable[[Diagnostic], None]
 Assets = Callable[[str], bytes | None]
@@ -87,6 +89,7 @@ class FoxgloveBridge:
         self._values = Values(
             graph, controls=controls, descriptions=self._descriptions, tell=self._warn
         )
+        self._slow = _Slow(lambda text: self._jobs.put(lambda: self._warn(text)))
         self._thread = threading.Thread(target=self._run, name="foxglove", daemon=True)
 
     @property
@@ -120,6 +123,8 @@ class FoxgloveBridge:
             capabilities.append(Capability.PlaybackControl)
         # What it says of clients that leave is not for the terminal.
         logging.getLogger("foxglove").addHandler(logging.NullHandler())
+        _SLOW.setLevel(logging.INFO)
+        _SLOW.addHandler(self._slow)
         self._context = foxglove.Context()
         listener = Listener(
             incoming=self._incoming,
@@ -155,6 +160,7 @@ class FoxgloveBridge:
         if self._closed:
             return
         self._closed = True
+        _SLOW.removeHandler(self._slow)
         if self._changed in self._graph.on_change:
             self._graph.on_change.remove(self._changed)
         self._jobs.put(None)
@@ -310,6 +316,23 @@ class FoxgloveBridge:
             from foxglove import StatusLevel
 
             self._server.publish_status(text, StatusLevel.Warning)
+
+
+class _Slow(logging.Handler):
+    """Hears of clients that do not take what they are sent: the library tells it its log alone.
+
+    Args:
+        tell: Takes a warning; on any thread.
+    """
+
+    def __init__(self, tell: Callable[[str], None]) -> None:
+        super().__init__(logging.INFO)
+        self._tell = tell
+
+    def emit(self, record: logging.LogRecord) -> None:
+        found = _FULL.search(record.getMessage())
+        if found:
+            self._tell(f"the client {found[1]} is too slow: messages to it are dropped")
 
 
 def require() -> None:

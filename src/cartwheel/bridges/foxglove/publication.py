@@ -68,6 +68,7 @@ class Publication:
             self._subscription = self._graph.subscribe(
                 self.info.name, self._take, type_name=self.info.type, node=READER
             )
+            self._subscription.dropped = lambda: self._box.dropped
         elif self.latched and self._last is not None:
             time_ns, data = self._last
             self.channel.log(data, log_time=time_ns)

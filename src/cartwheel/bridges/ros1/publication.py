@@ -58,6 +58,8 @@ class Publication:
             }
         )
         self._last: bytes | None = None
+        self._missed = 0
+        """Messages that those who have left were too slow for."""
         self._seq = 0
         self._faulty = False
 
@@ -89,6 +91,11 @@ class Publication:
             if len(self.links) == 1:
                 self.begin()
 
+    @property
+    def dropped(self) -> int:
+        """Messages that subscribers were too slow for."""
+        return self._missed + sum(link.dropped for link in self.links[:])
+
     def begin(self) -> None:
         """The first subscriber is there."""
 
@@ -119,6 +126,7 @@ class Publication:
     def _leave(self, link: Connection) -> None:
         if link in self.links:
             self.links.remove(link)
+            self._missed += link.dropped
             if not self.links:
                 self.end()
 
@@ -160,6 +168,7 @@ class GraphPublication(Publication):
             ignored=ignored,
             take=self._pass_on,
             tell=tell,
+            beyond=lambda: self.dropped,
         )
 
     def begin(self) -> None:

@@ -148,11 +148,6 @@ class Ros2Bridge:
         self.middleware.on_others = look
         self._loop.post(look)
 
-    @property
-    def dropped(self) -> int:
-        """Messages that were published faster than they could be sent."""
-        return sum(publication.tap.dropped for publication in self._publications.values())
-
     # -- on the loop's thread
 
     def _begin(self) -> None:
@@ -341,6 +336,7 @@ class _Publication:
             ignored=lambda message: message in bridge._arrivals,
             take=self._send,
             tell=bridge._warn,
+            beyond=lambda: self._outlet.dropped if self._outlet is not None else 0,
         )
         self._outlet: Outlet | None = None
         self._outlet = bridge.middleware.publish(

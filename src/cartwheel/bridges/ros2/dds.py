@@ -105,6 +105,9 @@ class Dds:
         writer.on_drop = lambda: self._tell(
             f"a node reads {topic} too slowly: messages to it are dropped"
         )
+        writer.on_silence = lambda: self._tell(
+            f"a node that reads {topic} does not answer any more: messages to it are dropped"
+        )
         if writer.proxies:
             on_readers(True)
         self._add(writer)
@@ -187,6 +190,10 @@ class _Outlet:
     def __init__(self, dds: Dds, writer: Writer) -> None:
         self._dds = dds
         self.writer = writer
+
+    @property
+    def dropped(self) -> int:
+        return self.writer.dropped
 
     def send(self, payload: bytes) -> None:
         self.writer.write(payload)

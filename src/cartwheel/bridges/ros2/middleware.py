@@ -52,6 +52,10 @@ def profile_of(topic: str, qos: Qos) -> Profile:
 class Outlet(Protocol):
     """A topic that we publish."""
 
+    @property
+    def dropped(self) -> int:
+        """Messages that readers have missed, as far as the middleware tells; on any thread."""
+
     def send(self, payload: bytes) -> None:
         """Sends a message's CDR to all readers."""
 

@@ -284,6 +284,11 @@ class _Outlet:
         if self._publisher.matching_status.matching:
             on_readers(True)
 
+    @property
+    def dropped(self) -> int:
+        # Zenoh does not tell what it drops.
+        return 0
+
     def send(self, payload: bytes) -> None:
         if not self._closed:
             stamp = struct.pack("<qqB", next(self._numbers), time.time_ns(), 16)

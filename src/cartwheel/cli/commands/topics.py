@@ -27,7 +27,7 @@ def print_list(sim: int | None, *, verbose: bool) -> None:
     for one in found:
         rate = f"{one['rate']:g} Hz" if one["rate"] else ""
         publishers = ", ".join(one["publishers"]) or "-"
-        rows.append([one["name"], one["type"], rate, publishers, ", ".join(one["subscribers"])])
+        rows.append([one["name"], one["type"], rate, publishers, ", ".join(one["readers"])])
     head, *lines = table(rows).splitlines()
     say(paint(head, "dim"))
     for line in lines:
@@ -41,7 +41,7 @@ def print_info(sim: int | None, topic: str) -> None:
     say(f"Type: {one['type']}")
     if one["rate"]:
         say(f"Rate: {one['rate']:g} Hz")
-    for title, nodes in (("Publishers", one["publishers"]), ("Subscribers", one["subscribers"])):
+    for title, nodes in (("Publishers", one["publishers"]), ("Subscribers", one["readers"])):
         say()
         say(f"{title}:" if nodes else f"{title}: None")
         for node in nodes:

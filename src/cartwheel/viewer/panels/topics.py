@@ -26,6 +26,7 @@ class TopicsPanel(Panel):
         super().__init__(desk)
         self._tap: Tap | None = None
         self._due = Every(5)
+        self._list_due = Every(1)
         self._shown = 0
         self._list = self.gui.add_html(list_html(()))
         self._topic = self.gui.add_dropdown("Echo", (_NONE,))
@@ -51,6 +52,9 @@ class TopicsPanel(Panel):
             self._topic.value = chosen if chosen in names else _NONE
 
     def update(self, snapshot: Snapshot, now: float) -> None:  # noqa: ARG002
+        if self.page.clients and self._list_due(now):
+            # What is dropped changes without the graph.
+            self.show_topics(self.graph.topics())
         tap = self._tap
         if tap is None or tap.count == self._shown or not self._due(now):
             return
@@ -75,11 +79,16 @@ class TopicsPanel(Panel):
             self._tap = Tap(self.graph, wanted)
 
 
+def _lost(topic: TopicInfo) -> str:
+    count = sum(topic.dropped)
+    return f' <span class="cw-lost">{count} dropped</span>' if count else ""
+
+
 def list_html(topics: Sequence[TopicInfo]) -> str:
     """A table of topics."""
     rows = "".join(
         f'<tr><td title="{escape(", ".join(topic.publishers) or "nobody")} → '
-        f'{escape(", ".join(topic.subscribers) or "nobody")}">{escape(topic.name)}</td>'
+        f'{escape(", ".join(topic.readers) or "nobody")}">{escape(topic.name)}{_lost(topic)}</td>'
         f'<td class="cw-dim">{escape(topic.type.replace("/msg/", "/"))}</td>'
         f'<td class="cw-right">{f"{topic.rate:g} Hz" if topic.rate else ""}</td></tr>'
         for topic in topics

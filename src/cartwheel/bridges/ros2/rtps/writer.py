@@ -16,6 +16,8 @@ Send = Callable[[Sequence[bytes | memoryview], Address], None]
 
 _FIRST_AGAIN, _LAST_AGAIN = 0.1, 2.0
 """s between two reminders to a reader that does not answer."""
+_SILENCE = 3.0
+"""s without an answer after which a reader is taken for frozen."""
 _BURST = 2
 """Full datagrams in a row; a receiver of default settings has room for three."""
 _PAUSE = 0.0003
@@ -49,6 +51,10 @@ class ReaderProxy:
         self.acked = start - 1
         self.patience = _FIRST_AGAIN
         self.remind_at = 0.0
+        self.asked_at = 0.0
+        """When it was first reminded since it last answered."""
+        self.gone = 0
+        """The last sample that is known to have gone without it."""
         self.last_count = -1
 
 
@@ -70,11 +76,13 @@ class Writer:
         self.endpoint = endpoint
         self.proxies: dict[Guid, ReaderProxy] = {}
         self.dropped = 0
-        """Samples that a reader asked for in vain."""
+        """Samples that readers have missed: asked for in vain, or gone while one was frozen."""
         self.on_readers: Callable[[], None] = lambda: None
         """Told when readers come or go."""
         self.on_drop: Callable[[], None] = lambda: None
-        """Told when `dropped` has grown."""
+        """Told when a reader has asked in vain."""
+        self.on_silence: Callable[[], None] = lambda: None
+        """Told when samples go that a frozen reader has not got."""
         self._prefix, self._entity = endpoint.guid[:12], endpoint.guid[12:]
         self._send = send
         self._clock = clock
@@ -162,6 +170,9 @@ class Writer:
                 if proxy.acked >= self._last:
                     proxy.remind_at = 0.0
                     continue
+                proxy.asked_at = proxy.asked_at or now
+                if now - proxy.asked_at > _SILENCE:
+                    self._count_gone(proxy)
                 proxy.patience = min(2 * proxy.patience, _LAST_AGAIN)
                 proxy.remind_at = now + proxy.patience
                 self._heartbeat(proxy, final=False)
@@ -173,6 +184,9 @@ class Writer:
             return
         if 0 <= proxy.last_count - told.count < 1000:
             return
+        if proxy.asked_at and time.monotonic() - proxy.asked_at > _SILENCE:
+            self._count_gone(proxy)
+        proxy.asked_at = 0.0
         proxy.last_count = told.count
         proxy.patience = _FIRST_AGAIN
         proxy.acked = max(proxy.acked, min(told.base - 1, self._last))
@@ -188,7 +202,7 @@ class Writer:
                 self._send_sample(number, sample, proxy, guid[12:])
             else:
                 lost.append(number)
-                if number >= proxy.start and sample is None:
+                if number >= proxy.start and number > proxy.gone and sample is None:
                     self.dropped += 1
                     self.on_drop()
         for start, end in _ranges(lost):
@@ -205,6 +219,15 @@ class Writer:
         sample = self._kept.get(told.number)
         if proxy is not None and sample is not None and proxy.reliable:
             self._send_fragments(told.number, sample, proxy, guid[12:], told.missing)
+
+    def _count_gone(self, proxy: ReaderProxy) -> None:
+        """Counts what a frozen reader has not got and will not get."""
+        gone = next(iter(self._kept), self._last + 1) - 1
+        before = max(proxy.gone, proxy.acked)
+        if gone > before:
+            proxy.gone = gone
+            self.dropped += gone - before
+            self.on_silence()
 
     def _keep(self, number: int, sample: Sample) -> None:
         self._kept[number] = sample
