@@ -11,6 +11,7 @@ from cartwheel.plugins.base import Plugin
 from cartwheel.plugins.gz_drive import GzDriveParameters, gz_name, gz_odometry
 from cartwheel.plugins.odometry import DeadReckoning, Odometry
 from cartwheel.plugins.parameters import tag
+from cartwheel.plugins.rollers import has_rollers
 
 CONTROL_RATE = 100.0
 """Hz at which the wheels' turning is read."""
@@ -43,8 +44,8 @@ class MecanumParameters(GzDriveParameters):
 class MecanumDrive(Plugin[MecanumParameters]):
     """Moves the robot along, sideways and around by Twist, and turns its wheels accordingly.
 
-    A servo pushes the robot as `PlanarMove` does, whatever friction its wheels have: few that
-    are published state the directions of their rollers. The odometry is what the wheels turn.
+    Where its wheels grip along their rollers alone, friction takes it along: see `has_rollers`.
+    Otherwise a servo pushes it as `PlanarMove` does. The odometry is what the wheels turn.
     Source: gz-sim, MecanumDrive.
     """
 
@@ -66,7 +67,8 @@ class MecanumDrive(Plugin[MecanumParameters]):
              for name in getattr(config, corner)]
             for corner in _CORNERS
         ]  # fmt: skip
-        self._drive = part.body_drive(origin=origin)
+        rolls = has_rollers(part.description)
+        self._drive = None if rolls else part.body_drive(origin=origin)
         self._reach = (config.wheel_base + config.wheel_separation) / 2
         self._reckoning = DeadReckoning()
         self._odometry = gz_odometry(self, config)
@@ -83,7 +85,7 @@ class MecanumDrive(Plugin[MecanumParameters]):
         self._turned: list[float] | None = None
         self._updated_ns = 0
         self._reckoning.restart()
-        self._drive.command((0.0, 0.0, None), (None, None, 0.0))
+        self._push(0.0, 0.0, 0.0)
 
     def close(self) -> None:
         for odometry in self._told:
@@ -97,7 +99,11 @@ class MecanumDrive(Plugin[MecanumParameters]):
             self.warn("a command that is not finite was ignored")
             return
         self._command = (forward, sideways, turn)
-        self._drive.command((forward, sideways, None), (None, None, turn))
+        self._push(forward, sideways, turn)
+
+    def _push(self, forward: float, sideways: float, turn: float) -> None:
+        if self._drive is not None:
+            self._drive.command((forward, sideways, None), (None, None, turn))
 
     def _control(self) -> None:
         forward, sideways, turn = self._command

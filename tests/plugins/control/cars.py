@@ -27,13 +27,26 @@ def _fork(name, x, y):
       <limit lower="-1.4" upper="1.4" effort="50" velocity="20"/></joint>"""
 
 
-def car(wheels, plugin, commanded):
+def rollers():
+    """Tags that let mecanum wheels grip along the axes of the rollers that touch the ground."""
+    slants = {name: -x * y for name, (x, y) in CORNERS.items()}
+    return "".join(
+        f"""<gazebo reference="{name}" xmlns:gz="http://gazebosim.org/schema"><collision><surface>
+        <friction><ode><mu>1.0</mu><mu2>0.0</mu2>
+        <fdir1 gz:expressed_in="base_link">1 {slant} 0</fdir1></ode></friction></surface>
+        </collision></gazebo>"""
+        for name, slant in slants.items()
+    )
+
+
+def car(wheels, plugin, commanded, tags=""):
     """A robot of some wheels.
 
     Args:
         wheels: Name to (x, y, whether a joint ``<name>_steer`` turns it).
         plugin: XML.
         commanded: Joints that ros2_control has; others turn freely, as it would hold them.
+        tags: Further ones of the robot.
     """
     mass = 8.0
     parts = f"""<link name="base_link"><inertial><mass value="{mass}"/><inertia ixx="0.1" iyy="0.2"
@@ -47,7 +60,7 @@ def car(wheels, plugin, commanded):
             parts += _wheel(name, "base_link", x, y)
         joints.append((f"{name}_joint", "velocity"))
     system = ros2_system(*(ros2_joint(*joint) for joint in joints if joint[0] in commanded))
-    return f'<robot name="car">{parts}{system}<gazebo>{plugin}</gazebo></robot>'
+    return f'<robot name="car">{parts}{system}<gazebo>{plugin}</gazebo>{tags}</robot>'
 
 
 def four_wheels(*, steered=False):
@@ -60,11 +73,11 @@ def four_wheels(*, steered=False):
 class Car:
     """A robot with one drive, ``base``, that a test commands."""
 
-    def __init__(self, make, folder, wheels, topic, **settings):
+    def __init__(self, make, folder, wheels, topic, tags="", **settings):
         file = folder / "drive.yaml"
         file.write_text(yaml.safe_dump(ros2_parameters(base=settings)))
         robot = folder / "car.urdf"
-        robot.write_text(car(wheels, ros2_plugin(file), file.read_text()))
+        robot.write_text(car(wheels, ros2_plugin(file), file.read_text(), tags))
         self.topic = topic
         self.world = make.world()
         self.model = self.world.spawn(robot, z=RADIUS)

@@ -3,14 +3,16 @@
 import math
 
 import pytest
-from tests.plugins.control.cars import BASE, RADIUS, TRACK, Car, four_wheels, heading
+from tests.plugins.control.cars import BASE, RADIUS, TRACK, Car, four_wheels, heading, rollers
 
 REACH = (BASE + TRACK) / 2
 NAMES = ("front_left", "front_right", "rear_left", "rear_right")
 
 
-@pytest.fixture
-def drive(make, tmp_path):
+@pytest.fixture(params=["", rollers()], ids=["pushed", "on rollers"])
+def drive(make, tmp_path, request):
+    """With wheels like any others a servo pushes it; rollers take it along by friction."""
+
     def made(**more):
         settings = {
             "type": "mecanum_drive_controller/MecanumDriveController",
@@ -22,7 +24,7 @@ def drive(make, tmp_path):
             },
             **more,
         }
-        return Car(make, tmp_path, four_wheels(), "reference", **settings)
+        return Car(make, tmp_path, four_wheels(), "reference", request.param, **settings)
 
     return made
 

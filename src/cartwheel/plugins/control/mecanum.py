@@ -16,6 +16,7 @@ from cartwheel.plugins.control.wheels import (
     joint_place,
     wheel_radius,
 )
+from cartwheel.plugins.rollers import has_rollers
 
 _CORNERS = ("front_left", "front_right", "back_left", "back_right")
 _ROS2_CORNERS = ("front_left", "front_right", "rear_left", "rear_right")
@@ -26,9 +27,9 @@ _AROUND = (-1.0, 1.0, -1.0, 1.0)
 class MecanumDriveController(Controller):
     """Turns four wheels by Twist, and tells where they took the robot.
 
-    Friction here is the same in all directions, so rollers would take it nowhere: where the
-    robot was spawned with these parameters known, a servo pushes it along, as for
-    gz-sim-mecanum-drive-system. ROS 1 listens to ``cmd_vel``, ROS 2 to ``reference``.
+    Where they grip along their rollers alone, friction takes the robot along: see `has_rollers`.
+    Otherwise a servo pushes it, as for gz-sim-mecanum-drive-system, where these parameters are
+    known when the robot is spawned. ROS 1 listens to ``cmd_vel``, ROS 2 to ``reference``.
     Source: mecanum_drive_controller.
     """
 
@@ -85,7 +86,7 @@ class MecanumDriveController(Controller):
             prefix=frame_prefix(self, settings) if ros2 else "",
         )
         self._turned = [0.0] * 4
-        if self.rig.push is None:
+        if self.rig.push is None and not has_rollers(description):
             self.warn(
                 "its wheels roll like any others: sideways they move the robot only where "
                 "the controller's parameters are known when the robot is spawned"

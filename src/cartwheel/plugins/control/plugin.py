@@ -14,6 +14,7 @@ from cartwheel.plugins.control.manager import ControllerManager
 from cartwheel.plugins.control.mecanum import MecanumDriveController
 from cartwheel.plugins.ft_sensor import JointLoad
 from cartwheel.plugins.inertial_unit import InertialUnit
+from cartwheel.plugins.rollers import has_rollers
 from cartwheel.simulation.pushing import BodyDriveHandle
 
 
@@ -71,6 +72,8 @@ class ControlPlugin(Plugin[Any]):
 
     def _push(self, types: Iterable[str]) -> BodyDriveHandle | None:
         """A servo of the whole robot where a controller among these needs one."""
+        if has_rollers(self.part.description):
+            return None
         if any(name in MecanumDriveController.types for name in types):
             return self.part.body_drive(origin=self.tag.origin)
         return None
