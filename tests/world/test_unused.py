@@ -54,3 +54,16 @@ def test_a_velocity_limit_is_told_and_nothing_else_is() -> None:
     )
     (only,) = notes(f"<mu1>1</mu1><mu2>2</mu2><fdir1>1 0 0</fdir1><kp>1e6</kp>{surface}")
     assert only.startswith("r.urdf:10: info: a joint's velocity limit has no effect: ")
+
+
+def test_a_velocity_limit_that_controllers_heed_is_none_without_effect() -> None:
+    plugin = '<gazebo><plugin name="c" filename="libgazebo_ros_control.so"/></gazebo>'
+    transmission = """<transmission name="t"><type>transmission_interface/SimpleTransmission</type>
+      <joint name="j"><hardwareInterface>PositionJointInterface</hardwareInterface></joint>
+      </transmission>"""
+    for more, told in (("", 1), (transmission, 1), (plugin, 1), (plugin + transmission, 0)):
+        text = URDF.format(tags="").replace("</robot>", f"{more}</robot>")
+        with cw.World("empty") as world:
+            world.spawn(load_text(text, file="r.urdf"))
+            found = [d for d in world.diagnostics if "velocity limit" in d.message]
+        assert len(found) == told, more

@@ -18,6 +18,8 @@ _SURFACE = {
     "surface_radius": "the patch that touches does not grow with depth: state a patch_radius",
     "collide_without_contact": "it touches nothing, and a contact sensor does not see it",
 }
+_CONTROL = ("ros_control", "ros2_control")
+"""Parts of the names of plugins that run controllers."""
 
 
 def unused(description: RobotDescription) -> Iterator[Diagnostic]:
@@ -43,13 +45,14 @@ def unused(description: RobotDescription) -> Iterator[Diagnostic]:
             note("velocity decay", link.origin, "the air does not brake")
         for light in link.lights:
             note("a light on a link", light.origin, "only the world's lights shine")
+    heeded = _controlled(description)
     for joint in description.joints:
-        if joint.axis.velocity is not None and joint.type in (
-            "revolute",
-            "continuous",
-            "prismatic",
+        if (
+            joint.axis.velocity is not None
+            and joint.type in ("revolute", "continuous", "prismatic")
+            and joint.name not in heeded
         ):
-            note("a joint's velocity limit", joint.origin, "only its effort is limited")
+            note("a joint's velocity limit", joint.origin, "only controllers heed it")
         if joint.stop_cfm is not None or joint.stop_erp is not None:
             note("a joint's stop_cfm or stop_erp", joint.origin, "stops are as hard as can be")
     for what, (origin, count, why) in found.items():
@@ -57,3 +60,14 @@ def unused(description: RobotDescription) -> Iterator[Diagnostic]:
         yield Diagnostic(
             severity="info", message=f"{what} has no effect{times}: {why}", origin=origin
         )
+
+
+def _controlled(description: RobotDescription) -> set[str]:
+    """Joints on which controllers of ros_control or ros2_control can run: those heed limits."""
+    if not any(word in each.filename for each in description.plugins for word in _CONTROL):
+        return set()
+    return {
+        joint.attribute("name") or ""
+        for element in (*description.transmissions, *description.ros2_control)
+        for joint in element.find_all("joint")
+    }

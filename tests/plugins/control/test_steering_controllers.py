@@ -3,6 +3,7 @@
 import math
 
 import pytest
+from tests.plugins.control import cars
 from tests.plugins.control.cars import BASE, RADIUS, TRACK, Car, four_wheels, heading
 
 SPEED, TURN = 0.4, 0.4
@@ -137,3 +138,31 @@ def test_a_tricycle_of_one_driven_wheel(make, tmp_path):
     told = made.odometry("/base/odom")
     assert told.twist.twist.linear.x == pytest.approx(SPEED, rel=0.03)
     assert told.twist.twist.angular.z == pytest.approx(TURN, rel=0.03)
+
+
+def test_a_tricycle_takes_plain_twists_where_it_is_told(make, tmp_path):
+    made = Car(
+        make, tmp_path, {**FRONT, **REAR}, "cmd_vel",
+        type="tricycle_controller/TricycleController",
+        traction_joint_name="front_joint", steering_joint_name="front_steer",
+        wheelbase=BASE, wheel_radius=RADIUS, use_stamped_vel=False,
+    )  # fmt: skip
+    made.world.publish("/base/cmd_vel", linear_x=SPEED)
+    made.world.run(0.3)
+    assert made.speeds("front_joint")[0] == pytest.approx(SPEED / RADIUS, rel=0.01)
+
+
+def test_an_axis_that_points_the_wrong_way_is_told(make, tmp_path, monkeypatch):
+    """Published robots have such, and steer right where they are told left."""
+    plain = cars.car
+    upside_down = ('<axis xyz="0 0 1"/>', '<axis xyz="0 0 -1"/>')
+    monkeypatch.setattr(cars, "car", lambda *parts: plain(*parts).replace(*upside_down))
+    made = Car(
+        make, tmp_path, {**FRONT, **REAR}, "cmd_vel",
+        type="tricycle_controller/TricycleController",
+        traction_joint_name="front_joint", steering_joint_name="front_steer",
+        wheelbase=BASE, wheel_radius=RADIUS,
+    )  # fmt: skip
+    (told,) = [d for d in made.world.diagnostics if "points along -z" in d.message]
+    assert '"front_steer"' in told.message
+    assert str(told.origin).startswith(str(tmp_path / "car.urdf"))

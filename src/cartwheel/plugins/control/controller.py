@@ -8,7 +8,7 @@ from fractions import Fraction
 from typing import Any, ClassVar, Protocol
 
 from cartwheel.description.model import Sensor
-from cartwheel.errors import CartwheelError, Diagnostic
+from cartwheel.errors import CartwheelError, Diagnostic, Origin
 from cartwheel.graph import Graph, Publisher, Qos, Service, resolve_name
 from cartwheel.plugins.base import Plugin
 from cartwheel.plugins.control.hardware import Hardware, JointHardware
@@ -71,11 +71,10 @@ class Rig:
         self.period_ns = 0
         """Of control."""
 
-    def report(self, message: str) -> None:
-        """Tells the user something."""
-        self.plugin.part.report(
-            Diagnostic(severity="warning", message=message, origin=self.plugin.tag.origin)
-        )
+    def report(self, message: str, *, at: Origin | None = None) -> None:
+        """Tells the user something, at the plugin's place where no other is given."""
+        origin = self.plugin.tag.origin if at is None else at
+        self.plugin.part.report(Diagnostic(severity="warning", message=message, origin=origin))
 
 
 class Controller:

@@ -10,8 +10,10 @@ from cartwheel.plugins.control.controller import Controller
 from cartwheel.plugins.control.limiter import Limiter
 from cartwheel.plugins.control.settings import Settings
 from cartwheel.plugins.control.wheels import (
+    LEFT,
     TwistCommand,
     WheelOdometry,
+    check_axis,
     frame_prefix,
     joint_place,
     wheel_radius,
@@ -36,6 +38,8 @@ class DiffDriveController(Controller):
             raise settings.error(f"{len(left)} left and {len(right)} right wheels make no drive")
         self._left = [self.claim(name, "velocity") for name in left]
         self._right = [self.claim(name, "velocity") for name in right]
+        for name in (*left, *right):
+            check_axis(self, name, LEFT)
         separation = self._separation(settings, left[0], right[0])
         radius = self._radius(settings, left[0])
         self._separation_used = separation * settings.number("wheel_separation_multiplier", 1.0)

@@ -10,8 +10,10 @@ from cartwheel.plugins.control.controller import Controller
 from cartwheel.plugins.control.limiter import Limiter
 from cartwheel.plugins.control.settings import Settings
 from cartwheel.plugins.control.wheels import (
+    LEFT,
     TwistCommand,
     WheelOdometry,
+    check_axis,
     frame_prefix,
     joint_place,
     wheel_radius,
@@ -45,6 +47,8 @@ class MecanumDriveController(Controller):
             else:
                 names.append(settings.text(f"{plain}_wheel_joint", f"{plain}_wheel_joint"))
         self._wheels = [self.claim(name, "velocity") for name in names]
+        for name in names:
+            check_axis(self, name, LEFT)
         description = self.part.description
         radius = settings.optional_number("kinematics/wheels_radius" if ros2 else "wheel_radius")
         self._radius = radius or wheel_radius(description, names[0]) or 0.0

@@ -11,8 +11,11 @@ from cartwheel.plugins.control.hardware import JointHardware
 from cartwheel.plugins.control.limiter import Limiter
 from cartwheel.plugins.control.settings import Settings
 from cartwheel.plugins.control.wheels import (
+    LEFT,
+    UP,
     TwistCommand,
     WheelOdometry,
+    check_axis,
     joint_place,
     wheel_radius,
 )
@@ -32,6 +35,8 @@ class SingleSteering(Controller):
         steer = settings.text("front_steer", "front_steer_joint")
         self._wheel = self.claim(wheel, "velocity")
         self._steer = self.claim(steer, "position")
+        check_axis(self, wheel, LEFT)
+        check_axis(self, steer, UP)
         description = self.part.description
         base = settings.optional_number("wheel_separation_h")
         if base is None:
@@ -115,6 +120,10 @@ class SteeringController(Controller):
                 raise settings.error(f"{len(names)} wheels of an axle: there must be one or two")
         self._traction = self._axle(traction, "velocity")
         self._steering = self._axle(steering, "position")
+        for name in steering:
+            check_axis(self, name, UP)
+        for name in traction:
+            check_axis(self, name, LEFT)
         self._base = self._positive(settings, "wheelbase")
         tracks = ("traction_track_width", "wheel_track", f"{driven}_wheel_track")
         self._traction_track = self._first(settings, tracks, len(traction) == 2)
@@ -256,6 +265,8 @@ class TricycleController(Controller):
     def configure(self, settings: Settings) -> None:
         self._traction = self.claim(settings.text("traction_joint_name"), "velocity")
         self._steer = self.claim(settings.text("steering_joint_name"), "position")
+        check_axis(self, self._traction.name, LEFT)
+        check_axis(self, self._steer.name, UP)
         self._base = settings.number("wheelbase")
         self._radius = settings.number("wheel_radius")
         if self._base <= 0 or self._radius <= 0:
@@ -268,11 +279,13 @@ class TricycleController(Controller):
             steering.number("min_position", -math.inf),
             steering.number("max_position", math.inf),
         )
-        settings.ignore("traction", "steering", "publish_ackermann_command", "odom_only_twist")
+        settings.ignore("traction", "steering")
+        for name in ("publish_ackermann_command", "odom_only_twist"):
+            if settings.boolean(name, False):
+                self.warn(f"{name} has no effect")
         timeout = settings.number("cmd_vel_timeout", 500.0) / 1000.0
         stamped = settings.boolean("use_stamped_vel", True)
-        topic = "cmd_vel" if stamped else "cmd_vel_unstamped"
-        self._command = TwistCommand(self, topic, timeout=timeout, stamped=stamped)
+        self._command = TwistCommand(self, "cmd_vel", timeout=timeout, stamped=stamped)
         self._odometry = WheelOdometry(
             self, settings, transform=settings.boolean("enable_odom_tf", True)
         )

@@ -10,7 +10,7 @@ import numpy as np
 
 from cartwheel.description.kinematics import link_poses
 from cartwheel.description.model import Cylinder, RobotDescription, Sphere
-from cartwheel.geometry import Array
+from cartwheel.geometry import Array, matrix_from_quat
 from cartwheel.plugins.control.controller import Controller, Rhythm
 from cartwheel.plugins.control.settings import Settings
 from cartwheel.plugins.odometry import DeadReckoning, Odometry
@@ -18,6 +18,8 @@ from cartwheel.plugins.odometry import DeadReckoning, Odometry
 if TYPE_CHECKING:
     from cartwheel.plugins.base import Plugin
 
+LEFT, UP = (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
+"""What wheels and steerings turn about, in the robot's axes."""
 _NEVER = -(1 << 62)
 
 
@@ -28,6 +30,30 @@ def joint_place(description: RobotDescription, joint: str) -> tuple[float, float
     poses = link_poses(description, {})
     front = poses[description.canonical_link].inverse()
     return (front @ poses[found.child]).position
+
+
+def check_axis(controller: Controller, joint: str, wanted: tuple[float, float, float]) -> None:
+    """Tells of a joint that turns the other way than its drive expects.
+
+    Args:
+        controller: The drive.
+        joint: Of a wheel or a steering.
+        wanted: About what it should turn, in the robot's axes.
+    """
+    description = controller.part.description
+    found = description.joint(joint)
+    assert found is not None
+    poses = link_poses(description, {})
+    front = poses[description.canonical_link].inverse()
+    turn = matrix_from_quat((front @ poses[found.child]).orientation)
+    axis = turn @ np.array(found.axis.xyz)
+    if float(axis @ np.array(wanted)) < -0.5:
+        name = "xyz"[max(range(3), key=lambda index: wanted[index])]
+        controller.rig.report(
+            f'controller {controller.name}: the axis of "{joint}" points along -{name} of the '
+            "robot, so it turns the other way than the drive means",
+            at=found.origin,
+        )
 
 
 def wheel_radius(description: RobotDescription, joint: str) -> float | None:
