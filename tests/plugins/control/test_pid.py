@@ -54,3 +54,30 @@ def test_there_must_be_a_p():
 def test_a_velocity_is_held_by_p_as_damping():
     law = Pid(Gains(p=3.0)).velocity(2.0, 0.5, 0.01)
     assert law.effort - law.damping * 0.5 == pytest.approx(3.0 * (2.0 - 0.5))
+
+
+def test_ros2_clamps_nothing_that_is_not_stated():
+    gains = Gains.read_ros2(Settings({"p": 1.0, "i": 2.0}, "arm"))
+    pid = Pid(gains)
+    for _ in range(1000):
+        law = pid.position(1.0, 0.1, target=0.0)
+    assert law.effort == pytest.approx(1.0 + 2.0 * 1000 * 0.1)
+    assert Gains.read_ros2(Settings({}, "arm")).p == 0.0
+
+
+def test_ros2_clamps_the_integral_and_the_whole():
+    values = {"p": 10.0, "i": 2.0, "d": 1.0, "i_clamp_max": 0.5, "i_clamp_min": -0.2}
+    values |= {"u_clamp_max": 4.0, "u_clamp_min": -3.0}
+    pid = Pid(Gains.read_ros2(Settings(values, "arm")))
+    for _ in range(100):
+        law = pid.position(0.1, 0.1, target=0.0)
+    assert law.effort == pytest.approx(10.0 * 0.1 + 0.5)
+    # Within its bounds it stays a law; beyond them it is a number.
+    assert pid.bounded(law, 0.2) is law
+    assert (pid.bounded(law, -5.0).effort, pid.bounded(law, -5.0).damping) == (4.0, 0.0)
+    assert pid.bounded(law, 5.0).effort == -3.0
+
+
+def test_ros2_takes_no_strategy_that_there_is_not():
+    with pytest.raises(PluginError, match="back_calculation"):
+        Gains.read_ros2(Settings({"antiwindup_strategy": "back_calculation"}, "arm"))

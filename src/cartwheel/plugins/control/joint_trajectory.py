@@ -77,9 +77,9 @@ class JointTrajectoryController(Controller):
         self._forward = [0.0] * len(self._joints)
         if self._interface != "position":
             self._read_gains(settings)
-        settings.ignore(
-            "gains", "velocity_ff", "constraints", "state_interfaces", "command_interfaces"
-        )
+        else:
+            settings.ignore("gains", "velocity_ff")
+        settings.ignore("constraints", "state_interfaces", "command_interfaces")
         constraints = settings.section("constraints")
         stopped = constraints.number("stopped_velocity_tolerance", 0.01)
         self._goal_time = constraints.number("goal_time", 0.0)
@@ -169,7 +169,7 @@ class JointTrajectoryController(Controller):
             forward = 0.0
             if self.rig.ros2:
                 forward = section.number("ff_velocity_scale", 0.0)
-                gains = Gains.read(section) if section.has("p") else Gains(p=0.0)
+                gains = Gains.read_ros2(section)
             elif section.has("p"):
                 gains = Gains.read(section)
             elif self._interface == "effort":
@@ -195,6 +195,7 @@ class JointTrajectoryController(Controller):
             law = self._pids[index].position(
                 errors[index][0], seconds, target=position, rate=velocity
             )
+            law = self._pids[index].bounded(law, joint.velocity)
             forward = self._forward[index] * velocity
             if self._interface == "effort":
                 joint.set_effort(law.effort + forward, damping=law.damping)

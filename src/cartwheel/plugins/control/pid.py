@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from cartwheel.plugins.control.settings import Settings
@@ -18,6 +19,34 @@ class Gains:
     i_max: float = 0.0
     antiwindup: bool = False
     """Clamps the integral itself, not only what it gives."""
+    u_min: float = -math.inf
+    """Of all together."""
+    u_max: float = math.inf
+
+    @classmethod
+    def read_ros2(cls, settings: Settings) -> Gains:
+        """The same of ROS 2's joint_trajectory_controller: nothing must be stated or is clamped.
+
+        Raises:
+            PluginError: A value is no number.
+        """
+        clamp = abs(settings.number("i_clamp", math.inf))
+        strategy = settings.text("antiwindup_strategy", "legacy")
+        if strategy not in ("legacy", "none"):
+            raise settings.error(
+                f'the antiwindup_strategy "{strategy}" is not supported; there is "legacy"'
+            )
+        settings.ignore("normalize_error", "angle_wraparound")
+        return cls(
+            p=settings.number("p", 0.0),
+            i=settings.number("i", 0.0),
+            d=settings.number("d", 0.0),
+            i_min=settings.number("i_clamp_min", -clamp),
+            i_max=settings.number("i_clamp_max", clamp),
+            antiwindup=settings.boolean("antiwindup", False),
+            u_min=settings.number("u_clamp_min", -math.inf),
+            u_max=settings.number("u_clamp_max", math.inf),
+        )
 
     @classmethod
     def read(cls, settings: Settings) -> Gains:
@@ -92,6 +121,12 @@ class Pid:
         change = (error - before) / seconds if seconds > 0 else 0.0
         effort = gains.p * target + self._integrate(error, seconds) + gains.d * change
         return Law(effort, gains.p)
+
+    def bounded(self, law: Law, velocity: float) -> Law:
+        """A law that gives no more than the gains allow at a velocity, rad/s or m/s."""
+        output = law.effort - law.damping * velocity
+        clamped = min(max(output, self.gains.u_min), self.gains.u_max)
+        return law if clamped == output else Law(clamped)
 
     def _integrate(self, error: float, seconds: float) -> float:
         gains = self.gains

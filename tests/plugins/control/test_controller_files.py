@@ -1,0 +1,203 @@
+"""Parameter files as launch files and ROS 2's parameter parser read them."""
+
+from pathlib import Path
+
+import pytest
+from tests.plugins.control.arms import ROS1, beam, robot, ros2_joint, ros2_plugin, transmission
+from tests.plugins.control.arms import ros2_system as system
+
+import cartwheel as cw
+from cartwheel.description import load_robot
+from cartwheel.errors import PluginError
+from cartwheel.plugins.control.files import ControllerFiles, ros2_file
+from cartwheel.plugins.control.substitution import substitute
+
+GROUP = "position_controllers/JointGroupPositionController"
+
+
+def started(world):
+    return ControllerFiles.of(world.graph).started
+
+
+def warnings(world):
+    return [d.message for d in world.diagnostics if d.severity != "info"]
+
+
+@pytest.fixture
+def spawn(tmp_path):
+    """Writes a robot with a joint ``beam_joint`` and its files, and spawns it."""
+    worlds = []
+
+    def made(*files, given=(), namespace="", prefix="", arguments=None):
+        paths = []
+        for number, text in enumerate((*files, *given)):
+            paths.append(tmp_path / f"file{number}.yaml")
+            paths[-1].write_text(text)
+        own = paths[: len(files)]
+        body = beam(f"{prefix}beam", "world") + system(ros2_joint(f"{prefix}beam_joint"))
+        text = robot(body, ros2_plugin(*own, namespace=namespace))
+        if prefix:
+            head = '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="arm"><xacro:arg'
+            head += ' name="tf_prefix" default=""/>'
+            text = text.replace('<robot name="arm">', head).replace(prefix, "$(arg tf_prefix)")
+        file = tmp_path / ("arm.xacro" if prefix else "arm.urdf")
+        file.write_text(text)
+        world = cw.World("empty")
+        worlds.append(world)
+        described = load_robot(file, arguments=arguments) if arguments else file
+        world.spawn(described, controllers=paths[len(files) :])
+        world.run(0.1)
+        return world
+
+    yield made
+    for each in worlds:
+        each.close()
+
+
+def test_a_wildcard_holds_the_manager_and_what_all_share(spawn):
+    world = spawn(f"""
+/**:
+  ros__parameters:
+    use_sim_time: true
+    update_rate: 50
+    states: {{type: joint_state_broadcaster/JointStateBroadcaster}}
+    group: {{type: {GROUP}}}
+    joints: [beam_joint]
+""")
+    assert started(world) == ["states", "group"]
+    box = world.mailbox("/joint_states", size=1000)
+    world.run(1.0)
+    assert len(box.drain()) == pytest.approx(50, abs=1)
+    # What is for all and means nothing to one is no fault of that one.
+    assert warnings(world) == []
+
+
+@pytest.mark.parametrize("key", ["/robot1/controller_manager", "/**/controller_manager"])
+def test_names_with_a_namespace(spawn, key):
+    text = f"""
+{key}:
+  ros__parameters:
+    group: {{type: {GROUP}}}
+/robot1/group:
+  ros__parameters: {{joints: [beam_joint]}}
+/robot2/group:
+  ros__parameters: {{joints: [elbow]}}
+"""
+    world = spawn(text, namespace="robot1")
+    assert started(world) == ["group"]
+    assert "/robot1/group/commands" in [topic.name for topic in world.graph.topics()]
+    world.graph.service("/robot1/controller_manager/list_controllers")
+
+
+def test_nested_namespaces_are_the_same(spawn):
+    world = spawn(
+        f"""
+robot1:
+  controller_manager:
+    ros__parameters:
+      group: {{type: {GROUP}}}
+  group:
+    ros__parameters: {{joints: [beam_joint]}}
+""",
+        namespace="/robot1",
+    )
+    assert started(world) == ["group"]
+
+
+def test_a_manager_of_another_namespace_is_told(spawn):
+    world = spawn(f"/robot1/controller_manager: {{ros__parameters: {{group: {{type: {GROUP}}}}}}}")
+    assert started(world) == []
+    (told,) = warnings(world)
+    assert "/robot1/controller_manager" in told
+    assert 'the controller manager is "/controller_manager"' in told
+
+
+def test_several_files_make_one_whole_and_later_ones_win(spawn):
+    manager = f"controller_manager: {{ros__parameters: {{group: {{type: {GROUP}}}}}}}"
+    first = "group: {ros__parameters: {joints: [elbow]}}"
+    given = "group: {ros__parameters: {joints: [beam_joint]}}"
+    world = spawn(manager, first, given=[given])
+    assert started(world) == ["group"]
+
+
+def test_parameters_of_one_name_in_several_files_are_merged():
+    parts = [
+        {"c": {"ros__parameters": {"gains": {"a": {"p": 1}, "b": {"p": 2}}}}},
+        {"c": {"ros__parameters": {"gains": {"b": {"p": 3, "i": 4}}}}},
+    ]
+    found = ros2_file(parts, "")
+    assert found.nodes["c"] == {"gains": {"a": {"p": 1}, "b": {"p": 3, "i": 4}}}
+    assert parts[0]["c"]["ros__parameters"]["gains"]["b"] == {"p": 2}
+
+
+@pytest.mark.parametrize("word", ["var", "arg"])
+def test_a_prefix_is_the_robots_argument(spawn, word):
+    text = f"""
+controller_manager:
+  ros__parameters:
+    group: {{type: {GROUP}}}
+group:
+  ros__parameters:
+    joints: ["$({word} tf_prefix)beam_joint"]
+"""
+    world = spawn(text, prefix="left_", arguments={"tf_prefix": "left_"})
+    assert started(world) == ["group"]
+    assert warnings(world) == []
+
+
+def test_an_argument_that_the_robot_does_not_have_is_told(spawn):
+    with pytest.raises(PluginError, match=r"\$\(var other\): the robot has no argument") as caught:
+        spawn('group: {ros__parameters: {joints: ["$(var other)beam_joint"]}}')
+    assert str(caught.value.origin).endswith("file0.yaml")
+
+
+def test_ros1s_files_have_arguments_and_packages_too(tmp_path):
+    body = beam("beam", "world") + transmission("beam_joint", "Position")
+    file = tmp_path / "control.yaml"
+    file.write_text(
+        """
+robot1:
+  states: {type: joint_state_controller/JointStateController, publish_rate: "$(optenv RATE 20)"}
+  one: {type: position_controllers/JointPositionController, joint: "beam_$(optenv WORD joint)"}
+"""
+    )
+    path = tmp_path / "arm.urdf"
+    path.write_text(robot(body, ROS1.replace(">/<", ">/robot1<")))
+    with cw.World("empty") as world:
+        world.spawn(path, controllers=[file])
+        box = world.mailbox("/robot1/joint_states", size=1000)
+        world.run(1.0)
+        assert len(box.drain()) == pytest.approx(20, abs=1)
+        assert "/robot1/one/command" in [topic.name for topic in world.graph.topics()]
+        assert warnings(world) == []
+
+
+def test_everything_that_can_be_replaced(tmp_path, monkeypatch):
+    package = tmp_path / "src" / "my_robot"
+    package.mkdir(parents=True)
+    (package / "package.xml").write_text("<package><name>my_robot</name></package>")
+    file = package / "config" / "control.yaml"
+    monkeypatch.setenv("SIDE", "left")
+    content = {
+        "a": "$(env SIDE)_arm",
+        "$(env SIDE)_key": ["$(find my_robot)/x", "$(find-pkg-share my_robot)/x"],
+        "number": "$(arg rate)",
+        "text": "$(arg rate) Hz",
+        "plain": 3,
+        "other": "no (call) here, $5",
+    }
+    assert substitute(content, file, {"rate": "50.5"}) == {
+        "a": "left_arm",
+        "left_key": [f"{package}/x", f"{package}/x"],
+        "number": 50.5,
+        "text": "50.5 Hz",
+        "plain": 3,
+        "other": "no (call) here, $5",
+    }
+    for text, told in (
+        ("$(eval 1 + 1)", "cannot be replaced"),
+        ("$(env NO_SUCH_VARIABLE)", "cannot be replaced"),
+        ("$(find no_such_package)", "no_such_package"),
+    ):
+        with pytest.raises(PluginError, match=told):
+            substitute(text, Path(file), {})
