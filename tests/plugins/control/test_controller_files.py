@@ -16,7 +16,7 @@ GROUP = "position_controllers/JointGroupPositionController"
 
 
 def started(world):
-    return ControllerFiles.of(world.graph).started
+    return [each.name for each in ControllerFiles.of(world.graph).started]
 
 
 def warnings(world):
@@ -147,7 +147,7 @@ group:
 
 def test_an_argument_that_the_robot_does_not_have_is_told(spawn):
     with pytest.raises(PluginError, match=r"\$\(var other\): the robot has no argument") as caught:
-        spawn('group: {ros__parameters: {joints: ["$(var other)beam_joint"]}}')
+        spawn('group: {ros__parameters: {rate: "$(var other)"}}')
     assert str(caught.value.origin).endswith("file0.yaml")
 
 
