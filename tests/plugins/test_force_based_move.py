@@ -85,5 +85,5 @@ def test_without_a_command_it_stands(make, read):
 def test_gains_that_differ_are_told_and_none_is_refused(make):
     world = spawn(make, "<y_velocity_p_gain>5</y_velocity_p_gain>")
     assert any("<y_velocity_p_gain> has no effect" in d.message for d in world.diagnostics)
-    with pytest.raises(PluginError, match="must be above 0"):
-        spawn(make, "<x_velocity_p_gain>0</x_velocity_p_gain>")
+    with pytest.raises(PluginError, match="cannot be below 0"):
+        spawn(make, "<x_velocity_p_gain>-1</x_velocity_p_gain>")

@@ -34,12 +34,15 @@ class DepthOptions:
     """How depths are told."""
 
     depth: str
-    points: str
+    points: str = ""
     info: str = ""
     """Topics; "" is none."""
     nearest: float = 0.0
     furthest: float = np.inf
     """m; depths at or beyond are not told."""
+    points_nearest: float | None = None
+    points_furthest: float | None = None
+    """m; the same of the points, where they have bounds of their own."""
     beyond: Literal["nan", "inf"] = "nan"
     """What stands for them: nan, or -inf when too near and inf when too far (REP 118)."""
     millimetres: bool = False
@@ -69,8 +72,10 @@ class Depths:
         self._image = plugin.advertise(
             options.depth, "sensor_msgs/msg/Image", rate=rate, qos="sensor"
         )
-        self._points = plugin.advertise(
-            options.points, "sensor_msgs/msg/PointCloud2", rate=rate, qos="sensor"
+        self._points = (
+            plugin.advertise(options.points, "sensor_msgs/msg/PointCloud2", rate=rate, qos="sensor")
+            if options.points
+            else None
         )
         self._compressed = (
             CompressedDepths(plugin, options.depth, rate=rate) if options.compressed else None
@@ -85,7 +90,7 @@ class Depths:
     def sees(self) -> bool:
         """Whether somebody wants depths."""
         packed = self._compressed is not None and self._compressed.wanted
-        return packed or self._image.wanted or self._points.wanted
+        return packed or self._image.wanted or self._points_wanted()
 
     @property
     def wanted(self) -> bool:
@@ -99,19 +104,28 @@ class Depths:
     def publish(self, now: int, pixels: Pixels, depths: NDArray[np.float32]) -> None:
         """Publishes depths in m and the colours that belong to them."""
         moment = header(now, self._eye.frame)
-        told = self._told(depths)
+        options = self._options
+        told = self._told(depths, options.nearest, options.furthest)
         if self._image.wanted:
             self._image.publish(self._depth_image(moment, told))
         if self._compressed is not None and self._compressed.wanted:
             self._compressed.publish(moment, told)
-        if self._points.wanted:
+        if self._points is not None and self._points.wanted:
+            near, far = options.points_nearest, options.points_furthest
+            if near is not None or far is not None:
+                near = options.nearest if near is None else near
+                told = self._told(depths, near, options.furthest if far is None else far)
             dense = bool(np.isfinite(told).all())
             self._points.publish(point_cloud2(moment, self._cloud(pixels, told), dense=dense))
 
-    def _told(self, depths: NDArray[np.float32]) -> NDArray[np.float32]:
-        options = self._options
-        near, far = depths <= options.nearest, depths >= options.furthest
-        if options.beyond == "nan":
+    def _points_wanted(self) -> bool:
+        return self._points is not None and self._points.wanted
+
+    def _told(
+        self, depths: NDArray[np.float32], nearest: float, furthest: float
+    ) -> NDArray[np.float32]:
+        near, far = depths <= nearest, depths >= furthest
+        if self._options.beyond == "nan":
             # Where nothing is there is no depth, and infinitely far is not below infinity.
             return np.where(near | far, np.float32(np.nan), depths)
         return np.where(near, np.float32(-np.inf), np.where(far, np.float32(np.inf), depths))

@@ -33,7 +33,11 @@ class ForceBasedMoveParameters:
     )
     publish_tf: bool = tag("publishOdometryTf", default=True, doc="Publish odometry's transform.")
     timeout: float = tag(
-        "cmdVelTimeOut", default=0.25, unit="s", doc="After that long without a command it stands."
+        "cmdVelTimeOut",
+        "commandWatchdog",
+        default=0.25,
+        unit="s",
+        doc="After that long without a command it stands.",
     )
     x_gain: float = tag(
         "x_velocity_p_gain", default=10000.0, unit="N s/m", doc="Force for a missing speed."
@@ -59,14 +63,15 @@ class ForceBasedMove(Plugin[ForceBasedMoveParameters]):
     filenames: ClassVar[tuple[str, ...]] = (
         "libridgeback_ros_force_based_move.so",
         "libgazebo_ros_force_based_move.so",
+        "librobotnik_force_based_move.so",
     )
     parameters: ClassVar[type] = ForceBasedMoveParameters
     _told: Odometry | None = None
 
     def configure(self) -> None:
         config, part, origin = self.config, self.part, self.tag.origin
-        if min(config.x_gain, config.y_gain, config.yaw_gain) <= 0:
-            raise PluginError("a velocity_p_gain must be above 0", origin=origin)
+        if min(config.x_gain, config.y_gain, config.yaw_gain) < 0:
+            raise PluginError("a velocity_p_gain cannot be below 0", origin=origin)
         if config.y_gain != config.x_gain:
             self.warn("<y_velocity_p_gain> has no effect: x's counts in both directions")
         known = part.description.link(config.base_frame) is not None

@@ -158,6 +158,7 @@ class Kobuki(WheelDrive):
         if found is None:
             known = [sensor.name for sensor in sensors]
             raise UnknownNameError("sensor", name, known, origin=self.tag.origin)
+        self.part.read_sensors.add(name)
         return found
 
     def _on_command(self, message: Any) -> None:

@@ -74,6 +74,7 @@ def plugins() -> dict[str, type[Plugin[object]]]:
     from cartwheel.plugins.pose_publisher import PosePublisher
     from cartwheel.plugins.range import HectorSonar, Range
     from cartwheel.plugins.ray_sensor import RaySensor
+    from cartwheel.plugins.realsense import RealSense
     from cartwheel.plugins.skid_steer import SkidSteerDrive
     from cartwheel.plugins.tricycle import TricycleDrive
     from cartwheel.plugins.vacuum_gripper import VacuumGripper
@@ -129,7 +130,7 @@ def plugins() -> dict[str, type[Plugin[object]]]:
         DetachableJoint,
     )
     lasers = (Laser, RaySensor, BlockLaser, VelodyneLaser, Range, HectorSonar)
-    cameras = (Camera, DepthCamera, OpenniKinect, TriggeredCamera, Prosilica)
+    cameras = (Camera, DepthCamera, OpenniKinect, TriggeredCamera, Prosilica, RealSense)
     for plugin in (
         *drives,
         *cameras,
@@ -209,7 +210,8 @@ def attach(part: Part, graph: Graph) -> list[Behaviour]:
                 made += _made(
                     part, graph, plugin, tag, sensor, lenient="in worlds" if new else "never"
                 )
-        made += _serve(part, graph, [one for one in sensors if not one.plugins], systems)
+        alone = [one for one in sensors if not one.plugins and one.name not in part.read_sensors]
+        made += _serve(part, graph, alone, systems)
     except CartwheelError:
         for plugin_made in made:
             plugin_made.close()

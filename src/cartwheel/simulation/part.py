@@ -64,6 +64,8 @@ class Part:
         self.tasks: list[Task] = []
         self.diagnostics: list[Diagnostic] = []
         self.spawned = False
+        self.read_sensors: set[str] = set()
+        """Names of sensors that a plugin of the model reads: they need none of their own."""
 
     @property
     def name(self) -> str:
