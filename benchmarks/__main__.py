@@ -12,14 +12,14 @@ os.environ.setdefault("MUJOCO_GL", "egl")
 
 from rich.console import Console
 
-from benchmarks import camera, headless, process, scans, wires
+from benchmarks import camera, headless, process, sensors, wires
 from benchmarks.figure import FULL, QUICK
 from benchmarks.report import machine, show, write
 
 _PARTS = {
     "headless": headless,
     "camera": camera,
-    "scans": scans,
+    "sensors": sensors,
     "process": process,
     "wires": wires,
 }
