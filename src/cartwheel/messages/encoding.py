@@ -6,12 +6,12 @@ import threading
 from typing import Any
 
 from cartwheel.errors import GraphError
-from cartwheel.messages.store import message_class, store
+from cartwheel.messages.store import loaded, message_class
 
 
 def encode_cdr(message: Any) -> bytes:
     """A message as CDR with its four bytes of encapsulation, as ROS 2 and MCAP carry it."""
-    return bytes(store().serialize_cdr(message, message.__msgtype__))
+    return bytes(loaded().serialize_cdr(message, message.__msgtype__))
 
 
 def decode_cdr(data: bytes | memoryview, type_name: str) -> Any:
@@ -23,7 +23,7 @@ def decode_cdr(data: bytes | memoryview, type_name: str) -> Any:
     """
     full = message_class(type_name).__msgtype__
     try:
-        return store().deserialize_cdr(data, full)
+        return loaded().deserialize_cdr(data, full)
     except Exception as error:  # rosbags lets whatever its generated code meets through
         raise GraphError(f"{len(data)} bytes are no {full}: {error}") from error
 

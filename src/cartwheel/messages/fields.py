@@ -6,7 +6,7 @@ import functools
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from cartwheel.messages.store import message_class, store
+from cartwheel.messages.store import loaded, message_class
 
 FILLER = "structure_needs_at_least_one_member"
 """The byte that ROS 2 puts into a message without fields; nobody writes or reads it."""
@@ -46,7 +46,7 @@ def fields(name: str) -> tuple[Field, ...]:
     full = message_class(name).__msgtype__
     return tuple(
         field_of(field, description)
-        for field, description in store().fielddefs[full][1]
+        for field, description in loaded().fielddefs[full][1]
         if field != FILLER
     )
 

@@ -13,7 +13,7 @@ from cartwheel.errors import GraphError
 from cartwheel.messages.convert import zero
 from cartwheel.messages.fields import FILLER, Field
 from cartwheel.messages.ros1_fields import CODES, Pair, pairs
-from cartwheel.messages.store import message_class, store, type_name
+from cartwheel.messages.store import loaded, message_class, type_name
 
 _COUNT = struct.Struct("<I")
 _EMPTIES = 1 << 16
@@ -71,10 +71,10 @@ def _reader(name: str) -> _Reader:
     read_names = {ours for ours, _ in readers}
     rest = {
         field: getattr(zero(full), field)
-        for field, _ in store().fielddefs[full][1]
+        for field, _ in loaded().fielddefs[full][1]
         if field not in read_names and field != FILLER
     }
-    if any(field == FILLER for field, _ in store().fielddefs[full][1]):
+    if any(field == FILLER for field, _ in loaded().fielddefs[full][1]):
         rest[FILLER] = 0
 
     def read(source: _Source) -> Any:

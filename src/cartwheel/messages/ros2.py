@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 
 from cartwheel.messages.ros2_types import is_ros1_only, ros2_type
-from cartwheel.messages.store import TWIN, message_class, store
+from cartwheel.messages.store import TWIN, loaded, message_class
 
 
 @functools.cache
@@ -15,7 +15,7 @@ def ros2_definition(name: str) -> str:
     Raises:
         UnknownNameError: There is no such type.
     """
-    text, _ = store().generate_msgdef(message_class(name).__msgtype__, ros_version=2)
+    text, _ = loaded().generate_msgdef(message_class(name).__msgtype__, ros_version=2)
     return str(text).replace(f"{TWIN}/", "/")
 
 

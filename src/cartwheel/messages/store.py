@@ -9,6 +9,7 @@ different types of the same names in ROS 1 and ROS 2: here ROS 2's have a packag
 from __future__ import annotations
 
 import functools
+import threading
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -29,29 +30,75 @@ TWIN = "_ros2"
 _GOAL_ID = "unique_identifier_msgs/UUID goal_id\n"
 
 
+_learning = threading.RLock()
+
+
 @functools.cache
-def store() -> Any:
-    """The typestore: Jazzy's types and those of `DEFINITIONS`."""
+def loaded() -> Any:
+    """The typestore as far as it was asked for: it has the type of every message there is."""
     # rosbags takes as long to import as the rest of a command does to run, and many
     # commands see no message.
     from rosbags.typesys import Stores, get_typestore
 
-    made = get_typestore(Stores.ROS2_JAZZY)
-    ours = parsed_definitions() | parsed_definitions(ROS2_DEFINITIONS)
-    made.register({name: ours[name] for name in ours if name not in made.fielddefs})
+    return get_typestore(Stores.ROS2_JAZZY)
+
+
+@functools.cache
+def store() -> Any:
+    """The typestore, complete: Jazzy's types and all of ours. What needs no others is quicker
+    with `loaded`.
+    """
+    made = loaded()
+    with _learning:
+        ours = parsed_definitions() | parsed_definitions(ROS2_DEFINITIONS)
+        made.register({name: ours[name] for name in ours if name not in made.fielddefs})
     return made
+
+
+def _learn(name: str) -> bool:
+    """Loads one of our types, with those within it; False where there is none of that name."""
+    made = loaded()
+    with _learning:
+        if name in made.types:
+            return True
+        text = _texts().get(name)
+        if text is None:
+            return False
+        constants, fields = _parsed(name, text)
+        for _, kind in fields:
+            _learn_within(kind)
+        made.register({name: (constants, fields)})
+    return True
+
+
+def _learn_within(kind: Any) -> None:
+    from rosbags.interfaces import Nodetype
+
+    node, value = kind
+    if node == Nodetype.NAME:
+        _learn(value)
+    elif node != Nodetype.BASE:
+        _learn_within(value[0])
+
+
+@functools.cache
+def _texts() -> dict[str, str]:
+    """All of our types, of both kinds."""
+    return {**dict(definitions()), **dict(definitions(ROS2_DEFINITIONS))}
+
+
+def _parsed(name: str, text: str) -> Any:
+    from rosbags.typesys import get_types_from_msg
+
+    # The parser has names of its own for a service's parts: ours count.
+    (fields,) = get_types_from_msg(text, name).values()
+    return fields
 
 
 @functools.cache
 def parsed_definitions(folder: Path = DEFINITIONS) -> dict[str, Any]:
     """Our types and their fields, as rosbags describes them."""
-    from rosbags.typesys import get_types_from_msg
-
-    ours: dict[str, Any] = {}
-    for name, text in definitions(folder):
-        # The parser has names of its own for a service's parts: ours count.
-        (ours[name],) = get_types_from_msg(text, name).values()
-    return ours
+    return {name: _parsed(name, text) for name, text in definitions(folder)}
 
 
 def definitions(folder: Path = DEFINITIONS) -> Iterator[tuple[str, str]]:
@@ -86,8 +133,13 @@ def _action(name: str, text: str) -> Iterator[tuple[str, str]]:
 
 def is_ros2_only(name: str) -> bool:
     """Whether a message or service type is one of those that ROS 1 cannot know."""
-    ours = parsed_definitions(ROS2_DEFINITIONS)
+    ours = _ros2_names()
     return name in ours or f"{name}_Request" in ours
+
+
+@functools.cache
+def _ros2_names() -> frozenset[str]:
+    return frozenset(name for name, _ in definitions(ROS2_DEFINITIONS))
 
 
 def type_name(name: str) -> str:
@@ -103,9 +155,9 @@ def message_class(name: str) -> Any:
         UnknownNameError: There is no such type.
     """
     full = type_name(name)
-    types = store().types
-    if full not in types:
-        raise UnknownNameError("message type", name, types)
+    types = loaded().types
+    if full not in types and not _learn(full):
+        raise UnknownNameError("message type", name, store().types)
     return types[full]
 
 
@@ -117,8 +169,7 @@ def service_classes(name: str) -> tuple[Any, Any]:
     """
     package, _, rest = name.partition("/")
     full = name if "/" in rest else f"{package}/srv/{rest}"
-    types = store().types
-    if f"{full}_Request" not in types:
-        known = [key.removesuffix("_Request") for key in types if key.endswith("_Request")]
+    if not _learn(f"{full}_Request"):
+        known = [key.removesuffix("_Request") for key in store().types if key.endswith("_Request")]
         raise UnknownNameError("service type", name, known)
-    return types[f"{full}_Request"], types[f"{full}_Response"]
+    return message_class(f"{full}_Request"), message_class(f"{full}_Response")
