@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from cartwheel.description.model import Light, WorldDescription
 from cartwheel.simulation.engine import Engine
-from cartwheel.world.build import shine
+from cartwheel.world.lights import shine
 
 
 def adjust(engine: Engine, world: WorldDescription) -> bool:

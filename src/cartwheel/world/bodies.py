@@ -40,6 +40,7 @@ from cartwheel.world.entry import (
     part_name,
     scoped,
 )
+from cartwheel.world.lights import add_light
 from cartwheel.world.shapes import Assets, place, pose_arguments, solids
 from cartwheel.world.tyres import Axle, axle_of, tyre
 
@@ -146,6 +147,8 @@ class BodyBuilder:
             body.gravcomp = 1.0
         for visual in link.visuals:
             self._add_visual(body, visual)
+        for light in link.lights:
+            add_light(body, scoped(entry.name, link.name, light.name), light)
         for collision in link.collisions:
             name = scoped(entry.name, link.name, collision.name)
             shape, place = tyre(collision, axle)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -10,12 +9,12 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
-from cartwheel.description.model import Light, WorldDescription
+from cartwheel.description.model import WorldDescription
 from cartwheel.errors import Origin, WorldError
-from cartwheel.geometry import rotate
 from cartwheel.world import chains, contact, joints, pairs
 from cartwheel.world.bodies import ROTOR_INERTIA, BodyBuilder
 from cartwheel.world.entry import ModelEntry, scoped
+from cartwheel.world.lights import add_light
 from cartwheel.world.shapes import Assets
 
 DEFAULT_STEP = 0.005
@@ -149,37 +148,8 @@ def _empty(world: WorldDescription) -> mujoco.MjSpec:
         height=6,
     )
     for light in world.lights:
-        _add_light(spec, light)
+        add_light(spec.worldbody, light.name, light)
     return spec
-
-
-def shine(light: Light) -> dict[str, tuple[float, float, float]]:
-    """What of a light may change in a compiled model: fields of MuJoCo's ``light_…``."""
-    x, y, z = rotate(light.pose.orientation, light.direction)
-    length = math.sqrt(x * x + y * y + z * z)
-    return {
-        "pos": light.pose.position,
-        "dir": (x / length, y / length, z / length),
-        "diffuse": light.diffuse[:3],
-        "attenuation": light.attenuation,
-    }
-
-
-def _add_light(spec: mujoco.MjSpec, light: Light) -> None:
-    kinds = {
-        "directional": mujoco.mjtLightType.mjLIGHT_DIRECTIONAL,
-        "point": mujoco.mjtLightType.mjLIGHT_POINT,
-        "spot": mujoco.mjtLightType.mjLIGHT_SPOT,
-    }
-    spec.worldbody.add_light(
-        name=light.name,
-        type=kinds[light.type],
-        ambient=[0, 0, 0],
-        specular=[0, 0, 0],
-        **{name: list(value) for name, value in shine(light).items()},
-        cutoff=math.degrees(light.spot_angle) / 2,
-        castshadow=False,
-    )
 
 
 def _explain(message: str, entries: list[ModelEntry]) -> WorldError:

@@ -36,6 +36,9 @@ def unused(description: RobotDescription) -> Iterator[Diagnostic]:
             if description.static and isinstance(shape, Mesh) and standing_parts(shape).hulls:
                 why = "a part of it has too many facets, and its hull collides"
                 note("the surface of a mesh", collision.origin, why)
+            if isinstance(shape, Mesh) and shape.convex_decomposition and not description.static:
+                why = "what moves collides as its hull"
+                note("the convex decomposition of a mesh", collision.origin, why)
             surface = collision.surface
             for field, why in _SURFACE.items():
                 # 0 is what Gazebo writes where nothing is asked for.
@@ -43,8 +46,6 @@ def unused(description: RobotDescription) -> Iterator[Diagnostic]:
                     note(field, collision.origin, why)
         if link.linear_damping or link.angular_damping:
             note("velocity decay", link.origin, "the air does not brake")
-        for light in link.lights:
-            note("a light on a link", light.origin, "only the world's lights shine")
     heeded = _controlled(description)
     for joint in description.joints:
         if (

@@ -28,16 +28,21 @@ def read_light(node: Node, pose: Pose) -> Light:
             "Allowed are directional, point and spot.",
         )
     diffuse, specular = node.child("diffuse"), node.child("specular")
-    direction = node.vec3_at("direction", default.direction)
+    direction = node.vec3_at("direction", (0.0, 0.0, -1.0))
     if not any(direction):
         raise node.fail("the direction of a light must not be 0 0 0")
-    for path in ("spot/inner_angle", "spot/falloff", "visualize", "intensity", "light_on"):
-        node.find(path)  # the renderer has one cone and one brightness
+    for path in ("spot/inner_angle", "spot/falloff", "visualize"):
+        node.find(path)  # the renderer's cones have one edge
+    brightness = max(0.0, node.number_at("intensity", 1.0))
+    if not node.boolean_at("light_on", True):
+        brightness = 0.0
+    colour = read_rgba(diffuse) if diffuse is not None else default.diffuse
+    r, g, b = (min(1.0, brightness * value) for value in colour[:3])
     return Light(
         name=require_name(node),
         type=kind,
         pose=pose,
-        diffuse=read_rgba(diffuse) if diffuse is not None else default.diffuse,
+        diffuse=(r, g, b, colour[3]),
         specular=read_rgba(specular) if specular is not None else default.specular,
         direction=direction,
         range=node.number_at("attenuation/range", default.range),

@@ -1,0 +1,46 @@
+"""Lights of a world and of links."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import mujoco
+
+from cartwheel.description.model import Light
+from cartwheel.geometry import rotate
+
+_KIND = mujoco.mjtLightType
+_ALL_AROUND = 180.0
+"""Degrees; a point light is a spot without an edge, since the renderer passes over the others."""
+
+
+def shine(light: Light) -> dict[str, tuple[float, float, float]]:
+    """What of a light may change in a compiled model: fields of MuJoCo's ``light_…``."""
+    x, y, z = rotate(light.pose.orientation, light.direction)
+    length = math.sqrt(x * x + y * y + z * z)
+    return {
+        "pos": light.pose.position,
+        "dir": (x / length, y / length, z / length),
+        "diffuse": light.diffuse[:3],
+        "attenuation": light.attenuation,
+    }
+
+
+def add_light(body: Any, name: str, light: Light) -> None:
+    """Adds a light that moves with a body of a spec; the world's own are its ``worldbody``'s.
+
+    Args:
+        body: In whose frame the light's pose is.
+        name: Unique in the spec.
+        light: No shadow comes of it, whatever it says.
+    """
+    body.add_light(
+        name=name,
+        type=_KIND.mjLIGHT_DIRECTIONAL if light.type == "directional" else _KIND.mjLIGHT_SPOT,
+        ambient=[0, 0, 0],
+        specular=[0, 0, 0],
+        **{field: list(value) for field, value in shine(light).items()},
+        cutoff=math.degrees(light.spot_angle) / 2 if light.type == "spot" else _ALL_AROUND,
+        castshadow=False,
+    )
