@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 import struct
+import threading
 import time
 from collections.abc import Iterator
 from typing import Any
@@ -17,7 +18,9 @@ from tests.bridges.ros2_peers import Ros2Bridged
 from tests.bridges.test_ros2_services import prepared
 
 from cartwheel.bridges.ros2 import zenoh as ours
+from cartwheel.graph import Action, Goal
 from cartwheel.messages import decode_cdr, encode_cdr, from_dict
+from cartwheel.messages.ros2_types import ros2_service
 
 zenoh = pytest.importorskip("zenoh", reason="not installed: eclipse-zenoh")
 
@@ -168,6 +171,54 @@ def test_services_answer_with_what_was_asked_by(bridged: Ros2Bridged, session: A
     assert struct.unpack_from("<q", told) == (41,)
     assert told[16:] == b"\x10who asks for it."
     bridged.simulation.post(bridged.simulation.resume)
+
+
+def test_an_action_is_followed_to_its_end(bridged: Ros2Bridged, session: Any) -> None:
+    """A goal is accepted at once, and the answer with its result waits until it is there."""
+    kind = "control_msgs_ros2/action/GripperCommand"
+    simulation = bridged.simulation
+
+    def end(goal: Goal) -> None:
+        goal.succeed(from_dict(f"{kind}_Result", {"position": goal.goal.command.position}))
+
+    def offer() -> Action:
+        return Action(
+            bridged.graph,
+            "/hand/grip",
+            kind,
+            node="hand",
+            time_ns=lambda: simulation.time_ns,
+            on_goal=lambda goal: goal.accept(),
+            on_cancel=lambda goal: goal.cancel(from_dict(f"{kind}_Result", {})),
+        )
+
+    action = simulation.call(offer).result()
+
+    def ask(name: str, part: str, **fields: Any) -> Any:
+        type_ = ros2_service(f"{kind}_{part}")
+        key = f"7/hand/grip/_action/{name}/{type_.dds}/{type_.hash}"
+        payload = encode_cdr(from_dict(type_.request, fields))
+        attachment = struct.pack("<qqB", 1, 5, 16) + b"who asks for it."
+        (reply,) = wait_for(
+            lambda: list(session.get(key, payload=payload, attachment=attachment, timeout=20.0)),
+            f"an answer of {name}",
+        )
+        return decode_cdr(reply.ok.payload.to_bytes(), type_.response)
+
+    identity = {"uuid": list(range(16))}
+    goal = {"command": {"position": 0.25, "max_effort": 1.0}}
+    assert ask("send_goal", "SendGoal", goal_id=identity, goal=goal).accepted
+    answers: list[Any] = []
+    waits = threading.Thread(
+        target=lambda: answers.append(ask("get_result", "GetResult", goal_id=identity))
+    )
+    waits.start()
+    (listener,) = action.listeners
+    wait_for(lambda: listener._waiting, "the request for the result")
+    simulation.post(lambda: end(action.goals[0]))
+    waits.join()
+    assert (answers[0].status, answers[0].result.position) == (4, 0.25)
+    simulation.call(action.close).result()
 
 
 def test_who_comes_late_gets_what_stays(session: Any) -> None:
