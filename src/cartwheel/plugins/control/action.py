@@ -7,11 +7,12 @@ from typing import Any
 
 from cartwheel.graph import Action, ActionTopics, Goal
 from cartwheel.graph.actionlib import STATUS_RATE
+from cartwheel.messages import store
 from cartwheel.plugins.control.controller import Controller, Rhythm
 
 
 class ActionServer:
-    """An action below a controller's name, on the graph as such and as ROS 1's five topics.
+    """An action below a controller's name, on the graph as such and, if ROS 1 has it, as topics.
 
     Args:
         controller: Whose it is; it closes with that.
@@ -42,8 +43,10 @@ class ActionServer:
             on_cancel=on_cancel,
         )
         controller.keep(self._action)
-        self._topics = ActionTopics(controller.graph, self._action)
-        controller.keep(self._topics)
+        self._topics: ActionTopics | None = None
+        if f"control_msgs/msg/{kind}Goal" in store().types:
+            self._topics = ActionTopics(controller.graph, self._action)
+            controller.keep(self._topics)
 
     def message(self, part: str, **fields: Any) -> Any:
         """A ``Result`` or ``Feedback``."""
@@ -56,7 +59,7 @@ class ActionServer:
 
     def tick(self, time_ns: int) -> None:
         """Tells the states of all goals when it is due, for others to see that it is there."""
-        if self._rhythm.due(time_ns):
+        if self._rhythm.due(time_ns) and self._topics is not None:
             self._topics.tell()
 
     def start(self, time_ns: int) -> None:

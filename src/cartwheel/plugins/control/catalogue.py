@@ -14,7 +14,10 @@ ACKERMANN = "ackermann_steering_controller/AckermannSteeringController"
 def controller_types() -> dict[str, type[Controller]]:
     """All types by name, as ROS 1 and ROS 2 write them."""
     from cartwheel.plugins.control.diff_drive import DiffDriveController
-    from cartwheel.plugins.control.gripper import GripperActionController
+    from cartwheel.plugins.control.gripper import (
+        GripperActionController,
+        ParallelGripperActionController,
+    )
     from cartwheel.plugins.control.joint_commands import JointCommand, JointGroup, JointPid
     from cartwheel.plugins.control.joint_states import JointStateController
     from cartwheel.plugins.control.joint_trajectory import JointTrajectoryController
@@ -33,6 +36,7 @@ def controller_types() -> dict[str, type[Controller]]:
         JointGroup,
         JointTrajectoryController,
         GripperActionController,
+        ParallelGripperActionController,
         DiffDriveController,
         SingleSteering,
         SteeringController,

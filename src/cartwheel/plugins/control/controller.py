@@ -142,6 +142,9 @@ class Controller:
             seconds: Since the last update, s.
         """
 
+    def idle(self, time_ns: int) -> None:
+        """In place of `update` while it does not run: tells that its action is there."""
+
     senses: bool = False
     """Whether `sense` has anything to do."""
 

@@ -5,7 +5,10 @@ from __future__ import annotations
 import math
 from typing import Any, ClassVar
 
+import numpy as np
+
 from cartwheel.graph import Goal
+from cartwheel.messages import header, message_class
 from cartwheel.plugins.control.action import ActionServer
 from cartwheel.plugins.control.controller import Controller, Rhythm
 from cartwheel.plugins.control.pid import Gains, Pid
@@ -24,9 +27,10 @@ class GripperActionController(Controller):
         "position_controllers/GripperActionController",
         "effort_controllers/GripperActionController",
     )
+    action: ClassVar[str] = "GripperCommand"
 
     def configure(self, settings: Settings) -> None:
-        interface = self.type.partition("_")[0]
+        interface = "effort" if self.type.startswith("effort_") else "position"
         self._joint = self.claim(settings.text("joint"), interface)
         self._tolerance = settings.number("goal_tolerance", 0.01)
         self._effort = settings.number("max_effort", 0.0)
@@ -39,21 +43,23 @@ class GripperActionController(Controller):
             self._pid = Pid(Gains.read(section))
             settings.ignore("gains")
         self._monitor = Rhythm(settings.number("action_monitor_rate", 20.0))
-        self._target = 0.0
+        self._target = self._place = 0.0
+        self._speed = math.inf
+        """rad/s or m/s at which `_place` goes to `_target`."""
         self._limit = self._effort
         self._active: Goal | None = None
         self._moved_ns = 0
         self._action = ActionServer(
             self,
             "gripper_cmd",
-            "GripperCommand",
+            self.action,
             on_goal=self._on_goal,
             on_cancel=self._on_cancel,
         )
 
     def start(self, time_ns: int) -> None:
         self._finish("abort")
-        self._target = self._joint.position
+        self._target = self._place = self._joint.position
         self._limit = self._effort
         self._monitor.start(time_ns)
         self._action.start(time_ns)
@@ -63,8 +69,10 @@ class GripperActionController(Controller):
     def update(self, time_ns: int, seconds: float) -> None:
         joint = self._joint
         error = self._target - joint.position
+        most = self._speed * seconds
+        self._place += min(max(self._target - self._place, -most), most)
         if self._pid is None:
-            joint.command = self._target
+            joint.command = self._place
             joint.strength = self._limit if self._limit > 0 else math.inf
         else:
             law = self._pid.position(error, seconds, target=self._target)
@@ -76,6 +84,9 @@ class GripperActionController(Controller):
         self._action.tick(time_ns)
         if self._active is not None:
             self._watch(time_ns, error)
+
+    def idle(self, time_ns: int) -> None:
+        self._action.tick(time_ns)
 
     def stop(self, time_ns: int) -> None:  # noqa: ARG002
         self._joint.strength = math.inf
@@ -96,25 +107,29 @@ class GripperActionController(Controller):
             goal.feedback(self._told("Feedback"))
 
     def _on_goal(self, goal: Goal) -> None:
-        position = float(goal.goal.command.position)
+        position, effort, speed = self._asked(goal.goal.command)
         if not self.running or not math.isfinite(position):
             text = "the position is no number" if self.running else "the controller does not run"
             goal.reject(self._told("Result"), text)
             return
         self._finish("abort" if self.rig.ros2 else "cancel")
         self._active = goal
-        self._target = position
-        effort = float(goal.goal.command.max_effort)
+        self._target, self._place = position, self._joint.position
+        self._speed = speed
         self._limit = effort if effort > 0 else self._effort
         self._moved_ns = self.part.time_ns
         goal.accept()
 
     def _on_cancel(self, goal: Goal) -> None:
         if goal is self._active:
-            self._target = self._joint.position
+            self._target = self._place = self._joint.position
             self._finish("cancel")
         else:
             goal.cancel(self._told("Result"))
+
+    def _asked(self, command: Any) -> tuple[float, float, float]:
+        """Position, the most effort (0 is the controller's) and the most velocity of a goal."""
+        return float(command.position), float(command.max_effort), math.inf
 
     def _finish(self, how: str, *, reached: bool = False, stalled: bool = False) -> None:
         goal, self._active = self._active, None
@@ -129,3 +144,42 @@ class GripperActionController(Controller):
             stalled=stalled,
             reached_goal=reached,
         )
+
+
+class ParallelGripperActionController(GripperActionController):
+    """The same by the action ``ParallelGripperCommand``, whose goal may bound the velocity too.
+
+    Source: parallel_gripper_controller.
+    """
+
+    types: ClassVar[tuple[str, ...]] = (
+        "parallel_gripper_action_controller/GripperActionController",
+    )
+    action: ClassVar[str] = "ParallelGripperCommand"
+
+    def configure(self, settings: Settings) -> None:
+        settings.ignore("state_interfaces", "max_velocity", "max_velocity_interface")
+        super().configure(settings)
+        if not settings.text("max_effort_interface", ""):
+            # Without it the controller's own bound is nobody's.
+            self._effort = self._limit = 0.0
+
+    def _asked(self, command: Any) -> tuple[float, float, float]:
+        if len(command.position) != 1:
+            return math.nan, 0.0, math.inf
+        speed = float(command.velocity[0]) if len(command.velocity) else 0.0
+        effort = float(command.effort[0]) if len(command.effort) else 0.0
+        return float(command.position[0]), effort, speed if speed > 0 else math.inf
+
+    def _told(self, part: str, *, reached: bool = False, stalled: bool = False) -> Any:
+        joint = self._joint
+        state = message_class("sensor_msgs/msg/JointState")(
+            header=header(self.part.time_ns, ""),
+            name=[joint.name],
+            position=np.array([joint.position]),
+            velocity=np.array([joint.velocity]),
+            effort=np.array([joint.effort]),
+        )
+        if part == "Feedback":
+            return self._action.message(part, state=state)
+        return self._action.message(part, state=state, stalled=stalled, reached_goal=reached)

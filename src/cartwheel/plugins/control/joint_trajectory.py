@@ -144,6 +144,9 @@ class JointTrajectoryController(Controller):
         if due and self._state.wanted:
             self._tell_state(time_ns, wanted, errors)
 
+    def idle(self, time_ns: int) -> None:
+        self._action.tick(time_ns)
+
     def stop(self, time_ns: int) -> None:
         self._hold(time_ns)
         how = "abort" if self.rig.ros2 else "cancel"

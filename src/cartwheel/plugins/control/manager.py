@@ -151,6 +151,8 @@ class ControllerManager:
         for controller in self._controllers.values():
             if controller.running:
                 controller.update(time_ns, seconds)
+            else:
+                controller.idle(time_ns)
         if self.writes:
             self.rig.hardware.write(seconds)
 

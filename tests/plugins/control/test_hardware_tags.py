@@ -1,0 +1,121 @@
+"""What the tags say of joints: where they begin, whom they follow, what drives them."""
+
+import pytest
+import yaml
+from tests.plugins.control.arms import (
+    ROS1,
+    beam,
+    robot,
+    ros2_joint,
+    ros2_parameters,
+    ros2_plugin,
+    transmission,
+)
+from tests.plugins.control.arms import ros2_system as system
+
+from cartwheel.messages import from_dict
+
+
+def ros2(bench, tmp_path, body, *joints, **controllers):
+    file = tmp_path / "own.yaml"
+    file.write_text(yaml.safe_dump(ros2_parameters(**controllers)))
+    made = bench(robot(body + system(*joints), ros2_plugin(file)))
+    made.world.run(0.05)
+    return made
+
+
+def group(*joints, kind="position"):
+    name = "JointGroupPositionController" if kind == "position" else "JointGroupVelocityController"
+    return {"type": f"{kind}_controllers/{name}", "joints": list(joints)}
+
+
+def two_beams(**more):
+    return beam("a", "world", **more) + beam("b", "world", origin="0 1 1", **more)
+
+
+def test_joints_begin_where_their_initial_values_say(bench, tmp_path):
+    first = """<joint name="a_joint"><command_interface name="position">
+      <param name="min">-1</param><param name="max">1</param></command_interface>
+      <state_interface name="position"><param name="initial_value">0.7</param></state_interface>
+      <state_interface name="velocity"/></joint>"""
+    made = ros2(bench, tmp_path, two_beams(), first, ros2_joint("b_joint"))
+    assert made.position("a_joint") == pytest.approx(0.7, abs=0.01)
+    assert made.position("b_joint") == pytest.approx(0.0, abs=0.01)
+    # They stand there, until a controller commands them, and after a reset again.
+    made.world.run(1.0)
+    assert made.position("a_joint") == pytest.approx(0.7, abs=0.01)
+    made.world.reset()
+    made.world.run(0.05)
+    assert made.position("a_joint") == pytest.approx(0.7, abs=0.01)
+
+
+def test_a_joint_follows_another_as_its_parameters_say(bench, tmp_path):
+    follower = """<joint name="b_joint"><param name="mimic">a_joint</param>
+      <param name="multiplier">-0.5</param><state_interface name="position"/></joint>"""
+    made = ros2(
+        bench, tmp_path, two_beams(axis="0 0 1"), ros2_joint("a_joint"), follower,
+        lead=group("a_joint"),
+    )  # fmt: skip
+    made.publish("/lead/commands", "std_msgs/msg/Float64MultiArray", data=[0.8])
+    made.world.run(1.0)
+    assert made.position("a_joint") == pytest.approx(0.8, abs=0.01)
+    assert made.position("b_joint") == pytest.approx(-0.4, abs=0.02)
+
+
+def test_a_joint_follows_another_as_the_urdf_says(bench, tmp_path):
+    mimic = '<mimic joint="a_joint" multiplier="2" offset="0.1"/></joint>'
+    body = two_beams(axis="0 0 1")
+    body = body[: body.rindex("</joint>")] + mimic
+    made = ros2(bench, tmp_path, body, ros2_joint("a_joint"), lead=group("a_joint"))
+    made.publish("/lead/commands", "std_msgs/msg/Float64MultiArray", data=[0.3])
+    made.world.run(1.0)
+    assert made.position("b_joint") == pytest.approx(2 * 0.3 + 0.1, abs=0.02)
+
+
+def test_a_joint_of_several_interfaces_takes_what_its_controller_commands(bench, tmp_path):
+    """As universal robots' have position and velocity; one controller runs, then the other."""
+    made = ros2(
+        bench, tmp_path, beam("a", "world", axis="0 0 1"),
+        ros2_joint("a_joint", "position", "velocity"),
+        place=group("a_joint"), speed=group("a_joint", kind="velocity"),
+    )  # fmt: skip
+    assert any("a_joint" in text and "place" in text for text in made.warnings)
+    made.publish("/place/commands", "std_msgs/msg/Float64MultiArray", data=[0.5])
+    made.world.run(0.5)
+    assert made.position("a_joint") == pytest.approx(0.5, abs=0.01)
+    switch = made.world.graph.service("/controller_manager/switch_controller")
+    request = {"activate_controllers": ["speed"], "deactivate_controllers": ["place"]}
+    kind = "controller_manager_msgs_ros2/srv/SwitchController_Request"
+    assert switch.handler(from_dict(kind, {**request, "strictness": 2})).ok
+    made.publish("/speed/commands", "std_msgs/msg/Float64MultiArray", data=[0.4])
+    made.world.run(1.05)
+    assert made.position("a_joint") == pytest.approx(0.5 + 0.4, abs=0.03)
+
+
+@pytest.mark.parametrize(
+    "written",
+    [
+        "hardware_interface/PositionJointInterface",
+        "PositionJointInterface",
+        " hardware_interface/PositionJointInterface\n",
+    ],
+)
+def test_interfaces_of_transmissions_by_either_name_and_reductions_mean_nothing(bench, written):
+    plain = transmission("a_joint", "Position")
+    start = plain.index("<hardwareInterface>")
+    end = plain.index("</hardwareInterface>")
+    tag = plain[:start] + f"<hardwareInterface>{written}" + plain[end:]
+    geared = tag.replace(
+        '<actuator name="m_a_joint"/>',
+        '<actuator name="m_a_joint"><mechanicalReduction>50</mechanicalReduction></actuator>',
+    )
+    made = bench(
+        robot(beam("a", "world") + geared, ROS1),
+        {"one": {"type": "position_controllers/JointPositionController", "joint": "a_joint"}},
+    )
+    made.world.run(0.1)
+    made.publish("/one/command", "std_msgs/msg/Float64", data=0.4)
+    made.world.run(0.5)
+    # Gazebo's hardware knows no motors: a command is the joint's own.
+    assert made.position("a_joint") == pytest.approx(0.4, abs=1e-3)
+    assert made.warnings == []
