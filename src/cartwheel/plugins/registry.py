@@ -79,6 +79,7 @@ def plugins() -> dict[str, type[Plugin[object]]]:
     from cartwheel.plugins.tricycle import TricycleDrive
     from cartwheel.plugins.vacuum_gripper import VacuumGripper
     from cartwheel.plugins.velodyne_laser import VelodyneLaser
+    from cartwheel.plugins.wheel_slip import WheelSlip
 
     known: dict[str, type[Plugin[object]]] = {}
     third = (entry.load() for entry in importlib.metadata.entry_points(group="cartwheel.plugins"))
@@ -114,6 +115,7 @@ def plugins() -> dict[str, type[Plugin[object]]]:
         F3D,
         Force,
         HandOfGod,
+        WheelSlip,
         Imu,
         ImuSensor,
         HectorImu,

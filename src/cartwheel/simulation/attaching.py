@@ -13,7 +13,7 @@ import mujoco
 import numpy as np
 
 from cartwheel.geometry import Array, Pose, Vec3, from_wxyz, to_wxyz
-from cartwheel.world.entry import scoped
+from cartwheel.world.entry import SHIFT, scoped
 
 _OBJ = mujoco.mjtObj
 _POSE = slice(3, 10)
@@ -154,6 +154,9 @@ class SurroundingsHandle:
             name = mujoco.mj_id2name(model, _OBJ.mjOBJ_BODY, body)
             if mujoco.mj_name2id(model, _OBJ.mjOBJ_TENDON, name) >= 0:
                 # The rotor of a motor.
+                continue
+            if mujoco.mj_name2id(model, _OBJ.mjOBJ_JOINT, scoped(name, SHIFT)) >= 0:
+                # The tyre of a wheel that slips.
                 continue
             owner, _, link = name.partition("::")
             found[owner, link] = body

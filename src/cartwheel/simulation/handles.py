@@ -27,6 +27,7 @@ from cartwheel.geometry import (
 from cartwheel.simulation.attaching import AttachmentHandle, SurroundingsHandle
 from cartwheel.simulation.pushing import BodyDriveHandle, WrenchHandle
 from cartwheel.simulation.servo import ServoHandle
+from cartwheel.simulation.slipping import SlipHandle
 from cartwheel.world.entry import ROTOR, Motor, scoped
 
 _OBJ = mujoco.mjtObj
@@ -341,4 +342,5 @@ Handle = (
     | WrenchHandle
     | AttachmentHandle
     | SurroundingsHandle
+    | SlipHandle
 )

@@ -37,8 +37,10 @@ from cartwheel.simulation.pushing import BodyDriveHandle, WrenchHandle
 from cartwheel.simulation.rays import RayHandle
 from cartwheel.simulation.rendering import Depth, Image
 from cartwheel.simulation.servo import ServoHandle
+from cartwheel.simulation.slipping import SlipHandle
 from cartwheel.simulation.snapshot import Contact
 from cartwheel.world.entry import BodyDrive, CameraMount, ModelEntry, Motor, scoped
+from cartwheel.world.tyres import axle_of
 
 _DRIVE_WEIGHTS = 5.0
 """What a servo of a whole model may push, in its weights: well above any friction."""
@@ -244,6 +246,24 @@ class Part:
         self.handles.append(handle)
         return handle
 
+    def slip(self, link: str, *, radius: float, origin: Origin | None = None) -> SlipHandle:
+        """A wheel's slip on the ground.
+
+        Raises:
+            UnknownNameError: There is no such link; placed at `origin`.
+            PluginError: It is no wheel, or slips by another plugin already.
+        """
+        self.link(link, origin=origin)
+        joint = next((each for each in self.description.joints if each.child == link), None)
+        if axle_of(joint) is None:
+            raise PluginError(f'link "{link}" turns about no joint without end', origin=origin)
+        if link in self._entry.slips:
+            raise PluginError(f'two plugins say how link "{link}" slips', origin=origin)
+        self._entry.slips[link] = radius
+        handle = SlipHandle(self.name, link, radius)
+        self.handles.append(handle)
+        return handle
+
     def attachment(self) -> AttachmentHandle:
         """A fixed joint to be made and undone at any time, between links of any models."""
         name = scoped(self.name, "attachment", str(len(self._entry.attachments)))
@@ -357,7 +377,7 @@ class Part:
             entry.cameras,
             entry.attachments,
         )
-        tables: tuple[dict[str, Any], ...] = (entry.motors, entry.mimics)
+        tables: tuple[dict[str, Any], ...] = (entry.motors, entry.mimics, entry.slips)
         lengths = [len(each) for each in lists]
         copies = [dict(each) for each in tables]
         try:

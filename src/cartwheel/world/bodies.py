@@ -33,6 +33,9 @@ from cartwheel.world import contact, joints
 from cartwheel.world.entry import (
     DRIVE_AXES,
     ROTOR,
+    SHIFT,
+    TURN,
+    TYRE,
     BodyDrive,
     CameraMount,
     ModelEntry,
@@ -51,6 +54,10 @@ _CAMERA_AXES = np.array([[0.0, 0, -1], [-1, 0, 0], [0, 1, 0]])
 """Columns: MuJoCo's camera axes (right, up, back) in a sensor frame that looks along x."""
 _MOTOR_REFERENCE = (0.01, 1.0)
 _MOTOR_IMPEDANCE = (0.9999, 0.9999, 0.001, 0.5, 2.0)
+TYRE_MASS = 1e-6
+"""kg, of a tyre that slips on its wheel: nothing that would be felt."""
+_TYRE_SHARE = 0.02
+"""Of the model's mass: the inertia with which a tyre takes up its slip."""
 ROTOR_INERTIA = 1e6
 """kg m², so that no load slows a rotor."""
 _STRONGEST = 1e6
@@ -149,6 +156,8 @@ class BodyBuilder:
             self._add_visual(body, visual)
         for light in link.lights:
             add_light(body, scoped(entry.name, link.name, light.name), light)
+        if axle is not None and link.name in entry.slips:
+            body = _add_tyre(entry, body, link, axle)
         for collision in link.collisions:
             name = scoped(entry.name, link.name, collision.name)
             shape, place = tyre(collision, axle)
@@ -240,13 +249,14 @@ class BodyBuilder:
         def collides(link: Link) -> bool:
             return description.self_collide if link.self_collide is None else link.self_collide
 
+        def body(link: Link) -> str:
+            name = scoped(entry.name, link.name)
+            return scoped(name, TYRE) if link.name in entry.slips else name
+
         for i, first in enumerate(solid):
             for second in solid[i + 1 :]:
                 if not (collides(first) and collides(second)):
-                    self._spec.add_exclude(
-                        bodyname1=scoped(entry.name, first.name),
-                        bodyname2=scoped(entry.name, second.name),
-                    )
+                    self._spec.add_exclude(bodyname1=body(first), bodyname2=body(second))
 
     def _add_mimics(self, entry: ModelEntry) -> None:
         for joint in entry.description.joints:
@@ -326,6 +336,32 @@ class BodyBuilder:
             fovy=float(np.degrees(fovy)),
             **pose_arguments(turned),
         )
+
+
+def _add_tyre(entry: ModelEntry, wheel: Any, link: Link, axle: Axle) -> Any:
+    """What touches the ground in a wheel's place, and turns and shifts on it by a damper each.
+
+    It weighs nothing; the inertia of both motions gives the solver something to hold on to.
+    """
+    name = scoped(entry.name, link.name, TYRE)
+    tyre = wheel.add_body(name=name)
+    tyre.explicitinertial = True
+    tyre.mass = TYRE_MASS
+    tyre.ipos = list(axle.point)
+    tyre.inertia = [TYRE_MASS] * 3
+    inertia = _TYRE_SHARE * entry.description.mass
+    radius = entry.slips[link.name]
+    for what, kind, weight in (
+        (TURN, mujoco.mjtJoint.mjJNT_HINGE, inertia * radius**2),
+        (SHIFT, mujoco.mjtJoint.mjJNT_SLIDE, inertia),
+    ):
+        made = tyre.add_joint(
+            name=scoped(name, what), type=kind, axis=list(axle.axis), pos=list(axle.point)
+        )
+        made.armature = weight
+        # Set while it runs; the engine wants to know that there will be some.
+        made.damping = [1.0, 0, 0]
+    return tyre
 
 
 def _direction(entry: ModelEntry, link: Link, collision: Collision) -> tuple[str, Vec3] | None:

@@ -18,6 +18,8 @@ import numpy as np
 from cartwheel.geometry import Array, from_wxyz, matrix_from_quat
 
 _HINGE, _SLIDE = int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE)
+_WEIGHTLESS = 1e-5
+"""kg; what weighs less moves nothing."""
 _BALANCED = 0.05
 """Of its inertia about the axis: less that a rotor's imbalance makes is none."""
 
@@ -35,11 +37,12 @@ def drag(model: mujoco.MjModel) -> dict[int, float]:
     if not model.njnt:
         return {}
     pivots, carried = _carried(model)
-    moving = model.body_dofnum > 0
+    # A tyre that slips on its wheel weighs nothing: the wheel is no chain's part by it.
+    moving = (model.body_dofnum > 0) & (model.body_mass > _WEIGHTLESS)
     found = {}
     for joint in range(model.njnt):
         body = int(model.jnt_bodyid[joint])
-        if model.jnt_type[joint] != _HINGE or model.body_treeid[body] < 0:
+        if model.jnt_type[joint] != _HINGE or not moving[body] or model.body_treeid[body] < 0:
             continue
         below = bool(moving[_subtree(model, body)[1:]].any())
         above = bool(model.body_weldid[model.body_parentid[body]]) or model.body_dofnum[body] > 1

@@ -10,6 +10,9 @@ from cartwheel.geometry import Pose, Vec3
 
 ROTOR = "rotor"
 """Of a driven joint: what it is coupled to; a body, a joint and a tendon of that name."""
+TYRE = "tyre"
+"""Of a wheel that slips: a body, that turns and shifts on the wheel by joints of these names."""
+TURN, SHIFT = "turn", "shift"
 DRIVE_AXES = ("x", "y", "z", "roll", "pitch", "yaw")
 """Of a `BodyDrive`'s servos, in the world's axes."""
 
@@ -84,5 +87,7 @@ class ModelEntry:
     """By the joint that follows; besides those of the description."""
     drives: list[BodyDrive] = field(default_factory=list)
     cameras: list[CameraMount] = field(default_factory=list)
+    slips: dict[str, float] = field(default_factory=dict)
+    """Wheels whose tyres give way, with their radius in m, by link; see `SlipHandle`."""
     attachments: list[str] = field(default_factory=list)
     """Names of welds that hold nothing at first; see `AttachmentHandle`."""

@@ -1,0 +1,175 @@
+"""``libgazebo_ros_wheel_slip.so`` and ``gz-sim-wheel-slip-system``: wheels that slip."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+
+from cartwheel.description.model import Cylinder, Element, Sphere
+from cartwheel.errors import PluginError
+from cartwheel.graph import ReconfigureParameter
+from cartwheel.messages import message_class
+from cartwheel.plugins.base import Plugin
+from cartwheel.plugins.parameters import tag
+from cartwheel.simulation.handles import JointHandle
+from cartwheel.simulation.slipping import SlipHandle
+
+_SENSES = ("lateral", "longitudinal")
+_PARAMETERS = tuple(
+    ReconfigureParameter(
+        name=f"slip_compliance_unitless_{sense}",
+        type="double",
+        default=-1.0,
+        minimum=-1.0,
+        maximum=20.0,
+        level=0,
+        description=f"Slip for friction of as much as the normal force, {sense}",
+    )
+    for sense in _SENSES
+)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class WheelSlipParameters:
+    wheels: tuple[str, ...] = tag(
+        "wheel",
+        default=(),
+        doc="With the attribute `link_name`: `<slip_compliance_lateral>`, "
+        "`<slip_compliance_longitudinal>`, `<wheel_normal_force>` in N, `<wheel_radius>` in m.",
+    )
+    tolerance: float = tag(
+        "wheel_spin_tolerance",
+        default=1e-3,
+        unit="m/s",
+        doc="A rim that turns slower slips by nothing in wheel_slip.",
+    )
+    rate: float = tag(
+        "publisher_update_rate", default=100.0, unit="Hz", doc="Of wheel_slip; 0 is every step."
+    )
+
+
+@dataclass(kw_only=True, slots=True)
+class _Wheel:
+    link: str
+    joint: JointHandle
+    slip: SlipHandle
+    normal: float
+    """N."""
+    compliance: dict[str, float]
+    """Lateral and longitudinal: slip by rim speed, for friction by normal force."""
+
+
+class WheelSlip(Plugin[WheelSlipParameters]):
+    """Lets wheels slip: speed of slip by speed of rim is compliance by friction by normal force.
+
+    A wheel that stands does not slip. Nothing slips faster than friction allows. In the spelling
+    of ROS 2 ``wheel_slip`` tells the slip of each wheel: lateral as an angle, longitudinal as a
+    share of its speed. In that of ROS 1 the compliances of all wheels can be reconfigured under
+    ``/<model>/<robotNamespace>``, by default ``/<model>/wheel_slip``.
+
+    Source: Gazebo, WheelSlipPlugin; gazebo_plugins, gazebo_ros_wheel_slip; gz-sim, WheelSlip.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = (
+        "libgazebo_ros_wheel_slip.so",
+        "gz-sim-wheel-slip-system",
+        "libWheelSlipPlugin.so",
+    )
+    parameters: ClassVar[type] = WheelSlipParameters
+
+    def configure(self) -> None:
+        config, element = self.config, self.tag.element
+        if config.rate < 0:
+            raise PluginError("a rate cannot be below 0", origin=self.tag.origin)
+        self._wheels = [self._wheel(each) for each in element.find_all("wheel")]
+        if not self._wheels:
+            self.warn("no <wheel>: nothing slips")
+            return
+        self.part.schedule(0, before=self._give)
+        if "gazebo_ros_wheel_slip" not in self.tag.filename:
+            return
+        if element.find("ros") is not None:
+            self._WheelSlip = message_class("gazebo_msgs/msg/WheelSlip")
+            rate = config.rate or None
+            self._publisher = self.advertise("wheel_slip", "gazebo_msgs/msg/WheelSlip", rate=rate)
+            self.part.schedule(config.rate, after=self._tell, active=lambda: self._publisher.wanted)
+        else:
+            plain = element.find("robotNamespace")
+            name = (plain.text.strip().strip("/") if plain is not None else "") or "wheel_slip"
+            self.reconfigure(f"/{self.part.name}/{name}", _PARAMETERS, self._on_change)
+
+    def _wheel(self, element: Element) -> _Wheel:
+        origin = element.origin
+        name = element.attribute("link_name")
+        if not name:
+            raise PluginError("<wheel> needs the attribute link_name", origin=origin)
+        radius = _number(element, "wheel_radius") or self._radius(name)
+        normal = _number(element, "wheel_normal_force")
+        if radius <= 0 or normal <= 0:
+            raise PluginError(
+                f'wheel "{name}" needs <wheel_radius> and <wheel_normal_force> above 0',
+                origin=origin,
+            )
+        slip = self.part.slip(name, radius=radius, origin=origin)
+        joint = next(each for each in self.part.description.joints if each.child == name)
+        found = {}
+        for sense in _SENSES:
+            value = _number(element, f"slip_compliance_{sense}")
+            if value < 0:
+                self.warn(f"<slip_compliance_{sense}> {value:g} is below 0: 0 is taken", at=origin)
+            found[sense] = max(value, 0.0)
+        return _Wheel(
+            link=name,
+            joint=self.part.joint(joint.name, origin=origin),
+            slip=slip,
+            normal=normal,
+            compliance=found,
+        )
+
+    def _radius(self, name: str) -> float:
+        """Of the wheel's own shape; 0 where it has none that is round."""
+        link = self.part.description.link(name)
+        shapes = [each.shape for each in link.collisions] if link is not None else []
+        round_ones = [shape for shape in shapes if isinstance(shape, Cylinder | Sphere)]
+        return round_ones[0].radius if round_ones else 0.0
+
+    def _on_change(self, values: Mapping[str, Any]) -> None:
+        for sense in _SENSES:
+            value = float(values[f"slip_compliance_unitless_{sense}"])
+            if value >= 0:
+                for wheel in self._wheels:
+                    wheel.compliance[sense] = value
+
+    def _give(self) -> None:
+        for wheel in self._wheels:
+            speed = abs(wheel.joint.velocity) * wheel.slip.radius / wheel.normal
+            wheel.slip.give(*(speed * wheel.compliance[sense] for sense in _SENSES))
+
+    def _tell(self) -> None:
+        names, lateral, longitudinal = [], [], []
+        for wheel in self._wheels:
+            rim = wheel.joint.velocity * wheel.slip.radius
+            aside, ahead = wheel.slip.speeds
+            still = abs(rim) < self.config.tolerance
+            names.append(wheel.link)
+            longitudinal.append(0.0 if still else ahead / rim)
+            lateral.append(0.0 if still else math.atan2(aside, rim - ahead))
+        self._publisher.publish(self._WheelSlip(names, np.array(lateral), np.array(longitudinal)))
+
+
+def _number(element: Element, name: str) -> float:
+    """A child's number; 0 where there is none."""
+    child = element.find(name)
+    if child is None:
+        return 0.0
+    try:
+        number = float(child.text)
+    except ValueError:
+        number = math.nan
+    if not math.isfinite(number):
+        raise PluginError(f'<{name}> "{child.text.strip()}" is not a number', origin=child.origin)
+    return number
