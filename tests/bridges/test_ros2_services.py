@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator
 from typing import Any
 
@@ -141,6 +142,59 @@ def test_steps_are_made_by_simulation_interfaces(bridged: Ros2Bridged, peer: Pee
     )
     assert again.result.result == 1
     assert simulation.run_state is RunState.RUNNING
+
+
+def test_steps_are_made_by_an_action(bridged: Ros2Bridged, peer: Peer) -> None:
+    kind, simulation = "simulation_interfaces/action/SimulateSteps", bridged.simulation
+    base = "/gz_server/simulate_steps/_action"
+    numbers = itertools.count(1)
+
+    def send(steps: int) -> dict[str, Any]:
+        identity = {"uuid": [next(numbers), *range(15)]}
+        request = {"goal_id": identity, "goal": {"steps": steps}}
+        assert peer.call(f"{base}/send_goal", f"{kind}_SendGoal", request).accepted
+        return identity
+
+    def ended(identity: dict[str, Any]) -> tuple[int, int]:
+        told = peer.call(f"{base}/get_result", f"{kind}_GetResult", {"goal_id": identity})
+        return told.status, told.result.result.result
+
+    aborted, succeeded, cancelled = 6, 4, 5
+    assert ended(send(10)) == (aborted, 4)  # RESULT_OPERATION_FAILED: it is not paused
+    simulation.call(simulation.pause).result()
+    try:
+        (action,) = (each for each in bridged.graph.actions() if "simulate_steps" in each.name)
+        peer.subscribe(f"{base}/feedback", f"{kind}_FeedbackMessage")
+        wait_for(lambda: action.wants_feedback, "the reader of the feedback")
+        before = simulation.current_step
+        identity = send(45)
+        assert ended(identity) == (succeeded, 1)
+        assert simulation.current_step == before + 45
+        told = wait_for(
+            lambda: (
+                found
+                if len(found := peer.messages(f"{base}/feedback", f"{kind}_FeedbackMessage")) == 45
+                else None
+            ),
+            "all feedback",
+        )
+        assert [(one.feedback.completed_steps, one.feedback.remaining_steps) for one in told] == [
+            (made, 45 - made) for made in range(1, 46)
+        ]
+        endless = send(10**12)
+        assert ended(send(1)) == (aborted, 4)
+        peer.call(
+            f"{base}/cancel_goal", "action_msgs/srv/CancelGoal", {"goal_info": {"goal_id": endless}}
+        )
+        assert ended(endless)[0] == cancelled
+        wait_for(lambda: not simulation.steps_allowed, "the end of the steps")
+        rest = simulation.current_step
+        taken_over = send(10**12)
+        wait_for(lambda: simulation.current_step > rest, "steps")
+        peer.call("/reset_simulation", "std_srvs/srv/Empty", {})
+        assert ended(taken_over) == (aborted, 4)
+    finally:
+        simulation.call(simulation.resume).result()
 
 
 def test_entities_come_and_go_by_simulation_interfaces(bridged: Ros2Bridged, peer: Peer) -> None:

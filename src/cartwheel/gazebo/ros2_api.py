@@ -77,6 +77,7 @@ class Ros2Api:
         if self._topics is not None:
             self._topics.close()
             self._topics = None
+        self._interfaces.close()
         for service in self._services:
             self._session.graph.withdraw(service)
         self._services.clear()

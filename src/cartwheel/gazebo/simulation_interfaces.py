@@ -1,10 +1,12 @@
-"""The services by which newer ROS 2 programs steer any simulator: simulation_interfaces."""
+"""What newer ROS 2 programs steer any simulator by: simulation_interfaces."""
 
 from __future__ import annotations
 
 import re
+import threading
 import time
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -18,7 +20,7 @@ from cartwheel.gazebo.entities import Entities
 from cartwheel.gazebo.requests import pose, pose_message, twist_message
 from cartwheel.gazebo.spawning import Spawning
 from cartwheel.gazebo.state import States
-from cartwheel.graph import Service
+from cartwheel.graph import Action, Goal, Service
 from cartwheel.messages import header, message_class, zero
 from cartwheel.session import Session
 from cartwheel.simulation import RunState
@@ -31,11 +33,14 @@ _NAME_NOT_UNIQUE, _NAME_INVALID, _NO_RESOURCE, _PARSE_ERROR = 101, 102, 104, 106
 _INVALID_POSE_TO_SPAWN, _INVALID_POSE_TO_SET, _ALREADY = 109, 101, 101
 _STOPPED, _PLAYING, _PAUSED, _QUITTING = range(4)
 _TIME, _STATE, _SPAWNED, _ALL = 1, 2, 4, 255
-_FEATURES = (0, 1, 9, 10, 11, 20, 22, 23, 24, 25, 26, 31, 32)
+_FEATURES = (0, 1, 9, 10, 11, 20, 22, 23, 24, 25, 26, 31, 32, 33)
 """SPAWNING, DELETING, SPAWNING_RESOURCE_STRING, ENTITY_STATE_GETTING and SETTING, SIMULATION_RESET,
-RESET_STATE, RESET_SPAWNED, STATE_GETTING, SETTING and PAUSE, STEP_SIMULATION_SINGLE, MULTIPLE."""
+RESET_STATE, RESET_SPAWNED, STATE_GETTING, SETTING and PAUSE, STEP_SIMULATION_SINGLE, MULTIPLE and
+ACTION."""
 _LOOK = 0.002
 """s between two looks whether steps were made."""
+_AT_A_TIME = 20
+"""Steps of an action between two looks at whether it goes on."""
 
 
 class _Refusal(Exception):  # noqa: N818 - it is an answer
@@ -72,10 +77,21 @@ class SimulationInterfaces:
         self._states = states
         self._package_path = tuple(package_path)
         self._original: frozenset[str] = frozenset()
+        self._action: Action | None = None
+        self._stepping = False
 
     def start(self, node: str) -> list[Service]:
-        """Offers all services; what stands in the world now is what a reset leaves there."""
+        """Offers everything; what stands in the world now is what a reset leaves there."""
         self._original = frozenset(self._simulation.models)
+        self._action = Action(
+            self._session.graph,
+            f"{PREFIX}/simulate_steps",
+            f"{_PACKAGE}/action/SimulateSteps",
+            node=node,
+            time_ns=lambda: self._simulation.time_ns,
+            on_goal=self._simulate_steps,
+            on_cancel=lambda goal: goal.cancel(_ended(_FAILED, "it was called off")),
+        )
         offers: list[tuple[str, str, Callable[[Any, Any], None], bool]] = [
             ("get_simulator_features", "GetSimulatorFeatures", self._features, False),
             ("get_entities", "GetEntities", self._list, False),
@@ -99,6 +115,12 @@ class SimulationInterfaces:
             )
             for name, kind, handler, threaded in offers
         ]
+
+    def close(self) -> None:
+        """Takes the action off the graph; the services are the caller's."""
+        if self._action is not None:
+            self._action.close()
+            self._action = None
 
     @staticmethod
     def _answering(kind: str, handler: Callable[[Any, Any], None]) -> Callable[[Any], Any]:
@@ -282,6 +304,64 @@ class SimulationInterfaces:
         while not self._spawning.on_owner(lambda: self._reached(target)):
             time.sleep(_LOOK)
 
+    def _simulate_steps(self, goal: Goal) -> None:
+        """Takes a goal of the action; on the owner's thread."""
+        goal.accept()
+        if self._simulation.run_state is not RunState.PAUSED:
+            goal.abort(_ended(_FAILED, "steps are made while the simulation is paused"))
+        elif self._stepping:
+            goal.abort(_ended(_FAILED, "steps of another goal are being made"))
+        else:
+            self._stepping = True
+            threading.Thread(
+                target=self._make_steps, args=(goal,), name="simulate_steps", daemon=True
+            ).start()
+
+    def _make_steps(self, goal: Goal) -> None:
+        """Makes the steps of a goal, some at a time; on a thread of its own."""
+        total, made, simulation = int(goal.goal.steps), 0, self._simulation
+        on_owner = self._spawning.on_owner
+
+        def allow(count: int) -> int | None:
+            if goal.done:
+                return None
+            if simulation.run_state is not RunState.PAUSED:
+                raise _Refusal(_FAILED, "something else let the simulation go on")
+            simulation.step(count)
+            return simulation.current_step + count
+
+        def tell(first: int, last: int) -> None:
+            for done in range(first, last + 1):
+                if goal.done:
+                    return
+                goal.feedback(
+                    message_class(f"{_PACKAGE}/action/SimulateSteps_Feedback")(
+                        completed_steps=done, remaining_steps=total - done
+                    )
+                )
+
+        def end() -> None:
+            self._stepping = False
+            if not goal.done:
+                (goal.succeed if result == _OK else goal.abort)(_ended(result, text))
+
+        result, text = _OK, ""
+        try:
+            while made < total:
+                count = min(_AT_A_TIME, total - made)
+                target = on_owner(partial(allow, count))
+                if target is None:
+                    break
+                while not on_owner(partial(self._reached, target)):
+                    time.sleep(_LOOK)
+                on_owner(partial(tell, made + 1, made + count))
+                made += count
+        except _Refusal as refusal:
+            result, text = refusal.result, str(refusal)
+        except CartwheelError as error:
+            result, text = _FAILED, _told(error)
+        self._session.graph.post(end)
+
     def _reached(self, step: int) -> bool:
         """Whether a step was made; between steps, on the owner's thread."""
         simulation = self._simulation
@@ -311,6 +391,13 @@ class SimulationInterfaces:
         for name in self._simulation.models:
             if name not in self._original:
                 self._simulation.delete(name)
+
+
+def _ended(result: int, text: str) -> Any:
+    """What came of an action."""
+    made = zero(f"{_PACKAGE}/action/SimulateSteps_Result")
+    made.result.result, made.result.error_message = result, text
+    return made
 
 
 def _told(error: CartwheelError) -> str:
