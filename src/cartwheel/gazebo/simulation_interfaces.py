@@ -39,6 +39,7 @@ RESET_STATE, RESET_SPAWNED, STATE_GETTING, SETTING and PAUSE, STEP_SIMULATION_SI
 ACTION."""
 _LOOK = 0.002
 """s between two looks whether steps were made."""
+_INTERRUPTED = "something else let the simulation go on, or reset it"
 _AT_A_TIME = 20
 """Steps of an action between two looks at whether it goes on."""
 
@@ -322,11 +323,12 @@ class SimulationInterfaces:
         total, made, simulation = int(goal.goal.steps), 0, self._simulation
         on_owner = self._spawning.on_owner
 
-        def allow(count: int) -> int | None:
+        def allow(count: int, begin: int | None) -> int | None:
             if goal.done:
                 return None
-            if simulation.run_state is not RunState.PAUSED:
-                raise _Refusal(_FAILED, "something else let the simulation go on")
+            moved = begin is not None and simulation.current_step != begin
+            if moved or simulation.run_state is not RunState.PAUSED:
+                raise _Refusal(_FAILED, _INTERRUPTED)
             simulation.step(count)
             return simulation.current_step + count
 
@@ -346,10 +348,11 @@ class SimulationInterfaces:
                 (goal.succeed if result == _OK else goal.abort)(_ended(result, text))
 
         result, text = _OK, ""
+        target: int | None = None
         try:
             while made < total:
                 count = min(_AT_A_TIME, total - made)
-                target = on_owner(partial(allow, count))
+                target = on_owner(partial(allow, count, target))
                 if target is None:
                     break
                 while not on_owner(partial(self._reached, target)):
@@ -368,7 +371,7 @@ class SimulationInterfaces:
         if simulation.current_step == step:
             return True
         if simulation.run_state is not RunState.PAUSED or not simulation.steps_allowed:
-            raise _Refusal(_FAILED, "something else let the simulation go on, or reset it")
+            raise _Refusal(_FAILED, _INTERRUPTED)
         return False
 
     def _reset(self, request: Any, _: Any) -> None:
