@@ -1,4 +1,4 @@
-"""``libroboticsgroup_upatras_gazebo_mimic_joint_plugin.so``: a joint that follows another."""
+"""Joints that follow others: mimic plugins, and a rocker's differential."""
 
 from __future__ import annotations
 
@@ -45,3 +45,29 @@ class MimicJoint(Plugin[MimicJointParameters]):
             raise PluginError("a joint cannot follow itself", origin=self.tag.origin)
         mimic = Mimic(joint=config.joint, multiplier=config.multiplier, offset=config.offset)
         self.part.mimic(config.mimic_joint, mimic, origin=self.tag.origin)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class DifferentialParameters:
+    first: str = tag("jointA", default="left_joint", doc="A joint.")
+    second: str = tag("jointB", default="right_joint", doc="The joint that turns as it does.")
+    force: float = tag(
+        "forceConstant", default=0.0, unit="N m/rad", doc="Has no effect: both turn alike exactly."
+    )
+
+
+class Differential(Plugin[DifferentialParameters]):
+    """Lets two joints turn alike, as the bars of a rocker's differential make them.
+
+    Source: leo_gazebo_plugins, differential_plugin, where a spring of `forceConstant` does.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ("libleo_gazebo_differential_plugin.so",)
+    parameters: ClassVar[type] = DifferentialParameters
+
+    def configure(self) -> None:
+        config = self.config
+        if config.first == config.second:
+            raise PluginError("a joint cannot follow itself", origin=self.tag.origin)
+        mimic = Mimic(joint=config.first, multiplier=1.0, offset=0.0)
+        self.part.mimic(config.second, mimic, origin=self.tag.origin)

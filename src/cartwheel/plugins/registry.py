@@ -41,6 +41,7 @@ def plugins() -> dict[str, type[Plugin[object]]]:
     from cartwheel.plugins.diff_drive import DiffDrive
     from cartwheel.plugins.elevator import Elevator
     from cartwheel.plugins.f3d import F3D
+    from cartwheel.plugins.foot_contact import FootContact
     from cartwheel.plugins.force import Force
     from cartwheel.plugins.force_based_move import ForceBasedMove
     from cartwheel.plugins.ft_sensor import FtSensor
@@ -67,7 +68,7 @@ def plugins() -> dict[str, type[Plugin[object]]]:
     from cartwheel.plugins.link_attacher import LinkAttacher, LinkAttacherRos2
     from cartwheel.plugins.magnetic import HectorMagnetic
     from cartwheel.plugins.mecanum import MecanumDrive
-    from cartwheel.plugins.mimic_joint import MimicJoint
+    from cartwheel.plugins.mimic_joint import Differential, MimicJoint
     from cartwheel.plugins.multi_wheel import MultiWheelDrive
     from cartwheel.plugins.p3d import P3D, OdometryPublisher, WorldOdometry
     from cartwheel.plugins.planar_move import PlanarMove, VelocityControl
@@ -111,6 +112,7 @@ def plugins() -> dict[str, type[Plugin[object]]]:
         GzJointTrajectory,
         JointPoseTrajectory,
         MimicJoint,
+        Differential,
         FtSensor,
         F3D,
         Force,
@@ -139,6 +141,7 @@ def plugins() -> dict[str, type[Plugin[object]]]:
         *lasers,
         *states,
         Bumper,
+        FootContact,
         Elevator,
         *joining,
         RosControl,

@@ -1,0 +1,54 @@
+"""``libunitreeFootContactPlugin.so``: the force on a foot."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from cartwheel.geometry import quat_conjugate, rotate
+from cartwheel.messages import header, message_class
+from cartwheel.plugins.base import Plugin
+from cartwheel.plugins.contact import watched_collisions
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class FootContactParameters:
+    pass
+
+
+class FootContact(Plugin[FootContactParameters]):
+    """Publishes the force on a contact sensor's collisions, in the axes of its link.
+
+    On ``/visual/<sensor>/the_force``; the sum of all contacts, where Gazebo tells their mean.
+    Source:
+    unitree_gazebo, foot_contact_plugin.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ("libunitreeFootContactPlugin.so",)
+    parameters: ClassVar[type] = FootContactParameters
+    for_sensor: ClassVar[bool] = True
+
+    def configure(self) -> None:
+        sensor = self.sensor
+        assert sensor is not None
+        self._link = self.part.link(sensor.link)
+        self._collisions = watched_collisions(self, sensor)
+        self._frame = self.frame(sensor.link)
+        self._WrenchStamped = message_class("geometry_msgs/msg/WrenchStamped")
+        self._Wrench = message_class("geometry_msgs/msg/Wrench")
+        self._Vector3 = message_class("geometry_msgs/msg/Vector3")
+        rate = sensor.update_rate
+        self._publisher = self.advertise(
+            f"/visual/{sensor.name}/the_force", "geometry_msgs/msg/WrenchStamped", rate=rate or None
+        )
+        self.part.schedule(rate, after=self._publish, active=lambda: self._publisher.wanted)
+
+    def _publish(self) -> None:
+        forces = [contact.force for contact in self.part.contacts(self._collisions)]
+        total = np.sum(forces, axis=0) if forces else np.zeros(3)
+        _, turned = self._link.place()
+        force = self._Vector3(*rotate(quat_conjugate(turned), total.tolist()))
+        wrench = self._Wrench(force, self._Vector3(0.0, 0.0, 0.0))
+        self._publisher.publish(self._WrenchStamped(header(self.part.time_ns, self._frame), wrench))
