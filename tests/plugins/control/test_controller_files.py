@@ -130,6 +130,20 @@ def test_parameters_of_one_name_in_several_files_are_merged():
     assert parts[0]["c"]["ros__parameters"]["gains"]["b"] == {"p": 2}
 
 
+def test_a_file_may_give_topics_other_names(spawn):
+    world = spawn(f"""
+controller_manager:
+  ros__parameters:
+    group:
+      type: {GROUP}
+      node_options_args: ["--ros-args", "--remap", "/group/commands:=/go"]
+group: {{ros__parameters: {{joints: [beam_joint]}}}}
+""")
+    topics = [topic.name for topic in world.graph.topics()]
+    assert "/go" in topics
+    assert "/group/commands" not in topics
+
+
 @pytest.mark.parametrize("word", ["var", "arg"])
 def test_a_prefix_is_the_robots_argument(spawn, word):
     text = f"""

@@ -25,6 +25,10 @@ def arm(bench, tmp_path):
     body = beam("beam", "world") + system(ros2_joint("beam_joint"))
     made = bench(robot(body, ros2_plugin(file)))
     made.world.run(0.1)
+    made.other = tmp_path / "other.yaml"
+    made.other.write_text(
+        yaml.safe_dump({"other": {"ros__parameters": {"joints": ["beam_joint"]}}})
+    )
     return made
 
 
@@ -117,6 +121,19 @@ def test_a_spawner_with_a_file_of_its_own(arm, tmp_path):
     arm.publish("/more/commands", "std_msgs/msg/Float64MultiArray", data=[-0.2])
     arm.world.run(0.5)
     assert arm.position("beam_joint") == pytest.approx(-0.2, abs=1e-3)
+
+
+def test_a_spawner_may_give_topics_other_names(arm):
+    """``--controller-ros-args "-r ~/commands:=/go"`` sets them before it loads."""
+    assert switch(arm, (), ["group"]).ok
+    give(arm, "other.type", STRING, GROUP["type"])
+    give(arm, "other.node_options_args", STRINGS, ["--ros-args", "-r", "~/commands:=/go"])
+    give(arm, "other.params_file", STRING, str(arm.other))
+    assert named(arm, "load_controller", "other")
+    assert named(arm, "configure_controller", "other")
+    topics = [topic.name for topic in arm.world.graph.topics()]
+    assert "/go" in topics
+    assert "/other/commands" not in topics
 
 
 def test_it_is_stopped_cleaned_up_and_unloaded(arm):

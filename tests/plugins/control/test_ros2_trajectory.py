@@ -71,6 +71,15 @@ def test_points_of_velocities_alone_are_integrated_where_that_is_allowed(arm):
     assert goal.state is GoalState.SUCCEEDED
 
 
+def test_joints_of_several_degrees_of_freedom_are_refused(arm):
+    made = arm()
+    many = {"multi_dof_trajectory": {"joint_names": ["base"], "points": [{}]}}
+    assert send(made, point(1, 0.1), **many).state is GoalState.REJECTED
+    odd = {"component_goal_tolerance": [{"joint_name": "base"}]}
+    refused = send(made, point(1, 0.1), **odd)
+    assert (refused.state, refused.result.error_code) == (GoalState.REJECTED, -2)
+
+
 def test_a_new_trajectory_aborts_the_goal_before(arm):
     made = arm()
     goal = send(made, point(10, 0.5))

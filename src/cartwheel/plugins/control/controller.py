@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, ClassVar, Protocol
@@ -70,6 +70,8 @@ class Rig:
         """Moves the whole robot, for wheels that our friction cannot make do so."""
         self.period_ns = 0
         """Of control."""
+        self.remappings: dict[str, Mapping[str, str]] = {}
+        """Of controllers' names of topics, by controller."""
 
     def report(self, message: str, *, at: Origin | None = None) -> None:
         """Tells the user something, at the plugin's place where no other is given."""
@@ -184,9 +186,20 @@ class Controller:
         ]
 
     def resolve(self, name: str) -> str:
-        """A name of a topic: below the controller's own unless it begins with ``/``."""
-        full = resolve_name(name, f"{self.rig.namespace.strip('/')}/{self.name}")
+        """A name of a topic: below the controller's own unless it begins with ``/``; remapped."""
+        full = self._full(f"~/{name}")
+        for source, target in self.rig.remappings.get(self.name, {}).items():
+            if self._full(source) == full:
+                full = self._full(target)
+                break
         return self.rig.plugin.resolve(full)
+
+    def _full(self, name: str) -> str:
+        """A name as a node resolves it: ``~/…`` is below its own."""
+        space = self.rig.namespace.strip("/")
+        if name.startswith("~/"):
+            name, space = name.removeprefix("~/"), f"{space}/{self.name}"
+        return resolve_name(name, space)
 
     def advertise(
         self, topic: str, type_name: str, *, rate: float | None = None, qos: Qos = "default"

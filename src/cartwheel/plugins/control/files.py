@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import itertools
 import weakref
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -33,6 +34,8 @@ class ControllerEntry:
     source: str
     shared: tuple[str, ...] = ()
     """Parameters that the file gives to all nodes: those that it does not know are no fault."""
+    remappings: Mapping[str, str] = field(default_factory=dict)
+    """Names of topics, as written, by the names that stand for them."""
 
     def settings(self) -> Settings:
         """Its parameters, to be read."""
@@ -243,9 +246,8 @@ def controller_entry(found: Ros2File, name: str, namespace: str, source: str) ->
     """A controller by its name; its type is empty where nothing states it."""
     own = found.nodes.get(name, {})
     listed = Settings(found.manager, "controller_manager", source).raw(name)
-    kind = own.get("type")
-    if isinstance(listed, Mapping) and isinstance(listed.get("type"), str):
-        kind = listed["type"]
+    listed = listed if isinstance(listed, Mapping) else {}
+    kind = listed.get("type") if isinstance(listed.get("type"), str) else own.get("type")
     values = _copy(found.shared)
     merge(values, _copy(own))
     return ControllerEntry(
@@ -255,7 +257,19 @@ def controller_entry(found: Ros2File, name: str, namespace: str, source: str) ->
         namespace=namespace,
         source=source,
         shared=tuple(key for key in found.shared if key not in own),
+        remappings=remappings(listed.get("node_options_args", [])),
     )
+
+
+def remappings(arguments: Any) -> dict[str, str]:
+    """What ``-r from:=to`` among a node's arguments makes of names. Source: rcl."""
+    words = arguments.split() if isinstance(arguments, str) else list(arguments)
+    pairs = [
+        str(word).partition(":=")
+        for flag, word in itertools.pairwise(words)
+        if flag in ("-r", "--remap")
+    ]
+    return {source: target for source, mark, target in pairs if mark}
 
 
 def _ros2_nodes(

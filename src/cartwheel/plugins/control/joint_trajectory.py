@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
@@ -21,27 +20,15 @@ from cartwheel.plugins.control.trajectory import State, Trajectory
 from cartwheel.plugins.control.trajectory_reading import (
     GOAL,
     INVALID_GOAL,
-    INVALID_JOINTS,
     PATH,
     SUCCESSFUL,
     InvalidTrajectoryError,
     TrajectoryReader,
 )
+from cartwheel.plugins.control.trajectory_tolerances import Tolerances
 
 _SETTLING_NS = 300_000_000
 """What a joint that stops gets to stand still, before a goal counts as missed."""
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Tolerance:
-    """The most that a joint may be off; 0 is not checked."""
-
-    position: float = 0.0
-    velocity: float = 0.0
-
-    def violated(self, position: float, velocity: float) -> bool:
-        """Whether errors of these sizes are too large."""
-        return (0 < self.position < abs(position)) or (0 < self.velocity < abs(velocity))
 
 
 class JointTrajectoryController(Controller):
@@ -80,16 +67,8 @@ class JointTrajectoryController(Controller):
         else:
             settings.ignore("gains", "velocity_ff")
         settings.ignore("constraints", "state_interfaces", "command_interfaces")
-        constraints = settings.section("constraints")
-        stopped = constraints.number("stopped_velocity_tolerance", 0.01)
-        self._goal_time = constraints.number("goal_time", 0.0)
-        self._path: list[Tolerance] = []
-        self._goal: list[Tolerance] = []
-        for name in self._names:
-            self._path.append(Tolerance(position=constraints.number(f"{name}/trajectory", 0.0)))
-            self._goal.append(
-                Tolerance(position=constraints.number(f"{name}/goal", 0.0), velocity=stopped)
-            )
+        self._tolerances = Tolerances(settings.section("constraints"), self._names)
+        self._goal_time = self._tolerances.goal_time
         self._reader = TrajectoryReader(self._names, self._joints, settings, ros2=ros2)
         rate = settings.number("state_publish_rate", 50.0)
         self._rhythm = Rhythm(rate)
@@ -118,8 +97,7 @@ class JointTrajectoryController(Controller):
         self._following = Trajectory.hold(0, [0.0] * len(self._joints))
         self._next: Trajectory | None = None
         self._active: Goal | None = None
-        self._goal_path = self._path
-        self._goal_end = self._goal
+        self._goal_path, self._goal_end = self._tolerances.path, self._tolerances.goal
         self._goal_patience = self._goal_time
 
     def start(self, time_ns: int) -> None:
@@ -243,10 +221,14 @@ class JointTrajectoryController(Controller):
             )
             return
         try:
+            if goal.goal.multi_dof_trajectory.points:
+                raise InvalidTrajectoryError(
+                    INVALID_GOAL, "joints of several degrees of freedom are none of its own"
+                )
             if not goal.goal.trajectory.points:
                 raise InvalidTrajectoryError(INVALID_GOAL, "the trajectory has no points")
             trajectory = self._reader.read(goal.goal.trajectory, time_ns, self._following)
-            paths, ends = self._tolerances(goal.goal)
+            paths, ends = self._tolerances.of(goal.goal)
         except InvalidTrajectoryError as error:
             goal.reject(self._result(error.code, error.message), error.message)
             return
@@ -260,26 +242,6 @@ class JointTrajectoryController(Controller):
         self._active = goal
         goal.accept()
         self._follow(trajectory, time_ns)
-
-    def _tolerances(self, goal: Any) -> tuple[list[Tolerance], list[Tolerance]]:
-        """Of path and goal: the controller's, or what the goal says of a joint instead."""
-
-        def merged(defaults: list[Tolerance], stated: Any) -> list[Tolerance]:
-            made = list(defaults)
-            for each in stated:
-                if each.name not in self._names:
-                    raise InvalidTrajectoryError(
-                        INVALID_JOINTS, f'there is a tolerance for the unknown joint "{each.name}"'
-                    )
-                index = self._names.index(each.name)
-                # 0 leaves the default, and what is below takes the check away.
-                made[index] = Tolerance(
-                    position=max(each.position or made[index].position, 0.0),
-                    velocity=max(each.velocity or made[index].velocity, 0.0),
-                )
-            return made
-
-        return merged(self._path, goal.path_tolerance), merged(self._goal, goal.goal_tolerance)
 
     def _on_cancel(self, goal: Goal) -> None:
         if goal is self._active:

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from cartwheel.errors import CartwheelError, GraphError
 from cartwheel.plugins.control.catalogue import find_type
 from cartwheel.plugins.control.controller import Controller, Rig
+from cartwheel.plugins.control.files import ControllerEntry
 from cartwheel.plugins.control.settings import Settings
 
 
@@ -60,6 +61,11 @@ class ControllerManager:
             self.rig.report(f"controller {name}: without effect: {', '.join(unread)}")
         self._controllers[name] = made
         return made
+
+    def load_entry(self, entry: ControllerEntry) -> Controller:
+        """Makes a controller as its file describes it; see `load`."""
+        self.rig.remappings[entry.name] = entry.remappings
+        return self.load(entry.name, entry.settings(), entry.type)
 
     def unload(self, name: str) -> None:
         """Takes a controller away that does not run.

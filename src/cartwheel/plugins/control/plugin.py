@@ -84,7 +84,7 @@ class ControlPlugin(Plugin[Any]):
         assert manager is not None
         for entry in entries:
             try:
-                controller = manager.load(entry.name, entry.settings(), entry.type)
+                controller = manager.load_entry(entry)
                 manager.switch([entry.name], [])
             except CartwheelError as error:
                 hint = f". {error.hint}" if error.hint else ""

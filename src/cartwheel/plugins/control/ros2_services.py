@@ -17,6 +17,7 @@ from cartwheel.plugins.control.files import (
     ControllerEntry,
     controller_entry,
     read_ros2,
+    remappings,
     ros2_file,
 )
 from cartwheel.plugins.control.manager import ControllerManager, tell
@@ -144,7 +145,8 @@ class Ros2ManagerServices:
                 f'controller "{name}": there is no parameter {name}.type',
                 hint="Name it in a file of <parameters>, or give the spawner --param-file.",
             )
-        return replace(found, type=kind)
+        renamed = remappings(stated.get("node_options_args", []))
+        return replace(found, type=kind, remappings={**found.remappings, **renamed})
 
     def _configure(self, request: Any) -> None:
         name = request.name
@@ -152,7 +154,7 @@ class Ros2ManagerServices:
         if controller is None:
             if name not in self._unconfigured:
                 raise GraphError(f'controller "{name}" is not loaded')
-            self._make(self._unconfigured[name])
+            self._manager.load_entry(self._unconfigured[name])
             del self._unconfigured[name]
         elif name in self._by_itself:
             self._by_itself.discard(name)
@@ -164,11 +166,8 @@ class Ros2ManagerServices:
             entry = replace(self._entry(name), type=controller.type)
             self._manager.unload(name)
             self._unconfigured[name] = entry
-            self._make(entry)
+            self._manager.load_entry(entry)
             del self._unconfigured[name]
-
-    def _make(self, entry: ControllerEntry) -> None:
-        self._manager.load(entry.name, entry.settings(), entry.type)
 
     def _cleanup(self, request: Any) -> None:
         if request.name in self._unconfigured:
