@@ -59,12 +59,11 @@ def test_it_reads_drives_spawns_and_resets(
     program: Path, bridged: Ros2Bridged, mapping: str
 ) -> None:
     done = subprocess.run(
-        [program, str(DOMAIN + 2), mapping], capture_output=True, text=True, timeout=120, check=True
+        [program, str(DOMAIN + 2), mapping], capture_output=True, text=True, timeout=300, check=True
     )
     said = {line.split()[0]: line.split()[1:] for line in done.stdout.splitlines()}
     assert said["spawn"][0] == "true", done.stdout
     assert "crate" in bridged.simulation.models
-    # Six seconds at 100 Hz and at 30 Hz; a busy computer gets fewer.
     count, x = said["odometry"]
     assert int(count) > 200
     assert float(x) > 0.5
