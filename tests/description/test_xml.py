@@ -46,7 +46,7 @@ def test_comments_may_hold_dashes(encode):
         ("<a>\n&nbsp;</a>", 2, "undefined entity"),
         ('<a>\n<b c="<"/></a>', 2, "malformed XML at column 7"),
         ('<a>\n<b c="1" c="2"/></a>', 2, "given twice"),
-        ("<!-- c -->\n<?xml version='1.0'?><a/>", 2, "must be the very first thing"),
+        ("<a>\n<?xml version='1.0'?></a>", 2, "must be the very first thing"),
         ("<a/>\n<b/>", 2, "after the end of the root"),
         ("hello", 1, "is not XML"),
         ("", 1, "is not XML"),
@@ -217,3 +217,10 @@ def test_utf16_and_latin1_are_decoded_as_declared():
     assert xml.parse('<?xml version="1.0" encoding="UTF-16"?><a>ü</a>'.encode("utf-16")).text == "ü"
     latin = '<?xml version="1.0" encoding="ISO-8859-1"?><a>ü</a>'.encode("latin-1")
     assert xml.parse(latin).text == "ü"
+
+
+def test_a_declaration_after_a_comment_is_read_as_gazebo_reads_it():
+    text = "<!-- Made by hand.\n-->\n<?xml version='1.0'?>\n<a>\n<b/></a>"
+    for given in (text, text.encode()):
+        root = xml.parse(given, "w.world")
+        assert (root.tag, root.origin.line, root.children[0].origin.line) == ("a", 4, 5)

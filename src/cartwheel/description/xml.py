@@ -23,7 +23,7 @@ __all__ = [
 
 MAX_BYTES = 64 * 1024 * 1024
 """Larger than any description; a mesh or a bag given by mistake stops here."""
-_LATE_DECLARATION = re.compile(r"\A\s+<\?xml.*?\?>", re.DOTALL)
+_LATE_DECLARATION = re.compile(r"\A(?:\s+|<!--.*?-->)+<\?xml.*?\?>", re.DOTALL)
 _LATE_DECLARATION_BYTES = re.compile(_LATE_DECLARATION.pattern.encode(), re.DOTALL)
 _COMMENT = re.compile(r"(?s)<!--(.*?)-->|<!\[CDATA\[.*?\]\]>")
 _COMMENT_BYTES = re.compile(_COMMENT.pattern.encode())
@@ -186,7 +186,7 @@ def run_expat(text: str | bytes, file: str, handler: Handler) -> None:
 
 
 def _declared_first(text: str | bytes) -> str | bytes:
-    """The text without a declaration that stands after blank lines.
+    """The text without a declaration that stands after blank lines and comments.
 
     Gazebo's reader takes it there, and published worlds begin so; expat does not.
     """

@@ -12,6 +12,7 @@ from cartwheel.description.packages import Packages
 from cartwheel.description.sdf import read_sdf
 from cartwheel.description.xml import parse
 from cartwheel.errors import DescriptionError
+from cartwheel.geometry import Pose
 
 
 def robot(inside: str, version: str = "1.7", folder=None):
@@ -493,6 +494,41 @@ FLAT = "<inertial><inertia><ixx>1</ixx><iyy>1</iyy><izz>3</izz></inertia></inert
 POINT = "<inertial><inertia><ixx>0</ixx><iyy>0</iyy><izz>0</izz></inertia></inertial>"
 
 
+def test_a_point_mass_that_moves_has_the_inertia_of_its_shape():
+    """Of a cylinder m r²/2 about its axis and m (3 r² + h²) / 12 across; it lies along x."""
+    can = """<inertial><pose>0 0 0.1 0.3 0 0</pose><mass>0.3</mass><inertia><ixx>0</ixx><iyy>0</iyy>
+      <izz>0</izz></inertia></inertial><collision name="c"><pose>0 0 0.1 0 1.570796326795 0</pose>
+      <geometry><cylinder><radius>0.04</radius><length>0.2</length></cylinder></geometry>
+      </collision>"""
+    found = link(can)
+    made = found.links[0].inertial
+    across = 0.3 * (3 * 0.04**2 + 0.2**2) / 12
+    assert (made.ixx, made.iyy, made.izz) == pytest.approx((0.3 * 0.04**2 / 2, across, across))
+    assert made.pose == Pose((0, 0, 0.1))
+    (told,) = found.diagnostics
+    assert "it has that of its collisions here" in told.message
+
+
+def test_a_rod_turns_about_itself_almost_freely():
+    found = link(POINT.replace("<iyy>0", "<iyy>1").replace("<izz>0", "<izz>1"))
+    made = found.links[0].inertial
+    assert 0 < made.ixx < 1e-3
+    assert (made.iyy, made.izz) == pytest.approx((1, 1))
+    assert len(found.diagnostics) == 1
+
+
+def test_a_box_without_height_is_a_plate():
+    """As Gazebo's building editor writes the wall above a door that reaches the ceiling."""
+    found = link(
+        """<visual name="v"><geometry><box><size>3.5 0.15 0</size></box></geometry></visual>"""
+    )
+    (visual,) = found.links[0].visuals
+    assert visual.shape == m.Box(size=(3.5, 0.15, 0.001))
+    assert "a box of 3.5 0.15 0 is made 1 mm thick" in found.diagnostics[0].message
+    with pytest.raises(DescriptionError, match="must be above 0"):
+        link('<visual name="v"><geometry><box><size>0 0 0</size></box></geometry></visual>')
+
+
 def test_impossible_inertia_matters_where_it_moves():
     found = link(FLAT)
     (told,) = found.diagnostics
@@ -504,6 +540,8 @@ def test_impossible_inertia_matters_where_it_moves():
     robot(f'<static>true</static><link name="a">{FLAT}</link>')
     with pytest.raises(DescriptionError, match="not positive definite"):
         link(POINT)
+    with pytest.raises(DescriptionError, match="not positive definite"):
+        link(POINT.replace("<ixx>0", "<ixx>-1"))
     robot(
         f"""<link name="a"/><link name="b">{POINT}</link>
         <joint name="j" type="fixed"><parent>a</parent><child>b</child></joint>"""

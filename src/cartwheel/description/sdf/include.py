@@ -124,8 +124,8 @@ def _fuel_model(name: str, uri: Node, ctx: Context) -> Path:
 def _in_folder(folder: Path, uri: Node, ctx: Context) -> Path:
     """The file that ``model.config`` names for the newest version that is understood."""
     config = folder / "model.config"
+    best: tuple[float, str] | None = None
     if config.is_file():
-        best: tuple[float, str] | None = None
         try:
             versions = read_file(config).all("sdf")
         except DescriptionError as error:
@@ -144,6 +144,9 @@ def _in_folder(folder: Path, uri: Node, ctx: Context) -> Path:
             return folder / best[1]
     if (folder / "model.sdf").is_file():
         return folder / "model.sdf"
-    raise uri.fail(
-        f'the folder of "{uri.text}" has no model.sdf', f"It is {folder}, found by its name."
+    wanted = best[1] if best is not None and best[1] else "model.sdf"
+    raise NotThereError(
+        f'the folder of "{uri.text}" has no {wanted}',
+        origin=uri.origin,
+        hint=f"It is {folder}, found by its name.",
     )

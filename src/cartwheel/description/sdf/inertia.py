@@ -1,13 +1,15 @@
-"""Mass and inertia of ``<inertial auto="true">``: from the collisions and their density."""
+"""Mass and inertia: whether a body can have them, and what follows from collisions and density."""
 
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from cartwheel.description.inertia import impossibility, made_possible, principal_moments
 from cartwheel.description.meshes import convex_hull_input, load_mesh
 from cartwheel.description.model import (
     Box,
@@ -17,18 +19,79 @@ from cartwheel.description.model import (
     Cylinder,
     Ellipsoid,
     Inertial,
+    Link,
     Mesh,
     Polyline,
     Shape,
     Sphere,
 )
 from cartwheel.description.outline import solid
-from cartwheel.errors import Origin
+from cartwheel.description.sdf.context import Context
+from cartwheel.errors import DescriptionError, Origin
 from cartwheel.geometry import Pose, matrix_from_quat
 
 Array = NDArray[np.float64]
 WATER = 1000.0
 """kg/m³, SDF's default density."""
+
+
+def judged_inertia(link: Link, *, rigid: bool, ctx: Context) -> Inertial | None:
+    """A link's inertia, or the nearest to it that a body can have.
+
+    Args:
+        link: Of a model that is not static.
+        rigid: Whether it is fixed to another: then its inertia is but a part of a sum.
+        ctx: Takes the diagnostics.
+
+    Raises:
+        DescriptionError: The mass is not above 0, or no body has anything like this inertia.
+    """
+    i = link.inertial
+    if i is None:
+        return None
+    if i.mass <= 0:
+        raise DescriptionError(
+            f'the mass of link "{link.name}" must be above 0, but is {i.mass:g}', origin=i.origin
+        )
+    diagonal, products = (i.ixx, i.iyy, i.izz), (i.ixy, i.ixz, i.iyz)
+    if rigid and not any((*diagonal, *products)):
+        return i  # a point mass: what it is fixed to has the inertia
+    moments = principal_moments(diagonal, products)
+    wrong = impossibility(moments)
+    if wrong is None:
+        return i
+    message, hint = f'link "{link.name}": {wrong[0]}', wrong[1]
+    if moments[0] < -1e-9 * moments[2]:
+        raise DescriptionError(message, origin=i.origin, hint=hint)
+    if not any(moments):
+        shape = inertial_of(list(link.collisions), [WATER] * len(link.collisions), i.origin)
+        if shape is None:
+            raise DescriptionError(message, origin=i.origin, hint=hint)
+        # About the stated centre of mass, along the link's axes.
+        made = replace(weighing(shape, i.mass), pose=Pose(i.pose.position))
+        here = f"it has that of its collisions here, {made.ixx:.4g}, {made.iyy:.4g}, {made.izz:.4g}"
+    else:
+        (ixx, iyy, izz), (ixy, ixz, iyz) = made_possible(diagonal, products)
+        made = replace(i, ixx=ixx, iyy=iyy, izz=izz, ixy=ixy, ixz=ixz, iyz=iyz)
+        a, b, _ = principal_moments((ixx, iyy, izz), (ixy, ixz, iyz))
+        here = f"here the smaller are {a:.4g} and {b:.4g}"
+    ctx.tell("warning", f"{message}; {here}. {hint}", i.origin)
+    return made
+
+
+def weighing(inertial: Inertial, mass: float) -> Inertial:
+    """The same body of another density."""
+    factor = mass / inertial.mass
+    return replace(
+        inertial,
+        mass=mass,
+        ixx=inertial.ixx * factor,
+        iyy=inertial.iyy * factor,
+        izz=inertial.izz * factor,
+        ixy=inertial.ixy * factor,
+        ixz=inertial.ixz * factor,
+        iyz=inertial.iyz * factor,
+    )
 
 
 def inertial_of(

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from typing import Any
 
 from cartwheel.description.model import (
@@ -23,7 +22,7 @@ from cartwheel.description.sdf.context import (
     require_name,
 )
 from cartwheel.description.sdf.frames import Frames
-from cartwheel.description.sdf.inertia import WATER, inertial_of
+from cartwheel.description.sdf.inertia import WATER, inertial_of, weighing
 from cartwheel.description.sdf.light import read_light
 from cartwheel.description.sdf.material import read_material
 from cartwheel.description.sdf.sensors import read_sensor
@@ -170,17 +169,7 @@ def _auto_inertial(link: Node, node: Node, ctx: Context, collisions: list[Collis
     mass = node.number_at("mass", found.mass)
     if mass <= 0:
         raise node.fail(f"the mass must be above 0, but is {mass:g}")
-    factor = mass / found.mass
-    return replace(
-        found,
-        mass=mass,
-        ixx=found.ixx * factor,
-        iyy=found.iyy * factor,
-        izz=found.izz * factor,
-        ixy=found.ixy * factor,
-        ixz=found.ixz * factor,
-        iyz=found.iyz * factor,
-    )
+    return weighing(found, mass)
 
 
 def _visual(node: Node, ctx: Context, place: Place) -> Visual | None:

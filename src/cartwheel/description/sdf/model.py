@@ -6,7 +6,6 @@ import itertools
 from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass, field, replace
 
-from cartwheel.description.inertia import impossibility, made_possible, principal_moments
 from cartwheel.description.model import Element, Joint, Link, PluginTag, RobotDescription, Sensor
 from cartwheel.description.sdf.context import (
     HARMLESS,
@@ -18,6 +17,7 @@ from cartwheel.description.sdf.context import (
 from cartwheel.description.sdf.frames import MODEL, WORLD, Frames
 from cartwheel.description.sdf.gearbox import mesh_gears
 from cartwheel.description.sdf.include import Included, NotThereError, open_include
+from cartwheel.description.sdf.inertia import judged_inertia
 from cartwheel.description.sdf.joint import GEARBOX, child_frame_of, read_joint, read_joint_sensors
 from cartwheel.description.sdf.link import read_link
 from cartwheel.description.sdf.sensors import read_plugins
@@ -84,32 +84,10 @@ class Model:
             if joint.type == "fixed"
             for end in (joint.parent, joint.child)
         }
-        for index, link in enumerate(self.links):
-            i = link.inertial
-            if i is None:
-                continue
-            if i.mass <= 0:
-                raise DescriptionError(
-                    f'the mass of link "{link.name}" must be above 0, but is {i.mass:g}',
-                    origin=i.origin,
-                )
-            diagonal, products = (i.ixx, i.iyy, i.izz), (i.ixy, i.ixz, i.iyz)
-            if link.name in fixed and not any((*diagonal, *products)):
-                continue  # a point mass: what it is fixed to has the inertia
-            moments = principal_moments(diagonal, products)
-            wrong = impossibility(moments)
-            if wrong is None:
-                continue
-            message, hint = f'link "{link.name}": {wrong[0]}', wrong[1]
-            if moments[0] <= 0:
-                raise DescriptionError(message, origin=i.origin, hint=hint)
-            (ixx, iyy, izz), (ixy, ixz, iyz) = made_possible(diagonal, products)
-            made = replace(i, ixx=ixx, iyy=iyy, izz=izz, ixy=ixy, ixz=ixz, iyz=iyz)
-            self.links[index] = replace(link, inertial=made)
-            a, b, _ = principal_moments((ixx, iyy, izz), (ixy, ixz, iyz))
-            ctx.tell(
-                "warning", f"{message}; here the smaller are {a:.4g} and {b:.4g}. {hint}", i.origin
-            )
+        self.links = [
+            replace(link, inertial=judged_inertia(link, rigid=link.name in fixed, ctx=ctx))
+            for link in self.links
+        ]
 
 
 def name_apart(models: Iterable[Model], ctx: Context) -> None:

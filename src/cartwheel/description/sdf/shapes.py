@@ -28,6 +28,9 @@ SHAPES = (
     "polyline", "image", "empty",
 )  # fmt: skip
 
+_FLAT = 1e-3
+"""m, in place of 0."""
+
 
 def read_shape(owner: Node, ctx: Context) -> Shape | None:
     """The shape of a visual or collision; None where it is empty or its file cannot be used.
@@ -106,6 +109,10 @@ def _sizes(shape: Node, tag: str, ctx: Context) -> Vec3:
         _tell_default(shape, tag, ctx)
         return (1.0, 1.0, 1.0)
     x, y, z = node.vec3()
+    if shape.tag == "box" and min(x, y, z) == 0 < max(x, y, z):
+        # As Gazebo's building editor writes the wall above a door that reaches the ceiling.
+        ctx.tell("warning", f"a box of {node.text} is made {_FLAT * 1e3:g} mm thick", node.origin)
+        x, y, z = (max(side, _FLAT) for side in (x, y, z))
     if min(x, y, z) <= 0:
         raise node.fail(f"every {tag} must be above 0, but they are {node.text}")
     return (x, y, z)
