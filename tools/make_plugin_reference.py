@@ -35,7 +35,7 @@ from cartwheel.description.model import (
 from cartwheel.errors import Origin
 from cartwheel.geometry import Pose
 from cartwheel.plugins.base import Plugin
-from cartwheel.plugins.registry import plugins, sensor_plugins
+from cartwheel.plugins.catalogue import all_plugins
 from cartwheel.session import Session
 
 TARGET = Path(__file__).resolve().parent.parent / "docs" / "plugins.md"
@@ -84,11 +84,7 @@ def main() -> int:
 def reference() -> str:
     """The whole page."""
     # Not those of packages that happen to be installed here.
-    ours = [
-        plugin
-        for plugin in dict.fromkeys([*plugins().values(), *sensor_plugins().values()])
-        if plugin.__module__.startswith("cartwheel.")
-    ]
+    ours = [plugin for plugin in all_plugins() if plugin.__module__.startswith("cartwheel.")]
     contents = "\n".join(f"- [`{_title(p)}`](#{_anchor(_title(p))})" for p in ours)
     return "\n".join([INTRODUCTION, contents, "", *(_section(plugin) for plugin in ours)])
 

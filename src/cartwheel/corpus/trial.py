@@ -16,10 +16,10 @@ from cartwheel.description.check.solids import bounds, solid_of
 from cartwheel.description.model import RobotDescription
 from cartwheel.errors import CartwheelError
 from cartwheel.geometry import Pose
+from cartwheel.plugins.catalogue import plugin_named, short_name
 from cartwheel.plugins.control.files import ControllerFiles
 from cartwheel.plugins.control.suggestion import files_for
 from cartwheel.plugins.gz_sensor import SYSTEMS
-from cartwheel.plugins.registry import plugins, short_name
 
 STANDING = 10.0
 """s that a robot is left alone."""
@@ -81,7 +81,7 @@ def _described(verdict: Verdict, robot: RobotDescription) -> Verdict:
         *(tag for link in robot.links for one in link.sensors for tag in one.plugins),
     ]
     names = list(dict.fromkeys(short_name(tag.filename) for tag in tags))
-    known = {name for name in names if name in plugins() or name in SYSTEMS}
+    known = {name for name in names if plugin_named(name) or name in SYSTEMS}
     return replace(
         verdict,
         name=robot.name,

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from cartwheel.errors import CartwheelError, Diagnostic, Severity
 from cartwheel.graph import Graph
+from cartwheel.plugins.catalogue import plugin_named, short_name
 from cartwheel.plugins.gz_sensor import SYSTEMS
-from cartwheel.plugins.registry import plugins, short_name
 from cartwheel.simulation import Part
 from cartwheel.simulation.resident import Behaviour
 
@@ -37,7 +37,7 @@ def attach_world(part: Part, graph: Graph) -> list[Behaviour]:
         name = short_name(tag.filename)
         if name in _BUILT_IN:
             continue
-        plugin = plugins().get(name)
+        plugin = plugin_named(tag.filename)
         severity: Severity = "warning"
         if plugin is None:
             message = (

@@ -190,16 +190,16 @@ def _finding(finding: Finding) -> dict[str, Any]:
 
 
 def _filenames() -> tuple[str, ...]:
-    from cartwheel.plugins.registry import plugins
+    from cartwheel.plugins.catalogue import all_plugins
 
-    return tuple(sorted({name for plugin in plugins().values() for name in plugin.filenames}))
+    return tuple(sorted({name for plugin in all_plugins() for name in plugin.filenames}))
 
 
 def _judge(tag: PluginTag, _sensor: Sensor | None) -> Iterable[Diagnostic] | None:
+    from cartwheel.plugins.catalogue import plugin_named
     from cartwheel.plugins.parameters import read
-    from cartwheel.plugins.registry import plugins, short_name
 
-    plugin = plugins().get(short_name(tag.filename))
+    plugin = plugin_named(tag.filename)
     if plugin is None:
         return None
     try:

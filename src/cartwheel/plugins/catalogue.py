@@ -1,0 +1,176 @@
+"""Which plugin answers to which file name, and which serves which sensor.
+
+A plugin's module is imported when a model names it: all of them take as long as the rest of
+a start.
+"""
+
+from __future__ import annotations
+
+import functools
+import importlib
+import importlib.metadata
+import re
+from collections.abc import Iterator
+
+from cartwheel.plugins.base import Plugin
+
+_FILES = {
+    "gazebo_ros_diff_drive": "diff_drive",
+    "gazebo_ros_skid_steer_drive": "skid_steer",
+    "diffdrive_plugin_multi_wheel": "multi_wheel",
+    "gazebo_ros_tricycle_drive": "tricycle",
+    "gazebo_ros_ackermann_drive": "ackermann",
+    "gazebo_ros_planar_move": "planar_move",
+    "ridgeback_ros_force_based_move": "force_based_move",
+    "gazebo_ros_force_based_move": "force_based_move",
+    "robotnik_force_based_move": "force_based_move",
+    "gazebo_ros_kobuki": "kobuki",
+    "gz-sim-diff-drive-system": "gz_diff_drive",
+    "gz-sim-ackermann-steering-system": "ackermann",
+    "gz-sim-mecanum-drive-system": "mecanum",
+    "gz-sim-velocity-control-system": "planar_move",
+    "gazebo_ros_camera": "camera",
+    "gazebo_ros_multicamera": "camera",
+    "gazebo_ros_depth_camera": "depth_camera",
+    "gazebo_ros_openni_kinect": "depth_camera",
+    "gazebo_ros_triggered_camera": "camera",
+    "gazebo_ros_triggered_multicamera": "camera",
+    "gazebo_ros_prosilica": "camera",
+    "realsense_gazebo_plugin": "realsense",
+    "gazebo_ros_laser": "laser",
+    "gazebo_ros_gpu_laser": "laser",
+    "gazebo_ros_ray_sensor": "ray_sensor",
+    "gazebo_ros_block_laser": "block_laser",
+    "gazebo_ros_velodyne_laser": "velodyne_laser",
+    "gazebo_ros_velodyne_gpu_laser": "velodyne_laser",
+    "gazebo_ros_range": "range",
+    "hector_gazebo_ros_sonar": "range",
+    "gazebo_ros_p3d": "p3d",
+    "gazebo_world_odometry": "p3d",
+    "gz-sim-odometry-publisher-system": "p3d",
+    "gz-sim-pose-publisher-system": "pose_publisher",
+    "gz-sim-linearbatteryplugin-system": "battery",
+    "gz-sim-linear-battery-plugin-system": "battery",
+    "gazebo_ros_joint_state_publisher": "joint_state_publisher",
+    "gz-sim-joint-state-publisher-system": "joint_state_publisher",
+    "gz-sim-joint-position-controller-system": "gz_joint_controller",
+    "gz-sim-joint-controller-system": "gz_joint_controller",
+    "gz-sim-apply-joint-force-system": "gz_joint_controller",
+    "gz-sim-joint-trajectory-controller-system": "gz_joint_trajectory",
+    "gazebo_ros_joint_pose_trajectory": "joint_pose_trajectory",
+    "gazebo_ros_joint_trajectory": "joint_pose_trajectory",
+    "roboticsgroup_upatras_gazebo_mimic_joint_plugin": "mimic_joint",
+    "roboticsgroup_gazebo_mimic_joint_plugin": "mimic_joint",
+    "gazebo_mimic_joint_plugin": "mimic_joint",
+    "leo_gazebo_differential_plugin": "mimic_joint",
+    "gazebo_ros_ft_sensor": "ft_sensor",
+    "gazebo_ros_f3d": "f3d",
+    "gazebo_ros_force": "force",
+    "gazebo_ros_hand_of_god": "hand_of_god",
+    "gazebo_ros_wheel_slip": "wheel_slip",
+    "gz-sim-wheel-slip-system": "wheel_slip",
+    "WheelSlipPlugin": "wheel_slip",
+    "gazebo_ros_imu": "imu",
+    "gazebo_ros_imu_sensor": "imu",
+    "hector_gazebo_ros_imu": "hector_imu",
+    "gazebo_ros_gps_sensor": "gps",
+    "hector_gazebo_ros_gps": "gps",
+    "hector_gazebo_ros_magnetic": "magnetic",
+    "hector_gazebo_ros_baro": "hector_baro",
+    "gazebo_ros_bumper": "contact",
+    "unitreeFootContactPlugin": "foot_contact",
+    "gazebo_ros_elevator": "elevator",
+    "ElevatorPlugin": "elevator",
+    "gazebo_grasp_fix": "grasp_fix",
+    "gazebo_ros_vacuum_gripper": "vacuum_gripper",
+    "gazebo_ros_link_attacher": "link_attacher",
+    "gazebo_link_attacher": "link_attacher",
+    "gz-sim-detachable-joint-system": "detachable_joint",
+    "gazebo_ros_control": "control.ros_control",
+    "gazebo_ros2_control": "control.ros2_control",
+    "gz_ros2_control-system": "control.ros2_control",
+    "ign_ros2_control-system": "control.ros2_control",
+}
+"""Where in this package the plugin of a file name is, by its short name."""
+_SENSORS = {
+    "gpu_lidar": "gz_lidar",
+    "lidar": "gz_lidar",
+    "gpu_ray": "gz_lidar",
+    "ray": "gz_lidar",
+    "camera": "gz_camera",
+    "rgbd_camera": "gz_camera",
+    "depth_camera": "gz_camera",
+    "depth": "gz_camera",
+    "imu": "imu",
+    "navsat": "gps",
+    "gps": "gps",
+    "magnetometer": "magnetic",
+    "air_pressure": "air_pressure",
+    "contact": "gz_contact",
+    "force_torque": "ft_sensor",
+}
+"""Where the plugin is that serves sensors of a type without a ``<plugin>``."""
+
+
+def short_name(filename: str) -> str:
+    """A plugin's name without path, ``lib``, ``.so`` and the vendor's older spelling."""
+    stem = filename.rsplit("/", 1)[-1]
+    stem = re.sub(r"\.(so|dylib|dll)$", "", stem)
+    stem = stem.removeprefix("lib")
+    return stem.replace("ignition-gazebo-", "gz-sim-")
+
+
+def plugin_named(filename: str) -> type[Plugin[object]] | None:
+    """The plugin of a file name: of an installed package, else ours; None where there is none."""
+    name = short_name(filename)
+    for plugin in _third():
+        if name in _names(plugin):
+            return plugin
+    ours = _within(_FILES[name]) if name in _FILES else ()
+    return next((plugin for plugin in ours if name in _names(plugin)), None)
+
+
+def plugin_serving(kind: str) -> type[Plugin[object]] | None:
+    """The plugin of sensors of a type that have no ``<plugin>``, if there is one."""
+    for plugin in _third():
+        if kind in plugin.serves:
+            return plugin
+    ours = _within(_SENSORS[kind]) if kind in _SENSORS else ()
+    return next((plugin for plugin in ours if kind in plugin.serves), None)
+
+
+def plugin_names() -> list[str]:
+    """Short names of all plugins."""
+    return [*_FILES, *(name for plugin in _third() for name in _names(plugin))]
+
+
+def all_plugins() -> list[type[Plugin[object]]]:
+    """All plugins: those that have a file name, then those that serve sensors without one."""
+    found = [plugin_named(name) for name in plugin_names()]
+    found += [plugin_serving(kind) for kind in _SENSORS]
+    return list(dict.fromkeys(plugin for plugin in found if plugin is not None))
+
+
+@functools.cache
+def _third() -> tuple[type[Plugin[object]], ...]:
+    """Those of installed packages; of two with one name the later installed counts."""
+    entries = importlib.metadata.entry_points(group="cartwheel.plugins")
+    return tuple(reversed([entry.load() for entry in entries]))
+
+
+def _names(plugin: type[Plugin[object]]) -> Iterator[str]:
+    return map(short_name, plugin.filenames)
+
+
+@functools.cache
+def _within(module: str) -> tuple[type[Plugin[object]], ...]:
+    """The plugins that a module of this package makes."""
+    made = importlib.import_module(f"cartwheel.plugins.{module}")
+    return tuple(
+        each
+        for each in vars(made).values()
+        if isinstance(each, type)
+        and issubclass(each, Plugin)
+        and each.__module__ == made.__name__
+        and hasattr(each, "filenames")
+    )

@@ -1,0 +1,66 @@
+"""The catalogue knows every plugin by what the plugin itself answers to, and imports no more."""
+
+import importlib
+import pkgutil
+import subprocess
+import sys
+
+import cartwheel.plugins
+from cartwheel.plugins.base import Plugin
+from cartwheel.plugins.catalogue import (
+    all_plugins,
+    plugin_named,
+    plugin_names,
+    plugin_serving,
+    short_name,
+)
+
+
+def written():
+    """Every class in the package that answers to something."""
+    package = cartwheel.plugins
+    for module in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
+        for each in vars(importlib.import_module(module.name)).values():
+            if not (isinstance(each, type) and issubclass(each, Plugin)):
+                continue
+            if each.__module__ == module.name and hasattr(each, "filenames"):
+                yield each
+
+
+def test_every_plugin_is_found_by_each_of_its_names():
+    classes = list(written())
+    assert len(classes) > 40
+    for plugin in classes:
+        for filename in plugin.filenames:
+            assert plugin_named(filename) is plugin, filename
+        for kind in plugin.serves:
+            assert plugin_serving(kind) is plugin, kind
+    assert set(all_plugins()) == {each for each in classes if each.filenames or each.serves}
+
+
+def test_every_name_leads_to_a_plugin():
+    for name in plugin_names():
+        plugin = plugin_named(name)
+        assert plugin is not None, name
+        assert name in {short_name(filename) for filename in plugin.filenames}
+
+
+def test_a_name_of_none_is_none():
+    assert plugin_named("libmarvellous.so") is None
+    assert plugin_serving("nose") is None
+
+
+def test_only_what_is_named_is_imported():
+    done = subprocess.run(
+        [
+            sys.executable,
+            "-c",
+            "import sys; from cartwheel.plugins.catalogue import plugin_named;"
+            "assert plugin_named('libgazebo_ros_imu.so');"
+            "print('cartwheel.plugins.imu' in sys.modules, 'cartwheel.plugins.gps' in sys.modules)",
+        ],
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert done.stdout.split() == ["True", "False"]
