@@ -18,6 +18,7 @@ from cartwheel.messages import (
 )
 from cartwheel.messages.ros1 import decode_ros1
 from cartwheel.messages.ros2 import ros2_definition
+from cartwheel.messages.ros2_types import ros2_name
 
 ENCODINGS = ["cdr", "ros1", "json"]
 """Of messages that clients may send."""
@@ -106,7 +107,8 @@ def offered(graph: Graph, service: Service) -> Any:
         kind = made.__msgtype__
         text = ros2_definition(kind).encode()
         return foxglove.MessageSchema(
-            encoding="cdr", schema=foxglove.Schema(name=kind, encoding="ros2msg", data=text)
+            encoding="cdr",
+            schema=foxglove.Schema(name=ros2_name(kind), encoding="ros2msg", data=text),
         )
 
     def handle(request: Any) -> bytes:
@@ -125,7 +127,7 @@ def offered(graph: Graph, service: Service) -> Any:
     return foxglove.Service(
         service.name,
         schema=foxglove.ServiceSchema(
-            service.type, request=schema(request_class), response=schema(response_class)
+            ros2_name(service.type), request=schema(request_class), response=schema(response_class)
         ),
         handler=handle,
     )
