@@ -52,7 +52,7 @@ def spawn_arm(folder: Path) -> Any:
         )
     )
     body = beam("a", "world") + beam("b", "world", origin="0 1 1", limit=SLOW)
-    body += beam("c", "world", origin="0 2 1")
+    body += beam("c", "world", origin="0 2 1", limit=SLOW)
     body += system(*(ros2_joint(name) for name in (*JOINTS, "c_joint")))
 
     def spawn(session: Session) -> None:

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 from tests.bridges.ros2_peers import DOMAIN, Ros2Bridged
+from tests.bridges.test_ros2_actions import spawn_arm
 from tests.bridges.test_ros2_services import prepared
 
 SOURCE = Path(__file__).with_name("ros2_client_peer")
@@ -76,3 +77,30 @@ def test_it_reads_drives_spawns_and_resets(
     assert said["reset"] == ["true"]
     pose = bridged.simulation.call(lambda: bridged.simulation.pose("rosbots")).result()
     assert abs(pose.position[0]) < 0.2
+
+
+@pytest.mark.parametrize("mapping", ["cyclone", "enhanced"])
+def test_it_sends_goals_and_cancels_one(
+    program: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, mapping: str
+) -> None:
+    monkeypatch.setenv("ROS_DOMAIN_ID", str(DOMAIN + 6))
+    bridged = Ros2Bridged(robot=False, prepare=spawn_arm(tmp_path))
+    try:
+        done = subprocess.run(
+            [program.with_name("grip"), str(DOMAIN + 6), mapping],
+            capture_output=True,
+            text=True,
+            timeout=160,
+            check=True,
+        )
+    finally:
+        bridged.close()
+    said = {line.split()[0]: line.split()[1:] for line in done.stdout.splitlines()}
+    assert said["goal"] == ["true"], done.stdout
+    status, position, reached = said["result"]
+    assert (status, reached) == ("Succeeded", "true")
+    assert float(position) == pytest.approx(0.3, abs=0.011)
+    # A second and a half at 20 Hz; a busy computer gets fewer.
+    assert int(said["feedback"][0]) > 5
+    assert said["cancel"] == ["true"]
+    assert said["second"] == ["Canceled"]
