@@ -228,7 +228,7 @@ class World:
             encoding=encoding,
             overwrite=overwrite,
             notes=self.session.notes,
-            report=lambda found: simulation.post(lambda: simulation.engine.report(found)),
+            report=simulation.report,
         )
         robots = RobotDescriptions(simulation, self.graph)
         try:

@@ -86,7 +86,7 @@ def test_what_is_played_is_what_was_recorded(name: str, drives: Callable[[str], 
 
     for topic in session.graph.topics():
         session.graph.subscribe(topic.name, keep(topic.name))
-    player._drain()
+    player.drain()
     latched = {t.name for t in session.graph.topics() if t.qos == "latched"}
     player.reset()
     player.set_speed(None)

@@ -14,6 +14,8 @@ from collections.abc import Callable
 from concurrent.futures import Future
 from typing import TypeVar
 
+from cartwheel.calls import answered
+
 READ, WRITE = selectors.EVENT_READ, selectors.EVENT_WRITE
 
 T = TypeVar("T")
@@ -69,16 +71,7 @@ class Loop:
 
     def call(self, function: Callable[[], T]) -> Future[T]:
         """Like `post`, with the result or the error."""
-        future: Future[T] = Future()
-
-        def run() -> None:
-            try:
-                future.set_result(function())
-            except Exception as error:  # noqa: BLE001 - it is the caller's to handle
-                future.set_exception(error)
-
-        self.post(run)
-        return future
+        return answered(self.post, function)
 
     # -- on the loop's thread
 

@@ -207,7 +207,7 @@ class Ros2Api:
         elif text not in self._told and len(self._told) < _REMEMBERED:
             self._told.add(text)
             found = Diagnostic(severity="warning", message=f"{name}: {text}")
-            self._simulation.post(lambda: self._simulation.engine.report(found))
+            self._simulation.report(found)
 
 
 def explained(error: Exception) -> str:

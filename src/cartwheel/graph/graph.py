@@ -12,6 +12,7 @@ from concurrent.futures import Future
 from dataclasses import dataclass
 from typing import Any, Literal
 
+from cartwheel.calls import Post, answered
 from cartwheel.errors import GraphError, UnknownNameError
 from cartwheel.graph.action import Action
 from cartwheel.graph.mailbox import Mailbox
@@ -151,8 +152,8 @@ class Graph:
             Without one, functions run at once, for use on a single thread.
     """
 
-    def __init__(self, post: Callable[[Callable[[], None]], None] | None = None) -> None:
-        self.post: Callable[[Callable[[], None]], None] = post or (lambda function: function())
+    def __init__(self, post: Post | None = None) -> None:
+        self.post: Post = post or _at_once
         self._lock = threading.RLock()
         self._topics: dict[str, Topic] = {}
         self._services: dict[str, Service] = {}
@@ -317,24 +318,14 @@ class Graph:
             UnknownNameError: There is no such service.
         """
         service = self.service(name)
-        future: Future[Any] = Future()
 
-        def run() -> None:
-            if not future.set_running_or_notify_cancel():
-                return
-            try:
-                response = service.handler(request)
-                if response is None:
-                    raise GraphError(f'service "{service.name}" gave no answer')
-                future.set_result(response)
-            except Exception as error:  # noqa: BLE001 - it is the caller's to handle
-                future.set_exception(error)
+        def run() -> Any:
+            response = service.handler(request)
+            if response is None:
+                raise GraphError(f'service "{service.name}" gave no answer')
+            return response
 
-        if service.threaded:
-            run()
-        else:
-            self.post(run)
-        return future
+        return answered(_at_once if service.threaded else self.post, run)
 
     def publishers(self) -> list[Publisher]:
         """All publishers, by topic."""
@@ -414,3 +405,7 @@ class Graph:
         for publisher in topic.publishers:
             publisher.wanted = bool(topic.subscriptions) or publisher.qos == "latched"
         self._tell_change()
+
+
+def _at_once(function: Callable[[], None]) -> None:
+    function()

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import queue
-import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import Future
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 from cartwheel.bridges.recording.decoding import Decode, decoder
 from cartwheel.bridges.recording.reading import Recorded, RecordedTopic, Recording, span_of
@@ -17,9 +14,9 @@ from cartwheel.errors import CartwheelError, Diagnostic, RecordingError
 from cartwheel.geometry import Pose, Vec3
 from cartwheel.graph import Graph, Publisher
 from cartwheel.playback.scene import STATE, STRING, PlayedScene
+from cartwheel.simulation.running import Run
 from cartwheel.simulation.snapshot import RunState, Scene, Snapshot
 
-T = TypeVar("T")
 _LOOK_BACK_NS = 2_000_000_000
 """Before the place of a jump: what was said last is said again."""
 _STEP_NS = 33_333_333
@@ -27,7 +24,7 @@ _LONGEST = 0.02
 """s of wall time of one turn."""
 
 
-class Player:
+class Player(Run):
     """Publishes a recording's messages; to clients it is what a `Simulation` is.
 
     One thread, that which calls `run`, owns it. A message is decoded only where somebody
@@ -55,20 +52,14 @@ class Player:
         loop: bool = False,
         hold: bool = True,
     ) -> None:
+        super().__init__()
         span = span_of(recording)
         if span is None:
             raise RecordingError("the recording holds no messages")
         self.start_ns, self.end_ns = span
         self.time_ns = self.start_ns
-        self.run_state = RunState.RUNNING
-        self.speed: float | None = 1.0
-        self.real_time_factor = 0.0
-        self.steps_allowed: int | None = None
         self.step_ns = _STEP_NS
         self.world = world
-        self.commands: queue.SimpleQueue[Callable[[], None]] = queue.SimpleQueue()
-        self.on_reset: list[Callable[[], None]] = []
-        self.owner: int | None = None
         self._recording = recording
         self._graph = graph
         self._loop = loop
@@ -107,30 +98,16 @@ class Player:
         """From where a model is seen: from everywhere, as far as a recording knows."""
         return [True] * len(eyes)
 
-    def pause(self) -> None:
-        """Holds time."""
-        if self.run_state is RunState.RUNNING:
-            self.run_state = RunState.PAUSED
-
     def resume(self) -> None:
         """Lets time go on; from the start where it had come to the end."""
-        if self.run_state is RunState.PAUSED:
-            if self._next is None:
-                self.seek(self.start_ns)
-            self.run_state = RunState.RUNNING
+        if self.run_state is RunState.PAUSED and self._next is None:
+            self.seek(self.start_ns)
+        super().resume()
 
     def step(self, count: int = 1) -> None:
         """Goes on by thirtieths of a second, and holds time."""
         self.pause()
         self._play_until(min(self.time_ns + count * _STEP_NS, self.end_ns))
-
-    def stop(self) -> None:
-        """Ends the run."""
-        self.run_state = RunState.STOPPED
-
-    def set_speed(self, speed: float | None) -> None:
-        """Recorded time in wall time; None is as fast as it can."""
-        self.speed = speed
 
     def reset(self) -> None:
         """Back to the start."""
@@ -145,25 +122,6 @@ class Player:
             RecordingError: Always.
         """
         raise RecordingError(f'"{name}" was recorded: it cannot be deleted')
-
-    def post(self, function: Callable[[], None]) -> None:
-        """Runs a function on the owner's thread, soon; from any thread."""
-        self.commands.put(function)
-
-    def call(self, function: Callable[[], T]) -> Future[T]:
-        """Like `post`, with the result or the error."""
-        future: Future[T] = Future()
-
-        def run() -> None:
-            if not future.set_running_or_notify_cancel():
-                return
-            try:
-                future.set_result(function())
-            except Exception as error:  # noqa: BLE001 - it is the caller's to handle
-                future.set_exception(error)
-
-        self.post(run)
-        return future
 
     def snapshot(self) -> Snapshot:
         """What is shown now."""
@@ -184,10 +142,10 @@ class Player:
         if time_ns < self.time_ns:
             self._played.forget()
         self.time_ns = time_ns
-        for number, messages in self._latched.items():
+        for messages in self._latched.values():
             held = [message for message in messages if message.time_ns <= time_ns] or messages[:1]
             for message in held:
-                self._publish(message, always=number)
+                self._publish(message, always=True)
         last: dict[int, Recorded] = {}
         for message in self._recording.messages(start_ns=time_ns - _LOOK_BACK_NS):
             if message.time_ns > time_ns:
@@ -205,10 +163,9 @@ class Player:
 
     def run(self) -> None:
         """Plays until it is stopped, or the end."""
-        self.owner = threading.get_ident()
         last = time.perf_counter()
         while True:
-            self._drain()
+            self.drain()
             now = time.perf_counter()
             passed, last = now - last, now
             if self.run_state is RunState.STOPPED:
@@ -222,7 +179,7 @@ class Player:
             else:
                 self.real_time_factor = 0.0
             self._show(time.perf_counter())
-            self._wait()
+            self.wait(self._time_left())
 
     def _go_on(self, passed: float) -> None:
         if self.speed is None:
@@ -255,22 +212,16 @@ class Player:
         self.run_state = RunState.STOPPED
         return False
 
-    def _drain(self) -> None:
-        while not self.commands.empty():
-            self.commands.get()()
-
-    def _wait(self) -> None:
-        if self.speed is None and self.run_state is RunState.RUNNING:
-            return
-        wait = _LONGEST
-        if self.run_state is RunState.RUNNING and self._next is not None:
-            ahead = (self._next.time_ns - self.time_ns) / 1e9 / (self.speed or 1.0)
-            wait = min(wait, max(ahead, 0.0005))
-        try:
-            command = self.commands.get(timeout=wait)
-        except queue.Empty:
-            return
-        command()
+    def _time_left(self) -> float:
+        """s of wall time until there is something to do."""
+        if self.run_state is not RunState.RUNNING:
+            return _LONGEST
+        if self.speed is None:
+            return 0.0
+        if self._next is None:
+            return _LONGEST
+        ahead = (self._next.time_ns - self.time_ns) / 1e9 / self.speed
+        return min(_LONGEST, max(ahead, 0.0005))
 
     def _show(self, now: float) -> None:
         snapshot = None
@@ -321,14 +272,14 @@ class Player:
             if made is not None:
                 self._played.describe(topic.name, made.data)
 
-    def _publish(self, message: Recorded, *, always: int | None = None) -> None:
+    def _publish(self, message: Recorded, *, always: bool = False) -> None:
         number = message.number
         publisher = self._publishers.get(number)
         if publisher is None:
             return
         topic = self._recording.topics[number]
         moves = topic.type in STATE
-        if not (publisher.wanted or moves or number == always):
+        if not (publisher.wanted or moves or always):
             return
         made = self._decoded(number, message)
         if made is None:

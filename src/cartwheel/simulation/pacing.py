@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import queue
 import time
 from collections import deque
 from collections.abc import Callable
@@ -114,7 +113,7 @@ class Pacer:
         anchor = self._anchor
         if anchor is not None:
             next_step = anchor.wall_at(simulation.time_ns + simulation.step_ns)
-            self._wait(min(next_step, self._next_frame(now + 0.1)) - now)
+            simulation.wait(min(next_step, self._next_frame(now + 0.1)) - now)
 
     def _hold(self) -> None:
         """One turn of a paused simulation: single steps that were asked for, listeners, sleep."""
@@ -125,7 +124,7 @@ class Pacer:
         simulation.real_time_factor = 0.0
         now = time.perf_counter()
         self._show(now)
-        self._wait(self._next_frame(now + 0.1) - time.perf_counter())
+        simulation.wait(self._next_frame(now + 0.1) - time.perf_counter())
 
     def _anchored(self, now: float) -> _Anchor | None:
         """What to keep to: counted anew after a change of speed or a lag; None without a speed."""
@@ -167,13 +166,3 @@ class Pacer:
                 frames.due = max(frames.due + frames.period, now)
                 snapshot = snapshot or self._simulation.snapshot()
                 frames.listener(snapshot)
-
-    def _wait(self, seconds: float) -> None:
-        """Sleeps, unless a command comes."""
-        if seconds <= 0:
-            return
-        try:
-            command = self._simulation.commands.get(timeout=seconds)
-        except queue.Empty:
-            return
-        command()

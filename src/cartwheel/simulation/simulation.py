@@ -4,11 +4,8 @@ from __future__ import annotations
 
 import itertools
 import math
-import queue
-import threading
 from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import Future
-from typing import Any, TypeVar
+from typing import Any
 
 from cartwheel.description.model import RobotDescription, WorldDescription
 from cartwheel.errors import Diagnostic, UnknownNameError, WorldError
@@ -22,6 +19,7 @@ from cartwheel.simulation.observing import Observer
 from cartwheel.simulation.part import Part
 from cartwheel.simulation.placing import place_model, with_mimics
 from cartwheel.simulation.resident import Attach, Resident, world_resident
+from cartwheel.simulation.running import Run
 from cartwheel.simulation.separation import Separation
 from cartwheel.simulation.sight import in_sight
 from cartwheel.simulation.snapshot import RunState, Scene, Snapshot
@@ -29,12 +27,11 @@ from cartwheel.world import build, unused
 from cartwheel.world.build import step_of
 from cartwheel.world.entry import ModelEntry
 
-T = TypeVar("T")
 _GUARD_INTERVAL_NS = 50_000_000
 _STILL: Vec3 = (0.0, 0.0, 0.0)
 
 
-class Simulation:
+class Simulation(Run):
     """Models in a world, stepped.
 
     One thread, that which calls `advance` or a `Pacer`, owns a simulation; it alone calls
@@ -55,17 +52,8 @@ class Simulation:
         attach_world: Attach = lambda _: [],
         seed: int = 0,
     ) -> None:
+        super().__init__()
         self.engine = Engine(world, seed)
-        self.run_state = RunState.RUNNING
-        self.speed: float | None = 1.0
-        self.real_time_factor = 0.0
-        self.steps_allowed: int | None = None
-        """Steps until a paused simulation pauses again; None while it is not stepping singly."""
-        self.commands: queue.SimpleQueue[Callable[[], None]] = queue.SimpleQueue()
-        self.owner: int | None = None
-        """The thread that ran it last; None while none has."""
-        self.on_reset: list[Callable[[], None]] = []
-        """Called after time went back to zero."""
         self.forces = Forces(self.engine)
         self._attach = attach
         self._house = world_resident(self.engine)
@@ -163,12 +151,6 @@ class Simulation:
             if engine.step >= self._guard_due:
                 self._watch()
 
-    def drain(self) -> None:
-        """Runs the commands that other threads posted."""
-        self.owner = threading.get_ident()
-        while not self.commands.empty():
-            self.commands.get()()
-
     def _serve(self) -> tuple[int, bool]:
         """Does what is due now.
 
@@ -201,30 +183,10 @@ class Simulation:
         """Makes poses and contacts those of the present state, for reading between steps."""
         self.engine.forward()
 
-    def pause(self) -> None:
-        """Holds time."""
-        if self.run_state is RunState.RUNNING:
-            self.run_state = RunState.PAUSED
-            self.steps_allowed = None
-
-    def resume(self) -> None:
-        """Lets time go on."""
-        if self.run_state is RunState.PAUSED:
-            self.run_state = RunState.RUNNING
-            self.steps_allowed = None
-
     def step(self, count: int = 1) -> None:
         """Lets a paused simulation make `count` steps more."""
         self.pause()
         self.steps_allowed = (self.steps_allowed or 0) + count
-
-    def stop(self) -> None:
-        """Ends the run."""
-        self.run_state = RunState.STOPPED
-
-    def set_speed(self, speed: float | None) -> None:
-        """Sets the wanted real-time factor; None is as fast as it can."""
-        self.speed = speed
 
     def reset(self, *, keep_time: bool = False) -> None:
         """Takes every model to where it was spawned, and time back to zero.
@@ -255,27 +217,9 @@ class Simulation:
         for callback in self.on_reset:
             callback()
 
-    # -- other threads
-
-    def post(self, function: Callable[[], None]) -> None:
-        """Runs a function on the owner's thread, before the next step; from any thread."""
-        self.commands.put(function)
-
-    def call(self, function: Callable[[], T]) -> Future[T]:
-        """Like `post`, with the result or the error; from any thread."""
-        future: Future[T] = Future()
-
-        def run() -> None:
-            # A caller that lost patience has cancelled it.
-            if not future.set_running_or_notify_cancel():
-                return
-            try:
-                future.set_result(function())
-            except Exception as error:  # noqa: BLE001 - it is the caller's to handle
-                future.set_exception(error)
-
-        self.post(run)
-        return future
+    def report(self, diagnostic: Diagnostic) -> None:
+        """Tells the user something, on the owner's thread; from any thread."""
+        self.post(lambda: self.engine.report(diagnostic))
 
     # -- models
 

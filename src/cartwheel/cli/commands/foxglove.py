@@ -49,7 +49,7 @@ def shown_by_foxglove(
         controls=SimulationControls(simulation),
         assets=Assets(session, options.package_path),
         time_range=None if end_ns is None else (0, end_ns),
-        report=lambda found: simulation.post(lambda: simulation.engine.report(found)),
+        report=simulation.report,
     )
     with interrupts.finally_do(bridge.close):
         bridge.start()

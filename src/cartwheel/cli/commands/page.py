@@ -57,12 +57,11 @@ class Page:
             raise self._failure
 
     def _announce(self) -> None:
-        simulation = self._session.simulation
         try:
             url = self._viewer.url
         except CartwheelError as error:
             self._failure = error
-            simulation.post(simulation.stop)
+            self._session.simulation.stop()
             return
         self._server.announce(url=url, port=int(url.rsplit(":", 1)[1]))
         self._report.address(url)

@@ -77,12 +77,7 @@ def play(options: Options) -> None:
     # To clients a recording is what a simulation is: time, topics and models.
     session = cast("Session", played)
     report = Report(verbose=False)
-
-    def stop() -> None:
-        player.stop()
-        player.post(lambda: None)
-
-    with interrupts.handled_by(stop, status=0):
+    with interrupts.handled_by(player.stop, status=0):
         server = ControlServer(session, title=f"{options.file.name}, played", load=_refuse)
         with interrupts.finally_do(server.close):
             length = (player.end_ns - player.start_ns) / 1e9

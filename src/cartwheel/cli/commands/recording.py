@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from cartwheel.cli import interrupts
@@ -31,16 +31,13 @@ def check_recording(options: Options) -> None:
 
 
 @contextlib.contextmanager
-def recorded(
-    session: Session, options: Options, report: Report, end: Callable[[], None]
-) -> Iterator[None]:
-    """Records the enclosed run, if that was asked for.
+def recorded(session: Session, options: Options, report: Report) -> Iterator[None]:
+    """Records the enclosed run, if that was asked for; a recording that breaks off ends it.
 
     Args:
         session: To record.
         options: Of the run.
         report: Tells the user.
-        end: Ends the run, which is what a recording that breaks off does.
 
     Raises:
         RecordingError: It cannot be written, or broke off.
@@ -59,8 +56,8 @@ def recorded(
         encoding=_encoding(options),
         overwrite=options.overwrite,
         notes=session.notes,
-        report=lambda found: simulation.post(lambda: simulation.engine.report(found)),
-        on_failure=lambda _: end(),
+        report=simulation.report,
+        on_failure=lambda _: simulation.stop(),
     )
     ending = _Ending(recorder)
     # Stays among the last rites until it is done: a second of messages takes longer to write

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 from cartwheel.bridges.ros1 import Ros1Bridge
@@ -22,7 +22,6 @@ class Ros1:
         arguments: ``name:=value`` of ROS.
         package_path: Where models that are spawned look for packages first.
         report: Tells the user.
-        end: Ends the run.
 
     Raises:
         CartwheelError: A name or address is none.
@@ -36,18 +35,16 @@ class Ros1:
         arguments: Sequence[str],
         package_path: Sequence[Path],
         report: Report,
-        end: Callable[[], None],
     ) -> None:
         self._session = session
         self._report = report
-        self._end = end
         self._api = GazeboApi(session, package_path=package_path)
         simulation = session.simulation
         self._bridge = Ros1Bridge(
             session.graph,
             node=node,
             arguments=arguments,
-            report=lambda found: simulation.post(lambda: simulation.engine.report(found)),
+            report=simulation.report,
             time_ns=lambda: simulation.time_ns,
             on_end=self._ended,
         )
@@ -87,4 +84,4 @@ class Ros1:
     def _ended(self, reason: str) -> None:
         print_warning(reason)
         self._bridge.log(Diagnostic(severity="warning", message=reason))
-        self._end()
+        self._session.simulation.stop()

@@ -52,7 +52,7 @@ class Ros2:
             node=node,
             rmw=rmw,
             parameters=node_parameters(session),
-            report=lambda found: simulation.post(lambda: simulation.engine.report(found)),
+            report=simulation.report,
             time_ns=lambda: simulation.time_ns,
         )
 

@@ -113,7 +113,7 @@ def simulate(options: Options) -> None:
     # last a certain time has failed when it is ended before.
     endless = options.seconds is None and options.steps is None
     # From the moment on at which others can see that it runs.
-    with interrupts.handled_by(lambda: _stop(session), status=0 if endless else None):
+    with interrupts.handled_by(session.simulation.stop, status=0 if endless else None):
         server = ControlServer(session, title=title, load=_load_robot)
         with interrupts.finally_do(server.close):
             if others:
@@ -124,7 +124,7 @@ def simulate(options: Options) -> None:
                 _described(session, options) as descriptions,
                 _joined_to_ros2(session, options, descriptions, report),
                 _shown_by_foxglove(session, options, report),
-                recorded(session, options, report, lambda: _stop(session)),
+                recorded(session, options, report),
             ):
                 _run(session, server, options, report)
 
@@ -148,7 +148,6 @@ def _joined_to_ros1(
         arguments=(*options.ros1_arguments, *remappings),
         package_path=options.package_path,
         report=report,
-        end=lambda: _stop(session),
     )
     with interrupts.finally_do(ros1.close):
         ros1.start()
@@ -198,13 +197,6 @@ def _described(session: Session, options: Options) -> Iterator[RobotDescriptions
     from cartwheel.plugins.robot_descriptions import RobotDescriptions
 
     yield RobotDescriptions(session.simulation, session.graph)
-
-
-def _stop(session: Session) -> None:
-    """Ends the run; from any thread."""
-    session.simulation.stop()
-    # Wakes it where it sleeps until the next step.
-    session.simulation.post(lambda: None)
 
 
 def _read(

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from concurrent.futures import Future
 from concurrent.futures import TimeoutError as NotYet
 from typing import Any, TypeVar
 
+from cartwheel.calls import answered
 from cartwheel.errors import CartwheelError, GraphError
 from cartwheel.graph import resolve_name
 from cartwheel.messages import message_class
@@ -131,17 +131,7 @@ class ManagerServices:
             return False
 
     def _on_owner(self, function: Callable[[], T]) -> T:
-        future: Future[T] = Future()
-
-        def run() -> None:
-            if not future.set_running_or_notify_cancel():
-                return
-            try:
-                future.set_result(function())
-            except Exception as error:  # noqa: BLE001 - it is the caller's to handle
-                future.set_exception(error)
-
-        self._plugin.graph.post(run)
+        future = answered(self._plugin.graph.post, function)
         try:
             return future.result(timeout=_PATIENCE)
         except NotYet:

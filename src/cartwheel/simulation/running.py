@@ -1,0 +1,80 @@
+"""Whether time goes on and how fast, and what other threads ask of the one that owns it."""
+
+from __future__ import annotations
+
+import queue
+import threading
+from collections.abc import Callable
+from concurrent.futures import Future
+from typing import TypeVar
+
+from cartwheel.calls import answered
+from cartwheel.simulation.snapshot import RunState
+
+T = TypeVar("T")
+
+
+class Run:
+    """Something that goes on in time, owned by one thread.
+
+    The owner alone calls its methods; others use `post` and `call`.
+    """
+
+    def __init__(self) -> None:
+        self.run_state = RunState.RUNNING
+        self.speed: float | None = 1.0
+        """The wanted real-time factor; None is as fast as it can."""
+        self.real_time_factor = 0.0
+        """Measured; 0 while paused."""
+        self.steps_allowed: int | None = None
+        """Steps until a paused run pauses again; None while it is not stepping singly."""
+        self.on_reset: list[Callable[[], None]] = []
+        """Called after time went back to the start."""
+        self.owner: int | None = None
+        """The thread that ran it last; None while none has."""
+        self.commands: queue.SimpleQueue[Callable[[], None]] = queue.SimpleQueue()
+
+    def pause(self) -> None:
+        """Holds time."""
+        if self.run_state is RunState.RUNNING:
+            self.run_state = RunState.PAUSED
+            self.steps_allowed = None
+
+    def resume(self) -> None:
+        """Lets time go on."""
+        if self.run_state is RunState.PAUSED:
+            self.run_state = RunState.RUNNING
+            self.steps_allowed = None
+
+    def stop(self) -> None:
+        """Ends the run, also where it sleeps; from any thread."""
+        self.run_state = RunState.STOPPED
+        self.post(lambda: None)
+
+    def set_speed(self, speed: float | None) -> None:
+        """Sets the wanted real-time factor; None is as fast as it can."""
+        self.speed = speed
+
+    def post(self, function: Callable[[], None]) -> None:
+        """Runs a function on the owner's thread, before the next step; from any thread."""
+        self.commands.put(function)
+
+    def call(self, function: Callable[[], T]) -> Future[T]:
+        """Like `post`, with the result or the error; from any thread."""
+        return answered(self.post, function)
+
+    def drain(self) -> None:
+        """Runs what other threads posted."""
+        self.owner = threading.get_ident()
+        while not self.commands.empty():
+            self.commands.get()()
+
+    def wait(self, seconds: float) -> None:
+        """Sleeps, unless something is posted, which is run."""
+        if seconds <= 0:
+            return
+        try:
+            command = self.commands.get(timeout=seconds)
+        except queue.Empty:
+            return
+        command()
