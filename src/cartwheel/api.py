@@ -10,11 +10,10 @@ from typing import TYPE_CHECKING, Any
 
 from cartwheel import description as descriptions
 from cartwheel.description.model import RobotDescription, WorldDescription
-from cartwheel.errors import Diagnostic, GraphError, suggestion
+from cartwheel.errors import Diagnostic
 from cartwheel.geometry import Pose
 from cartwheel.graph import Graph, Mailbox
-from cartwheel.messages import from_dict, type_name
-from cartwheel.messages.fields import fields as fields_of
+from cartwheel.messages import from_dict, from_flat, type_name
 from cartwheel.session import Session
 from cartwheel.simulation.clock import NANOSECONDS, to_ns
 
@@ -181,8 +180,8 @@ class World:
         """
         kind = self.graph.topic(topic).type
         if fields:
-            message = _nested(kind, fields)
-        if message is None or isinstance(message, Mapping):
+            message = from_flat(kind, fields)
+        elif message is None or isinstance(message, Mapping):
             message = from_dict(kind, message or {})
         self.graph.publish(topic, kind, message)
 
@@ -249,34 +248,6 @@ class World:
     def close(self) -> None:
         """Frees what the world holds."""
         self.session.close()
-
-
-def _nested(kind: str, flat: Mapping[str, Any]) -> dict[str, Any]:
-    """``{"linear_x": 0.5}`` as ``{"linear": {"x": 0.5}}``, by the fields that the type has."""
-    nested: dict[str, Any] = {}
-    for name, value in flat.items():
-        path = _path(kind, name)
-        if path is None:
-            known = [field.name for field in fields_of(kind)]
-            raise GraphError(f'{kind} has no field "{name}"', hint=suggestion(name, known))
-        inner = nested
-        for part in path[:-1]:
-            inner = inner.setdefault(part, {})
-        inner[path[-1]] = value
-    return nested
-
-
-def _path(kind: str, name: str) -> tuple[str, ...] | None:
-    """The fields that lead to a flat name; a field's own name may hold ``_`` as well."""
-    fields = fields_of(kind)
-    if any(field.name == name for field in fields):
-        return (name,)
-    for field in fields:
-        if field.kind == "message" and not field.array and name.startswith(f"{field.name}_"):
-            rest = _path(field.type, name.removeprefix(f"{field.name}_"))
-            if rest is not None:
-                return (field.name, *rest)
-    return None
 
 
 __all__ = ["Model", "World"]

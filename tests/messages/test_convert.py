@@ -116,6 +116,10 @@ def test_joined_names_reach_inner_fields() -> None:
     odometry = from_flat("nav_msgs/Odometry", {"header_frame_id": "a", "pose_pose_position_x": 3})
     assert (odometry.header.frame_id, odometry.pose.pose.position.x) == ("a", 3.0)
     assert from_flat("nav_msgs/Odometry", {"child_frame_id": "b"}).child_frame_id == "b"
+    imu = from_flat("sensor_msgs/Imu", {"orientation_w": 1, "orientation_covariance": range(9)})
+    assert (imu.orientation.w, list(imu.orientation_covariance)) == (1.0, list(range(9)))
+    goal = from_flat("control_msgs/GripperCommandActionGoal", {"goal_id_id": "a"})
+    assert goal.goal_id.id == "a"
     with pytest.raises(GraphError, match=r'no field "linear\.w"'):
         from_flat("geometry_msgs/Twist", {"linear_w": 0.5})
     with pytest.raises(GraphError, match='no field "speed"'):

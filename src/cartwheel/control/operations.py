@@ -185,19 +185,7 @@ class Operations:
         return {"topics": [_described(topic) for topic in self._graph.topics()]}
 
     def topic(self, parameters: Parameters, _: bytes) -> Answer:
-        return _described(self.existing_topic(parameters.text("topic")))
-
-    def existing_topic(self, name: str) -> TopicInfo:
-        """A topic that somebody publishes or reads.
-
-        Raises:
-            UnknownNameError: There is none of that name.
-        """
-        name = resolve_name(name)
-        topics = {topic.name: topic for topic in self._graph.topics()}
-        if name not in topics:
-            raise UnknownNameError("topic", name, topics)
-        return topics[name]
+        return _described(self._graph.topic(resolve_name(parameters.text("topic"))))
 
     def publish(self, parameters: Parameters, payload: bytes) -> Answer:
         """A message as a mapping, or as CDR in the payload."""

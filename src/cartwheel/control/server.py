@@ -17,6 +17,7 @@ from cartwheel.control.protocol import Connection, Frame
 from cartwheel.control.registry import Running
 from cartwheel.control.stream import Streams
 from cartwheel.errors import CartwheelError, ControlError
+from cartwheel.graph import resolve_name
 from cartwheel.session import Session
 
 MAX_CLIENTS = 64
@@ -127,7 +128,7 @@ class ControlServer:
         """Serves a subscription to its end; returns whether there was one."""
         try:
             parameters = _parameters(frame)
-            topic = self._operations.existing_topic(parameters.text("topic"))
+            topic = self._session.graph.topic(resolve_name(parameters.text("topic")))
             self._streams.serve(client, topic, parameters)
         except CartwheelError as error:
             client.send({"error": str(error)})

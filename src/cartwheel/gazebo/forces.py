@@ -9,8 +9,9 @@ import numpy as np
 
 from cartwheel.errors import CartwheelError, GraphError
 from cartwheel.gazebo.entities import INERTIAL, Entities
-from cartwheel.gazebo.requests import STRONGEST, Answer, Offer, nanoseconds, number, vector
+from cartwheel.gazebo.requests import STRONGEST, Answer, Offer, number, vector
 from cartwheel.geometry import rotate
+from cartwheel.messages import nanoseconds
 from cartwheel.simulation import Simulation
 
 

@@ -15,7 +15,6 @@ FARTHEST = 1e6
 """m, m/s or rad/s: beyond it, a state is what the engine takes for diverged."""
 STRONGEST = 1e10
 """N or N m."""
-_SECOND = 1_000_000_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,11 +82,6 @@ def pose(value: Any, name: str) -> Pose:
         return Pose(position, quat_normalize(parts))
     except ValueError as error:
         raise GraphError(f"{name}.orientation: {error}") from None
-
-
-def nanoseconds(value: Any) -> int:
-    """``builtin_interfaces/Time`` or ``Duration``."""
-    return int(value.sec) * _SECOND + int(value.nanosec)
 
 
 def pose_message(where: Pose) -> Any:

@@ -343,15 +343,16 @@ class Graph:
             return [self._info(topic) for topic in self._live()]
 
     def topic(self, name: str) -> TopicInfo:
-        """One topic.
+        """One topic that somebody publishes or reads.
 
         Raises:
             UnknownNameError: There is none of that name.
         """
         with self._lock:
-            if name not in self._topics:
-                raise UnknownNameError("topic", name, [topic.name for topic in self._live()])
-            return self._info(self._topics[name])
+            live = {topic.name: topic for topic in self._live()}
+            if name not in live:
+                raise UnknownNameError("topic", name, live)
+            return self._info(live[name])
 
     def _live(self) -> Iterator[Topic]:
         for name in sorted(self._topics):

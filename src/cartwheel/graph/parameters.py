@@ -46,15 +46,7 @@ class Parameters:
                 if not isinstance(node, dict) or part not in node:
                     return default
                 node = node[part]
-            return node
-
-    def everything(self) -> dict[str, Any]:
-        """The whole tree, a mapping for each namespace."""
-        if self.server is not None:
-            found = self.server.get("/")
-            return dict(found) if isinstance(found, dict) else {}
-        with self._lock:
-            return copy.deepcopy(self._tree)
+            return copy.deepcopy(node)
 
     def search(self, name: str, namespace: str = "") -> Any:
         """The value in the innermost namespace that has one, from `namespace` outwards; or None."""

@@ -5,6 +5,7 @@ from cartwheel.messages.convert import from_dict, from_flat, recast, to_dict, ze
 from cartwheel.messages.echo import to_yaml
 from cartwheel.messages.encoding import CdrCache, decode_cdr, encode_cdr
 from cartwheel.messages.store import message_class, service_classes, store, type_name
+from cartwheel.messages.times import nanoseconds
 
 __all__ = [
     "CdrCache",
@@ -14,6 +15,7 @@ __all__ = [
     "from_flat",
     "header",
     "message_class",
+    "nanoseconds",
     "recast",
     "service_classes",
     "stamp",

@@ -69,14 +69,25 @@ def from_flat(type_name: str, values: Mapping[str, Any]) -> Any:
     return from_dict(full, mapping)
 
 
-def _split(type_name: str, name: str) -> list[str]:
-    """The fields that a joined name leads through; a name that leads nowhere stays whole."""
-    for field in fields(type_name):
-        if name == field.name:
-            return [name]
-        if name.startswith(f"{field.name}_") and field.kind == "message" and not field.array:
-            return [field.name, *_split(field.type, name.removeprefix(f"{field.name}_"))]
-    return [name]
+def _split(type_name: str, name: str, outer: tuple[str, ...] = ()) -> tuple[str, ...]:
+    """The fields that a joined name leads through, of which each may hold ``_`` itself."""
+    known = fields(type_name)
+    inner = [
+        field
+        for field in known
+        if field.kind == "message" and not field.array and name.startswith(f"{field.name}_")
+    ]
+    if any(field.name == name for field in known):
+        return (*outer, name)
+    if inner:
+        longest = max(inner, key=lambda field: len(field.name))
+        rest = name.removeprefix(f"{longest.name}_")
+        return _split(longest.type, rest, (*outer, longest.name))
+    written = f'"{"_".join((*outer, name))}": ' if outer else ""
+    raise GraphError(
+        f'{written}{type_name} has no field "{".".join((*outer, name))}"',
+        hint=suggestion(name, [field.name for field in known]),
+    )
 
 
 def zero(type_name: str) -> Any:

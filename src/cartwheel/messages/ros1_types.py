@@ -10,7 +10,7 @@ from typing import Any
 
 from cartwheel.errors import UnknownNameError
 from cartwheel.messages.fields import FILLER
-from cartwheel.messages.store import parsed_definitions, type_name
+from cartwheel.messages.store import parsed_definitions, service_name, type_name
 
 _PRIMITIVES = {
     "builtin_interfaces/msg/Time": "time",
@@ -80,8 +80,7 @@ def ros1_service(name: str) -> Ros1Service:
     Raises:
         UnknownNameError: There is no such type.
     """
-    package, _, rest = name.partition("/")
-    full = f"{package}/srv/{rest.rpartition('/')[2]}"
+    full = service_name(name)
     request, response = f"{full}_Request", f"{full}_Response"
     if request not in ros1_store().fielddefs:
         services = [key for key in ros1_store().fielddefs if key.endswith("_Request")]

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from cartwheel.errors import UnknownNameError
-from cartwheel.messages.store import TWIN, service_classes, store, type_name
+from cartwheel.messages.store import TWIN, service_classes, service_name, store, type_name
 
 _ROS1_ONLY = frozenset(
     {
@@ -46,8 +46,6 @@ class Ros2Service:
     request: str
     """The graph's name of the request's type."""
     response: str
-    request_hash: str
-    response_hash: str
 
     @property
     def dds_request(self) -> str:
@@ -77,15 +75,14 @@ def ros2_type(name: str) -> Ros2Type:
 
 @functools.cache
 def ros2_service(name: str) -> Ros2Service:
-    """Names and hashes of a service type ``pkg/srv/Name`` or ``pkg/Name``.
+    """Names and hash of a service type ``pkg/srv/Name`` or ``pkg/Name``.
 
     The services of an action are such as well: ``pkg/action/Name_SendGoal``.
 
     Raises:
         UnknownNameError: ROS 2 has no such type.
     """
-    package, _, rest = name.partition("/")
-    full = name if "/" in rest else f"{package}/srv/{rest}"
+    full = service_name(name)
     if is_ros1_only(full):
         raise UnknownNameError("ROS 2 service type", name, ())
     request, response = (each.__msgtype__ for each in service_classes(full))
@@ -99,8 +96,6 @@ def ros2_service(name: str) -> Ros2Service:
         hash=made.hash_rihs01(real),
         request=request,
         response=response,
-        request_hash=made.hash_rihs01(f"{real}_Request"),
-        response_hash=made.hash_rihs01(f"{real}_Response"),
     )
 
 

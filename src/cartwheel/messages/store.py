@@ -148,6 +148,12 @@ def type_name(name: str) -> str:
     return name if "/" in rest else f"{package}/msg/{rest}"
 
 
+def service_name(name: str) -> str:
+    """The ROS 2 name of a service type: ``std_srvs/Empty`` is ``std_srvs/srv/Empty``."""
+    package, _, rest = name.partition("/")
+    return name if "/" in rest else f"{package}/srv/{rest}"
+
+
 def message_class(name: str) -> Any:
     """The class of a message type; a dataclass with one field for each of the message's.
 
@@ -167,8 +173,7 @@ def service_classes(name: str) -> tuple[Any, Any]:
     Raises:
         UnknownNameError: There is no such type.
     """
-    package, _, rest = name.partition("/")
-    full = name if "/" in rest else f"{package}/srv/{rest}"
+    full = service_name(name)
     if not _learn(f"{full}_Request"):
         known = [key.removesuffix("_Request") for key in store().types if key.endswith("_Request")]
         raise UnknownNameError("service type", name, known)

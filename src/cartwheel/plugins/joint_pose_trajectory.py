@@ -6,10 +6,9 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from cartwheel.errors import PluginError
-from cartwheel.messages import message_class
+from cartwheel.messages import message_class, nanoseconds
 from cartwheel.plugins.base import Plugin
 from cartwheel.plugins.parameters import tag
-from cartwheel.simulation.clock import NANOSECONDS
 from cartwheel.simulation.handles import JointHandle
 
 _MOVABLE = ("revolute", "continuous", "prismatic")
@@ -87,13 +86,12 @@ class JointPoseTrajectory(Plugin[JointPoseTrajectoryParameters]):
         frame = trajectory.header.frame_id.rsplit("::", 1)[-1].lstrip("/")
         if frame not in ("", "world", "map", root):
             return f'the reference must be the root link "{root}" or the world, not "{frame}"'
-        stamp = trajectory.header.stamp
-        start = max(self.part.time_ns, stamp.sec * NANOSECONDS + stamp.nanosec)
+        start = max(self.part.time_ns, nanoseconds(trajectory.header.stamp))
         points = []
         for point in trajectory.points:
             if len(point.positions) != len(names):
                 return f"a point has {len(point.positions)} positions for {len(names)} joints"
-            due = start + point.time_from_start.sec * NANOSECONDS + point.time_from_start.nanosec
+            due = start + nanoseconds(point.time_from_start)
             handles = [self._handles[name] for name in names]
             positions = [float(position) for position in point.positions]
             points.append((due, list(zip(handles, positions, strict=True))))

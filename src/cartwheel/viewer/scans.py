@@ -11,6 +11,7 @@ import numpy as np
 
 from cartwheel.geometry import Array, from_wxyz, matrix_from_quat
 from cartwheel.graph import TopicInfo
+from cartwheel.messages import nanoseconds
 from cartwheel.simulation.snapshot import Snapshot
 from cartwheel.viewer.panels.base import Every, Panel
 from cartwheel.viewer.panels.camera import Tap
@@ -88,8 +89,7 @@ class Scans(Panel):
             cloud.remove()
 
     def _draw(self, topic: str, message: Any) -> None:
-        stamp = message.header.stamp
-        time_ns = stamp.sec * 1_000_000_000 + stamp.nanosec
+        time_ns = nanoseconds(message.header.stamp)
         publisher = self._topics[topic].publishers[0].partition("/")[0]
         with_it = [
             recent

@@ -71,7 +71,7 @@ class Values:
             self._graph.parameters.set(name, value)
 
     def _all(self) -> Iterator[tuple[str, Any]]:
-        yield from _flat("", self._graph.parameters.everything())
+        yield from _flat("", self._graph.parameters.get("/", {}))
         yield from self._descriptions.items()
         state = self._controls.state()
         yield PAUSED, state.paused

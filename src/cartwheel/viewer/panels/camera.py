@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cartwheel.graph import Graph, TopicInfo
+from cartwheel.messages import nanoseconds
 from cartwheel.simulation.snapshot import Snapshot
 from cartwheel.viewer.panels.base import Every, Panel, escape, of_type
 
@@ -108,8 +109,7 @@ class CameraPanel(Panel):
             return
         self._shown = tap.count
         message = tap.newest
-        stamp = message.header.stamp
-        self._measure(tap.count, stamp.sec * 1_000_000_000 + stamp.nanosec)
+        self._measure(tap.count, nanoseconds(message.header.stamp))
         picture = pixels_of(message)
         size = f"{message.width} × {message.height} {escape(message.encoding)}"
         if picture is None:

@@ -11,6 +11,7 @@ import numpy as np
 
 from cartwheel.geometry import rpy_from_quat
 from cartwheel.graph import Mailbox, TopicInfo
+from cartwheel.messages import nanoseconds
 from cartwheel.simulation.snapshot import Snapshot
 from cartwheel.viewer.panels.base import Every, Panel, escape, of_type
 
@@ -127,7 +128,7 @@ def row_of(message: Any) -> tuple[float, ...]:
     stamp, q = message.header.stamp, message.orientation
     w, a = message.angular_velocity, message.linear_acceleration
     rpy = (math.degrees(angle) for angle in rpy_from_quat((q.x, q.y, q.z, q.w)))
-    return (stamp.sec + stamp.nanosec * 1e-9, w.x, w.y, w.z, a.x, a.y, a.z, *rpy)
+    return (nanoseconds(stamp) / 1e9, w.x, w.y, w.z, a.x, a.y, a.z, *rpy)
 
 
 def thin(table: Any, points: int) -> Any:
