@@ -107,6 +107,32 @@ class UnknownNameError(CartwheelError):
         )
 
 
+def one_line(error: Exception) -> str:
+    """An error for who shows a line alone: the user's with place and hint, ours with its class."""
+    if not isinstance(error, CartwheelError):
+        return f"{type(error).__name__}: {error}"
+    place = f"{error.origin}: " if error.origin else ""
+    return f"{place}{error.message}{f'. {error.hint}' if error.hint else ''}"
+
+
+class Once:
+    """Says of texts whether they are told for the first time.
+
+    Args:
+        most: Texts after which no other one counts as new: they may name whoever comes.
+    """
+
+    def __init__(self, most: int) -> None:
+        self._most = most
+        self._told: set[str] = set()
+
+    def __call__(self, text: str) -> bool:
+        if text in self._told or len(self._told) >= self._most:
+            return False
+        self._told.add(text)
+        return True
+
+
 def likely(name: str, existing: Iterable[str], *, cutoff: float = 0.75) -> str:
     """A sentence that names the likely meant one of `existing`, or nothing."""
     close = difflib.get_close_matches(name, list(existing), n=1, cutoff=cutoff)

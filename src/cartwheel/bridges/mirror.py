@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import Any
 
-from cartwheel.errors import CartwheelError
+from cartwheel.errors import CartwheelError, GraphError
 from cartwheel.graph import Graph, TopicInfo
 
 BRIDGES = frozenset({"ros1", "ros2"})
@@ -15,6 +15,9 @@ ONLOOKERS = frozenset({"viewer", "cartwheel topic", "recorder", "foxglove"})
 """Nodes of the graph that read what it publishes, and expect nothing of other publishers."""
 _BACKLOG = 1000
 """Messages from outside that the simulation has not taken yet."""
+
+_CALL = 120.0
+"""s that the simulation may take to answer a service."""
 
 
 @dataclass(slots=True)
@@ -51,6 +54,29 @@ def survey(
         if readers and (not info.publishers or readers - ONLOOKERS):
             found.read.setdefault(name, info)
     return found
+
+
+def offered_by_others(graph: Graph, reader: str) -> dict[str, TopicInfo]:
+    """Topics by name, but for those that none but `reader` still reads."""
+    return {
+        info.name: info
+        for info in graph.topics()
+        if info.publishers or set(info.subscribers) - {reader}
+    }
+
+
+def asked(graph: Graph, service: str, request: Any) -> Any:
+    """The response of a service; from any thread but the simulation's, which is waited for.
+
+    Raises:
+        CartwheelError: There is no such service, it refused, or there was no answer in time.
+    """
+    future = graph.call(service, request)
+    try:
+        return future.result(_CALL)
+    except TimeoutError:
+        future.cancel()
+        raise GraphError(f"the simulation did not answer {service} within {_CALL:g} s") from None
 
 
 class Arrivals:

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from cartwheel.errors import CartwheelError, GraphError
+from cartwheel.errors import CartwheelError, GraphError, one_line
 from cartwheel.gazebo.entities import INERTIAL, Entities
 from cartwheel.gazebo.requests import STRONGEST, Answer, Offer, number, vector
 from cartwheel.geometry import rotate
@@ -69,7 +69,7 @@ class Pushes:
         try:
             model, link = self._entities.link(request.body_name)
         except CartwheelError as error:
-            self._report(f"/gazebo/clear_body_wrenches: {error.message}. {error.hint or ''}")
+            self._report(f"/gazebo/clear_body_wrenches: {one_line(error)}")
         else:
             self._simulation.forces.clear_wrenches(model, link.name)
         return Answer()
@@ -97,7 +97,7 @@ class Pushes:
         try:
             model, joint = self._entities.joint(request.joint_name)
         except CartwheelError as error:
-            self._report(f"/gazebo/clear_joint_forces: {error.message}. {error.hint or ''}")
+            self._report(f"/gazebo/clear_joint_forces: {one_line(error)}")
         else:
             self._simulation.forces.clear_efforts(model, joint.name)
         return Answer()

@@ -43,17 +43,16 @@ class Metrics:
             node=node,
             rate=RATE,
         )
-        self._open = True
         self._last: _Mark | None = None
-        simulation.schedule(RATE, after=self._publish, active=self._wanted)
+        self._task = simulation.schedule(RATE, after=self._publish, active=self._wanted)
 
     def close(self) -> None:
         """Takes the topic off the graph."""
-        self._open = False
+        self._simulation.unschedule(self._task)
         self._publisher.close()
 
     def _wanted(self) -> bool:
-        if self._open and self._publisher.wanted:
+        if self._publisher.wanted:
             return True
         self._last = None
         return False

@@ -7,14 +7,19 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
-from cartwheel.errors import GraphError
+from cartwheel.errors import CartwheelError, Diagnostic, GraphError, Once, one_line
 from cartwheel.geometry import IDENTITY, Pose, Vec3, quat_normalize
-from cartwheel.messages import message_class
+from cartwheel.messages import message_class, zero
+from cartwheel.simulation import Simulation
 
 FARTHEST = 1e6
 """m, m/s or rad/s: beyond it, a state is what the engine takes for diverged."""
 STRONGEST = 1e10
 """N or N m."""
+
+
+_REMEMBERED = 200
+"""Failures that are told once each; further ones are not told."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,10 +40,64 @@ class Offer:
     """A service of the API."""
 
     name: str
-    """Without ``/gazebo/``."""
+    """With or without the namespace, as the API has it."""
     type: str
     handler: Handler
     threaded: bool = False
+
+
+def answering(
+    offer: Offer, tell: Callable[[str], None], *, title: str = ""
+) -> Callable[[Any], Any]:
+    """A handler for the graph that answers in any case.
+
+    A request that cannot be met is answered with ``success`` false and the reason; where the
+    response has no room for it, it is told. Faults of ours are told as well.
+
+    Args:
+        offer: The service.
+        tell: Takes what no answer tells; from any thread.
+        title: Before each reason.
+    """
+    response_type = f"{offer.type}_Response"
+
+    def handle(request: Any) -> Any:
+        response = zero(response_type)
+        try:
+            answer = offer.handler(request)
+        except Exception as error:  # noqa: BLE001 - the caller waits for an answer
+            text = one_line(error)
+            says = hasattr(response, "status_message")
+            if says:
+                response.status_message = f"{title}: {text}" if title else text
+            if not says or not isinstance(error, CartwheelError):
+                tell(f"{title or offer.name}: {text}")
+            return response
+        for name, value in answer.fields.items():
+            setattr(response, name, value)
+        if hasattr(response, "success"):
+            response.success = True
+        if hasattr(response, "status_message"):
+            response.status_message = "; ".join((answer.status, *answer.notes))
+        return response
+
+    return handle
+
+
+class Teller:
+    """Tells the user of failures that no answer tells; each once, however often it comes again.
+
+    Args:
+        simulation: Whose user; from any thread.
+    """
+
+    def __init__(self, simulation: Simulation) -> None:
+        self._simulation = simulation
+        self._is_new = Once(_REMEMBERED)
+
+    def __call__(self, text: str) -> None:
+        if self._is_new(text):
+            self._simulation.report(Diagnostic(severity="warning", message=text))
 
 
 def number(value: float, name: str, *, most: float = FARTHEST) -> float:

@@ -2,25 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
-from cartwheel.errors import CartwheelError, Diagnostic, UnknownNameError
+from cartwheel.errors import CartwheelError, UnknownNameError
 from cartwheel.gazebo.entities import Entities
 from cartwheel.gazebo.physics import Physics
-from cartwheel.gazebo.requests import Answer, Offer
+from cartwheel.gazebo.requests import (
+    Answer,
+    Offer,
+    Teller,
+    answering,
+    pose,
+    pose_message,
+    twist_message,
+)
 from cartwheel.gazebo.simulation_interfaces import SimulationInterfaces
 from cartwheel.gazebo.spawning import Spawning
 from cartwheel.gazebo.state import States, StateTopics
 from cartwheel.graph import Service
-from cartwheel.messages import header, message_class, zero
+from cartwheel.messages import header, message_class
 from cartwheel.session import Session
 
 NODE = "gazebo"
-_REMEMBERED = 200
-"""Failures that no answer tells and that are told once each."""
 
 
 class Ros2Api:
@@ -38,6 +43,7 @@ class Ros2Api:
     def __init__(self, session: Session, *, package_path: Sequence[Path] = ()) -> None:
         self._session = session
         self._simulation = session.simulation
+        self._tell = Teller(session.simulation)
         self._entities = Entities(session.simulation)
         self._spawning = Spawning(session, self._entities, package_path)
         self._states = States(session.simulation, self._entities)
@@ -46,7 +52,6 @@ class Ros2Api:
         )
         self._services: list[Service] = []
         self._topics: StateTopics | None = None
-        self._told: set[str] = set()
 
     def start(self) -> None:
         """Advertises everything; on the owner's thread, or before there is one.
@@ -61,7 +66,7 @@ class Ros2Api:
                     graph.serve(
                         offer.name,
                         offer.type,
-                        self._answering(offer),
+                        answering(offer, self._tell),
                         node=NODE,
                         threaded=offer.threaded,
                     )
@@ -108,24 +113,22 @@ class Ros2Api:
         ]
 
     def _spawn(self, request: Any) -> Answer:
-        self._spawning.spawn_model(
-            SimpleNamespace(
-                model_name=request.name,
-                model_xml=request.xml,
-                robot_namespace=request.robot_namespace,
-                initial_pose=request.initial_pose,
-                reference_frame=request.reference_frame,
-            )
+        self._spawning.spawn_text(
+            request.xml,
+            name=request.name,
+            where=pose(request.initial_pose, "initial_pose"),
+            reference_frame=request.reference_frame,
+            namespace=request.robot_namespace,
         )
         return Answer(f"SpawnEntity: Successfully spawned entity [{request.name}]")
 
     def _delete(self, request: Any) -> Answer:
         try:
-            self._spawning.delete_model(SimpleNamespace(model_name=request.name))
+            self._simulation.delete(request.name)
         except UnknownNameError:
             if not any(light.name == request.name for light in self._simulation.world.lights):
                 raise
-            self._spawning.delete_light(SimpleNamespace(light_name=request.name))
+            self._spawning.remove_light(request.name)
         return Answer(f"DeleteEntity: Successfully deleted entity [{request.name}]")
 
     def _list_models(self, _: Any) -> Answer:
@@ -136,34 +139,21 @@ class Ros2Api:
         return Answer(fields=fields)
 
     def _get_state(self, request: Any) -> Answer:
-        if self._is_model(request.name):
-            answer = self._states.get_model_state(
-                SimpleNamespace(
-                    model_name=request.name, relative_entity_name=request.reference_frame
-                )
-            ).fields
-            pose, twist = answer["pose"], answer["twist"]
-        else:
-            state = self._states.get_link_state(
-                SimpleNamespace(link_name=request.name, reference_frame=request.reference_frame)
-            ).fields["link_state"]
-            pose, twist = state.pose, state.twist
+        read = self._states.model if self._is_model(request.name) else self._states.link
+        seen = read(request.name, request.reference_frame)
         told = message_class("gazebo_msgs/msg/EntityState")(
-            request.name, pose, twist, request.reference_frame
+            request.name,
+            pose_message(seen.pose),
+            twist_message(seen.linear, seen.angular),
+            request.reference_frame,
         )
         frame = request.reference_frame or "world"
         return Answer(fields={"header": header(self._simulation.time_ns, frame), "state": told})
 
     def _set_state(self, request: Any) -> Answer:
         state = request.state
-        named = SimpleNamespace(
-            pose=state.pose, twist=state.twist, reference_frame=state.reference_frame
-        )
-        if self._is_model(state.name):
-            named.model_name = state.name
-            return self._states.set_model_state(SimpleNamespace(model_state=named))
-        named.link_name = state.name
-        return self._states.set_link_state(SimpleNamespace(link_state=named))
+        put = self._states.put_model if self._is_model(state.name) else self._states.put_link
+        return Answer(notes=put(state.name, state.pose, state.twist, state.reference_frame))
 
     def _is_model(self, name: str) -> bool:
         if any(placed.name == name for placed in self._entities.placed):
@@ -178,41 +168,3 @@ class Ros2Api:
         except CartwheelError:
             return False
         return False
-
-    def _answering(self, offer: Offer) -> Callable[[Any], Any]:
-        """A handler that answers in any case."""
-        response_type = f"{offer.type}_Response"
-
-        def handle(request: Any) -> Any:
-            response = zero(response_type)
-            try:
-                answer = offer.handler(request)
-            except Exception as error:  # noqa: BLE001 - the caller waits for an answer
-                self._explain(offer.name, response, error)
-                return response
-            for name, value in answer.fields.items():
-                setattr(response, name, value)
-            if hasattr(response, "success"):
-                response.success = True
-            if hasattr(response, "status_message"):
-                response.status_message = "; ".join((answer.status, *answer.notes))
-            return response
-
-        return handle
-
-    def _explain(self, name: str, response: Any, error: Exception) -> None:
-        text = explained(error)
-        if hasattr(response, "status_message"):
-            response.status_message = text
-        elif text not in self._told and len(self._told) < _REMEMBERED:
-            self._told.add(text)
-            found = Diagnostic(severity="warning", message=f"{name}: {text}")
-            self._simulation.report(found)
-
-
-def explained(error: Exception) -> str:
-    """An error in one line, with its place and what to do."""
-    if not isinstance(error, CartwheelError):
-        return f"{type(error).__name__}: {error}"
-    place = f"{error.origin}: " if error.origin else ""
-    return f"{place}{error.message}{f'. {error.hint}' if error.hint else ''}"

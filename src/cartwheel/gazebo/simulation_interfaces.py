@@ -8,14 +8,19 @@ import time
 from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 
 from cartwheel.description import load
-from cartwheel.description.model import Light, RobotDescription
-from cartwheel.errors import CartwheelError, DescriptionError, GraphError, UnknownNameError
+from cartwheel.description.model import RobotDescription
+from cartwheel.errors import (
+    CartwheelError,
+    DescriptionError,
+    GraphError,
+    UnknownNameError,
+    one_line,
+)
 from cartwheel.gazebo.entities import Entities
 from cartwheel.gazebo.requests import pose, pose_message, twist_message
 from cartwheel.gazebo.spawning import Spawning
@@ -133,11 +138,9 @@ class SimulationInterfaces:
             except _Refusal as refusal:
                 result, text = refusal.result, str(refusal)
             except UnknownNameError as error:
-                result, text = _NOT_FOUND, _told(error)
-            except CartwheelError as error:
-                result, text = _FAILED, _told(error)
+                result, text = _NOT_FOUND, one_line(error)
             except Exception as error:  # noqa: BLE001 - the caller waits for an answer
-                result, text = _FAILED, f"{type(error).__name__}: {error}"
+                result, text = _FAILED, one_line(error)
             if hasattr(response, "result"):
                 response.result.result = result
                 response.result.error_message = text
@@ -177,9 +180,7 @@ class SimulationInterfaces:
         response.states = [self._state(name) for name in response.entities]
 
     def _state(self, name: str) -> Any:
-        self._entities.model(name)
-        self._simulation.refresh()
-        motion = self._entities.model_motion(name)
+        motion = self._states.model(name, "world")
         return message_class(f"{_PACKAGE}/msg/EntityState")(
             header=header(self._simulation.time_ns, "world"),
             pose=pose_message(motion.pose),
@@ -208,16 +209,7 @@ class SimulationInterfaces:
             pose(state.pose, "pose")
         except GraphError as error:
             raise _Refusal(_INVALID_POSE_TO_SET, error.message) from None
-        self._states.set_model_state(
-            SimpleNamespace(
-                model_state=SimpleNamespace(
-                    model_name=request.entity,
-                    pose=state.pose,
-                    twist=state.twist,
-                    reference_frame=frame,
-                )
-            )
-        )
+        self._states.put_model(request.entity, state.pose, state.twist, frame)
 
     # -- in and out
 
@@ -253,8 +245,8 @@ class SimulationInterfaces:
             else:
                 raise _Refusal(_NO_RESOURCE, "neither uri nor resource_string says what to spawn")
         except DescriptionError as error:
-            raise _Refusal(_PARSE_ERROR, _told(error)) from None
-        if isinstance(found, Light) or not isinstance(found, RobotDescription):
+            raise _Refusal(_PARSE_ERROR, one_line(error)) from None
+        if not isinstance(found, RobotDescription):
             raise _Refusal(_PARSE_ERROR, "the resource describes no model")
         return found
 
@@ -362,7 +354,7 @@ class SimulationInterfaces:
         except _Refusal as refusal:
             result, text = refusal.result, str(refusal)
         except CartwheelError as error:
-            result, text = _FAILED, _told(error)
+            result, text = _FAILED, one_line(error)
         self._session.graph.post(end)
 
     def _reached(self, step: int) -> bool:
@@ -401,8 +393,3 @@ def _ended(result: int, text: str) -> Any:
     made = zero(f"{_PACKAGE}/action/SimulateSteps_Result")
     made.result.result, made.result.error_message = result, text
     return made
-
-
-def _told(error: CartwheelError) -> str:
-    place = f"{error.origin}: " if error.origin else ""
-    return f"{place}{error.message}{f'. {error.hint}' if error.hint else ''}"

@@ -55,21 +55,35 @@ class Spawning:
         ]
 
     def spawn_model(self, request: Any) -> Answer:
-        """Reads the text on the caller's thread; the owner's alone spawns."""
-        where = pose(request.initial_pose, "initial_pose")
-        name = request.model_name.strip()
-        found = self.read(name, request.model_xml)
-        if isinstance(found, Light):
-            light = found
-            return self.on_owner(lambda: self._light(light, name, where, request.reference_frame))
-        self.spawn(
-            found,
-            name=name,
-            where=where,
+        self.spawn_text(
+            request.model_xml,
+            name=request.model_name,
+            where=pose(request.initial_pose, "initial_pose"),
             reference_frame=request.reference_frame,
             namespace=request.robot_namespace,
         )
         return Answer("SpawnModel: Successfully spawned entity")
+
+    def spawn_text(
+        self, text: str, *, name: str, where: Pose, reference_frame: str, namespace: str
+    ) -> None:
+        """Puts the model or light that a text describes into the world; from any thread.
+
+        The text is read on that thread; the owner's alone spawns. For the rest see `spawn`.
+        """
+        name = name.strip()
+        found = self.read(name, text)
+        if isinstance(found, Light):
+            light = found
+            self.on_owner(lambda: self._add_light(light, name, where, reference_frame))
+        else:
+            self.spawn(
+                found,
+                name=name,
+                where=where,
+                reference_frame=reference_frame,
+                namespace=namespace,
+            )
 
     def spawn(
         self,
@@ -131,8 +145,7 @@ class Spawning:
 
         return self.on_owner(spawn)
 
-    def _light(self, light: Light, name: str, where: Pose, reference: str) -> Answer:
-        """Adds a light to the world."""
+    def _add_light(self, light: Light, name: str, where: Pose, reference: str) -> None:
         wanted = name or light.name
         world = self._simulation.world
         if any(other.name == wanted for other in world.lights):
@@ -143,7 +156,6 @@ class Spawning:
         placed = self._entities.frame(reference).pose @ where @ light.pose
         added = dataclasses.replace(light, name=wanted, pose=placed)
         self._simulation.change_world(dataclasses.replace(world, lights=(*world.lights, added)))
-        return Answer("SpawnModel: Successfully spawned entity")
 
     def read(self, name: str, text: str) -> RobotDescription | Light:
         """What a text describes.
@@ -189,9 +201,17 @@ class Spawning:
         self._simulation.delete(request.model_name)
         return Answer("DeleteModel: successfully deleted model")
 
-    def delete_light(self, request: Any) -> Answer:
-        light = self._entities.light(request.light_name)
+    def remove_light(self, name: str) -> None:
+        """Takes a light out of the world.
+
+        Raises:
+            UnknownNameError: There is none of that name.
+        """
+        light = self._entities.light(name)
         world = self._simulation.world
         rest = tuple(other for other in world.lights if other is not light)
         self._simulation.change_world(dataclasses.replace(world, lights=rest))
+
+    def delete_light(self, request: Any) -> Answer:
+        self.remove_light(request.light_name)
         return Answer("DeleteLight: successfully deleted light")

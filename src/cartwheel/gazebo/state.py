@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from cartwheel.errors import CartwheelError
+from cartwheel.errors import CartwheelError, one_line
 from cartwheel.gazebo.entities import Entities, Motion
 from cartwheel.gazebo.requests import (
     Answer,
@@ -51,11 +51,44 @@ class States:
             ),
         ]
 
-    def get_model_state(self, request: Any) -> Answer:
-        self._entities.model(request.model_name)
+    def model(self, name: str, frame: str) -> Motion:
+        """Where a model is and how it moves, in a frame of the world, a model or a link."""
+        self._entities.model(name)
         self._simulation.refresh()
-        frame = self._entities.frame(request.relative_entity_name)
-        seen = self._entities.model_motion(request.model_name).seen_from(frame)
+        return self._entities.model_motion(name).seen_from(self._entities.frame(frame))
+
+    def link(self, name: str, frame: str) -> Motion:
+        """Where a link is and how it moves, in a frame of the world, a model or a link."""
+        model, link = self._entities.link(name)
+        self._simulation.refresh()
+        motion = self._entities.link_motion(model, link.name)
+        return motion.seen_from(self._entities.frame(frame))
+
+    def put_model(self, name: str, where: Any, twist: Any, frame: str) -> tuple[str, ...]:
+        """Moves a model.
+
+        Args:
+            name: Of the model.
+            where: ``geometry_msgs/Pose`` in the frame.
+            twist: ``geometry_msgs/Twist`` in the frame's axes, against the world.
+            frame: Of the world, a model or a link.
+
+        Returns:
+            What has no effect.
+        """
+        self._entities.model(name)
+        return self._put(name, self._target(where, twist, frame))
+
+    def put_link(self, name: str, where: Any, twist: Any, frame: str) -> tuple[str, ...]:
+        """Moves a model so that its link has a pose and twist; see `put_model`."""
+        model, link = self._entities.link(name)
+        target = self._target(where, twist, frame)
+        base = self._entities.model_motion(model).pose
+        offset = self._entities.link_motion(model, link.name).pose.inverse() @ base
+        return self._put(model, target.carried(offset))
+
+    def get_model_state(self, request: Any) -> Answer:
+        seen = self.model(request.model_name, request.relative_entity_name)
         fields = {
             "header": header(self._simulation.time_ns, request.relative_entity_name),
             "pose": pose_message(seen.pose),
@@ -64,10 +97,7 @@ class States:
         return Answer("GetModelState: got properties", fields)
 
     def get_link_state(self, request: Any) -> Answer:
-        model, link = self._entities.link(request.link_name)
-        self._simulation.refresh()
-        frame = self._entities.frame(request.reference_frame)
-        seen = self._entities.link_motion(model, link.name).seen_from(frame)
+        seen = self.link(request.link_name, request.reference_frame)
         state = message_class("gazebo_msgs/msg/LinkState")(
             request.link_name,
             pose_message(seen.pose),
@@ -78,33 +108,23 @@ class States:
 
     def set_model_state(self, request: Any) -> Answer:
         state = request.model_state
-        self._entities.model(state.model_name)
-        target = self._target(state)
-        notes = self._put(state.model_name, target)
+        notes = self.put_model(state.model_name, state.pose, state.twist, state.reference_frame)
         return Answer("SetModelState: set model state done", notes=notes)
 
     def set_link_state(self, request: Any) -> Answer:
-        """The model is moved so that the link has the pose and twist."""
         state = request.link_state
-        model, link = self._entities.link(state.link_name)
-        target = self._target(state)
-        frame = self._entities.model_motion(model).pose
-        offset = self._entities.link_motion(model, link.name).pose.inverse() @ frame
-        notes = self._put(model, target.carried(offset))
+        notes = self.put_link(state.link_name, state.pose, state.twist, state.reference_frame)
         return Answer("SetLinkState: success", notes=notes)
 
-    def _target(self, state: Any) -> Motion:
-        """What a ModelState or LinkState asks for, in the world.
-
-        Source: gazebo_ros: a twist is given in the frame's axes, against the world.
-        """
-        where = pose(state.pose, "pose")
-        linear = vector(state.twist.linear, "twist.linear")
-        angular = vector(state.twist.angular, "twist.angular")
+    def _target(self, where: Any, twist: Any, frame: str) -> Motion:
+        """What is asked for, in the world. Source of the twist's axes: gazebo_ros."""
+        placed = pose(where, "pose")
+        linear = vector(twist.linear, "twist.linear")
+        angular = vector(twist.angular, "twist.angular")
         self._simulation.refresh()
-        frame = self._entities.frame(state.reference_frame).pose
-        turn = frame.orientation
-        return Motion(frame @ where, rotate(turn, linear), rotate(turn, angular))
+        base = self._entities.frame(frame).pose
+        turn = base.orientation
+        return Motion(base @ placed, rotate(turn, linear), rotate(turn, angular))
 
     def _put(self, model: str, target: Motion) -> tuple[str, ...]:
         for value in target.pose.position:
@@ -157,7 +177,6 @@ class StateTopics:
         self._links = graph.advertise(
             f"{prefix}/link_states", "gazebo_msgs/msg/LinkStates", node=node, rate=rate
         )
-        self._open = True
         self._version = -1
         self._Pose = message_class("geometry_msgs/msg/Pose")
         self._Point = message_class("geometry_msgs/msg/Point")
@@ -166,16 +185,16 @@ class StateTopics:
         self._Vector3 = message_class("geometry_msgs/msg/Vector3")
         self._ModelStates = message_class("gazebo_msgs/msg/ModelStates")
         self._LinkStates = message_class("gazebo_msgs/msg/LinkStates")
-        simulation.schedule(0, after=self._publish, active=self._wanted)
+        self._task = simulation.schedule(0, after=self._publish, active=self._wanted)
 
     def close(self) -> None:
         """Takes the topics off the graph."""
-        self._open = False
+        self._simulation.unschedule(self._task)
         self._models.close()
         self._links.close()
 
     def _wanted(self) -> bool:
-        return self._open and (self._models.wanted or self._links.wanted)
+        return self._models.wanted or self._links.wanted
 
     def _publish(self) -> None:
         if self._version != self._simulation.scene.version:
@@ -270,6 +289,6 @@ class StateCommands:
             try:
                 handler(request(**{field: message}))
             except CartwheelError as error:
-                self._report(f"/gazebo/{name}: {error.message}. {error.hint or ''}".strip())
+                self._report(f"/gazebo/{name}: {one_line(error)}")
 
         return take

@@ -15,7 +15,8 @@ from cartwheel.bridges.foxglove.incoming import ENCODINGS, Incoming, offered
 from cartwheel.bridges.foxglove.listener import Listener
 from cartwheel.bridges.foxglove.publication import READER, Publication
 from cartwheel.bridges.foxglove.values import Values
-from cartwheel.errors import CartwheelError, Diagnostic
+from cartwheel.bridges.mirror import offered_by_others
+from cartwheel.errors import CartwheelError, Diagnostic, Once, one_line
 from cartwheel.graph import Graph, Service, Subscription, TopicInfo
 
 PORT = 8765
@@ -83,7 +84,7 @@ class FoxgloveBridge:
         self._jobs: queue.SimpleQueue[Callable[[], None] | None] = queue.SimpleQueue()
         self._pending: set[str] = set()
         self._surveying = False
-        self._told: set[str] = set()
+        self._is_new = Once(_TOLD)
         self._closed = False
         self._incoming = Incoming(graph, self._warn)
         self._values = Values(
@@ -214,7 +215,7 @@ class FoxgloveBridge:
             except CartwheelError as error:
                 self._warn(error.message)
             except Exception as error:  # noqa: BLE001 - one topic must not end the others
-                self._warn(f"a fault of the bridge: {type(error).__name__}: {error}")
+                self._warn(f"a fault of the bridge: {one_line(error)}")
 
     def _tell_time(self) -> None:
         self._server.broadcast_time(self._controls.time_ns)
@@ -228,11 +229,7 @@ class FoxgloveBridge:
     def _mirror(self) -> None:
         """Makes the server offer what the graph does."""
         self._surveying = False
-        topics = {
-            info.name: info
-            for info in self._graph.topics()
-            if info.publishers or set(info.subscribers) - {READER}
-        }
+        topics = offered_by_others(self._graph, READER)
         services = {service.name: service for service in self._graph.services()}
         self._mirror_topics(topics)
         self._mirror_descriptions(topics)
@@ -308,9 +305,8 @@ class FoxgloveBridge:
 
     def _warn(self, text: str) -> None:
         """Once for each text, to the user and to clients."""
-        if text in self._told or len(self._told) >= _TOLD:
+        if not self._is_new(text):
             return
-        self._told.add(text)
         self._report(Diagnostic(severity="warning", message=f"Foxglove: {text}"))
         if self._server is not None and not self._closed:
             from foxglove import StatusLevel

@@ -6,6 +6,7 @@ import json
 from collections.abc import Callable
 from typing import Any
 
+from cartwheel.bridges.mirror import asked
 from cartwheel.errors import CartwheelError, GraphError
 from cartwheel.graph import Graph, Service
 from cartwheel.messages import (
@@ -24,8 +25,6 @@ ENCODINGS = ["cdr", "ros1", "json"]
 """Of messages that clients may send."""
 _BACKLOG = 1000
 """Messages that the simulation has not taken yet."""
-_CALL = 120.0
-"""s that the simulation may take to answer a service."""
 
 
 def decode(data: bytes, encoding: str, kind: str) -> Any:
@@ -114,12 +113,7 @@ def offered(graph: Graph, service: Service) -> Any:
     def handle(request: Any) -> bytes:
         # What is raised is what the client is told.
         message = decode(bytes(request.payload), request.encoding, request_class.__msgtype__)
-        future = graph.call(service.name, message)
-        try:
-            response = future.result(_CALL)
-        except TimeoutError:
-            future.cancel()
-            raise GraphError(f"the simulation did not answer within {_CALL:g} s") from None
+        response = asked(graph, service.name, message)
         if request.encoding == "json":
             return json.dumps(to_dict(response)).encode()
         return encode_cdr(response)

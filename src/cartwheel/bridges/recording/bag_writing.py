@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import struct
-from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -141,14 +140,7 @@ class BagWriter:
 
     def abandon(self) -> None:
         self._forget_chunk()
-        whole = self._sink.position
-        with suppress(OSError):
-            # What was cut off may have left room for the index.
-            self.close()
-            return
-        with suppress(OSError):
-            self._sink.cut(whole)
-        self._sink.close()
+        self._sink.salvage(self.close)
 
     def _forget_chunk(self) -> None:
         for each in self._connections:

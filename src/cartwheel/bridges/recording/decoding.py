@@ -8,6 +8,7 @@ from typing import Any
 from cartwheel.bridges.recording.reading import RecordedTopic
 from cartwheel.errors import CartwheelError, RecordingError
 from cartwheel.messages import decode_cdr, store
+from cartwheel.messages.fields import FILLER
 from cartwheel.messages.ros1 import decode_ros1, ros1_type
 from cartwheel.messages.ros1_types import ros1_store
 from cartwheel.messages.ros2_types import twin_name
@@ -88,7 +89,7 @@ def _parsed(topic: RecordedTopic) -> dict[str, Any]:
 def _plain(fields: Any) -> Any:
     """Fields as nested lists: parsers differ in tuples and lists, and in empty types."""
     found = [_nested(field) for field in fields]
-    return [field for field in found if field[0] != "structure_needs_at_least_one_member"]
+    return [field for field in found if field[0] != FILLER]
 
 
 def _nested(value: Any) -> Any:

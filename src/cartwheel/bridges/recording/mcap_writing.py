@@ -5,7 +5,6 @@ from __future__ import annotations
 import struct
 import zlib
 from collections.abc import Mapping
-from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -211,14 +210,7 @@ class McapWriter:
         for channel in self._channels:
             channel.count -= len(channel.index)
         self._forget_chunk()
-        whole = self._sink.position
-        with suppress(OSError):
-            # What was cut off may have left room for the end.
-            self.close()
-            return
-        with suppress(OSError):
-            self._sink.cut(whole)
-        self._sink.close()
+        self._sink.salvage(self.close)
 
     def _forget_chunk(self) -> None:
         for channel in self._channels:

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from cartwheel.bridges.mirror import offered_by_others
 from cartwheel.bridges.recording.backlog import Backlog, Item
 from cartwheel.bridges.recording.formats import (
     Encoding,
@@ -26,6 +27,7 @@ from cartwheel.errors import (
     GraphError,
     RecordingError,
     UnknownNameError,
+    one_line,
 )
 from cartwheel.graph import Graph, Subscription, TopicInfo
 
@@ -219,11 +221,7 @@ class Recorder:
             self._surveyor = None
 
     def _mirror(self) -> None:
-        topics = {
-            info.name: info
-            for info in self._graph.topics()
-            if info.publishers or set(info.subscribers) - {READER}
-        }
+        topics = offered_by_others(self._graph, READER)
         for name, tap in list(self._taps.items()):
             if name not in topics or topics[name].type != tap.type:
                 del self._taps[name]
@@ -260,7 +258,7 @@ class Recorder:
         except CartwheelError as error:
             self._fail(RecordingError(self._broken(str(error))))
         except Exception as error:  # noqa: BLE001 - the simulation must not wait for ever
-            self._fail(RecordingError(self._broken(f"{type(error).__name__}: {error}")))
+            self._fail(RecordingError(self._broken(one_line(error))))
 
     def _broken(self, why: str) -> str:
         path = self._files[-1]

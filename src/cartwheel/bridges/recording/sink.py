@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 
 
@@ -41,6 +43,17 @@ class Sink:
         self._file.truncate(position)
         self._file.seek(position)
         self.position = position
+
+    def salvage(self, finish: Callable[[], None]) -> None:
+        """After a write that failed: ends the file by `finish`, or where it is whole."""
+        whole = self.position
+        with suppress(OSError):
+            # What was cut off may have left room for the end.
+            finish()
+            return
+        with suppress(OSError):
+            self.cut(whole)
+        self.close()
 
     def rewrite(self, position: int, data: bytes) -> None:
         """Replaces bytes; the end stays where it is."""

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable, Sequence
 from typing import Any
 
 from cartwheel.bridges.loop import Loop
-from cartwheel.bridges.mirror import Arrivals, survey
+from cartwheel.bridges.mirror import Arrivals, asked, survey
 from cartwheel.bridges.ros1.address import (
     bind_address,
     host_and_port,
@@ -24,7 +25,7 @@ from cartwheel.bridges.ros1.registrar import Entry, Registrar
 from cartwheel.bridges.ros1.rpc import Peer, RpcError, UnreachableError
 from cartwheel.bridges.ros1.service import OfferedService
 from cartwheel.bridges.ros1.subscription import TopicSubscription
-from cartwheel.errors import CartwheelError, Diagnostic, UnknownNameError
+from cartwheel.errors import CartwheelError, Diagnostic, Once, UnknownNameError, one_line
 from cartwheel.graph import Graph, Service, TopicInfo
 from cartwheel.messages.ros1 import ros1_service, ros1_type
 from cartwheel.messages.store import is_ros2_only
@@ -33,9 +34,6 @@ READER = "ros1"
 """Our name in the graph."""
 _FIRST_ANSWER = 3.0
 """s that the master may take at the start."""
-_CALL = 120.0
-"""s that the simulation may take to answer a service."""
-
 _TOLD = 500
 """Different warnings; they name nodes, of which any number may come."""
 
@@ -79,7 +77,7 @@ class Ros1Bridge:
         self.master_uri = master_uri(self._arguments.special)
         host = own_host(self._arguments.special, self.master_uri)
         self._core: OwnCore | None = None
-        self._told: set[str] = set()
+        self._is_new = Once(_TOLD)
         self._closed = False
         self._arrivals = Arrivals(graph, self._warn)
         self._loop = Loop(self._fault, name="ros1")
@@ -290,7 +288,7 @@ class Ros1Bridge:
             ),
         }
         wanted = {
-            name: (one.type, self._caller(one.name))
+            name: (one.type, functools.partial(asked, self._graph, one.name))
             for name, one in offered.items()
             if self._is_known_service(one.type, one.name)
         } | own
@@ -307,19 +305,6 @@ class Ros1Bridge:
                     answer=answer,
                     node=self.name,
                 )
-
-    def _caller(self, name: str) -> Callable[[Any], Any]:
-        def call(request: Any) -> Any:
-            future = self._graph.call(name, request)
-            try:
-                return future.result(_CALL)
-            except TimeoutError:
-                future.cancel()
-                raise CartwheelError(
-                    f"the simulation did not answer {name} within {_CALL:g} s"
-                ) from None
-
-        return call
 
     def _deliverer(self, topic: str, type_name: str) -> Callable[[Any], None]:
         return lambda message: self._arrivals.deliver(topic, type_name, message)
@@ -363,10 +348,9 @@ class Ros1Bridge:
         self._tell("warning", text)
 
     def _tell(self, severity: Any, text: str) -> None:
-        """Once for each text."""
-        if severity == "info" or (text not in self._told and len(self._told) < _TOLD):
-            self._told.add(text)
+        """Once for each text that warns."""
+        if severity == "info" or self._is_new(text):
             self._report(Diagnostic(severity=severity, message=f"ROS: {text}"))
 
     def _fault(self, error: Exception) -> None:
-        self._warn(f"a fault of the bridge: {type(error).__name__}: {error}")
+        self._warn(f"a fault of the bridge: {one_line(error)}")

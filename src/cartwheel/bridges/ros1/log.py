@@ -9,7 +9,7 @@ from typing import Any, Literal
 from cartwheel.bridges.loop import Loop
 from cartwheel.bridges.ros1.publication import Publication
 from cartwheel.errors import CartwheelError, Diagnostic
-from cartwheel.messages import header, message_class, service_classes
+from cartwheel.messages import header, message_class, service_classes, zero
 from cartwheel.messages.ros1 import ros1_type
 
 TOPIC, TYPE = "/rosout", "rosgraph_msgs/msg/Log"
@@ -83,8 +83,7 @@ class Log:
         if level not in _LEVELS:
             raise CartwheelError(f'"{request.level}" is no level: there are {", ".join(_LEVELS)}')
         self._level = level
-        _request, response = service_classes("roscpp/SetLoggerLevel")
-        return response(structure_needs_at_least_one_member=0)
+        return zero("roscpp/srv/SetLoggerLevel_Response")
 
     def _send(self, message: Any) -> None:
         if self._heard:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import functools
 import re
 import threading
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any, Literal
 
 from cartwheel.bridges.loop import Loop
-from cartwheel.bridges.mirror import Arrivals, survey
+from cartwheel.bridges.mirror import Arrivals, asked, survey
 from cartwheel.bridges.ros2.actions import OfferedAction
 from cartwheel.bridges.ros2.log import Log
 from cartwheel.bridges.ros2.middleware import (
@@ -22,7 +23,14 @@ from cartwheel.bridges.ros2.middleware import (
 )
 from cartwheel.bridges.ros2.parameters import NodeParameters, Parameter
 from cartwheel.bridges.tap import Tap
-from cartwheel.errors import CartwheelError, Diagnostic, GraphError, UnknownNameError
+from cartwheel.errors import (
+    CartwheelError,
+    Diagnostic,
+    GraphError,
+    Once,
+    UnknownNameError,
+    one_line,
+)
 from cartwheel.graph import Action, Graph, Service, TopicInfo
 from cartwheel.messages import decode_cdr, encode_cdr, service_classes, zero
 from cartwheel.messages.ros2_types import is_ros1_only, ros2_service, ros2_type
@@ -31,8 +39,6 @@ READER = "ros2"
 """Our name in the graph."""
 Rmw = Literal["dds", "zenoh"]
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*\Z")
-_CALL = 120.0
-"""s that the simulation may take to answer a service."""
 _MOST_CALLS = 32
 """At a time."""
 _TOLD = 500
@@ -77,7 +83,7 @@ class Ros2Bridge:
             )
         self._graph = graph
         self._report = report
-        self._told: set[str] = set()
+        self._is_new = Once(_TOLD)
         self.name = f"/{node}"
         self._loop = Loop(self._fault, name="ros2")
         self.middleware = _middleware(rmw, self._loop, node, self._warn)
@@ -202,7 +208,13 @@ class Ros2Bridge:
         for name, one in offered.items():
             if name not in known:
                 known[name] = _Offered(
-                    one.type, self._offer(name, one.type, self._caller(name), threaded=True)
+                    one.type,
+                    self._offer(
+                        name,
+                        one.type,
+                        functools.partial(asked, self._graph, name),
+                        threaded=True,
+                    ),
                 )
 
     def _mirror_actions(self, offered: Mapping[str, Action]) -> None:
@@ -273,19 +285,6 @@ class Ros2Bridge:
         self._warn(f"{name} failed: {text}")
         return response
 
-    def _caller(self, name: str) -> Callable[[Any], Any]:
-        def call(request: Any) -> Any:
-            future = self._graph.call(name, request)
-            try:
-                return future.result(_CALL)
-            except TimeoutError:
-                future.cancel()
-                raise CartwheelError(
-                    f"the simulation did not answer {name} within {_CALL:g} s"
-                ) from None
-
-        return call
-
     # -- what the user should know
 
     def _is_known(self, info: TopicInfo) -> bool:
@@ -310,12 +309,11 @@ class Ros2Bridge:
 
     def _warn(self, text: str) -> None:
         """Once for each text."""
-        if text not in self._told and len(self._told) < _TOLD:
-            self._told.add(text)
+        if self._is_new(text):
             self._report(Diagnostic(severity="warning", message=f"ROS 2: {text}"))
 
     def _fault(self, error: Exception) -> None:
-        self._warn(f"a fault of the bridge: {type(error).__name__}: {error}")
+        self._warn(f"a fault of the bridge: {one_line(error)}")
 
 
 class _Publication:

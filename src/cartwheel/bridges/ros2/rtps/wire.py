@@ -44,7 +44,6 @@ class Data:
     payload: bytes
     keyed: bool
     """The payload is but a key: of something that is disposed of."""
-    little: bool
     fragment: int = 0
     """One-based number of the first fragment within; 0 for a whole sample."""
     fragment_size: int = 0
@@ -291,12 +290,12 @@ def _read_data(kind: int, flags: int, order: str, body: memoryview) -> Data:
         keyed = bool(flags & _KEY)
         if not flags & (_PAYLOAD | _KEY):
             payload = b""
-        return Data(reader, writer, number, inline, payload, keyed, order == "<")
+        return Data(reader, writer, number, inline, payload, keyed)
     fragment, _count, fragment_size, size = struct.unpack_from(f"{order}IHHI", body, 20)
     if fragment < 1 or fragment_size < 1:
         raise MalformedError("fragments of nothing")
     return Data(
-        reader, writer, number, inline, payload, bool(flags & _PAYLOAD), order == "<",
+        reader, writer, number, inline, payload, bool(flags & _PAYLOAD),
         fragment, fragment_size, size,
     )  # fmt: skip
 
@@ -311,7 +310,7 @@ def read_parameters(order: str, body: memoryview, at: int) -> tuple[dict[int, by
             return found, at
         if at + length > len(body):
             raise MalformedError("a parameter is cut off")
-        found.setdefault(name & 0xBFFF if name != 0x800F else name, bytes(body[at : at + length]))
+        found.setdefault(name & 0xBFFF, bytes(body[at : at + length]))
         at += length
 
 
