@@ -6,7 +6,8 @@ import pytest
 
 from cartwheel.description.packages import share
 from cartwheel.geometry import Pose, quat_from_rpy
-from cartwheel.viewer.panels.insert import free_name, free_place, palette
+from cartwheel.simulation.naming import free_name
+from cartwheel.viewer.panels.insert import free_place, palette
 
 
 def test_straight_ahead_on_the_ground_facing_as_the_robot():

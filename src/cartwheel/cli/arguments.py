@@ -48,6 +48,12 @@ Port = Annotated[
     int, typer.Option(min=0, max=65535, help="Port of the viewer; 0 takes a free one.")
 ]
 
+Headless = Annotated[bool, typer.Option("--headless", help="Without the viewer.")]
+Paused = Annotated[bool, typer.Option("--paused", help="Begin with time held.")]
+OpenBrowser = Annotated[
+    bool | None, typer.Option("--open/--no-open", help="Open the browser; on a desktop it is.")
+]
+
 
 def split(words: Sequence[str] | None) -> tuple[str | None, dict[str, str]]:
     """The file and the ``name:=value`` among the words of a command, in any order.
@@ -107,7 +113,6 @@ def needed(file: str | None) -> str:
     return file
 
 
-def pose(**values: float | None) -> dict[str, float] | None:
-    """The given ones of x, y, z, roll, pitch, yaw; None where none is given."""
-    given = {name: value for name, value in values.items() if value is not None}
-    return given or None
+def place(**values: float | None) -> dict[str, float]:
+    """The given ones of x, y, z, roll, pitch, yaw."""
+    return {name: value for name, value in values.items() if value is not None}

@@ -30,6 +30,13 @@ def say(text: str = "") -> None:
     print(text, flush=True)
 
 
+def say_version() -> None:
+    """Which Cartwheel this is."""
+    import cartwheel
+
+    say(f"cartwheel {cartwheel.__version__}")
+
+
 def note(text: str) -> None:
     """A line about the result."""
     print(text, file=sys.stderr, flush=True)
@@ -55,6 +62,14 @@ def print_diagnostic(diagnostic: Diagnostic) -> None:
         print_warning(f"{place}{diagnostic.message}")
     else:
         print_error(f"{place}{diagnostic.message}")
+
+
+def say_table(rows: Sequence[Sequence[str]]) -> None:
+    """`table`, its head dim."""
+    head, *lines = table(rows).splitlines()
+    say(paint(head, "dim"))
+    for line in lines:
+        say(line)
 
 
 def table(rows: Iterable[Sequence[str]], *, indent: str = "") -> str:

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from cartwheel.cli import arguments
-from cartwheel.cli.console import say
+from cartwheel.cli.console import say_version
 
 
 class Format(enum.StrEnum):
@@ -55,6 +55,4 @@ def convert(
 
 def version() -> None:
     """Print the version."""
-    import cartwheel
-
-    say(f"cartwheel {cartwheel.__version__}")
+    say_version()

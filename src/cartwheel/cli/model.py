@@ -34,12 +34,11 @@ def spawn(
     from cartwheel.cli.commands import models as work
 
     file, values = arguments.split(words)
-    place = arguments.pose(x=x, y=y, z=z, roll=roll, pitch=pitch, yaw=yaw)
     work.spawn(
         sim,
         arguments.needed(file),
         values,
-        place=place or {},
+        place=arguments.place(x=x, y=y, z=z, roll=roll, pitch=pitch, yaw=yaw),
         model=model,
         package_path=package_path or [],
     )

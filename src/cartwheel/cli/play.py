@@ -19,7 +19,7 @@ def add_to(app: typer.Typer) -> None:
 def play(
     file: Annotated[Path, typer.Argument(metavar="FILE", show_default=False)],
     *,
-    headless: Annotated[bool, typer.Option("--headless", help="Without the viewer.")] = False,
+    headless: arguments.Headless = False,
     speed: Annotated[
         str, typer.Option(metavar="FACTOR|max", help="1 is as it was; max as fast as it can.")
     ] = "1",
@@ -27,15 +27,13 @@ def play(
         float, typer.Option("--start", metavar="SECONDS", help="After the beginning.")
     ] = 0.0,
     loop: Annotated[bool, typer.Option("--loop", help="Begin again at the end.")] = False,
-    paused: Annotated[bool, typer.Option("--paused", help="Begin with time held.")] = False,
+    paused: arguments.Paused = False,
     world: Annotated[
         str | None, typer.Option(metavar="FILE|NAME", help="Things to show around the robot.")
     ] = None,
     host: arguments.Host = "127.0.0.1",
     port: arguments.Port = 8080,
-    open_browser: Annotated[
-        bool | None, typer.Option("--open/--no-open", help="Open the browser; on a desktop it is.")
-    ] = None,
+    open_browser: arguments.OpenBrowser = None,
     package_path: arguments.PackagePath = None,
 ) -> None:
     """Play a recording, in the browser and on topics. FILE is .mcap, .bag, .db3 or a folder."""

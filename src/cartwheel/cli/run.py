@@ -22,21 +22,19 @@ def run(
     world: Annotated[
         str | None, typer.Option(metavar="FILE|NAME", help="A world's file, or a shipped one.")
     ] = None,
-    headless: Annotated[bool, typer.Option("--headless", help="Without the viewer.")] = False,
+    headless: arguments.Headless = False,
     speed: Annotated[
         str, typer.Option(metavar="FACTOR|max", help="1 is real time; max as fast as it can.")
     ] = "1",
     seconds: Annotated[
         float | None, typer.Option("--for", metavar="SECONDS", help="Of simulated time, then end.")
     ] = None,
-    paused: Annotated[bool, typer.Option("--paused", help="Begin with time held.")] = False,
+    paused: arguments.Paused = False,
     seed: Annotated[int, typer.Option(min=0, help="Of all noise.")] = 0,
     strict: Annotated[bool, typer.Option("--strict", help="Make every warning an error.")] = False,
     host: arguments.Host = "127.0.0.1",
     port: arguments.Port = 8080,
-    open_browser: Annotated[
-        bool | None, typer.Option("--open/--no-open", help="Open the browser; on a desktop it is.")
-    ] = None,
+    open_browser: arguments.OpenBrowser = None,
     x: arguments.X = None,
     y: arguments.Y = None,
     z: arguments.Z = None,
@@ -127,7 +125,7 @@ def run(
             host=host,
             port=port,
             open_browser=open_browser,
-            place=arguments.pose(x=x, y=y, z=z, roll=roll, pitch=pitch, yaw=yaw),
+            place=arguments.place(x=x, y=y, z=z, roll=roll, pitch=pitch, yaw=yaw),
             model=model,
             package_path=tuple(package_path or ()),
             controllers=tuple(controllers or ()),

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import itertools
 import re
 import threading
 from collections.abc import Callable, Sequence
@@ -20,6 +19,7 @@ from cartwheel.gazebo.requests import Answer, Offer, number, pose
 from cartwheel.geometry import Pose
 from cartwheel.session import Session
 from cartwheel.simulation import RunState
+from cartwheel.simulation.naming import free_name
 
 T = TypeVar("T")
 _ASIDE = r"(?:\s|<\?(?:(?!\?>).)*\?>|<!--(?:(?!-->).)*-->)*"
@@ -119,11 +119,7 @@ class Spawning:
             taken = self._simulation.models
             wanted = name or description.name
             if wanted in taken:
-                free = next(
-                    other
-                    for count in itertools.count(1)
-                    if (other := f"{wanted}_{count}") not in taken
-                )
+                free = free_name(wanted, taken)
                 if not rename:
                     raise WorldError(
                         f'Failure - model name "{wanted}" already exists',

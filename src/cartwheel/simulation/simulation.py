@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
@@ -15,6 +14,7 @@ from cartwheel.simulation.clock import Schedule, Task, always, to_ns
 from cartwheel.simulation.engine import Engine
 from cartwheel.simulation.forces import Forces
 from cartwheel.simulation.guard import Guard
+from cartwheel.simulation.naming import free_name
 from cartwheel.simulation.observing import Observer
 from cartwheel.simulation.part import Part
 from cartwheel.simulation.placing import place_model, with_mimics
@@ -502,7 +502,7 @@ class Simulation(Run):
             raise WorldError(
                 f'a model named "{name}" stands in the world already',
                 origin=description.origin,
-                hint=f'Give it another with --model, such as "{self._free_name(name)}".',
+                hint=f'Give it another with --model, such as "{free_name(name, self._residents)}".',
             )
         entry = ModelEntry(name=name, description=description, pose=pose or description.pose)
         part = Part(self.engine, entry, namespace=namespace, frame_prefix=frame_prefix)
@@ -561,11 +561,6 @@ class Simulation(Run):
     def _inhabitants(self) -> tuple[Resident, ...]:
         """The world itself, and its models."""
         return (self._house, *self._residents.values())
-
-    def _free_name(self, name: str) -> str:
-        return next(
-            f"{name}_{i}" for i in itertools.count(1) if f"{name}_{i}" not in self._residents
-        )
 
     def _compile(self, residents: dict[str, Resident]) -> None:
         """Compiles a new set of models and carries over the state of those that stay."""

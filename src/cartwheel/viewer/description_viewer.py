@@ -13,21 +13,23 @@ from cartwheel.description.model import Joint, RobotDescription
 from cartwheel.geometry import Pose, to_wxyz
 from cartwheel.viewer.display import Display
 from cartwheel.viewer.model_view import ModelView, footprint
-from cartwheel.viewer.page import Page, check_port
-from cartwheel.viewer.panels.base import escape
+from cartwheel.viewer.page import Page
+from cartwheel.viewer.panels.base import escape, facts, rows_html
 from cartwheel.viewer.panels.notes import notes_html
+from cartwheel.viewer.panels.view import LABELS
 from cartwheel.viewer.scene_view import add_grid, set_stage
 
-_LABELS = {
-    "visual": "Visual shapes",
-    "collision": "Collision shapes",
-    "transparent": "Transparent",
-    "wireframe": "Wireframe",
-    "axes": "Link frames",
-    "names": "Link names",
-    "inertia": "Centre of mass, inertia",
-    "grid": "Grid",
-}
+_TOGGLES = (
+    "visual",
+    "collision",
+    "transparent",
+    "wireframe",
+    "axes",
+    "names",
+    "inertia",
+    "grid",
+)
+"""Fields of `Display`."""
 _MOVING = ("revolute", "continuous", "prismatic")
 
 
@@ -46,13 +48,9 @@ class DescriptionViewer:
     def __init__(
         self, description: RobotDescription, *, host: str = "127.0.0.1", port: int = 8080
     ) -> None:
-        check_port(host, port)
         self._description = description
         self._stopped = threading.Event()
         self._page = Page(host, port, title=f"Cartwheel: {description.name}")
-        host = "127.0.0.1" if host in ("0.0.0.0", "") else host  # noqa: S104
-        self.url = f"http://{host}:{self._page.port}"
-        """Where the page is."""
         self._display = Display()
         self._sliders: dict[str, Any] = {}
         set_stage(self._page)
@@ -66,6 +64,11 @@ class DescriptionViewer:
         self._build()
         self._model.show(self._display)
         self._move()
+
+    @property
+    def url(self) -> str:
+        """Where the page is."""
+        return self._page.url
 
     def run(self) -> None:
         """Answers the sliders until `close`."""
@@ -94,13 +97,14 @@ class DescriptionViewer:
         gui, page, icons = self._page.gui, self._page, self._page.viser.Icon
         gui.main_panel.dock_right()
         gui.main_panel.set_width(330)
-        gui.add_html(_summary(self._description))
+        rows = {"name": escape(self._description.name)} | facts(self._description)
+        gui.add_html(f'<div class="cw">{rows_html(rows)}</div>')
         tabs = gui.add_tab_group()
         with tabs.add_tab("Joints", icons.ADJUSTMENTS):
             self._build_joints()
         with tabs.add_tab("View", icons.EYE):
-            for name, label in _LABELS.items():
-                box = gui.add_checkbox(label, initial_value=getattr(self._display, name))
+            for name in _TOGGLES:
+                box = gui.add_checkbox(LABELS[name], initial_value=getattr(self._display, name))
                 box.on_update(page.do(self._toggle, name, box))
         with tabs.add_tab("Warnings", icons.ALERT_TRIANGLE):
             gui.add_html(notes_html(self._description.diagnostics))
@@ -152,16 +156,3 @@ def limits_of(joint: Joint) -> tuple[float, float]:
     low = -reach if joint.axis.lower is None else joint.axis.lower
     high = reach if joint.axis.upper is None else joint.axis.upper
     return (low, high) if high > low else (low - reach, low + reach)
-
-
-def _summary(description: RobotDescription) -> str:
-    rows = {
-        "name": escape(description.name),
-        "mass": "fixed" if description.static else f"{description.mass:.4g} kg",
-        "parts": f"{len(description.links)} links, {len(description.joints)} joints",
-        "file": escape(description.origin.file.rsplit("/", 1)[-1]),
-    }
-    cells = "".join(
-        f'<span class="cw-dim">{name}</span><span>{value}</span>' for name, value in rows.items()
-    )
-    return f'<div class="cw cw-properties">{cells}</div>'

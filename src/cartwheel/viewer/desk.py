@@ -78,11 +78,11 @@ class Desk:
             (panel.watch if watched else panel.leave)()
 
     def build(self) -> list[Panel]:
-        """Makes the panels."""
+        """Makes all panels."""
         gui, icons = self.page.gui, self.page.viser.Icon
         gui.main_panel.dock_right()
         gui.main_panel.set_width(320)
-        panels: list[Panel] = [ClockPanel(self), BumperPanel(self), DrivePanel(self)]
+        panels = self.build_main()
 
         camera = gui.add_panel()
         with camera.add_tab("Camera", icons.CAMERA):
@@ -90,13 +90,7 @@ class Desk:
         camera.dock_below(gui.main_panel)
 
         left = gui.add_panel()
-        tab: Any = left.add_tab("World", icons.WORLD)
-        with tab:
-            world = WorldPanel(self, tab)
-            self.scene.selected = world.select
-            panels.append(world)
-        with left.add_tab("Insert", icons.PLUS):
-            panels.append(InsertPanel(self))
+        panels += self.build_left(left)
         with left.add_tab("View", icons.EYE):
             panels.append(ViewPanel(self))
         left.dock_left()
@@ -112,3 +106,18 @@ class Desk:
         lower.dock_below(left)
         panels.append(Scans(self))
         return panels
+
+    def build_main(self) -> list[Panel]:
+        """The panels of the main column, above the camera."""
+        return [ClockPanel(self), BumperPanel(self), DrivePanel(self)]
+
+    def build_left(self, left: Any) -> list[Panel]:
+        """The panels to the left, above the toggles of the scene."""
+        icons = self.page.viser.Icon
+        tab = left.add_tab("World", icons.WORLD)
+        with tab:
+            world = WorldPanel(self, tab)
+            self.scene.selected = world.select
+        with left.add_tab("Insert", icons.PLUS):
+            insert = InsertPanel(self)
+        return [world, insert]

@@ -23,6 +23,7 @@ from cartwheel.viewer.shapes import (
     Surface,
     bounds_of,
     merge,
+    place,
     surfaces_of_collision,
     surfaces_of_visual,
     triangles_of,
@@ -67,18 +68,14 @@ class ModelView:
         self._canonical = next(
             i for i, link in enumerate(description.links) if link.name == description.canonical_link
         )
+        self.size = _size_of(description)
+        """m, of its largest extent: for things drawn in proportion."""
         self._frames = [self._frame(link) for link in description.links]
         self._shown = np.full((len(self._frames), 7), np.nan)
         self._layers: dict[str, list[tuple[Any, float]]] = {}
         self._grounds: list[Any] = []
         self._solids: list[Any] = []
         self._clickable = True
-        self._size = _size_of(description)
-
-    @property
-    def size(self) -> float:
-        """m, of its largest extent: for things drawn in proportion."""
-        return self._size
 
     def path(self, link: str) -> str:
         """The scene node of a link's frame."""
@@ -202,7 +199,7 @@ class ModelView:
         )
         ball = self._scene.add_icosphere(
             f"{self.path(link.name)}/centre_of_mass",
-            radius=max(0.004, 0.02 * self._size),
+            radius=max(0.004, 0.02 * self.size),
             color=(120, 40, 170),
             position=link.inertial.pose.position,
             cast_shadow=False,
@@ -244,7 +241,7 @@ class ModelView:
         return handle, alpha
 
     def _frame(self, link: Link) -> Any:
-        length = min(0.4, max(0.04, 0.18 * _size_of(self.description)))
+        length = min(0.4, max(0.04, 0.18 * self.size))
         return self._scene.add_frame(
             self.path(link.name),
             show_axes=False,
@@ -302,15 +299,7 @@ def bounds(description: RobotDescription) -> tuple[Any, Any] | None:
                 found = surfaces_of_collision(collision, COLLISION)
             except CartwheelError:
                 continue  # said already by the view that draws it
-            turn = matrix_from_quat(link.pose.orientation).T
-            corners += [
-                Surface(
-                    (s.vertices @ turn + np.asarray(link.pose.position)).astype(np.float32),
-                    s.faces,
-                    s.rgba,
-                )
-                for s in found
-            ]
+            corners += [Surface(place(link.pose, s.vertices), s.faces, s.rgba) for s in found]
     return bounds_of(corners)
 
 

@@ -49,6 +49,9 @@ class Page:
         port: 0 takes any that is free.
         title: Of the browser's tab.
         keys: That are commands; every other key counts as ``k``.
+
+    Raises:
+        ControlError: The port cannot be had.
     """
 
     def __init__(self, host: str, port: int, *, title: str, keys: tuple[str, ...] = ()) -> None:
@@ -59,7 +62,7 @@ class Page:
         check_port(host, port)
         self.viser = viser
         self.server: Any = _quietly(lambda: viser.ViserServer(host, port, verbose=False))
-        self.port = int(self.server.get_port())
+        self._host = host
         self.gui: Any = self.server.gui
         self.scene: Any = self.server.scene
         self.clients: frozenset[int] = frozenset()
@@ -87,6 +90,12 @@ class Page:
         lightly.on_trigger(self.on(self._draw_lightly))
         self.server.on_client_connect(self.on(self._connected))
         self.server.on_client_disconnect(self.on(self._disconnected))
+
+    @property
+    def url(self) -> str:
+        """Where it is."""
+        host = "127.0.0.1" if self._host in ("0.0.0.0", "") else self._host  # noqa: S104
+        return f"http://{host}:{self.server.get_port()}"
 
     # -- work
 

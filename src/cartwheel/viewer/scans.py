@@ -14,7 +14,7 @@ from cartwheel.graph import TopicInfo
 from cartwheel.messages import nanoseconds
 from cartwheel.simulation.snapshot import Snapshot
 from cartwheel.viewer.panels.base import Every, Panel
-from cartwheel.viewer.panels.camera import Tap
+from cartwheel.viewer.tap import Tap
 
 if TYPE_CHECKING:
     from cartwheel.viewer.desk import Desk

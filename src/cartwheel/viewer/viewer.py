@@ -70,8 +70,7 @@ class Viewer:
         if self._failure is not None:
             raise ControlError(f"the viewer did not start: {self._failure}") from self._failure
         assert self._page is not None
-        host = "127.0.0.1" if self._host in ("0.0.0.0", "") else self._host  # noqa: S104
-        return f"http://{host}:{self._page.port}"
+        return self._page.url
 
     def start(self, pacer: Pacer) -> None:
         """Serves the page and shows what `pacer` runs."""

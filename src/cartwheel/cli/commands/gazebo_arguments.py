@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from pathlib import PurePath
 from typing import NoReturn
 
+from cartwheel.cli.console import print_warning, say, say_version
 from cartwheel.errors import CartwheelError
 
 WORLD = "worlds/empty.world"
@@ -25,15 +26,10 @@ OWN_PLUGINS = frozenset(
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class ServerArguments:
-    """What gzserver was asked for."""
+class ClientArguments:
+    """What gzclient was asked for."""
 
-    world: str = WORLD
-    paused: bool = False
     verbose: bool = False
-    seed: int = 0
-    iterations: int | None = None
-    """Steps to make, then end."""
     ros: tuple[str, ...] = ()
     """``name:=value``, for the ROS node."""
     notes: tuple[str, ...] = ()
@@ -42,16 +38,27 @@ class ServerArguments:
     """The text of ``--help``, where it was asked for."""
     version: bool = False
 
+    def tell(self) -> bool:
+        """Says what does not apply; returns whether no more than a text was asked for."""
+        if self.help:
+            say(self.help)
+        elif self.version:
+            say_version()
+        else:
+            for note in self.notes:
+                print_warning(note)
+        return bool(self.help or self.version)
+
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class ClientArguments:
-    """What gzclient was asked for."""
+class ServerArguments(ClientArguments):
+    """What gzserver was asked for."""
 
-    verbose: bool = False
-    ros: tuple[str, ...] = ()
-    notes: tuple[str, ...] = ()
-    help: str = ""
-    version: bool = False
+    world: str = WORLD
+    paused: bool = False
+    seed: int = 0
+    iterations: int | None = None
+    """Steps to make, then end."""
 
 
 class _Parser(argparse.ArgumentParser):

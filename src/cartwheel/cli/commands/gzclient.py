@@ -13,7 +13,7 @@ from urllib.parse import urlsplit
 from cartwheel.cli import interrupts
 from cartwheel.cli.commands.desktop import has_display
 from cartwheel.cli.commands.gazebo_arguments import parse_client
-from cartwheel.cli.console import note, paint, print_warning, say
+from cartwheel.cli.console import note, paint, say
 from cartwheel.control import ControlClient, Running, find, running
 from cartwheel.errors import ControlError
 
@@ -31,16 +31,8 @@ def show(words: Sequence[str]) -> None:
         CartwheelError: No simulation runs, or it has no page.
     """
     arguments = parse_client(words)
-    if arguments.help:
-        say(arguments.help)
+    if arguments.tell():
         return
-    if arguments.version:
-        import cartwheel
-
-        say(f"cartwheel {cartwheel.__version__}")
-        return
-    for text in arguments.notes:
-        print_warning(text)
     with contextlib.suppress(interrupts.Interrupted):  # The way to end it.
         _stay(wait_for_simulation(os.environ.get("ROS_MASTER_URI")))
 

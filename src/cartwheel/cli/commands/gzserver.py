@@ -10,7 +10,6 @@ from cartwheel.cli.commands.gazebo_arguments import ServerArguments, parse_serve
 from cartwheel.cli.commands.gazebo_paths import adopt_exports, find_world
 from cartwheel.cli.commands.ports import free_port
 from cartwheel.cli.commands.run import Options, simulate
-from cartwheel.cli.console import print_warning, say
 
 NODE = "gazebo"
 """Of ROS, where ``__name:=`` gives no other."""
@@ -27,16 +26,8 @@ def serve(program: str, words: Sequence[str]) -> None:
         CartwheelError: Whatever is wrong with the options or the world.
     """
     arguments = parse_server(program, words)
-    if arguments.help:
-        say(arguments.help)
+    if arguments.tell():
         return
-    if arguments.version:
-        import cartwheel
-
-        say(f"cartwheel {cartwheel.__version__}")
-        return
-    for note in arguments.notes:
-        print_warning(note)
     environment = dict(os.environ)
     adopt_exports(environment)
     os.environ.update(environment)

@@ -8,7 +8,7 @@ from typing import Any
 
 from cartwheel.bridges.recording.reading import Recording, open_recording, span_of
 from cartwheel.cli.commands.report import size_text
-from cartwheel.cli.console import paint, print_warning, say, table
+from cartwheel.cli.console import paint, print_warning, say, say_table
 
 _SINCE_1970 = 10**17
 """ns: recordings that begin later were stamped by a wall clock."""
@@ -78,10 +78,7 @@ def _print(path: Path, recording: Recording) -> None:
         rate = "latched" if topic.latched else f"{topic.rate:.4g} Hz" if topic.rate else ""
         rows.append([topic.name, topic.type.replace("/msg/", "/"), str(topic.count), rate])
     say()
-    head, *lines = table(rows).splitlines()
-    say(paint(head, "dim"))
-    for line in lines:
-        say(line)
+    say_table(rows)
     if not recording.complete:
         print_warning(
             "its end is missing: whoever wrote it was interrupted. What is listed is there"

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from cartwheel.cli.commands.clients import connect
-from cartwheel.cli.console import note, paint, print_warning, say, table
+from cartwheel.cli.console import note, print_warning, say, say_table
 
 
 def spawn(
@@ -60,7 +60,4 @@ def print_list(sim: int | None) -> None:
         rows.append(
             [one["name"], f"{x:.3f}", f"{y:.3f}", f"{z:.3f}", f"{yaw:.0f}°", mass, one["file"]]
         )
-    head, *lines = table(rows).splitlines()
-    say(paint(head, "dim"))
-    for line in lines:
-        say(line)
+    say_table(rows)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+from typing import TYPE_CHECKING
 
 from cartwheel.cli.commands.desktop import is_desktop
 from cartwheel.cli.commands.report import Report
@@ -11,6 +12,9 @@ from cartwheel.errors import CartwheelError
 from cartwheel.session import Session
 from cartwheel.simulation.pacing import Pacer
 from cartwheel.viewer import Viewer
+
+if TYPE_CHECKING:
+    from cartwheel.viewer.desk import Desk
 
 
 class Page:
@@ -23,6 +27,7 @@ class Page:
         host: Address to listen on.
         port: Port to listen on.
         open_browser: Whether to open it; None does on a desktop.
+        desk: Makes its panels; None makes those of a simulation.
     """
 
     def __init__(
@@ -34,12 +39,13 @@ class Page:
         host: str,
         port: int,
         open_browser: bool | None,
+        desk: type[Desk] | None = None,
     ) -> None:
         self._session = session
         self._server = server
         self._open = is_desktop() if open_browser is None else open_browser
         self._report = report
-        self._viewer = Viewer(session, host=host, port=port)
+        self._viewer = Viewer(session, host=host, port=port, desk=desk)
         self._failure: CartwheelError | None = None
 
     def start(self, pacer: Pacer) -> None:

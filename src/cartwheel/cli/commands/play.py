@@ -3,22 +3,18 @@
 from __future__ import annotations
 
 import math
-import threading
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn, cast
 
 from cartwheel.cli import interrupts
-from cartwheel.cli.commands.desktop import is_desktop
 from cartwheel.cli.commands.ports import refuse_taken
 from cartwheel.cli.commands.report import Report
 from cartwheel.cli.console import say
 from cartwheel.errors import CartwheelError, RecordingError
 
 if TYPE_CHECKING:
-    from cartwheel.control.server import ControlServer
-    from cartwheel.playback import Player
     from cartwheel.session import Session
     from cartwheel.simulation.pacing import Pacer
 
@@ -84,36 +80,25 @@ def play(options: Options) -> None:
             say(f"plays   {options.file}, {length:.3f} s, {len(recording.topics)} topics")
             for diagnostic in played.diagnostics:
                 report.diagnostic(diagnostic)
+            page = None
             if not options.headless:
-                _show(session, player, server, options, report)
+                from cartwheel.cli.commands.page import Page
+                from cartwheel.viewer.play_desk import PlayDesk
+
+                page = Page(
+                    session,
+                    server,
+                    report,
+                    host=options.host,
+                    port=options.port,
+                    open_browser=options.open_browser,
+                    desk=PlayDesk,
+                )
+                page.start(cast("Pacer", player))
             player.run()
+            if page is not None:
+                page.raise_failure()
     recording.close()
-
-
-def _show(
-    session: Session, player: Player, server: ControlServer, options: Options, report: Report
-) -> None:
-    from cartwheel.viewer import Viewer
-    from cartwheel.viewer.play_desk import PlayDesk
-
-    viewer = Viewer(session, host=options.host, port=options.port, desk=PlayDesk)
-    viewer.start(cast("Pacer", player))
-
-    def announce() -> None:
-        try:
-            url = viewer.url
-        except CartwheelError as error:
-            report.failed(error)
-            player.post(player.stop)
-            return
-        server.announce(url=url, port=options.port)
-        report.address(url)
-        if is_desktop() if options.open_browser is None else options.open_browser:
-            import webbrowser
-
-            webbrowser.open(url)
-
-    threading.Thread(target=announce, name="announce", daemon=True).start()
 
 
 def _refuse(_: Path, __: Mapping[str, str], ___: Sequence[Path]) -> NoReturn:

@@ -12,7 +12,6 @@ from cartwheel.cli.console import (
     is_terminal,
     paint,
     print_diagnostic,
-    print_error,
     print_warning,
     say,
     table,
@@ -94,10 +93,6 @@ class Report:
         self._line("viewer", paint(url, "bold", "cyan"))
         if self._decorated:
             say(paint("\nCtrl-C ends.", "dim"))
-
-    def failed(self, error: Exception) -> None:
-        """Why something did not come up."""
-        print_error(str(error))
 
     def joined(self, node: str, master: str, *, own: bool) -> None:
         """Which node of ROS 1 this is, and of which master."""

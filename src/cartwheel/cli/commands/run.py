@@ -6,7 +6,7 @@ import contextlib
 import gc
 import time
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
@@ -48,7 +48,7 @@ class Options:
     host: str = "127.0.0.1"
     port: int = 8080
     open_browser: bool | None = None
-    place: Mapping[str, float] | None = None
+    place: Mapping[str, float] = field(default_factory=dict)
     """Some of x, y, z, roll, pitch, yaw."""
     model: str | None = None
     package_path: tuple[Path, ...] = ()
@@ -105,7 +105,7 @@ def simulate(options: Options) -> None:
             "--controllers is for a robot, and this is a world", hint="Name the robot's file."
         )
     if robot is not None:
-        pose = placed(robot.pose, options.place or {})
+        pose = placed(robot.pose, options.place)
         name = session.spawn(robot, name=options.model, pose=pose, controllers=options.controllers)
     where = world_title(world)
     title = f"{name} in {where}" if name else where

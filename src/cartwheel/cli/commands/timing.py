@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from typing import Any
 
 from cartwheel.cli.commands.clients import connect
@@ -19,8 +20,6 @@ def ask(sim: int | None, request: str, **parameters: Any) -> None:
 
 def print_status(sim: int | None) -> None:
     """What runs; all of it where several do and none is named."""
-    import os
-
     known = running()
     if sim is None and len(known) > 1 and VARIABLE not in os.environ:
         for entry in known:

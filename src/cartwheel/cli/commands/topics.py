@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import re
 import sys
 import time
@@ -10,7 +11,7 @@ from typing import Any
 
 from cartwheel.cli import interrupts
 from cartwheel.cli.commands.clients import connect, parse_yaml
-from cartwheel.cli.console import note, paint, print_warning, say, table
+from cartwheel.cli.console import note, print_warning, say, say_table
 from cartwheel.control import ControlClient, Sample
 from cartwheel.errors import CartwheelError, GraphError, suggestion
 
@@ -28,10 +29,7 @@ def print_list(sim: int | None, *, verbose: bool) -> None:
         rate = f"{one['rate']:g} Hz" if one["rate"] else ""
         publishers = ", ".join(one["publishers"]) or "-"
         rows.append([one["name"], one["type"], rate, publishers, ", ".join(one["readers"])])
-    head, *lines = table(rows).splitlines()
-    say(paint(head, "dim"))
-    for line in lines:
-        say(line)
+    say_table(rows)
 
 
 def print_info(sim: int | None, topic: str) -> None:
@@ -91,8 +89,6 @@ def _ended(shown: int, count: int | None) -> None:
 
 def ends_quietly(count: int | None) -> Any:
     """An endless command is ended by Ctrl-C as it is meant to be: with status 0."""
-    import contextlib
-
     if count is not None:
         return contextlib.nullcontext()
     return contextlib.suppress(interrupts.Interrupted)

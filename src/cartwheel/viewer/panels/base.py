@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import html
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
+from cartwheel.description.model import RobotDescription
 from cartwheel.graph import TopicInfo
 from cartwheel.simulation.snapshot import Snapshot
 
@@ -66,6 +67,23 @@ class Every:
 def escape(text: object) -> str:
     """Text as HTML shows it: names come from users' files."""
     return html.escape(str(text), quote=True)
+
+
+def rows_html(rows: Mapping[str, str]) -> str:
+    """Names and values, which are HTML already, side by side."""
+    cells = "".join(
+        f'<span class="cw-dim">{name}</span><span>{value}</span>' for name, value in rows.items()
+    )
+    return f'<div class="cw-properties">{cells}</div>'
+
+
+def facts(description: RobotDescription) -> dict[str, str]:
+    """What a description is, for `rows_html`."""
+    return {
+        "mass": "fixed" if description.static else f"{description.mass:.4g} kg",
+        "parts": f"{len(description.links)} links, {len(description.joints)} joints",
+        "file": escape(description.origin.file.rsplit("/", 1)[-1]),
+    }
 
 
 def of_type(topics: Sequence[TopicInfo], type_name: str) -> list[str]:

@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cartwheel.graph import Graph, TopicInfo
+from cartwheel.graph import TopicInfo
 from cartwheel.messages import nanoseconds
 from cartwheel.simulation.snapshot import Snapshot
 from cartwheel.viewer.panels.base import Every, Panel, escape, of_type
+from cartwheel.viewer.tap import Tap
 
 if TYPE_CHECKING:
     from cartwheel.viewer.desk import Desk
@@ -40,29 +41,6 @@ _LAYOUTS = {
 _DEPTHS = ("32FC1", "16UC1")
 _DARKEST = 30
 """Brightness of the furthest depth: what is black is none."""
-
-
-class Tap:
-    """Keeps the newest message of a topic and counts them all.
-
-    Args:
-        graph: To subscribe to.
-        topic: Its name.
-    """
-
-    def __init__(self, graph: Graph, topic: str) -> None:
-        self.topic = topic
-        self.newest: Any = None
-        self.count = 0
-        self._subscription = graph.subscribe(topic, self._take, node="viewer")
-
-    def _take(self, message: Any) -> None:
-        self.newest = message
-        self.count += 1
-
-    def close(self) -> None:
-        """Ends the subscription."""
-        self._subscription.close()
 
 
 class CameraPanel(Panel):

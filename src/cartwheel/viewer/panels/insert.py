@@ -11,6 +11,7 @@ from cartwheel.description.model import RobotDescription
 from cartwheel.description.packages import share
 from cartwheel.errors import CartwheelError, DescriptionError
 from cartwheel.geometry import Pose, quat_from_rpy, rotate
+from cartwheel.simulation.naming import free_name
 from cartwheel.viewer.model_view import footprint
 from cartwheel.viewer.panels.base import Panel
 
@@ -95,16 +96,6 @@ def palette(folder: Path) -> dict[str, Path]:
     found = {path.stem: path for pattern in ("*.urdf", "*.sdf") for path in folder.glob(pattern)}
     found |= {path.parent.name: path for path in folder.glob("*/model.sdf")}
     return {name: found[name] for name in sorted(found) if name not in _SCENERY}
-
-
-def free_name(name: str, taken: tuple[str, ...]) -> str:
-    """`name`, or with the first number that makes it a new one."""
-    if name not in taken:
-        return name
-    number = 1
-    while f"{name}_{number}" in taken:
-        number += 1
-    return f"{name}_{number}"
 
 
 def free_place(

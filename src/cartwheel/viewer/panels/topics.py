@@ -9,7 +9,7 @@ from cartwheel.graph import TopicInfo
 from cartwheel.messages import to_yaml
 from cartwheel.simulation.snapshot import Snapshot
 from cartwheel.viewer.panels.base import Every, Panel, escape
-from cartwheel.viewer.panels.camera import Tap
+from cartwheel.viewer.tap import Tap
 
 if TYPE_CHECKING:
     from cartwheel.viewer.desk import Desk

@@ -12,7 +12,7 @@ from cartwheel.viewer.panels.base import Panel
 if TYPE_CHECKING:
     from cartwheel.viewer.desk import Desk
 
-_LABELS = {
+LABELS = {
     "visual": "Visual shapes",
     "collision": "Collision shapes",
     "transparent": "Transparent",
@@ -36,9 +36,9 @@ class ViewPanel(Panel):
     def __init__(self, desk: Desk) -> None:
         super().__init__(desk)
         display = desk.scene.display
-        assert set(_LABELS) == {field.name for field in dataclasses.fields(display)}
+        assert set(LABELS) == {field.name for field in dataclasses.fields(display)}
         self._boxes = {}
-        for name, label in _LABELS.items():
+        for name, label in LABELS.items():
             box = self.gui.add_checkbox(label, initial_value=getattr(display, name))
             box.on_update(self.page.on(self._setter(name)))
             self._boxes[name] = box

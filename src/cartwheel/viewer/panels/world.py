@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from cartwheel.geometry import Pose, from_wxyz, to_wxyz
 from cartwheel.simulation.snapshot import PlacedModel, Snapshot
-from cartwheel.viewer.panels.base import Every, Panel, escape
+from cartwheel.viewer.panels.base import Every, Panel, escape, facts, rows_html
 
 if TYPE_CHECKING:
     from cartwheel.viewer.desk import Desk
@@ -155,19 +155,9 @@ class WorldPanel(Panel):
 
 def properties_html(placed: PlacedModel, pose: Pose) -> str:
     """A model's pose, mass and parts."""
-    description = placed.description
     roll, pitch, yaw = (math.degrees(angle) for angle in pose.rpy)
     rows = {
         "position": f"{pose.x:.3f}, {pose.y:.3f}, {pose.z:.3f} m",
         "roll, pitch, yaw": f"{roll:.1f}, {pitch:.1f}, {yaw:.1f}°",
-        "mass": "fixed" if description.static else f"{description.mass:.3g} kg",
-        "parts": f"{len(description.links)} links, {len(description.joints)} joints",
-        "file": escape(description.origin.file.rsplit("/", 1)[-1]),
-    }
-    cells = "".join(
-        f'<span class="cw-dim">{name}</span><span>{value}</span>' for name, value in rows.items()
-    )
-    return (
-        f'<div class="cw" data-model="{escape(placed.name)}">'
-        f'<div class="cw-properties">{cells}</div></div>'
-    )
+    } | facts(placed.description)
+    return f'<div class="cw" data-model="{escape(placed.name)}">{rows_html(rows)}</div>'
