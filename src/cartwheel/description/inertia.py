@@ -6,12 +6,24 @@ import math
 
 import numpy as np
 
-from cartwheel.geometry import Vec3
+from cartwheel.geometry import Array, Vec3
 
 TOLERANCE = 1e-3
 """Relative: files state three or four digits, and thin plates lie on the edge exactly."""
 _THINNEST = 1e-6
 """Relative: the moment of a rod about itself, which is stated as 0."""
+
+
+def tensor(diagonal: Vec3, products: Vec3) -> Array:
+    """The inertia matrix, shape (3, 3).
+
+    Args:
+        diagonal: ixx, iyy, izz.
+        products: ixy, ixz, iyz.
+    """
+    ixx, iyy, izz = diagonal
+    ixy, ixz, iyz = products
+    return np.array([[ixx, ixy, ixz], [ixy, iyy, iyz], [ixz, iyz, izz]])
 
 
 def principal_moments(diagonal: Vec3, products: Vec3) -> Vec3:
@@ -75,15 +87,11 @@ def made_possible(diagonal: Vec3, products: Vec3) -> tuple[Vec3, Vec3]:
     Returns:
         As the arguments.
     """
-    ixx, iyy, izz = diagonal
-    ixy, ixz, iyz = products
-    tensor = np.array([[ixx, ixy, ixz], [ixy, iyy, iyz], [ixz, iyz, izz]])
-    moments, axes = np.linalg.eigh(tensor)
+    moments, axes = np.linalg.eigh(tensor(diagonal, products))
     moments = np.maximum(moments, _THINNEST * moments[2])
     missing = moments[2] - moments[0] - moments[1]
     if missing > 0:
         # Half to each: a plate's two smaller moments become more alike, as those of most are.
         moments = moments + np.array([missing / 2, missing / 2, 0.0])
-    tensor = (axes * moments) @ axes.T
-    t = tensor.tolist()
+    t = ((axes * moments) @ axes.T).tolist()
     return (t[0][0], t[1][1], t[2][2]), (t[0][1], t[0][2], t[1][2])

@@ -233,6 +233,16 @@ class Inertial:
     """kg m²."""
     origin: Origin
 
+    @property
+    def diagonal(self) -> Vec3:
+        """ixx, iyy, izz."""
+        return self.ixx, self.iyy, self.izz
+
+    @property
+    def products(self) -> Vec3:
+        """ixy, ixz, iyz."""
+        return self.ixy, self.ixz, self.iyz
+
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class CameraIntrinsics:
@@ -374,6 +384,11 @@ class Joint:
     preserve_fixed: bool = False
     implicit_spring_damper: bool = False
     origin: Origin
+
+    @property
+    def drivable(self) -> bool:
+        """Whether it has one degree of freedom, to be driven and told of: no ball, no screw."""
+        return self.type in ("revolute", "continuous", "prismatic")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

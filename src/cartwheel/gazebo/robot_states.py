@@ -20,7 +20,6 @@ RATE = 50.0
 """Hz of simulation time at which moving joints are told."""
 _LOOK = 10.0
 """Hz of simulation time at which new models are looked for."""
-_ONE_AXIS = ("revolute", "continuous", "prismatic", "screw")
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,7 +115,7 @@ class RobotStates:
             moving = tuple(
                 joint
                 for joint in joints
-                if joint.type in _ONE_AXIS and joint.name not in by_plugins
+                if (joint.drivable or joint.type == "screw") and joint.name not in by_plugins
             )
             self._told[name] = _Told(description, prefix, moving, children)
             fixed = [joint for joint in joints if joint.type == "fixed"]

@@ -11,8 +11,6 @@ from cartwheel.plugins.base import Plugin
 from cartwheel.plugins.parameters import tag
 from cartwheel.simulation.handles import JointHandle
 
-_MOVABLE = ("revolute", "continuous", "prismatic")
-
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class JointPoseTrajectoryParameters:
@@ -46,7 +44,7 @@ class JointPoseTrajectory(Plugin[JointPoseTrajectoryParameters]):
         self._handles: dict[str, JointHandle] = {
             joint.name: self.part.joint(joint.name)
             for joint in self.part.description.joints
-            if joint.type in _MOVABLE
+            if joint.drivable
         }
         self._points: list[tuple[int, list[tuple[JointHandle, float]]]] = []
         self._Response = message_class("gazebo_msgs/srv/SetJointTrajectory_Response")

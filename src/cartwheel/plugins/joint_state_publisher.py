@@ -12,14 +12,12 @@ from cartwheel.plugins.parameters import tag
 from cartwheel.plugins.wheel_states import JointStates
 from cartwheel.simulation.handles import JointHandle
 
-_MOVABLE = ("revolute", "continuous", "prismatic")
-
 
 def _joints(plugin: Plugin[Any], names: list[str]) -> list[JointHandle]:
     """Those of the names, or all that move where there are none."""
     description = plugin.part.description
     if not names:
-        names = [joint.name for joint in description.joints if joint.type in _MOVABLE]
+        names = [joint.name for joint in description.joints if joint.drivable]
     found = []
     for name in names:
         joint = description.joint(name)

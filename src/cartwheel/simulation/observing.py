@@ -28,7 +28,7 @@ class Observer:
             for entry in entries
             if not entry.description.static
             for joint in entry.description.joints
-            if joint.type in ("revolute", "continuous", "prismatic")
+            if joint.drivable
         ]
         self._bodies = [engine.body_id(*names) for names in links]
         self._positions = [

@@ -121,11 +121,7 @@ class Part:
             UnknownNameError: There is none; placed at `origin`.
             StaticModelError: The model is static.
         """
-        movable = [
-            joint.name
-            for joint in self.description.joints
-            if joint.type in ("revolute", "continuous", "prismatic")
-        ]
+        movable = [joint.name for joint in self.description.joints if joint.drivable]
         if self.description.static:
             raise StaticModelError(
                 f'model "{self.name}" is static: its joints do not move', origin=origin

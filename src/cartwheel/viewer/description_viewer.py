@@ -30,7 +30,6 @@ _TOGGLES = (
     "grid",
 )
 """Fields of `Display`."""
-_MOVING = ("revolute", "continuous", "prismatic")
 
 
 class DescriptionViewer:
@@ -111,7 +110,7 @@ class DescriptionViewer:
 
     def _build_joints(self) -> None:
         gui, page = self._page.gui, self._page
-        moving = [j for j in self._description.joints if j.type in _MOVING and j.mimic is None]
+        moving = [j for j in self._description.joints if j.drivable and j.mimic is None]
         if not moving:
             gui.add_html('<div class="cw cw-dim">No joint moves.</div>')
             return

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from cartwheel.description.inertia import tensor
 from cartwheel.description.model import Box, Inertial, Link, Plane, Rgba, RobotDescription
 from cartwheel.errors import CartwheelError
 from cartwheel.geometry import (
@@ -253,14 +254,7 @@ class ModelView:
 
 def inertia_box(inertial: Inertial) -> tuple[Pose, tuple[float, float, float]]:
     """The uniform box of the same mass and inertia: its pose in the link, its edges in m."""
-    tensor = np.array(
-        [
-            [inertial.ixx, inertial.ixy, inertial.ixz],
-            [inertial.ixy, inertial.iyy, inertial.iyz],
-            [inertial.ixz, inertial.iyz, inertial.izz],
-        ]
-    )
-    moments, axes = np.linalg.eigh(tensor)
+    moments, axes = np.linalg.eigh(tensor(inertial.diagonal, inertial.products))
     if np.linalg.det(axes) < 0:
         axes[:, 2] = -axes[:, 2]
     total = float(moments.sum())

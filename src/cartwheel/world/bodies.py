@@ -8,6 +8,7 @@ import mujoco
 import numpy as np
 
 from cartwheel.description import meshes
+from cartwheel.description.inertia import tensor
 from cartwheel.description.model import (
     Collision,
     Inertial,
@@ -283,10 +284,9 @@ class BodyBuilder:
             name=name, target=name, trntype=mujoco.mjtTrn.mjTRN_JOINT, **arguments
         )
         actuator.set_to_motor()
-        if motor.mode == "servo":
-            # Its damping is set while it runs.
-            actuator.biastype = mujoco.mjtBias.mjBIAS_AFFINE
-            self._add_rotor(entry, motor)
+        # Its damping is set while it runs.
+        actuator.biastype = mujoco.mjtBias.mjBIAS_AFFINE
+        self._add_rotor(entry, motor)
 
     def _add_rotor(self, entry: ModelEntry, motor: Motor) -> None:
         """What turns at a motor's velocity, and drags the joint along by dry friction."""
@@ -375,36 +375,30 @@ def _direction(entry: ModelEntry, link: Link, collision: Collision) -> tuple[str
     return scoped(entry.name, link.name), rotate(collision.pose.orientation, surface.fdir1)
 
 
-def _possible(tensor: Array) -> Array:
+def _possible(inertia: Array) -> Array:
     """An inertia matrix whose largest moment is no larger than the sum of the others.
 
     Thin plates lie on that edge exactly, and written digits put them beyond it; what misses
     by more has been refused when it was read.
     """
-    moments, axes = np.linalg.eigh(tensor)
+    moments, axes = np.linalg.eigh(inertia)
     lowest = _THINNEST * float(moments[2])
     if moments[0] < lowest:
         # A rod without thickness: the engine divides by all three.
         moments = np.maximum(moments, lowest)
-        tensor = (axes * moments) @ axes.T
+        inertia = (axes * moments) @ axes.T
     excess = moments[2] - (moments[0] + moments[1]) * (1 - 1e-9)
     if excess <= 0:
-        return tensor
-    return np.asarray(tensor - excess * np.outer(axes[:, 2], axes[:, 2]))
+        return inertia
+    return np.asarray(inertia - excess * np.outer(axes[:, 2], axes[:, 2]))
 
 
 def _set_inertial(body: Any, inertial: Inertial) -> None:
     rotation = matrix_from_quat(inertial.pose.orientation)
-    tensor = np.array(
-        [
-            [inertial.ixx, inertial.ixy, inertial.ixz],
-            [inertial.ixy, inertial.iyy, inertial.iyz],
-            [inertial.ixz, inertial.iyz, inertial.izz],
-        ]
-    )
-    if not tensor.any():
-        tensor = np.eye(3) * _POINT * inertial.mass
-    turned = rotation @ _possible(tensor) @ rotation.T
+    inertia = tensor(inertial.diagonal, inertial.products)
+    if not inertia.any():
+        inertia = np.eye(3) * _POINT * inertial.mass
+    turned = rotation @ _possible(inertia) @ rotation.T
     body.explicitinertial = True
     body.mass = inertial.mass
     body.ipos = list(inertial.pose.position)

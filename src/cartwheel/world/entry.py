@@ -41,7 +41,7 @@ class Motor:
     """A driven joint."""
 
     joint: str
-    mode: Literal["velocity", "effort", "servo"]
+    mode: Literal["velocity", "servo"]
     """A servo's law is set while it runs; see `ServoHandle`."""
     max_effort: float | None = None
     """N m or N; None is unlimited."""

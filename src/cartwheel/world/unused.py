@@ -48,11 +48,7 @@ def unused(description: RobotDescription) -> Iterator[Diagnostic]:
             note("velocity decay", link.origin, "the air does not brake")
     heeded = _controlled(description)
     for joint in description.joints:
-        if (
-            joint.axis.velocity is not None
-            and joint.type in ("revolute", "continuous", "prismatic")
-            and joint.name not in heeded
-        ):
+        if joint.axis.velocity is not None and joint.drivable and joint.name not in heeded:
             note("a joint's velocity limit", joint.origin, "only controllers heed it")
         if joint.stop_cfm is not None or joint.stop_erp is not None:
             note("a joint's stop_cfm or stop_erp", joint.origin, "stops are as hard as can be")

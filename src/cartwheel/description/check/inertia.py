@@ -117,7 +117,7 @@ def inertia_unlike_geometry(subject: Subject) -> Iterator[Remark]:
             continue
         centre = np.array(inertial.pose.position)
         corner = np.maximum(np.abs(box[0] - centre), np.abs(box[1] - centre))
-        stated = (inertial.ixx + inertial.iyy + inertial.izz) / 2
+        stated = sum(inertial.diagonal) / 2
         largest = inertial.mass * float(corner @ corner)
         like = _shape_inertia(robot, link)
         advice = _inertia_text(like, inertial.mass, sdf=not subject.is_urdf)
@@ -134,7 +134,7 @@ def inertia_unlike_geometry(subject: Subject) -> Iterator[Remark]:
             continue
         if not solids or like is None:
             continue
-        solid = (like.ixx + like.iyy + like.izz) / 2 * inertial.mass / like.mass
+        solid = sum(like.diagonal) / 2 * inertial.mass / like.mass
         if 0 < stated < solid / TOO_SMALL and stated > 0:
             yield Remark(
                 message=f'link "{link.name}" resists turning {solid / stated:.3g} times less than '
@@ -286,9 +286,8 @@ def _solid(parts: tuple[Collision, ...] | tuple[Visual, ...], origin: Origin) ->
         return None
     if found is None:
         return None
-    diagonal, products = (found.ixx, found.iyy, found.izz), (found.ixy, found.ixz, found.iyz)
     # A surface that is not closed has a volume of any size.
-    return None if impossibility(principal_moments(diagonal, products)) else found
+    return None if impossibility(principal_moments(found.diagonal, found.products)) else found
 
 
 def _box_inertia(box: tuple[np.ndarray, np.ndarray], origin: Origin) -> Inertial | None:
@@ -354,7 +353,7 @@ def _matters(robot: Robot, link: Link, moment: float) -> bool:
     places = np.array([pose.position for pose, _ in others])
     weights = np.array([inertial.mass for _, inertial in others])
     centre = weights @ places / mass
-    own = sum((inertial.ixx + inertial.iyy + inertial.izz) / 2 for _, inertial in others)
+    own = sum(sum(inertial.diagonal) / 2 for _, inertial in others)
     return moment > 0.05 * (own + float(weights @ ((places - centre) ** 2).sum(axis=1)))
 
 

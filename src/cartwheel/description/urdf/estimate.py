@@ -59,7 +59,7 @@ def inertial_text(inertial: Inertial) -> str:
     """An ``<inertial>`` as it is written in a URDF."""
     i = inertial
     xyz = " ".join(f"{round(value, 6) + 0.0:g}" for value in i.pose.position)
-    largest = max(i.ixx, i.iyy, i.izz)
+    largest = max(i.diagonal)
     moments = " ".join(
         f'{key}="{value if abs(value) > 1e-4 * largest else 0:.4g}"'
         for key in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
@@ -104,7 +104,7 @@ def _spread(part: Sequence[Link], ctx: UrdfContext) -> Mapping[str, Link]:
 def _turns(link: Link) -> bool:
     """Whether it has a moment of inertia of its own."""
     i = link.inertial
-    return i is not None and any((i.ixx, i.iyy, i.izz))
+    return i is not None and any(i.diagonal)
 
 
 def _of_shapes(link: Link) -> Inertial | None:
@@ -142,10 +142,7 @@ def _is_solid(mesh: Mesh, low: np.ndarray, high: np.ndarray) -> bool:
     centre = np.array(found.pose.position)
     if (centre < low).any() or (centre > high).any():
         return False
-    moments = principal_moments(
-        (found.ixx, found.iyy, found.izz), (found.ixy, found.ixz, found.iyz)
-    )
-    return impossibility(moments) is None
+    return impossibility(principal_moments(found.diagonal, found.products)) is None
 
 
 def _speck(origin: Origin) -> Inertial:

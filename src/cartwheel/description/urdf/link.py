@@ -300,7 +300,7 @@ def judged_inertia(inertial: Inertial, link: str, *, rigid: bool, ctx: UrdfConte
             a small part of the robot; or a moment is below 0.
     """
     i = inertial
-    diagonal, products = (i.ixx, i.iyy, i.izz), (i.ixy, i.ixz, i.iyz)
+    diagonal, products = i.diagonal, i.products
     moments = principal_moments(diagonal, products)
     found = impossibility(moments)
     if found is None:
@@ -316,7 +316,7 @@ def judged_inertia(inertial: Inertial, link: str, *, rigid: bool, ctx: UrdfConte
         raise DescriptionError(f'link "{link}": {message}', origin=i.origin, hint=hint)
     (ixx, iyy, izz), (ixy, ixz, iyz) = made_possible(diagonal, products)
     made = replace(i, ixx=ixx, iyy=iyy, izz=izz, ixy=ixy, ixz=ixz, iyz=iyz)
-    smaller = principal_moments((ixx, iyy, izz), (ixy, ixz, iyz))
+    smaller = principal_moments(made.diagonal, made.products)
     ctx.tell(
         "info" if rigid else "warning",
         f'link "{link}": {message}; here the smaller are {smaller[0]:.4g} and {smaller[1]:.4g}. '

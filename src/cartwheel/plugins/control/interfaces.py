@@ -244,4 +244,4 @@ def _number(values: Mapping[str, str], name: str, element: Element) -> float | N
 
 def _movable(description: RobotDescription, name: str) -> bool:
     joint = description.joint(name)
-    return joint is not None and joint.type in ("revolute", "continuous", "prismatic")
+    return joint is not None and joint.drivable
