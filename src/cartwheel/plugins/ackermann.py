@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import ClassVar
 
 from cartwheel.description.kinematics import link_poses
 from cartwheel.description.model import Capsule, Cylinder, Sphere
 from cartwheel.errors import Diagnostic, PluginError
+from cartwheel.geometry import Quat, Vec3
 from cartwheel.messages import message_class
 from cartwheel.plugins.gz_drive import (
     GzLimitedParameters,
@@ -17,7 +18,7 @@ from cartwheel.plugins.gz_drive import (
     gz_odometry,
     report_limits,
 )
-from cartwheel.plugins.odometry import Odometry, planar_covariance
+from cartwheel.plugins.odometry import AxleReckoning, Odometry, planar_covariance
 from cartwheel.plugins.parameters import tag
 from cartwheel.plugins.steered_drive import SteeredDrive
 from cartwheel.plugins.wheel_states import WheelTransforms
@@ -146,16 +147,18 @@ class AckermannDrive(SteeredDrive):
             config.covariance_x, config.covariance_y, config.covariance_yaw
         )
         wheels = WheelTransforms(self, list(joints.values())) if config.publish_wheel_tf else None
-        self.odometry = Odometry(
-            self,
-            topic="odom" if config.publish_odom else None,
-            frame=config.odometry_frame,
-            base=config.base_frame,
-            rate=rate,
-            transform=config.publish_odom_tf,
-            wheels=wheels,
-            pose_covariance=covariance,
-            twist_covariance=covariance,
+        self.odometry = self.keep(
+            Odometry(
+                self,
+                topic="odom" if config.publish_odom else None,
+                frame=config.odometry_frame,
+                base=config.base_frame,
+                rate=rate,
+                transform=config.publish_odom_tf,
+                wheels=wheels,
+                pose_covariance=covariance,
+                twist_covariance=covariance,
+            )
         )
         self._Float = message_class("std_msgs/msg/Float32")
         self._distance = (
@@ -206,7 +209,7 @@ class AckermannDrive(SteeredDrive):
         self._gone = 0.0
         self._was: tuple[float, float] | None = None
 
-    def _steer(self, seconds: float) -> None:  # noqa: ARG002
+    def _turn_wheels(self, seconds: float) -> None:  # noqa: ARG002
         config: AckermannParameters = self.config
         speed = min(max(self._forward, -config.max_speed), config.max_speed)
         steer = self._turn * math.copysign(1.0, self._forward)
@@ -282,15 +285,13 @@ class GzAckermann(SteeredDrive):
     def configure(self) -> None:
         config: GzAckermannParameters = self.config
         origin, part = self.tag.origin, self.part
-        for value, what in (
-            (config.wheel_base, "wheel_base"),
-            (config.wheel_separation, "wheel_separation"),
-            (config.kingpin_width, "kingpin_width"),
-            (config.wheel_radius, "wheel_radius"),
-            (config.steering_limit, "steering_limit"),
-        ):
-            if value <= 0:
-                raise PluginError(f"<{what}> {value:g} must be above 0", origin=origin)
+        self.check_above_zero(
+            wheel_base=config.wheel_base,
+            wheel_separation=config.wheel_separation,
+            kingpin_width=config.kingpin_width,
+            wheel_radius=config.wheel_radius,
+            steering_limit=config.steering_limit,
+        )
         for flag, what in (
             (config.steering_only, "steering_only"),
             (config.actuators, "use_actuator_msg"),
@@ -309,6 +310,10 @@ class GzAckermann(SteeredDrive):
             part.servo(name, max_effort=None, origin=origin)
             for name in (config.steer_left, config.steer_right)
         ]
+        left, right = (side[0][0] for side in self._driven)
+        self._reckoning = AxleReckoning(
+            left, right, radius=config.wheel_radius, separation=config.wheel_separation
+        )
         self.odometry = gz_odometry(self, config)
         topic = config.topic or (
             f"/model/{part.name}/{config.sub_topic}" if config.sub_topic else ""
@@ -323,9 +328,9 @@ class GzAckermann(SteeredDrive):
     def reset(self) -> None:
         super().reset()
         self._linear.value = self._angular.value = 0.0
-        self._turned: tuple[float, float] | None = None
+        self._reckoning.begin()
 
-    def _steer(self, seconds: float) -> None:
+    def _turn_wheels(self, seconds: float) -> None:
         config: GzAckermannParameters = self.config
         speed = self._linear.step(self._forward, seconds or 0.01)
         turn = self._angular.step(self._turn, seconds or 0.01)
@@ -340,16 +345,7 @@ class GzAckermann(SteeredDrive):
         for side, share in zip(self._driven, (1 - half, 1 + half), strict=True):
             for _, motor in side:
                 motor.command(speed * share / config.wheel_radius)
-        self._integrate(seconds)
+        self._reckoning.read(seconds)
 
-    def _integrate(self, seconds: float) -> None:
-        config: GzAckermannParameters = self.config
-        turned = (self._driven[0][0][0].position, self._driven[1][0][0].position)
-        if self._turned is not None:
-            left, right = ((turned[i] - self._turned[i]) * config.wheel_radius for i in (0, 1))
-            turn = (right - left) / config.wheel_separation
-            self._reckoning.go((left + right) / 2, turn, seconds)
-        self._turned = turned
-
-    def _motion(self) -> Any:
+    def _motion(self) -> tuple[Vec3, Quat, Vec3, Vec3]:
         return self._reckoning.motion()

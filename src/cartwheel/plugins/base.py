@@ -2,27 +2,36 @@
 
 from __future__ import annotations
 
+import contextlib
+import math
 from collections.abc import Callable, Mapping
-from typing import Any, ClassVar, Generic, TypeVar
+from typing import Any, ClassVar, Generic, Protocol, TypeVar
 
 from cartwheel.description.model import PluginTag, Sensor
-from cartwheel.errors import CartwheelError, Diagnostic, GraphError, Origin
+from cartwheel.errors import CartwheelError, Diagnostic, GraphError, Origin, PluginError
 from cartwheel.graph import (
     Graph,
     Publisher,
     Qos,
     ReconfigureParameter,
     ReconfigureServer,
-    Service,
-    Subscription,
     resolve_frame,
     resolve_name,
 )
 from cartwheel.graph.reconfigure import OnChange, Value
 from cartwheel.plugins.parameters import read
-from cartwheel.simulation import Part
+from cartwheel.simulation import LinkHandle, Part
+
+
+class Closable(Protocol):
+    """What a plugin holds while it lives."""
+
+    def close(self) -> None:
+        """Ends it."""
+
 
 C = TypeVar("C")
+K = TypeVar("K", bound=Closable)
 
 
 class Plugin(Generic[C]):
@@ -72,7 +81,7 @@ class Plugin(Generic[C]):
         if ros is None and self.prefixes_by_namespace and not self._frame_prefix:
             self._frame_prefix = self.namespace
         self._remappings = _remappings(tag)
-        self._open: list[Publisher | Subscription | Service | ReconfigureServer] = []
+        self._open = contextlib.ExitStack()
         try:
             self.configure()
         except CartwheelError:
@@ -94,12 +103,12 @@ class Plugin(Generic[C]):
 
     def close(self) -> None:
         """The model leaves the world: takes everything off the graph."""
-        for item in self._open:
-            if isinstance(item, Service):
-                self.graph.withdraw(item)
-            else:
-                item.close()
-        self._open.clear()
+        self._open.close()
+
+    def keep(self, item: K) -> K:
+        """What is to be closed with the plugin."""
+        self._open.callback(item.close)
+        return item
 
     def resolve(self, name: str) -> str:
         """A topic or service name in the plugin's namespace, remapped."""
@@ -123,15 +132,13 @@ class Plugin(Generic[C]):
         self, topic: str, type_name: str, *, rate: float | None = None, qos: Qos = "default"
     ) -> Publisher:
         """A publisher that closes with the plugin."""
-        publisher = self.graph.advertise(
-            self.resolve(topic), type_name, node=self.node, rate=rate, qos=qos
+        return self.keep(
+            self.graph.advertise(self.resolve(topic), type_name, node=self.node, rate=rate, qos=qos)
         )
-        self._open.append(publisher)
-        return publisher
 
     def subscribe(self, topic: str, type_name: str, callback: Callable[[Any], None]) -> None:
         """A subscription that closes with the plugin."""
-        self._open.append(
+        self.keep(
             self.graph.subscribe(self.resolve(topic), callback, type_name=type_name, node=self.node)
         )
 
@@ -157,7 +164,7 @@ class Plugin(Generic[C]):
         except GraphError as error:
             self.warn(f"{error.message}: give one of the two a namespace")
             return False
-        self._open.append(service)
+        self._open.callback(self.graph.withdraw, service)
         return True
 
     def reconfigure(
@@ -187,14 +194,36 @@ class Plugin(Generic[C]):
         except GraphError as error:
             self.warn(f"{error.message}, so {full} cannot be reconfigured")
             return None
-        self._open.append(server)
-        return server
+        return self.keep(server)
 
     def warn(self, message: str, *, at: Origin | None = None) -> None:
         """Tells the user something about this plugin's tag, or about the element at a place."""
         self.part.report(
             Diagnostic(severity="warning", message=message, origin=at or self.tag.origin)
         )
+
+    def link_or_root(self, name: str) -> LinkHandle:
+        """The link of that name; the root where it is a frame's and no link's."""
+        description = self.part.description
+        known = description.link(name) is not None
+        return self.part.link(name if known else description.canonical_link)
+
+    def is_finite(self, *values: float) -> bool:
+        """Whether a command can be obeyed; the user is told where not."""
+        finite = all(map(math.isfinite, values))
+        if not finite:
+            self.warn("a command that is not finite was ignored")
+        return finite
+
+    def check_above_zero(self, **values: float) -> None:
+        """Refuses parameters, given by the names of their tags.
+
+        Raises:
+            PluginError: One is 0 or below.
+        """
+        for name, value in values.items():
+            if value <= 0:
+                raise PluginError(f"<{name}> {value:g} must be above 0", origin=self.tag.origin)
 
     @property
     def node(self) -> str:

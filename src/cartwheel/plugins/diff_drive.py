@@ -121,10 +121,7 @@ class DiffDrive(WheelDrive):
     def configure(self) -> None:
         config: DiffDriveParameters = self.config
         origin, element = self.tag.origin, self.tag.element
-        if config.wheel_torque <= 0:
-            raise PluginError(
-                f"<wheelTorque> {config.wheel_torque:g} must be above 0", origin=origin
-            )
+        self.check_above_zero(wheelTorque=config.wheel_torque)
         if element.find("torque") and not element.find("wheelTorque"):
             self.part.report(
                 Diagnostic(
@@ -142,22 +139,24 @@ class DiffDrive(WheelDrive):
         covariance = planar_covariance(
             config.covariance_x, config.covariance_y, config.covariance_yaw
         )
-        self.odometry = Odometry(
-            self,
-            topic=config.odometry_topic if config.publish_tf and told else None,
-            frame=config.odometry_frame,
-            base=config.base_frame,
-            rate=rate,
-            transform=config.publish_tf and moved,
-            wheels=WheelTransforms(self, self.joints) if config.publish_wheel_tf else None,
-            pose_covariance=covariance,
-            twist_covariance=covariance if ros2 else NO_COVARIANCE,
+        self.odometry = self.keep(
+            Odometry(
+                self,
+                topic=config.odometry_topic if config.publish_tf and told else None,
+                frame=config.odometry_frame,
+                base=config.base_frame,
+                rate=rate,
+                transform=config.publish_tf and moved,
+                wheels=WheelTransforms(self, self.joints) if config.publish_wheel_tf else None,
+                pose_covariance=covariance,
+                twist_covariance=covariance if ros2 else NO_COVARIANCE,
+            )
         )
         if config.publish_joint_state:
             # Gazebo's order, right before left.
             order = [self.joints[i ^ 1] for i in range(len(self.joints))]
             self.joint_states = JointStates(self, order, rate=rate)
-        self._run(
+        self._run_wheels(
             command_topic=config.command_topic,
             base=config.base_frame,
             encoded=config.source in ("encoder", "0"),

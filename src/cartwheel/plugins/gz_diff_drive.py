@@ -66,7 +66,7 @@ class GzDiffDrive(WheelDrive):
         ]
         self._take_wheels(pairs, torque=None)
         self.odometry = gz_odometry(self, config)
-        self._run(
+        self._run_wheels(
             command_topic=gz_name(self, config.topic, "cmd_vel"),
             base="",
             encoded=True,
@@ -82,8 +82,8 @@ class GzDiffDrive(WheelDrive):
     def _aim(self, forward: float, turn: float) -> None:
         self._wanted_speed = (forward, turn)
 
-    def _control(self) -> None:
+    def _turn_wheels(self, seconds: float) -> None:
         forward, turn = self._wanted_speed
         period = 1 / CONTROL_RATE
         super()._aim(self._linear.step(forward, period), self._angular.step(turn, period))
-        super()._control()
+        super()._turn_wheels(seconds)

@@ -168,12 +168,14 @@ def gz_odometry(plugin: Plugin[Any], config: GzDriveParameters) -> Odometry:
     if config.rate < 0:
         raise PluginError("<odom_publish_frequency> cannot be below 0", origin=plugin.tag.origin)
     name = plugin.part.name
-    return Odometry(
-        plugin,
-        topic=gz_name(plugin, config.odom_topic, "odometry"),
-        frame=config.frame or f"{name}/odom",
-        base=config.child_frame or f"{name}/{plugin.part.description.canonical_link}",
-        rate=config.rate,
-        transform=True,
-        tf_topic=gz_name(plugin, config.tf_topic, "tf"),
+    return plugin.keep(
+        Odometry(
+            plugin,
+            topic=gz_name(plugin, config.odom_topic, "odometry"),
+            frame=config.frame or f"{name}/odom",
+            base=config.child_frame or f"{name}/{plugin.part.description.canonical_link}",
+            rate=config.rate,
+            transform=True,
+            tf_topic=gz_name(plugin, config.tf_topic, "tf"),
+        )
     )

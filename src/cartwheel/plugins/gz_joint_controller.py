@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import re
 from dataclasses import dataclass
 from typing import Any, ClassVar, Protocol
@@ -122,10 +121,8 @@ class _JointController(Plugin[Any]):
         raise NotImplementedError
 
     def _on_command(self, message: Any) -> None:
-        if not math.isfinite(message.data):
-            self.warn("a command that is not finite was ignored")
-            return
-        self._target = float(message.data)
+        if self.is_finite(message.data):
+            self._target = float(message.data)
 
     def _seconds(self) -> float:
         """Since the last turn."""
@@ -206,7 +203,5 @@ class ApplyJointForce(Plugin[ApplyJointForceParameters]):
         self._servo.release()
 
     def _on_command(self, message: Any) -> None:
-        if not math.isfinite(message.data):
-            self.warn("a command that is not finite was ignored")
-            return
-        self._servo.command_effort(float(message.data))
+        if self.is_finite(message.data):
+            self._servo.command_effort(float(message.data))

@@ -84,14 +84,16 @@ class Kobuki(WheelDrive):
             self, self.joints, rate=config.rate or None, velocities=True, efforts=True,
             frame="base_link",
         )  # fmt: skip
-        self.odometry = Odometry(
-            self,
-            topic="odom",
-            frame="odom",
-            base="base_footprint",
-            rate=config.rate or None,
-            transform=config.publish_tf,
-            pose_covariance=_POSE_COVARIANCE,
+        self.odometry = self.keep(
+            Odometry(
+                self,
+                topic="odom",
+                frame="odom",
+                base="base_footprint",
+                rate=config.rate or None,
+                transform=config.publish_tf,
+                pose_covariance=_POSE_COVARIANCE,
+            )
         )
         self.subscribe(_BASE + "commands/motor_power", "kobuki_msgs/msg/MotorPower", self._on_power)
         self.subscribe(
@@ -101,7 +103,7 @@ class Kobuki(WheelDrive):
         )
         self.part.schedule(0, before=self._watch)
         self.part.schedule(config.rate, after=self._sense, active=self._sensed)
-        self._run(
+        self._run_wheels(
             command_topic=_BASE + "commands/velocity",
             base="base_footprint",
             encoded=True,
@@ -173,13 +175,8 @@ class Kobuki(WheelDrive):
         if late or not self._power:
             self._aim(0.0, 0.0)
 
-    def _integrate(self, seconds: float) -> None:
-        turned = (self.joints[0].position, self.joints[1].position)
-        if self._turned is not None:
-            radius = self._radii[0]
-            left, right = ((turned[i] - self._turned[i]) * radius for i in (0, 1))
-            self._reckoning.go((left + right) / 2, self._unit.rates()[2] * seconds, seconds)
-        self._turned = turned
+    def _reckon(self, seconds: float) -> None:
+        self._reckoning.read(seconds, turn=self._unit.rates()[2] * seconds)
 
     def _sensed(self) -> bool:
         return any(each.wanted for each in (self._imu, self._core, *self._events.values()))

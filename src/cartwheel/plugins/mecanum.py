@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from cartwheel.errors import PluginError
 from cartwheel.plugins.base import Plugin
 from cartwheel.plugins.gz_drive import GzDriveParameters, gz_name, gz_odometry
-from cartwheel.plugins.odometry import DeadReckoning, Odometry
+from cartwheel.plugins.odometry import DeadReckoning
 from cartwheel.plugins.parameters import tag
 from cartwheel.plugins.rollers import has_rollers
 
@@ -51,17 +49,14 @@ class MecanumDrive(Plugin[MecanumParameters]):
 
     filenames: ClassVar[tuple[str, ...]] = ("gz-sim-mecanum-drive-system",)
     parameters: ClassVar[type] = MecanumParameters
-    _told: tuple[Odometry, ...] = ()
 
     def configure(self) -> None:
         config, part, origin = self.config, self.part, self.tag.origin
-        for value, what in (
-            (config.wheel_base, "wheelbase"),
-            (config.wheel_separation, "wheel_separation"),
-            (config.wheel_radius, "wheel_radius"),
-        ):
-            if value <= 0:
-                raise PluginError(f"<{what}> {value:g} must be above 0", origin=origin)
+        self.check_above_zero(
+            wheelbase=config.wheel_base,
+            wheel_separation=config.wheel_separation,
+            wheel_radius=config.wheel_radius,
+        )
         self._wheels = [
             [(part.joint(name, origin=origin), part.velocity_motor(name, max_effort=None))
              for name in getattr(config, corner)]
@@ -72,7 +67,6 @@ class MecanumDrive(Plugin[MecanumParameters]):
         self._reach = (config.wheel_base + config.wheel_separation) / 2
         self._reckoning = DeadReckoning()
         self._odometry = gz_odometry(self, config)
-        self._told = (self._odometry,)
         self.subscribe(
             gz_name(self, config.topic, "cmd_vel"), "geometry_msgs/msg/Twist", self._on_command
         )
@@ -87,16 +81,10 @@ class MecanumDrive(Plugin[MecanumParameters]):
         self._reckoning.restart()
         self._push(0.0, 0.0, 0.0)
 
-    def close(self) -> None:
-        for odometry in self._told:
-            odometry.close()
-        super().close()
-
     def _on_command(self, message: Any) -> None:
         forward, sideways = float(message.linear.x), float(message.linear.y)
         turn = float(message.angular.z)
-        if not all(math.isfinite(value) for value in (forward, sideways, turn)):
-            self.warn("a command that is not finite was ignored")
+        if not self.is_finite(forward, sideways, turn):
             return
         self._command = (forward, sideways, turn)
         self._push(forward, sideways, turn)

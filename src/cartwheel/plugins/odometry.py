@@ -11,7 +11,7 @@ import numpy as np
 from cartwheel.geometry import Array, Quat, Vec3, yaw_of
 from cartwheel.messages import header, message_class
 from cartwheel.plugins.odometry_frame import OdometryFrame
-from cartwheel.simulation.handles import LinkHandle
+from cartwheel.simulation.handles import JointHandle, LinkHandle
 
 if TYPE_CHECKING:
     from cartwheel.plugins.base import Plugin
@@ -178,3 +178,42 @@ class DeadReckoning:
             (self.forward, self.sideways, 0.0),
             (0.0, 0.0, self.turn_rate),
         )
+
+
+class AxleReckoning(DeadReckoning):
+    """From what the two wheels of an axle have turned.
+
+    Args:
+        left: Joint of a wheel.
+        right: Joint of the other.
+        radius: m, of both wheels.
+        separation: m, between them.
+    """
+
+    def __init__(
+        self, left: JointHandle, right: JointHandle, *, radius: float, separation: float
+    ) -> None:
+        self._left, self._right = left, right
+        self._radius, self._separation = radius, separation
+        super().__init__()
+        self.begin()
+
+    def begin(self) -> None:
+        """At the origin, at rest, wherever the wheels were turned to."""
+        self.restart()
+        self._turned: tuple[float, float] | None = None
+
+    def read(self, seconds: float, *, turn: float | None = None) -> None:
+        """Goes on by what the wheels have turned since the last time, s ago.
+
+        Args:
+            seconds: Since then.
+            turn: rad, by which the robot turned, where a gyroscope knows it better.
+        """
+        turned = (self._left.position, self._right.position)
+        if self._turned is not None:
+            left, right = ((turned[i] - self._turned[i]) * self._radius for i in (0, 1))
+            if turn is None:
+                turn = (right - left) / self._separation
+            self.go((left + right) / 2, turn, seconds)
+        self._turned = turned

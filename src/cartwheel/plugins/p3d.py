@@ -189,7 +189,6 @@ class OdometryPublisher(Plugin[OdometryPublisherParameters]):
 
     filenames: ClassVar[tuple[str, ...]] = ("gz-sim-odometry-publisher-system",)
     parameters: ClassVar[type] = OdometryPublisherParameters
-    _told: tuple[Odometry, ...] = ()
 
     def configure(self) -> None:
         config, part = self.config, self.part
@@ -203,32 +202,31 @@ class OdometryPublisher(Plugin[OdometryPublisherParameters]):
         base = config.base_frame or f"{part.name}/base_footprint"
         covariance = np.diag([config.noise**2] * 6).ravel()
         self._told = (
-            Odometry(
-                self,
-                topic=gz_name(self, config.topic, "odometry"),
-                frame=frame,
-                base=base,
-                rate=config.rate,
-                transform=True,
-                tf_topic=gz_name(self, config.tf_topic, "pose"),
+            self.keep(
+                Odometry(
+                    self,
+                    topic=gz_name(self, config.topic, "odometry"),
+                    frame=frame,
+                    base=base,
+                    rate=config.rate,
+                    transform=True,
+                    tf_topic=gz_name(self, config.tf_topic, "pose"),
+                )
             ),
-            Odometry(
-                self,
-                topic=gz_name(self, config.covariance_topic, "odometry_with_covariance"),
-                frame=frame,
-                base=base,
-                rate=config.rate,
-                transform=False,
-                pose_covariance=covariance,
-                twist_covariance=covariance,
+            self.keep(
+                Odometry(
+                    self,
+                    topic=gz_name(self, config.covariance_topic, "odometry_with_covariance"),
+                    frame=frame,
+                    base=base,
+                    rate=config.rate,
+                    transform=False,
+                    pose_covariance=covariance,
+                    twist_covariance=covariance,
+                )
             ),
         )
         part.schedule(config.rate, after=self._publish, active=self._wanted)
-
-    def close(self) -> None:
-        for odometry in self._told:
-            odometry.close()
-        super().close()
 
     def _wanted(self) -> bool:
         return any(odometry.wanted() for odometry in self._told)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -59,30 +58,29 @@ class PlanarMove(Plugin[PlanarMoveParameters]):
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_planar_move.so",)
     parameters: ClassVar[type] = PlanarMoveParameters
-    _told: tuple[Odometry, ...] = ()
 
     def configure(self) -> None:
         config = self.config
         part = self.part
-        known = part.description.link(config.base_frame) is not None
-        self._base = part.link(config.base_frame if known else part.description.canonical_link)
+        self._base = self.link_or_root(config.base_frame)
         self._drive = part.body_drive(origin=self.tag.origin)
         ros2 = self.tag.element.find("ros") is not None
         covariance = planar_covariance(
             config.covariance_x, config.covariance_y, config.covariance_yaw
         )
         tells = config.rate > 0
-        self._odometry = Odometry(
-            self,
-            topic=config.odometry_topic if tells and config.publish_odom else None,
-            frame=config.odometry_frame,
-            base=config.base_frame,
-            rate=config.rate,
-            transform=tells and config.publish_odom_tf,
-            pose_covariance=covariance,
-            twist_covariance=covariance if ros2 else NO_COVARIANCE,
+        self._odometry = self.keep(
+            Odometry(
+                self,
+                topic=config.odometry_topic if tells and config.publish_odom else None,
+                frame=config.odometry_frame,
+                base=config.base_frame,
+                rate=config.rate,
+                transform=tells and config.publish_odom_tf,
+                pose_covariance=covariance,
+                twist_covariance=covariance if ros2 else NO_COVARIANCE,
+            )
         )
-        self._told = (self._odometry,)
         self.subscribe(config.command_topic, "geometry_msgs/msg/Twist", self._on_command)
         if config.timeout >= 0:
             part.schedule(0, before=self._watch)
@@ -94,15 +92,9 @@ class PlanarMove(Plugin[PlanarMoveParameters]):
         self._heard_ns: int | None = None
         self._drive.command((0.0, 0.0, None), (None, None, 0.0))
 
-    def close(self) -> None:
-        for odometry in self._told:
-            odometry.close()
-        super().close()
-
     def _on_command(self, message: Any) -> None:
         linear, angular = message.linear, message.angular
-        if not all(math.isfinite(v) for v in (linear.x, linear.y, angular.z)):
-            self.warn("a command that is not finite was ignored")
+        if not self.is_finite(linear.x, linear.y, angular.z):
             return
         self._heard_ns = self.part.time_ns
         self._drive.command(
@@ -163,7 +155,6 @@ class VelocityControl(Plugin[VelocityControlParameters]):
         self._hold((linear.x, linear.y, linear.z), (angular.x, angular.y, angular.z))
 
     def _hold(self, linear: tuple[float, ...], angular: tuple[float, ...]) -> None:
-        if not all(math.isfinite(value) for value in (*linear, *angular)):
-            self.warn("a command that is not finite was ignored")
+        if not self.is_finite(*linear, *angular):
             return
         self._drive.command(linear, angular, level=False)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from cartwheel.errors import PluginError
 from cartwheel.plugins.odometry import Odometry, planar_covariance
 from cartwheel.plugins.parameters import tag
 from cartwheel.plugins.wheel_drive import WheelDrive, WheelPair
@@ -53,8 +52,7 @@ class SkidSteerDrive(WheelDrive):
 
     def configure(self) -> None:
         config: SkidSteerParameters = self.config
-        if config.torque <= 0:
-            raise PluginError(f"<torque> {config.torque:g} must be above 0", origin=self.tag.origin)
+        self.check_above_zero(torque=config.torque)
         pairs = [
             WheelPair(
                 left=left,
@@ -68,18 +66,20 @@ class SkidSteerDrive(WheelDrive):
             )
         ]
         self._take_wheels(pairs, torque=config.torque)
-        self.odometry = Odometry(
-            self,
-            topic=config.odometry_topic,
-            frame=config.odometry_frame,
-            base=config.base_frame,
-            rate=config.update_rate,
-            transform=config.broadcast_tf,
-            pose_covariance=planar_covariance(
-                config.covariance_x, config.covariance_y, config.covariance_yaw
-            ),
+        self.odometry = self.keep(
+            Odometry(
+                self,
+                topic=config.odometry_topic,
+                frame=config.odometry_frame,
+                base=config.base_frame,
+                rate=config.update_rate,
+                transform=config.broadcast_tf,
+                pose_covariance=planar_covariance(
+                    config.covariance_x, config.covariance_y, config.covariance_yaw
+                ),
+            )
         )
-        self._run(
+        self._run_wheels(
             command_topic=config.command_topic,
             base=config.base_frame,
             encoded=False,

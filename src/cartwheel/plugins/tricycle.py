@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any, ClassVar, Literal
+from typing import ClassVar, Literal
 
-from cartwheel.errors import PluginError
-from cartwheel.plugins.odometry import Odometry, planar_covariance
+from cartwheel.geometry import Quat, Vec3
+from cartwheel.plugins.odometry import AxleReckoning, Odometry, planar_covariance
 from cartwheel.plugins.parameters import tag
 from cartwheel.plugins.steered_drive import SteeredDrive, toward
 from cartwheel.plugins.wheel_states import JointStates, WheelTransforms
@@ -104,17 +104,21 @@ class TricycleDrive(SteeredDrive):
     def configure(self) -> None:
         config: TricycleParameters = self.config
         origin, part = self.tag.origin, self.part
-        for value, what in (
-            (config.wheel_diameter, "actuatedWheelDiameter"),
-            (config.encoder_diameter, "encoderWheelDiameter"),
-            (config.encoder_separation, "encoderWheelSeparation"),
-            (config.wheel_torque, "wheelTorque"),
-        ):
-            if value <= 0:
-                raise PluginError(f"<{what}> {value:g} must be above 0", origin=origin)
+        self.check_above_zero(
+            actuatedWheelDiameter=config.wheel_diameter,
+            encoderWheelDiameter=config.encoder_diameter,
+            encoderWheelSeparation=config.encoder_separation,
+            wheelTorque=config.wheel_torque,
+        )
         names = (config.steering_joint, config.wheel_joint, config.left_joint, config.right_joint)
         joints = [part.joint(name, origin=origin) for name in names]
-        self._left, self._right = joints[2], joints[3]
+        # Gazebo takes the difference the other way round, and its odometry turns mirrored.
+        self._reckoning = AxleReckoning(
+            joints[2],
+            joints[3],
+            radius=config.encoder_diameter / 2,
+            separation=config.encoder_separation,
+        )
         # Gazebo sets the angle at once where no speed is given: nothing limits its torque.
         strength = config.wheel_torque if config.steering_speed > 0 else None
         self._fork = part.servo(config.steering_joint, max_effort=strength, origin=origin)
@@ -122,15 +126,17 @@ class TricycleDrive(SteeredDrive):
             config.wheel_joint, max_effort=config.wheel_torque, origin=origin
         )
         rate = config.update_rate
-        self.odometry = Odometry(
-            self,
-            topic=config.odometry_topic,
-            frame=config.odometry_frame,
-            base=config.base_frame,
-            rate=rate,
-            transform=True,
-            wheels=WheelTransforms(self, joints) if config.publish_wheel_tf else None,
-            pose_covariance=planar_covariance(1e-5, 1e-5, 1e-3),
+        self.odometry = self.keep(
+            Odometry(
+                self,
+                topic=config.odometry_topic,
+                frame=config.odometry_frame,
+                base=config.base_frame,
+                rate=rate,
+                transform=True,
+                wheels=WheelTransforms(self, joints) if config.publish_wheel_tf else None,
+                pose_covariance=planar_covariance(1e-5, 1e-5, 1e-3),
+            )
         )
         if config.publish_joint_state:
             self.joint_states = JointStates(self, joints, rate=rate, velocities=True, efforts=True)
@@ -144,9 +150,9 @@ class TricycleDrive(SteeredDrive):
     def reset(self) -> None:
         super().reset()
         self._speed = self._angle = 0.0
-        self._turned: tuple[float, float] | None = None
+        self._reckoning.begin()
 
-    def _steer(self, seconds: float) -> None:
+    def _turn_wheels(self, seconds: float) -> None:
         config: TricycleParameters = self.config
         target = self._forward / (config.wheel_diameter / 2)
         slows = abs(target) < abs(self._speed)
@@ -160,20 +166,9 @@ class TricycleDrive(SteeredDrive):
         self._angle = toward(self._angle, angle, swing * seconds) if swing > 0 else angle
         self._fork.command_position(self._angle)
         if config.source == "encoder":
-            self._integrate(seconds)
+            self._reckoning.read(seconds)
 
-    def _integrate(self, seconds: float) -> None:
-        config: TricycleParameters = self.config
-        turned = (self._left.position, self._right.position)
-        if self._turned is not None:
-            radius = config.encoder_diameter / 2
-            left, right = ((turned[i] - self._turned[i]) * radius for i in (0, 1))
-            # Gazebo's has the sign of a robot whose left and right are swapped.
-            turn = (right - left) / config.encoder_separation
-            self._reckoning.go((left + right) / 2, turn, seconds)
-        self._turned = turned
-
-    def _motion(self) -> Any:
+    def _motion(self) -> tuple[Vec3, Quat, Vec3, Vec3]:
         if self.config.source == "encoder":
             return self._reckoning.motion()
         return super()._motion()

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 from cartwheel.description.kinematics import link_poses
 from cartwheel.errors import Diagnostic, PluginError
-from cartwheel.plugins.base import Plugin
-from cartwheel.plugins.odometry import DeadReckoning, Odometry, planar_motion
-from cartwheel.plugins.wheel_states import JointStates
+from cartwheel.geometry import Quat, Vec3
+from cartwheel.plugins.drive import Drive
+from cartwheel.plugins.odometry import AxleReckoning
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -28,14 +26,11 @@ class WheelPair:
     """m."""
 
 
-class WheelDrive(Plugin[Any]):
+class WheelDrive(Drive):
     """Drives pairs of wheels by Twist, and tells where that took the robot.
 
-    A subclass's `configure` calls `_take_wheels`, makes what tells, and calls `_run`.
+    A subclass's `configure` calls `_take_wheels`, makes what tells, and calls `_run_wheels`.
     """
-
-    odometry: Odometry | None = None
-    joint_states: JointStates | None = None
 
     def _take_wheels(self, pairs: Sequence[WheelPair], *, torque: float | None) -> None:
         """Takes joints and motors; `joints` is left, right, pair by pair."""
@@ -56,7 +51,12 @@ class WheelDrive(Plugin[Any]):
         self._motors = [
             self.part.velocity_motor(name, max_effort=torque, origin=origin) for name in names
         ]
-        self._reckoning = DeadReckoning()
+        self._reckoning = AxleReckoning(
+            self.joints[0],
+            self.joints[1],
+            radius=self._radii[0],
+            separation=pairs[0].separation,
+        )
         self._tell_sides(pairs)
 
     def _tell_sides(self, pairs: Sequence[WheelPair]) -> None:
@@ -78,13 +78,7 @@ class WheelDrive(Plugin[Any]):
                 )
                 return
 
-    def base_link(self, name: str) -> Any:
-        """The link of that name; the root where it is a frame's and no link's."""
-        description = self.part.description
-        known = description.link(name) is not None
-        return self.part.link(name if known else description.canonical_link)
-
-    def _run(
+    def _run_wheels(
         self,
         *,
         command_topic: str,
@@ -95,7 +89,7 @@ class WheelDrive(Plugin[Any]):
         acceleration: float = 0.0,
         reverse: bool = False,
     ) -> None:
-        """Subscribes and schedules.
+        """Subscribes and schedules; see `Drive`.
 
         Args:
             command_topic: Twist.
@@ -107,50 +101,29 @@ class WheelDrive(Plugin[Any]):
             reverse: Turn the other way.
         """
         if acceleration < 0 or rate < 0 or control_rate < 0:
-            if self.odometry is not None:
-                self.odometry.close()
             raise PluginError("an acceleration or rate cannot be below 0", origin=self.tag.origin)
-        self._base = self.base_link(base)
         self._encoded = encoded
         self._acceleration = acceleration
         self._reverse = reverse
-        self.subscribe(command_topic, "geometry_msgs/msg/Twist", self._on_command)
-        self.part.schedule(control_rate, before=self._control)
-        self.part.schedule(rate, after=self._publish, active=self._wanted)
-        self.reset()
+        self._run(command_topic=command_topic, base=base, control_rate=control_rate, rate=rate)
 
     def reset(self) -> None:
+        super().reset()
         self._target = [0.0] * len(self._motors)
         self._ramped = [0.0] * len(self._motors)
-        self._updated_ns: int | None = None
-        self._turned: tuple[float, float] | None = None
-        self._reckoning.restart()
+        self._reckoning.begin()
         for motor in self._motors:
             motor.target = 0.0
 
-    def close(self) -> None:
-        if self.odometry is not None:
-            self.odometry.close()
-        super().close()
-
-    def _on_command(self, message: Any) -> None:
-        forward, turn = float(message.linear.x), float(message.angular.z)
-        if not (math.isfinite(forward) and math.isfinite(turn)):
-            self.warn("a command that is not finite was ignored")
-            return
-        self._aim(forward, -turn if self._reverse else turn)
-
     def _aim(self, forward: float, turn: float) -> None:
         """Sets the rims' speeds: those of a body that goes at m/s and turns at rad/s."""
+        turn = -turn if self._reverse else turn
         self._target = [
             forward + sign * turn * pair.separation / 2 for pair in self._pairs for sign in (-1, 1)
         ]
 
-    def _control(self) -> None:
+    def _turn_wheels(self, seconds: float) -> None:
         """Ramps the rim speeds towards the command; integrates the encoders."""
-        now = self.part.time_ns
-        seconds = 0.0 if self._updated_ns is None else (now - self._updated_ns) * 1e-9
-        self._updated_ns = now
         ramp = self._acceleration
         limit = ramp * seconds
         for index, motor in enumerate(self._motors):
@@ -160,26 +133,10 @@ class WheelDrive(Plugin[Any]):
                 self._ramped[index] = ramped
             motor.command(ramped / self._radii[index])
         if self._encoded:
-            self._integrate(seconds)
+            self._reckon(seconds)
 
-    def _integrate(self, seconds: float) -> None:
-        turned = (self.joints[0].position, self.joints[1].position)
-        if self._turned is not None:
-            radius = self._radii[0]
-            left, right = ((turned[i] - self._turned[i]) * radius for i in (0, 1))
-            turn = (right - left) / self._pairs[0].separation
-            self._reckoning.go((left + right) / 2, turn, seconds)
-        self._turned = turned
+    def _reckon(self, seconds: float) -> None:
+        self._reckoning.read(seconds)
 
-    def _wanted(self) -> bool:
-        if self.odometry is not None and self.odometry.wanted():
-            return True
-        return self.joint_states is not None and self.joint_states.wanted()
-
-    def _publish(self) -> None:
-        now = self.part.time_ns
-        if self.joint_states is not None and self.joint_states.wanted():
-            self.joint_states.publish(now)
-        if self.odometry is not None and self.odometry.wanted():
-            told = self._reckoning.motion() if self._encoded else planar_motion(self._base)
-            self.odometry.publish(now, *told)
+    def _motion(self) -> tuple[Vec3, Quat, Vec3, Vec3]:
+        return self._reckoning.motion() if self._encoded else super()._motion()
