@@ -8,7 +8,7 @@ from typing import ClassVar
 from cartwheel.errors import PluginError
 from cartwheel.messages import header, message_class
 from cartwheel.plugins.base import Plugin
-from cartwheel.plugins.gz_sensor import default_topic
+from cartwheel.plugins.gz_sensor import default_topic, frame_tag
 from cartwheel.plugins.noise import VectorNoise, read_noise
 from cartwheel.plugins.parameters import tag
 
@@ -29,12 +29,7 @@ def pressure_at(height: float) -> float:
 @dataclass(frozen=True, kw_only=True, slots=True)
 class AirPressureParameters:
     topic: str = tag("topic", default="", doc="FluidPressure; Gazebo's long name when empty.")
-    frame: str = tag(
-        "gz_frame_id",
-        "ignition_frame_id",
-        default="",
-        doc="Frame of the messages; the link's when empty.",
-    )
+    frame: str = frame_tag()
 
 
 class AirPressure(Plugin[AirPressureParameters]):

@@ -10,6 +10,7 @@ from cartwheel.errors import PluginError, UnknownNameError
 from cartwheel.geometry import matrix_from_quat, quat_conjugate, quat_multiply
 from cartwheel.messages import header, message_class
 from cartwheel.plugins.base import Plugin
+from cartwheel.plugins.gz_sensor import frame_tag
 from cartwheel.plugins.noise import VectorNoise, read_noise
 from cartwheel.plugins.parameters import tag
 from cartwheel.simulation import Part
@@ -163,12 +164,7 @@ class JointLoad:
 @dataclass(frozen=True, kw_only=True, slots=True)
 class GzForceTorqueParameters:
     topic: str = tag("topic", default="", doc="WrenchStamped; Gazebo's long name when empty.")
-    frame: str = tag(
-        "gz_frame_id",
-        "ignition_frame_id",
-        default="",
-        doc="Of the messages; the link's when empty.",
-    )
+    frame: str = frame_tag()
 
 
 class GzForceTorque(_JointWrench):

@@ -14,7 +14,7 @@ from cartwheel.geometry import Vec3
 from cartwheel.messages import header, message_class
 from cartwheel.plugins.base import Plugin
 from cartwheel.plugins.geodesy import ECCENTRICITY2, EQUATOR, Datum
-from cartwheel.plugins.gz_sensor import default_topic
+from cartwheel.plugins.gz_sensor import default_topic, frame_tag
 from cartwheel.plugins.noise import DriftingError, VectorNoise, read_noise
 from cartwheel.plugins.parameters import tag
 
@@ -326,12 +326,7 @@ class GpsSensor(_GpsSensor):
 @dataclass(frozen=True, kw_only=True, slots=True)
 class GzNavSatParameters:
     topic: str = tag("topic", default="", doc="NavSatFix; Gazebo's long name when empty.")
-    frame: str = tag(
-        "gz_frame_id",
-        "ignition_frame_id",
-        default="",
-        doc="Frame of the messages; the link's when empty.",
-    )
+    frame: str = frame_tag()
 
 
 class GzNavSat(_GpsSensor):

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
+from typing import Any
 
 from cartwheel.description.model import PluginTag, Sensor
+from cartwheel.plugins.parameters import tag
 from cartwheel.simulation import Part
 
 SYSTEMS = {
@@ -48,6 +50,16 @@ _NEW_TYPES = {
 }
 """Those that Gazebo Classic does not know."""
 _NEW_TAGS = ("topic", "gz_frame_id", "ignition_frame_id")
+
+
+def frame_tag() -> Any:
+    """The tags by which new Gazebo's sensors name their frame."""
+    return tag(
+        "gz_frame_id",
+        "ignition_frame_id",
+        default="",
+        doc="Frame of the messages; the link's when empty.",
+    )
 
 
 def publishes(sensor: Sensor, systems: Iterable[str]) -> bool:

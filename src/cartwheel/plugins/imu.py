@@ -17,7 +17,7 @@ from cartwheel.errors import PluginError
 from cartwheel.geometry import Pose, quat_from_rpy
 from cartwheel.messages import header, message_class
 from cartwheel.plugins.base import Plugin
-from cartwheel.plugins.gz_sensor import default_topic
+from cartwheel.plugins.gz_sensor import default_topic, frame_tag
 from cartwheel.plugins.inertial_unit import InertialUnit
 from cartwheel.plugins.parameters import tag
 
@@ -188,12 +188,7 @@ class ImuSensor(_ImuBase):
 @dataclass(frozen=True, kw_only=True, slots=True)
 class GzImuParameters:
     topic: str = tag("topic", default="", doc="Imu; Gazebo's long name when empty.")
-    frame: str = tag(
-        "gz_frame_id",
-        "ignition_frame_id",
-        default="",
-        doc="Frame of the messages; the link's when empty.",
-    )
+    frame: str = frame_tag()
 
 
 class GzImu(_ImuBase):

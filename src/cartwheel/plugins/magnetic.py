@@ -13,7 +13,7 @@ from cartwheel.geometry import quat_conjugate, quat_multiply, rotate
 from cartwheel.messages import header, message_class
 from cartwheel.plugins.base import Plugin
 from cartwheel.plugins.gps import world_datum
-from cartwheel.plugins.gz_sensor import default_topic
+from cartwheel.plugins.gz_sensor import default_topic, frame_tag
 from cartwheel.plugins.noise import DriftingError, VectorNoise, read_noise
 from cartwheel.plugins.parameters import tag
 
@@ -120,12 +120,7 @@ class HectorMagnetic(Plugin[HectorMagneticParameters]):
 @dataclass(frozen=True, kw_only=True, slots=True)
 class GzMagnetometerParameters:
     topic: str = tag("topic", default="", doc="MagneticField; Gazebo's long name when empty.")
-    frame: str = tag(
-        "gz_frame_id",
-        "ignition_frame_id",
-        default="",
-        doc="Frame of the messages; the link's when empty.",
-    )
+    frame: str = frame_tag()
 
 
 class GzMagnetometer(Plugin[GzMagnetometerParameters]):
