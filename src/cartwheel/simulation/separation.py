@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from typing import Any
 
 import mujoco
@@ -79,6 +81,20 @@ class Separation:
             limbs = slice(start + 6, start + int(model.tree_dofnum[model.body_treeid[root]]))
             most_of_each = np.where(_turns(model, limbs), _TURN, _SPEED)
             data.qvel[limbs] = np.clip(data.qvel[limbs], -most_of_each, most_of_each)
+
+
+def told(name: str, z: float, overlaps: Sequence[tuple[str, float]]) -> str:
+    """What the user should know of a model that was put into others.
+
+    Args:
+        name: Of the model.
+        z: m, of its frame.
+        overlaps: The bodies that it overlaps, with the depth in m.
+    """
+    others = ", ".join(f"{other} by {depth * 100:.0f} cm" for other, depth in overlaps)
+    floor = max((d for other, d in overlaps if other.startswith("ground")), default=0.0)
+    advice = f". At z = {math.ceil((z + floor) * 100) / 100:g} it stands on it" if floor else ""
+    return f'model "{name}" was put into {others}: they are pushed apart{advice}'
 
 
 def _turns(model: Any, dofs: slice) -> Any:

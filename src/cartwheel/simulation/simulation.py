@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
@@ -20,7 +19,7 @@ from cartwheel.simulation.part import Part
 from cartwheel.simulation.placing import place_model, with_mimics
 from cartwheel.simulation.resident import Attach, Resident, world_resident
 from cartwheel.simulation.running import Run
-from cartwheel.simulation.separation import Separation
+from cartwheel.simulation.separation import Separation, told
 from cartwheel.simulation.sight import in_sight
 from cartwheel.simulation.snapshot import RunState, Scene, Snapshot
 from cartwheel.world import build, unused
@@ -541,16 +540,9 @@ class Simulation(Run):
             later = {other.name for other in before}
             overlaps = [each for each in overlaps if each[0].partition("::")[0] not in later]
         if overlaps:
-            others = ", ".join(f"{other} by {depth * 100:.0f} cm" for other, depth in overlaps)
-            floor = max((d for other, d in overlaps if other.startswith("ground")), default=0.0)
-            height = self.pose(name).position[2] + floor
-            advice = f". At z = {math.ceil(height * 100) / 100:g} it stands on it" if floor else ""
+            message = told(name, self.pose(name).z, overlaps)
             self.engine.report(
-                Diagnostic(
-                    severity="warning",
-                    message=f'model "{name}" was put into {others}: they are pushed apart{advice}',
-                    origin=description.origin,
-                )
+                Diagnostic(severity="warning", message=message, origin=description.origin)
             )
 
     def _resident(self, name: str) -> Resident:
