@@ -62,7 +62,7 @@ class Pacer:
 
     def __init__(self, simulation: Simulation, *, until_ns: int | None = None) -> None:
         self._simulation = simulation
-        self._until_ns = until_ns
+        self.until_ns = until_ns
         self._frames: tuple[_Frames, ...] = ()
         self._history: deque[tuple[float, int]] = deque()
         self._anchor: _Anchor | None = None
@@ -85,7 +85,7 @@ class Pacer:
         turns = {RunState.RUNNING: self._run_on, RunState.PAUSED: self._hold}
         while True:
             simulation.drain()
-            ended = self._until_ns is not None and simulation.time_ns >= self._until_ns
+            ended = self.until_ns is not None and simulation.time_ns >= self.until_ns
             turn = turns.get(simulation.run_state)
             if ended or turn is None:
                 return
@@ -103,8 +103,8 @@ class Pacer:
         else:
             # A slow simulation still looks at the clock, the commands and the listeners.
             goal_ns = min(anchor.time_at(time.perf_counter()), now_ns + _LONGEST_TURN_NS)
-        if self._until_ns is not None:
-            goal_ns = min(goal_ns, self._until_ns)
+        if self.until_ns is not None:
+            goal_ns = min(goal_ns, self.until_ns)
         if goal_ns > now_ns:
             simulation.advance(goal_ns)
         now = time.perf_counter()

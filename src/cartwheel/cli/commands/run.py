@@ -18,10 +18,12 @@ from cartwheel.control import running
 from cartwheel.errors import CartwheelError
 
 if TYPE_CHECKING:
+    from cartwheel.cli.commands.page import Page
     from cartwheel.control.server import ControlServer
     from cartwheel.description.model import RobotDescription, WorldDescription
     from cartwheel.plugins.robot_descriptions import RobotDescriptions
     from cartwheel.session import Session
+    from cartwheel.simulation.pacing import Pacer
 
 ROBOT, WORLD = "rosbots.xacro", "post"
 """What is run where nothing is named."""
@@ -116,6 +118,8 @@ def simulate(options: Options) -> None:
     with interrupts.handled_by(session.simulation.stop, status=0 if endless else None):
         server = ControlServer(session, title=title, load=_load_robot)
         with interrupts.finally_do(server.close):
+            pacer = _pacer(session, options)
+            page = _page(session, server, pacer, options, report)
             if others:
                 report.others(others)
             report.loaded(session, name, ros=options.ros1_node is not None)
@@ -126,7 +130,7 @@ def simulate(options: Options) -> None:
                 _shown_by_foxglove(session, options, report),
                 recorded(session, options, report),
             ):
-                _run(session, server, options, report)
+                _run(session, pacer, page, report)
 
 
 @contextlib.contextmanager
@@ -237,7 +241,7 @@ def _load_robot(
     return load_robot(path, arguments=values, package_path=package_path)
 
 
-def _run(session: Session, server: ControlServer, options: Options, report: Report) -> None:
+def _pacer(session: Session, options: Options) -> Pacer:
     simulation = session.simulation
     simulation.set_speed(options.speed)
     if options.paused:
@@ -245,25 +249,32 @@ def _run(session: Session, server: ControlServer, options: Options, report: Repo
     until = None if options.seconds is None else round(options.seconds * 1e9)
     if options.steps is not None:
         until = options.steps * simulation.step_ns
-    pacer = session.pacer(until_ns=until)
-    page = None
+    return session.pacer(until_ns=until)
+
+
+def _page(
+    session: Session, server: ControlServer, pacer: Pacer, options: Options, report: Report
+) -> Page | None:
+    """The page of the run; None where it is brought up when somebody asks for it."""
     if options.headless:
         from cartwheel.cli.commands.page_on_demand import PageOnDemand
 
         demanded = PageOnDemand(session, server, pacer, host=options.host, port=options.port)
         server.offer_page(demanded.show)
-    else:
-        from cartwheel.cli.commands.page import Page
+        return None
+    from cartwheel.cli.commands.page import Page
 
-        page = Page(
-            session,
-            server,
-            report,
-            host=options.host,
-            port=options.port,
-            open_browser=options.open_browser,
-        )
+    return Page(
+        session,
+        server,
+        report,
+        host=options.host,
+        port=options.port,
+        open_browser=options.open_browser,
+    )
 
+
+def _run(session: Session, pacer: Pacer, page: Page | None, report: Report) -> None:
     gc.freeze()
     gc.enable()
     began = time.perf_counter()
@@ -273,5 +284,6 @@ def _run(session: Session, server: ControlServer, options: Options, report: Repo
     report.ended(session, time.perf_counter() - began)
     if page is not None:
         page.raise_failure()
-    if until is not None and simulation.time_ns < until:
+    until = pacer.until_ns
+    if until is not None and session.simulation.time_ns < until:
         raise interrupts.Interrupted(interrupts.last_signal())
