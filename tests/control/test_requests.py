@@ -52,6 +52,7 @@ def test_speed(client):
 
 
 def test_spawn_list_delete(client, tmp_path):
+    client.request("pause")  # or the one falls upon the other
     file = str(tmp_path / "crate.urdf")
     answer = client.request("spawn", file=file, x=1.0, z=0.5, yaw=math.pi / 2)
     assert answer["name"] == "crate"
