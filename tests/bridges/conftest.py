@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 import contextlib
-import threading
 from collections.abc import Callable, Iterator
 
 import pytest
 from tests.bridges.ros1_peers import REASON, Master, wait_for
+from tests.bridges.running import Running
 
 from cartwheel.bridges.ros1 import Ros1Bridge
-from cartwheel.description import load_robot, load_world
-from cartwheel.errors import Diagnostic
-from cartwheel.session import Session
 
 
 @pytest.fixture(scope="module")
@@ -25,16 +22,13 @@ def master(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Master]:
     made.kill()
 
 
-class Bridged:
-    """A simulation that runs in real time on a thread, with its bridge."""
+class Bridged(Running):
+    """A simulation with a bridge to ROS 1."""
+
+    bridge: Ros1Bridge
 
     def __init__(self, robot: bool, node: str, arguments: tuple[str, ...]) -> None:
-        self.session = Session(load_world("empty"))
-        if robot:
-            self.session.spawn(load_robot("rosbots.xacro"))
-        self.graph = self.session.graph
-        self.simulation = self.session.simulation
-        self.reports: list[Diagnostic] = []
+        super().__init__(robot=robot)
         self.ended: list[str] = []
         self.bridge = Ros1Bridge(
             self.graph,
@@ -44,20 +38,6 @@ class Bridged:
             time_ns=lambda: self.simulation.time_ns,
             on_end=self.ended.append,
         )
-        self._thread = threading.Thread(target=self._own)
-
-    def start(self) -> None:
-        self.bridge.start()
-        self._thread.start()
-
-    def close(self) -> None:
-        self.bridge.close()
-        self.simulation.post(self.simulation.stop)
-        self._thread.join()
-
-    def _own(self) -> None:
-        self.session.pacer().run()
-        self.session.close()
 
     def wanted(self, topic: str) -> bool:
         """Whether the simulation would publish on a topic."""

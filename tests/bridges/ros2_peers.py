@@ -14,10 +14,9 @@ from pathlib import Path
 from typing import Any
 
 from tests.bridges.ros1_peers import wait_for
+from tests.bridges.running import Running
 
 from cartwheel.bridges.ros2 import Parameter, Ros2Bridge
-from cartwheel.description import load_robot, load_world
-from cartwheel.errors import Diagnostic
 from cartwheel.messages import decode_cdr, encode_cdr, from_dict
 from cartwheel.messages.ros2_types import dds_name, ros2_name, ros2_service
 from cartwheel.session import Session
@@ -134,8 +133,10 @@ class Peer:
         self._thread.join()
 
 
-class Ros2Bridged:
-    """A simulation that runs in real time on a thread, with its bridge."""
+class Ros2Bridged(Running):
+    """A simulation that runs, with a bridge to ROS 2."""
+
+    bridge: Ros2Bridge
 
     def __init__(
         self,
@@ -145,12 +146,7 @@ class Ros2Bridged:
         prepare: Callable[[Session], Any] = lambda _: None,
         **options: Any,
     ) -> None:
-        self.session = Session(load_world("empty"))
-        if robot:
-            self.session.spawn(load_robot("rosbots.xacro"))
-        self.graph = self.session.graph
-        self.simulation = self.session.simulation
-        self.reports: list[Diagnostic] = []
+        super().__init__(robot=robot)
         self.prepared = prepare(self.session)
         self.bridge = Ros2Bridge(
             self.graph,
@@ -159,18 +155,7 @@ class Ros2Bridged:
             time_ns=lambda: self.simulation.time_ns,
             **options,
         )
-        self._thread = threading.Thread(target=self._own)
-        self.bridge.start()
-        self._thread.start()
-
-    def close(self) -> None:
-        self.bridge.close()
-        self.simulation.post(self.simulation.stop)
-        self._thread.join()
-
-    def _own(self) -> None:
-        self.session.pacer().run()
-        self.session.close()
+        self.start()
 
     def wanted(self, topic: str) -> bool:
         """Whether the simulation would publish on a topic."""

@@ -8,7 +8,6 @@ import socket
 import struct
 import subprocess
 import sys
-import threading
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -16,11 +15,12 @@ from typing import Any
 
 import pytest
 from tests.bridges.foxglove_client import Client, modules
+from tests.bridges.running import Running
 
 from cartwheel.bridges.foxglove import FoxgloveBridge
 from cartwheel.cli.commands.foxglove import Assets, SimulationControls
 from cartwheel.description import load_robot, load_text, load_world
-from cartwheel.errors import CartwheelError, Diagnostic
+from cartwheel.errors import CartwheelError
 from cartwheel.messages import decode_cdr, encode_cdr, from_dict, service_classes
 from cartwheel.plugins.robot_descriptions import RobotDescriptions
 from cartwheel.session import Session
@@ -31,16 +31,14 @@ CMD = "/part2_cmr/cmd_vel"
 IMAGE = "/rosbots/camera1/image_raw"
 
 
-class Served:
-    """A simulation that runs in real time on a thread, with the server."""
+class Served(Running):
+    """A simulation that runs, with a server of Foxglove's protocol."""
+
+    bridge: FoxgloveBridge
 
     def __init__(self, **options: Any) -> None:
-        self.session = Session(load_world("empty"))
-        self.session.spawn(load_robot("rosbots.xacro"))
-        self.graph = self.session.graph
-        self.simulation = self.session.simulation
+        super().__init__()
         self.robots = RobotDescriptions(self.simulation, self.graph)
-        self.reports: list[Diagnostic] = []
         self.bridge = FoxgloveBridge(
             self.graph,
             name="a test",
@@ -50,23 +48,9 @@ class Served:
             report=self.reports.append,
             **options,
         )
-        self._thread = threading.Thread(target=self._own)
-
-    def start(self) -> None:
-        self.bridge.start()
-        self._thread.start()
-
-    def close(self) -> None:
-        self.bridge.close()
-        self.simulation.post(self.simulation.stop)
-        self._thread.join()
 
     def wanted(self) -> set[str]:
         return {p.topic for p in self.graph.publishers() if p.wanted and p.qos != "latched"}
-
-    def _own(self) -> None:
-        self.session.pacer().run()
-        self.session.close()
 
 
 @pytest.fixture(scope="module")

@@ -46,6 +46,8 @@ class Ros2Service:
     request: str
     """The graph's name of the request's type."""
     response: str
+    request_hash: str
+    response_hash: str
 
     @property
     def dds_request(self) -> str:
@@ -75,7 +77,7 @@ def ros2_type(name: str) -> Ros2Type:
 
 @functools.cache
 def ros2_service(name: str) -> Ros2Service:
-    """Names and hash of a service type ``pkg/srv/Name`` or ``pkg/Name``.
+    """Names and hashes of a service type ``pkg/srv/Name`` or ``pkg/Name``.
 
     The services of an action are such as well: ``pkg/action/Name_SendGoal``.
 
@@ -96,6 +98,8 @@ def ros2_service(name: str) -> Ros2Service:
         hash=made.hash_rihs01(real),
         request=request,
         response=response,
+        request_hash=made.hash_rihs01(f"{real}_Request"),
+        response_hash=made.hash_rihs01(f"{real}_Response"),
     )
 
 
