@@ -63,16 +63,18 @@ class MultiWheelDrive(WheelDrive):
         ]
         self._take_wheels(pairs, torque=config.torque)
         covariance = planar_covariance(1e-5, 1e-5, 1e-3)
-        self.odometry = Odometry(
-            self,
-            topic=config.odometry_topic if config.publish_message else None,
-            frame=config.odometry_frame,
-            base=config.base_frame,
-            rate=config.rate,
-            transform=config.publish_tf,
-            pose_covariance=covariance,
+        self.odometry = self.keep(
+            Odometry(
+                self,
+                topic=config.odometry_topic if config.publish_message else None,
+                frame=config.odometry_frame,
+                base=config.base_frame,
+                rate=config.rate,
+                transform=config.publish_tf,
+                pose_covariance=covariance,
+            )
         )
-        self._run(
+        self._run_wheels(
             command_topic=config.command_topic,
             base=config.base_frame,
             encoded=False,
