@@ -53,7 +53,7 @@ def judged_inertia(link: Link, *, rigid: bool, ctx: Context) -> Inertial | None:
         raise DescriptionError(
             f'the mass of link "{link.name}" must be above 0, but is {i.mass:g}', origin=i.origin
         )
-    diagonal, products = (i.ixx, i.iyy, i.izz), (i.ixy, i.ixz, i.iyz)
+    diagonal, products = i.diagonal, i.products
     if rigid and not any((*diagonal, *products)):
         return i  # a point mass: what it is fixed to has the inertia
     moments = principal_moments(diagonal, products)
