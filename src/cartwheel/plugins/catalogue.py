@@ -86,6 +86,8 @@ _FILES = {
     "gazebo_ros_link_attacher": "link_attacher",
     "gazebo_link_attacher": "link_attacher",
     "gz-sim-detachable-joint-system": "detachable_joint",
+    "gazebo_ros_harness": "harness",
+    "HarnessPlugin": "harness",
     "gazebo_ros_control": "control.ros_control",
     "gazebo_ros2_control": "control.ros2_control",
     "gz_ros2_control-system": "control.ros2_control",

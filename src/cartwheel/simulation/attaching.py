@@ -18,6 +18,7 @@ from cartwheel.world.entry import SHIFT, scoped
 _OBJ = mujoco.mjtObj
 _POSE = slice(3, 10)
 """Of a weld's numbers: where the second body is in the first."""
+_EQUALITY = mujoco.mjtConstraint.mjCNSTR_EQUALITY.value
 _NEVER = -1e9
 """m, a margin at which nothing touches."""
 
@@ -92,6 +93,16 @@ class AttachmentHandle:
         """Of the link that is held, in the world."""
         assert self.held is not None
         return self._pose(self._body(self.held.link))
+
+    def force(self) -> Array:
+        """What it exerts on the link, N in the world's axes, shape (3,); 0 while it holds none."""
+        data = self._data
+        rows = np.flatnonzero((data.efc_type == _EQUALITY) & (data.efc_id == self.id))
+        if self.held is None or len(rows) < 3:
+            return np.zeros(3)
+        # The first three rows are the places', along the world's axes.
+        exerted: Array = -data.efc_force[rows[:3]]
+        return exerted
 
     def release(self) -> None:
         """Lets go."""

@@ -1,0 +1,193 @@
+"""``libgazebo_ros_harness.so``: a robot that hangs on a winch."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Any, ClassVar
+
+import numpy as np
+
+from cartwheel.description.model import Element
+from cartwheel.errors import PluginError, UnknownNameError
+from cartwheel.geometry import Array, Vec3, rotate
+from cartwheel.plugins.base import Plugin
+from cartwheel.plugins.parameters import tag
+from cartwheel.simulation.attaching import AttachmentHandle
+from cartwheel.simulation.handles import LinkHandle
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class HarnessParameters:
+    joints: tuple[str, ...] = tag(
+        "joint",
+        default=(),
+        doc="As in a model: prismatic, with the parent `world` and a `<child>` of this model.",
+    )
+    winch: str = tag(
+        "winch", default="", doc="`<joint>`: the one that is wound. Its `<pid>` has no effect."
+    )
+    detach: str = tag("detach", default="", doc="The joint that ends when it is told to.")
+    velocity: float = tag("init_vel", default=0.0, unit="m/s", doc="Of the winch at first (ROS 2).")
+
+
+@dataclass(kw_only=True, slots=True)
+class _Rope:
+    link: LinkHandle
+    joint: AttachmentHandle
+    own_axis: Vec3
+    """In the link."""
+    limits: tuple[float, float]
+    """m."""
+    attached: bool = False
+    axis: Array = field(default_factory=lambda: np.zeros(3))
+    """In the world, since it was attached."""
+    start: float = 0.0
+    end: float = 0.0
+    """m along the axis: where the link was, and where the rope ends."""
+
+    @property
+    def place(self) -> float:
+        """Of the link along the axis, m."""
+        return float(np.dot(self.link.place()[0], self.axis))
+
+
+class Harness(Plugin[HarnessParameters]):
+    """Hangs links of its model in the world, and winds one of them up and down.
+
+    Listens on ``/<model>/harness/velocity``, in m/s, and ``detach``: Bool, and Empty in ROS 2's
+    spelling. A rope pulls and never pushes: what stands on the ground hangs slack, and is held by
+    nothing until it is taut again. While it is taut it holds like the joint that it is.
+    Source: gazebo_plugins, gazebo_ros_harness; Gazebo, HarnessPlugin.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_harness.so", "libHarnessPlugin.so")
+    parameters: ClassVar[type] = HarnessParameters
+
+    def configure(self) -> None:
+        config, element = self.config, self.tag.element
+        self._ropes = dict(self._rope(each) for each in element.find_all("joint"))
+        if not self._ropes:
+            self.warn("no <joint>: nothing hangs")
+        wound = element.find("winch/joint")
+        self._winch = self._named(wound.text.strip()) if wound is not None else None
+        self._detached = self._named(config.detach) if config.detach else None
+        ros2 = element.find("ros") is not None
+        base = f"{'' if ros2 else '/'}{self.part.name}/harness"
+        self.subscribe(f"{base}/velocity", "std_msgs/msg/Float32", self._on_velocity)
+        kind = "std_msgs/msg/Empty" if ros2 else "std_msgs/msg/Bool"
+        self.subscribe(f"{base}/detach", kind, self._on_detach)
+        self._hung = False
+        self._velocity = config.velocity
+        self._before_ns = self.part.time_ns
+        self.part.schedule(0, before=self._hold)
+
+    def reset(self) -> None:
+        for rope in self._ropes.values():
+            rope.joint.release()
+        self._hung = False
+        self._velocity = self.config.velocity
+        self._before_ns = self.part.time_ns
+
+    def _rope(self, element: Element) -> tuple[str, _Rope]:
+        name = element.attribute("name") or ""
+        texts = {}
+        for what in ("parent", "child", "axis/xyz"):
+            child = element.find(what)
+            texts[what] = child.text.strip() if child is not None else ""
+        kind = element.attribute("type")
+        if kind != "prismatic" or texts["parent"] != "world":
+            raise PluginError(
+                f'joint "{name}" of a harness must be prismatic, with the parent world',
+                origin=element.origin,
+            )
+        link = texts["child"].removeprefix(f"{self.part.description.name}::")
+        handle = self.part.link(link, origin=element.origin)
+        try:
+            x, y, z = (float(word) for word in (texts["axis/xyz"] or "0 0 1").split())
+        except ValueError:
+            raise PluginError(
+                f'the axis of joint "{name}" is not three numbers', origin=element.origin
+            ) from None
+        length = math.hypot(x, y, z)
+        if not 0 < length < math.inf:
+            raise PluginError(f'joint "{name}" has no axis', origin=element.origin)
+        limits = [
+            self._limit(element, f"axis/limit/{what}", default)
+            for what, default in (("lower", -math.inf), ("upper", math.inf))
+        ]
+        return name, _Rope(
+            link=handle,
+            joint=self.part.attachment(),
+            own_axis=(x / length, y / length, z / length),
+            limits=(min(limits[0], 0.0), max(limits[1], 0.0)),
+        )
+
+    def _limit(self, element: Element, path: str, default: float) -> float:
+        child = element.find(path)
+        try:
+            return float(child.text) if child is not None else default
+        except ValueError:
+            raise PluginError(f"<{path}> is not a number", origin=element.origin) from None
+
+    def _named(self, name: str) -> _Rope:
+        if name not in self._ropes:
+            raise UnknownNameError("joint", name, self._ropes, origin=self.tag.origin)
+        return self._ropes[name]
+
+    def _on_velocity(self, message: Any) -> None:
+        if not math.isfinite(message.data):
+            self.warn("a velocity that is not finite was ignored")
+        elif self._winch is None:
+            self.warn("there is no <winch> to be wound")
+        else:
+            self._velocity = float(message.data)
+
+    def _on_detach(self, message: Any) -> None:
+        # Bool's false is no order; Empty has nothing to say no with.
+        if not getattr(message, "data", True):
+            return
+        rope = self._detached
+        if rope is None or not rope.attached:
+            self.warn("there is nothing to be detached from the harness")
+        else:
+            rope.attached = False
+            rope.joint.release()
+
+    def _hold(self) -> None:
+        seconds = (self.part.time_ns - self._before_ns) * 1e-9
+        self._before_ns = self.part.time_ns
+        self.part.locate()
+        if not self._hung:
+            self._hung = True
+            for rope in self._ropes.values():
+                self._hang(rope)
+        for rope in self._ropes.values():
+            if rope.attached:
+                wound = self._velocity * seconds if rope is self._winch else 0.0
+                low, high = (rope.start + limit for limit in rope.limits)
+                end = min(max(rope.end + wound, low), high)
+                self._pull(rope, end - rope.end)
+
+    def _hang(self, rope: _Rope) -> None:
+        rope.joint.hold(None, (self.part.name, rope.link.name))
+        _, turned = rope.link.place()
+        rope.axis = np.array(rotate(turned, rope.own_axis))
+        rope.start = rope.end = rope.place
+        rope.attached = True
+
+    def _pull(self, rope: _Rope, way: float) -> None:
+        """Moves the rope's end, and lets it go slack or taut."""
+        rope.end += way
+        joint = rope.joint
+        if joint.held is None:
+            if rope.place > rope.end:
+                return
+            joint.hold(None, (self.part.name, rope.link.name))
+            way = rope.end - rope.place
+        elif float(np.dot(joint.force(), rope.axis)) < 0:
+            joint.release()
+            return
+        if way:
+            x, y, z = (way * rope.axis).tolist()
+            joint.shift((x, y, z))
