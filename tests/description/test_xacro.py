@@ -400,3 +400,13 @@ def test_a_robot_keeps_the_values_of_its_arguments_given_or_not():
     )
     assert load_text(text).arguments == {"one": "1", "two": "12"}
     assert load_text(text, arguments={"one": "3"}).arguments == {"one": "3", "two": "32"}
+
+
+def test_an_argument_without_a_value_is_named_within_an_expression_too():
+    with pytest.raises(DescriptionError) as caught:
+        load_text(
+            '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'
+            '<xacro:property name="p" value="x"/><link name="${p + \'$(arg side)\'}"/></robot>'
+        )
+    assert caught.value.message == 'the argument "side" has no value'
+    assert "side:=" in caught.value.hint

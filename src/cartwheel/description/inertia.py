@@ -82,7 +82,7 @@ def made_possible(diagonal: Vec3, products: Vec3) -> tuple[Vec3, Vec3]:
 
     Args:
         diagonal: ixx, iyy, izz.
-        products: ixy, ixz, iyz. None of the matrix's principal moments is below 0.
+        products: ixy, ixz, iyz. One of the matrix's principal moments is above 0.
 
     Returns:
         As the arguments.

@@ -204,33 +204,41 @@ class Node:
 
     def number_at(self, path: str, default: float, *, infinite: bool = False) -> float:
         """The number at a path."""
-        node = self.find(path)
+        node = self._filled(path)
         return node.number(infinite=infinite) if node is not None else default
 
     def optional_number_at(self, path: str, *, infinite: bool = False) -> float | None:
         """The number at a path, None where there is no such element."""
-        node = self.find(path)
+        node = self._filled(path)
         return node.number(infinite=infinite) if node is not None else None
 
     def integer_at(self, path: str, default: int) -> int:
         """The whole number at a path."""
-        node = self.find(path)
+        node = self._filled(path)
         return node.integer() if node is not None else default
 
     def boolean_at(self, path: str, default: bool) -> bool:
         """The truth value at a path."""
-        node = self.find(path)
+        node = self._filled(path)
         return node.boolean() if node is not None else default
 
     def vec3_at(self, path: str, default: Vec3) -> Vec3:
         """The three numbers at a path."""
-        node = self.find(path)
+        node = self._filled(path)
         return node.vec3() if node is not None else default
 
     def pose_at(self, path: str) -> Pose:
         """The pose at a path, identity where there is none."""
         node = self.find(path)
         return node.pose() if node is not None else Pose()
+
+    def _filled(self, path: str) -> Node | None:
+        """The descendant at a path where it says something: an empty one gives the default."""
+        node = self.find(path)
+        if node is None or node.text.strip() or node.children:
+            return node
+        node.notes = (*node.notes, f"<{node.tag}> is empty: the default counts")
+        return None
 
     # What is told about it.
 

@@ -29,7 +29,7 @@ class Failure:
 
 _UNDEFINED = re.compile(r"name '([^']*)' is not defined")
 _MACRO = re.compile(r"unknown macro name: xacro:(\S+)")
-_ARGUMENT = re.compile(r"Undefined substitution argument '?([^']*)'?")
+_ARGUMENT = re.compile(r"Undefined substitution argument '?([\w.-]+)")
 _BLOCK = re.compile(r'Undefined block "([^"]*)"')
 _PARAMETER = re.compile(r'Invalid parameter "([^"]*)"')
 _MISSING = re.compile(r"Undefined parameters \[([^\]]*)\]")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 
-from cartwheel.description.inertia import TOLERANCE, impossibility, made_possible, principal_moments
+from cartwheel.description.inertia import impossibility, made_possible, principal_moments
 from cartwheel.description.meshes import load_mesh
 from cartwheel.description.model import (
     Box,
@@ -28,10 +28,6 @@ from cartwheel.geometry import Pose
 SHAPES = ("box", "cylinder", "sphere", "capsule", "mesh")
 
 
-_SMALL_PART = 0.05
-"""Of a robot's mass."""
-
-
 @dataclass(kw_only=True, slots=True)
 class UrdfContext:
     """What the readers of one URDF share."""
@@ -40,8 +36,6 @@ class UrdfContext:
     materials: dict[str, Material] = field(default_factory=dict)
     """Those defined for the whole robot."""
     diagnostics: list[Diagnostic] = field(default_factory=list)
-    mass: float = 0.0
-    """kg, of all links; known when their inertias are judged."""
 
     def tell(self, severity: Severity, message: str, origin: Origin) -> None:
         """Adds a diagnostic."""
@@ -286,8 +280,8 @@ def _inertial(node: Node) -> Inertial:
 def judged_inertia(inertial: Inertial, link: str, *, rigid: bool, ctx: UrdfContext) -> Inertial:
     """A link's inertia, or the nearest to it that a body can have.
 
-    Small parts of published robots have inertias that no body has, and it hardly matters: they
-    are mended. That of a main part decides how the robot moves, so it has to be right.
+    Many a published arm has a link with one, and Gazebo computes with whatever is written; an
+    engine that conserves energy cannot.
 
     Args:
         inertial: With a mass above 0.
@@ -296,8 +290,7 @@ def judged_inertia(inertial: Inertial, link: str, *, rigid: bool, ctx: UrdfConte
         ctx: Takes the diagnostics.
 
     Raises:
-        DescriptionError: No body has this inertia, and the link moves by itself and is more than
-            a small part of the robot; or a moment is below 0.
+        DescriptionError: No principal moment is above 0.
     """
     i = inertial
     diagonal, products = i.diagonal, i.products
@@ -306,13 +299,11 @@ def judged_inertia(inertial: Inertial, link: str, *, rigid: bool, ctx: UrdfConte
     if found is None:
         return inertial
     message, hint = found
-    if not rigid and i.mass > _SMALL_PART * ctx.mass:
-        raise DescriptionError(f'link "{link}": {message}', origin=i.origin, hint=hint)
     if not any((*diagonal, *products)):
         if rigid:
             ctx.tell("info", f'link "{link}" is a point mass: its inertia is 0', i.origin)
         return inertial  # a part that turns without any inertia is given one as a whole
-    if moments[0] < -TOLERANCE * moments[2]:
+    if moments[2] <= 0:
         raise DescriptionError(f'link "{link}": {message}', origin=i.origin, hint=hint)
     (ixx, iyy, izz), (ixy, ixz, iyz) = made_possible(diagonal, products)
     made = replace(i, ixx=ixx, iyy=iyy, izz=izz, ixy=ixy, ixz=ixz, iyz=iyz)

@@ -6,7 +6,6 @@ the tree that the joints make. This file puts them together; each has a file of 
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
@@ -74,9 +73,6 @@ def read_urdf(
     poses = tree.poses({joint.name: frame for joint, frame in read})
 
     tags = read_gazebo_tags(root, known, {joint.name: joint for joint in joints}, ctx)
-    weights = [part.inertial.mass for part in parts if part.inertial is not None]
-    # What never moves needs no inertia.
-    ctx.mass = math.inf if tags.static else sum(mass for mass in weights if mass > 0)
     links = [_complete(part, tree, poses[part.link.name], tags, ctx) for part in parts]
     joints = [tags.apply_to_joint(joint) for joint in joints]
     links = name_collisions(links, tree, [joint.name for joint in joints if joint.preserve_fixed])
