@@ -192,6 +192,8 @@ class JointHandle:
         self._off_centre = any(self._anchor)
         self._slides = bool(model.jnt_type[self.id] == _JOINT.mjJNT_SLIDE)
         self._zero = float(model.qpos0[self._position_index])
+        self.lightness = float(model.dof_invweight0[self._velocity_index])
+        """rad/s² for 1 N m, or m/s² for 1 N, with all that it carries, where it was spawned."""
 
     @property
     def places(self) -> tuple[int, int]:

@@ -81,3 +81,20 @@ def test_ros2_clamps_the_integral_and_the_whole():
 def test_ros2_takes_no_strategy_that_there_is_not():
     with pytest.raises(PluginError, match="back_calculation"):
         Gains.read_ros2(Settings({"antiwindup_strategy": "back_calculation"}, "arm"))
+
+
+def test_the_derivative_of_a_velocity_is_that_of_its_target():
+    pid = Pid(Gains(p=0.0, d=2.0))
+    pid.velocity(1.0, 0.0, 0.01)
+    # Whatever the joint does: on its velocity it would be an inertia that comes a step late.
+    assert pid.velocity(1.0, 5.0, 0.01).effort == 0.0
+    assert pid.velocity(1.5, 5.0, 0.01).effort == pytest.approx(2.0 * 0.5 / 0.01)
+
+
+@pytest.mark.parametrize(("inertia", "damping"), [(1.0, 0.2), (1e-3, 0.2 + 10 * 0.01)])
+def test_what_swings_too_fast_to_be_followed_is_damped(inertia, damping):
+    """(omega T)² is 0.001 and 1: the second would be seen six times in a swing."""
+    pid = Pid(Gains(p=10.0, d=0.2))
+    law = pid.position(0.3, 0.01, target=0.3, rate=0.0, lightness=1 / inertia)
+    assert law.effort == pytest.approx(3.0)
+    assert law.damping == pytest.approx(damping)

@@ -75,7 +75,7 @@ class GripperActionController(Controller):
             joint.command = self._place
             joint.strength = self._limit if self._limit > 0 else math.inf
         else:
-            law = self._pid.position(error, seconds, target=self._target)
+            law = self._pid.position(error, seconds, target=self._target, lightness=joint.lightness)
             effort = law.effort - law.damping * joint.velocity
             if 0 < self._limit < abs(effort):
                 joint.set_effort(math.copysign(self._limit, effort))

@@ -78,6 +78,11 @@ class JointHardware:
         return self.state.velocity
 
     @property
+    def lightness(self) -> float:
+        """rad/s² for 1 N m, or m/s² for 1 N."""
+        return self.state.lightness
+
+    @property
     def effort(self) -> float:
         """N m or N that drove it in the last step."""
         return self.state.effort
@@ -159,7 +164,9 @@ class JointHardware:
         error = target - self.position
         if self.type == "continuous":
             error = math.remainder(error, 2 * math.pi)
-        law = pid.position(error, seconds, target=target, rate=self.rate or None)
+        law = pid.position(
+            error, seconds, target=target, rate=self.rate or None, lightness=self.lightness
+        )
         self.servo.command_effort(law.effort, damping=law.damping)
 
     def _write_velocity(self, seconds: float) -> None:

@@ -84,7 +84,7 @@ class JointPid(Controller):
                 error = target - joint.position
             else:
                 error = math.remainder(target - joint.position, 2 * math.pi)
-            law = self._pid.position(error, seconds, target=target)
+            law = self._pid.position(error, seconds, target=target, lightness=joint.lightness)
         output = law.effort - law.damping * joint.velocity
         if self._interface == "effort":
             joint.set_effort(law.effort, damping=law.damping)
@@ -174,7 +174,9 @@ class JointGroup(Controller):
             error = target - joint.position
             if joint.type == "continuous":
                 error = math.remainder(error, 2 * math.pi)
-            law = self._pids[index].position(error, seconds, target=target)
+            law = self._pids[index].position(
+                error, seconds, target=target, lightness=joint.lightness
+            )
             joint.set_effort(law.effort, damping=law.damping)
 
     def _on_commands(self, message: Any) -> None:

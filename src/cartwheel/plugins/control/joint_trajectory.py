@@ -174,7 +174,11 @@ class JointTrajectoryController(Controller):
                 joint.command, joint.rate = position, velocity
                 continue
             law = self._pids[index].position(
-                errors[index][0], seconds, target=position, rate=velocity
+                errors[index][0],
+                seconds,
+                target=position,
+                rate=velocity,
+                lightness=joint.lightness if self._interface == "effort" else 0.0,
             )
             law = self._pids[index].bounded(law, joint.velocity)
             forward = self._forward[index] * velocity

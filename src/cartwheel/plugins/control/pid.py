@@ -69,6 +69,10 @@ class Gains:
         )
 
 
+_STIFF = 0.1
+"""(omega T)² of a spring with a joint that the controller sees twenty times in a swing."""
+
+
 @dataclass(frozen=True, slots=True)
 class Law:
     """An effort that falls with the joint's velocity: ``effort - damping * velocity``.
@@ -88,13 +92,18 @@ class Pid:
         self.reset()
 
     def reset(self) -> None:
-        """Forgets the integral and the last error."""
+        """Forgets the integral and the last target."""
         self._integral = 0.0
         self._target: float | None = None
-        self._error: float | None = None
 
     def position(
-        self, error: float, seconds: float, *, target: float, rate: float | None = None
+        self,
+        error: float,
+        seconds: float,
+        *,
+        target: float,
+        rate: float | None = None,
+        lightness: float = 0.0,
     ) -> Law:
         """The law for an error of position.
 
@@ -103,6 +112,7 @@ class Pid:
             seconds: Since the last call, s.
             target: Of position; how it changes is part of the derivative.
             rate: Of the target, rad/s or m/s, where it is known.
+            lightness: Of the joint: how much faster an effort of 1 makes it in 1 s.
         """
         if rate is None:
             before = target if self._target is None else self._target
@@ -110,16 +120,23 @@ class Pid:
         self._target = target
         gains = self.gains
         effort = gains.p * error + self._integrate(error, seconds) + gains.d * rate
-        return Law(effort, gains.d)
+        damping = gains.d
+        if gains.p * seconds * seconds * lightness > _STIFF:
+            # The spring of where the joint will be, not of where it is: what swings faster than
+            # the controller looks would swing ever wider.
+            damping += gains.p * seconds
+            effort += gains.p * seconds * rate
+        return Law(effort, damping)
 
     def velocity(self, target: float, velocity: float, seconds: float) -> Law:
-        """The law for a wanted velocity, rad/s or m/s."""
-        error = target - velocity
-        before = error if self._error is None else self._error
-        self._error = error
+        """The law for a wanted velocity, rad/s or m/s; the derivative is the target's alone."""
+        before = target if self._target is None else self._target
+        self._target = target
         gains = self.gains
-        change = (error - before) / seconds if seconds > 0 else 0.0
-        effort = gains.p * target + self._integrate(error, seconds) + gains.d * change
+        # Of the measured velocity it would be an inertia, and one that acts a step late and is
+        # larger than the joint's own makes it swing ever wider, at any step.
+        change = (target - before) / seconds if seconds > 0 else 0.0
+        effort = gains.p * target + self._integrate(target - velocity, seconds) + gains.d * change
         return Law(effort, gains.p)
 
     def bounded(self, law: Law, velocity: float) -> Law:
