@@ -82,3 +82,15 @@ def test_a_file_is_taken_as_it_is(tmp_path):
     path = tmp_path / "anything.txt"
     path.write_text("")
     assert robots_in(path) == [path]
+
+
+def test_a_model_s_older_files_and_moveit_s_are_none(folder):
+    model = '<sdf version="1.6"><model name="box"><link name="a"/></model></sdf>'
+    config = '<model><name>box</name><sdf version="1.6">model.sdf</sdf></model>'
+    found = folder(
+        box__model_dot_config=config,
+        box__model_dot_sdf=model,
+        box__old_dot_sdf=model,
+        arm_dot_srdf_dot_xacro='<robot name="arm"><link name="a"/></robot>',
+    )
+    assert found == ["box/model.sdf"]

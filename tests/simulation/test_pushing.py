@@ -160,3 +160,16 @@ def test_a_motor_gives_no_more_than_its_own_limit_and_the_joints(make, own, give
     run(world, 0.5)
     assert joint.velocity == pytest.approx(kept * 0.5 / 0.5, abs=0.01)
     assert joint.effort == pytest.approx(kept, abs=1e-6)
+
+
+def test_two_may_push_one_model(make):
+    """Of two that are as strong neither gets its way, within the band where they give in."""
+    world, (one, other) = spawn(
+        make, box(make, 0.0), lambda part: (part.body_drive(), part.body_drive()), Pose((0, 0, 0.1))
+    )
+    one.command((0.04, None, None), (None, None, None))
+    other.command((0.0, None, None), (None, None, None))
+    world.run(1.0)
+    before = world.session.simulation.pose("box").x
+    world.run(1.0)
+    assert world.session.simulation.pose("box").x - before == pytest.approx(0.02, rel=0.05)

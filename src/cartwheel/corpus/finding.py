@@ -8,9 +8,12 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from cartwheel.description.loading import open_description, understand
+from cartwheel.description.shipped import find_description
 from cartwheel.errors import DescriptionError
 
 _SUFFIXES = (".xacro", ".urdf", ".sdf")
+_SEMANTICS = (".srdf", ".srdf.xacro")
+"""MoveIt's, which begin as a robot does."""
 _SKIPPED = frozenset({"build", "devel", "install", "log", "node_modules", "__pycache__", "worlds"})
 _COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
 _ROOT = re.compile(r"<(robot|sdf|gazebo)\b")
@@ -50,7 +53,7 @@ def _files(folder: Path) -> Iterator[Path]:
             name for name in folders if not name.startswith(".") and name not in _SKIPPED
         )
         for name in sorted(names):
-            if name.endswith(_SUFFIXES):
+            if name.endswith(_SUFFIXES) and not name.endswith(_SEMANTICS):
                 yield Path(root, name)
 
 
@@ -78,11 +81,19 @@ def _is_robot(path: Path, package_path: Sequence[Path], *, part: bool) -> bool:
         opened = open_description(path, {}, package_path)
         root = opened.root
         if root.tag != "robot":
-            return root.tag in ("sdf", "gazebo") and bool(root.all("model"))
+            model = root.tag in ("sdf", "gazebo") and bool(root.all("model"))
+            return model and _is_chosen(path)
         if not root.all("link"):
             return False
         if part:
             understand(opened)
     except DescriptionError:
-        return not part
+        return not part and (path.suffix != ".sdf" or _is_chosen(path))
     return True
+
+
+def _is_chosen(path: Path) -> bool:
+    """Whether a model's file is the one that its model.config names, which has older ones too."""
+    if not (path.parent / "model.config").is_file():
+        return True
+    return path.samefile(find_description(path.parent))

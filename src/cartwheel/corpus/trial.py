@@ -26,6 +26,8 @@ STANDING = 10.0
 _LISTENING = 1.0
 """s in which a topic that states a rate of some Hz has something to say."""
 _LONGEST = 5.0
+_HIGH = 5.0
+"""m."""
 
 
 def try_robot(
@@ -103,8 +105,14 @@ def _controllers(robot: RobotDescription) -> list[Path]:
 
 
 def _place(robot: RobotDescription) -> Pose:
-    """Where the lowest of its collisions touches the ground; its own place where it is fixed."""
-    held = robot.static or any(joint.parent == "world" for joint in robot.joints)
+    """Where the lowest of its collisions touches the ground; high above it where it is held.
+
+    An arm that reaches out at zero would reach into the ground.
+    """
+    if robot.static:
+        return robot.pose
+    if any(joint.parent == "world" for joint in robot.joints):
+        return Pose((0.0, 0.0, _HIGH)) @ robot.pose
     clouds = [
         solid.placed(robot.pose @ link.pose)
         for link in robot.links
@@ -112,7 +120,7 @@ def _place(robot: RobotDescription) -> Pose:
         if (solid := solid_of(collision, link.name)) is not None
     ]
     box = bounds(clouds)
-    if held or box is None:
+    if box is None:
         return robot.pose
     x, y, z = robot.pose.position
     return Pose((x, y, z - float(np.round(box[0][2], 6))), robot.pose.orientation)
@@ -137,7 +145,9 @@ def _moved(
 def _listened(world: World) -> tuple[int, tuple[str, ...]]:
     """How many topics state a rate, and those of them that carried nothing."""
     graph = world.graph
-    rated = {each.topic: each for each in graph.publishers() if each.rate}
+    # Two controllers of one joint take turns.
+    idle = {each.node for each in ControllerFiles.of(graph).loaded if not each.running}
+    rated = {each.topic: each for each in graph.publishers() if each.rate and each.node not in idle}
     boxes = {topic: world.mailbox(topic, size=1) for topic in rated}
     slowest = min([each.rate or 1.0 for each in rated.values()], default=1.0)
     if rated:

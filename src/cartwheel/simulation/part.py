@@ -224,6 +224,7 @@ class Part:
             force_gain=gains[0],
             torque_gain=gains[1],
             band=band,
+            number=len(self._entry.drives),
         )
         self._entry.drives.append(drive)
         handle = BodyDriveHandle(self.name, drive)

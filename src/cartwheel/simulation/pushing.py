@@ -29,7 +29,8 @@ class BodyDriveHandle:
     def bind(self, model: Any, data: Any) -> None:
         """Resolves the names in a compiled model."""
         link = scoped(self.model_name, self.drive.link)
-        first = mujoco.mj_name2id(model, _OBJ.mjOBJ_ACTUATOR, scoped(link, "drive", DRIVE_AXES[0]))
+        name = scoped(link, self.drive.name, DRIVE_AXES[0])
+        first = mujoco.mj_name2id(model, _OBJ.mjOBJ_ACTUATOR, name)
         last = first + len(DRIVE_AXES)
         self._ctrl = data.ctrl[first:last]
         self._gain, self._bias = model.actuator_gainprm, model.actuator_biasprm

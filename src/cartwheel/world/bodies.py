@@ -311,7 +311,7 @@ class BodyBuilder:
         coupling.wrap_joint(name, -1.0)
 
     def _add_drive(self, entry: ModelEntry, body: Any, drive: BodyDrive) -> None:
-        name = scoped(entry.name, drive.link, "drive")
+        name = scoped(entry.name, drive.link, drive.name)
         body.add_site(name=name, pos=list(drive.centre))
         if not any(site.name == _WORLD_SITE for site in self._spec.worldbody.sites):
             self._spec.worldbody.add_site(name=_WORLD_SITE)

@@ -60,6 +60,13 @@ class BodyDrive:
     """N m s/rad, about each axis."""
     band: float
     """m/s or rad/s: a larger difference of velocities counts as this one."""
+    number: int = 0
+    """Among the model's: two plugins may push it."""
+
+    @property
+    def name(self) -> str:
+        """Of its site and its motors, in the link."""
+        return f"drive{self.number or ''}"
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

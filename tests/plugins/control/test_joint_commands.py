@@ -195,3 +195,34 @@ def test_a_reset_begins_anew(bench):
     made.publish("/c/command", "std_msgs/msg/Float64", data=0.3)
     made.world.run(1.0)
     assert made.position("beam_joint") == pytest.approx(0.3, abs=1e-3)
+
+
+POSITION = {"type": "effort_controllers/JointPositionController"}
+
+
+@pytest.mark.parametrize("inertia", [1e-1, 1e-4, 1e-7])
+def test_a_pid_without_damping_explodes_for_no_joint_however_light(bench, inertia):
+    link = f"""<link name="tip"><inertial><mass value="1e-3"/><inertia ixx="{inertia}"
+      iyy="{inertia}" izz="{inertia}" ixy="0" ixz="0" iyz="0"/></inertial></link>
+      <joint name="tip_joint" type="continuous"><parent link="world"/><child link="tip"/>
+      <axis xyz="0 1 0"/><limit effort="1000" velocity="1000"/></joint>"""
+    made = bench(
+        robot(link + transmission("tip_joint", "Effort"), ROS1),
+        {"tip": {**POSITION, "joint": "tip_joint", "pid": {"p": 10.0}}},
+    )
+    made.publish("/tip/command", "std_msgs/msg/Float64", data=0.5)
+    made.world.run(1.0)
+    # An undamped spring swings from 0 to twice its target, and no farther.
+    for _ in range(40):
+        made.world.run(0.02)
+        assert -0.05 < made.position("tip_joint") < 1.05
+
+
+@pytest.mark.parametrize("root", ["", "/"])
+def test_a_file_s_controllers_may_stand_under_the_root_s_name(bench, root):
+    content = {root: {"one": {**POSITION, "joint": "beam_joint", "pid": {"p": 500.0, "d": 50.0}}}}
+    made = bench(one("Effort"), content)
+    made.publish("/one/command", "std_msgs/msg/Float64", data=0.3)
+    made.world.run(2.0)
+    # A spring of 500 N m/rad under the weight of the beam.
+    assert made.position("beam_joint") == pytest.approx(0.3, abs=WEIGHT / 500)

@@ -52,8 +52,8 @@ class ControllerFiles:
 
     def __init__(self) -> None:
         self.paths: tuple[Path, ...] = ()
-        self.started: list[Controller] = []
-        """What managers started by themselves, for those who tell the user."""
+        self.loaded: list[Controller] = []
+        """What managers loaded by themselves, for those who tell the user."""
 
     @classmethod
     def of(cls, graph: Graph) -> ControllerFiles:
@@ -62,6 +62,11 @@ class ControllerFiles:
         if found is None:
             found = _BY_GRAPH[graph] = cls()
         return found
+
+    @property
+    def started(self) -> list[Controller]:
+        """Those of them that run; others want joints that one of these has."""
+        return [controller for controller in self.loaded if controller.running]
 
     def take(self) -> tuple[Path, ...]:
         """The files, for one robot alone."""

@@ -82,12 +82,11 @@ class ControlPlugin(Plugin[Any]):
         """Loads and starts controllers; one that does not fit is told and left."""
         manager = self.manager
         assert manager is not None
+        loaded = ControllerFiles.of(self.graph).loaded
         for entry in entries:
             try:
-                controller = manager.load_entry(entry)
+                loaded.append(manager.load_entry(entry))
                 manager.switch([entry.name], [])
             except CartwheelError as error:
                 hint = f". {error.hint}" if error.hint else ""
                 self.warn(f"controller {entry.name} was not started: {error.message}{hint}")
-            else:
-                ControllerFiles.of(self.graph).started.append(controller)

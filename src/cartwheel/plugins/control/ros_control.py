@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
@@ -128,8 +128,8 @@ class RosControl(ControlPlugin):
                 inner = next(
                     (value for key, value in inner.items() if str(key).strip("/") == name), inner
                 )
-        for key, value in inner.items():
-            name = f"/{self.namespace}/{str(key).strip('/')}"
+        for key, value in _below_root(inner):
+            name = f"/{self.namespace}/{key}"
             before = self.graph.parameters.get(name)
             if isinstance(before, dict) and isinstance(value, dict):
                 value = {**before, **value}  # noqa: PLW2901
@@ -151,3 +151,13 @@ class RosControl(ControlPlugin):
                 settings = Settings(values, f"{path}/{joint.name}", f"/{self.namespace}")
                 gains[joint.name] = (moves[0], Gains.read(settings))
         return gains
+
+
+def _below_root(content: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
+    """A mapping's names and values; what stands under ``/`` or no name is no deeper for it."""
+    for key, value in content.items():
+        name = str(key).strip("/")
+        if name:
+            yield name, value
+        elif isinstance(value, Mapping):
+            yield from _below_root(value)

@@ -18,7 +18,7 @@ _MOST = 400
 def files_for(robot: Path, joints: Sequence[str]) -> list[Path]:
     """YAML files whose controllers name a robot's joints, or tell of all joints.
 
-    Looked for in the folders named ``config`` of the robot's package and those beside it.
+    Looked for below folders named ``config`` in the robot's package and those beside it.
     """
     found = []
     for path in _candidates(robot):
@@ -46,7 +46,7 @@ def _candidates(robot: Path) -> Iterator[Path]:
     for folder in sorted(package.parent.iterdir()):
         if not (folder / "package.xml").is_file():
             continue
-        for path in sorted((folder / "config").glob("**/*.y*ml")):
+        for path in sorted(folder.glob("**/config/**/*.y*ml")):
             seen += 1
             if seen > _MOST:
                 return
