@@ -16,7 +16,7 @@ from cartwheel.bridges.ros2 import Ros2Bridge
 from cartwheel.bridges.ros2.dds import Dds
 from cartwheel.bridges.ros2.rtps import discovery, wire
 from cartwheel.bridges.ros2.rtps.discovery import ParticipantData, encode_participant
-from cartwheel.bridges.ros2.rtps.network import Reach, domain_id
+from cartwheel.bridges.ros2.rtps.network import Network, Reach, domain_id
 from cartwheel.cli.arguments import rmw
 from cartwheel.errors import CartwheelError
 from cartwheel.graph import Graph
@@ -208,6 +208,36 @@ def test_on_this_computer_only_nobody_else_can_connect(bridged: Ros2Bridged) -> 
     assert network.unicast.getsockname()[0] == "127.0.0.1"
     assert {host for host, _ in network.locators} == {"127.0.0.1"}
     assert not network.hears("192.0.2.77")
+
+
+def test_who_is_named_is_heard_and_nobody_where_that_is_off() -> None:
+    peers = Reach.of({"ROS_STATIC_PEERS": "localhost; 192.0.2.7 ;;"})
+    assert peers.peers == ("localhost", "192.0.2.7")
+    network = Network(DOMAIN + 6, peers)
+    try:
+        assert network.hears("127.0.0.1")
+        assert network.hears("192.0.2.7")
+        assert not network.hears("192.0.2.8")
+        assert ("192.0.2.7", 7400 + 250 * (DOMAIN + 6) + 10) in network.announce
+    finally:
+        network.close()
+    off = Network(DOMAIN + 6, Reach.of({"ROS_AUTOMATIC_DISCOVERY_RANGE": "OFF"}))
+    try:
+        assert not off.announce
+        assert not off.hears("127.0.0.1")
+    finally:
+        off.close()
+    with pytest.raises(CartwheelError, match="ROS_STATIC_PEERS"):
+        Network(DOMAIN + 6, Reach.of({"ROS_STATIC_PEERS": "no.such.host.invalid"}))
+
+
+def test_a_peer_is_heard_by_what_its_name_means(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(socket, "gethostbyname", {"lab-robot": "192.0.2.9"}.__getitem__)
+    network = Network(DOMAIN + 6, Reach(peers=("lab-robot",)))
+    try:
+        assert network.hears("192.0.2.9")
+    finally:
+        network.close()
 
 
 def test_zenoh_that_is_missing_is_told_with_the_command(monkeypatch: pytest.MonkeyPatch) -> None:

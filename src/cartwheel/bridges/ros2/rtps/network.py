@@ -46,7 +46,9 @@ class Reach:
             CartwheelError: A value is none of ROS's.
         """
         peers = tuple(
-            peer.strip() for peer in environment.get("ROS_STATIC_PEERS", "").split(";") if peer
+            peer.strip()
+            for peer in environment.get("ROS_STATIC_PEERS", "").split(";")
+            if peer.strip()
         )
         only = environment.get("ROS_LOCALHOST_ONLY", "")
         given = environment.get("ROS_AUTOMATIC_DISCOVERY_RANGE", "").upper()
@@ -108,6 +110,8 @@ class Network:
         self.reach = reach
         base = _BASE + _PER_DOMAIN * domain
         self._own = {LOOPBACK, *own_addresses().values()}
+        peers = self._resolved(reach.peers)
+        self._heard = frozenset() if reach.range == "OFF" else frozenset((*self._own, *peers))
         outer = tuple(sorted(address for address in self._own if not address.startswith("127.")))
         local = reach.range != "SUBNET" and not reach.peers
         self.unicast, port = self._open(base, LOOPBACK if local else "")
@@ -124,7 +128,7 @@ class Network:
             return
         self.announce = [
             (host, base + _UNICAST + _PER_PARTICIPANT * number)
-            for host in (LOOPBACK, *self._resolved(reach.peers))
+            for host in (LOOPBACK, *peers)
             for number in range(_PEERS)
         ]
         with contextlib.suppress(OSError):
@@ -136,7 +140,7 @@ class Network:
 
     def hears(self, host: str) -> bool:
         """Whether datagrams of that host are for us."""
-        return self.reach.range == "SUBNET" or host in self._own or host in self.reach.peers
+        return self.reach.range == "SUBNET" or host in self._heard
 
     def is_own(self, host: str) -> bool:
         """Whether a host is this computer."""
