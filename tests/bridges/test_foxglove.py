@@ -16,6 +16,7 @@ from typing import Any
 import pytest
 from tests.bridges.foxglove_client import Client, modules
 from tests.bridges.running import Running
+from websockets.sync.client import connect
 
 from cartwheel.bridges.foxglove import FoxgloveBridge
 from cartwheel.cli.commands.foxglove import Assets, SimulationControls
@@ -267,6 +268,29 @@ def test_parameters(served: Served, client: Client) -> None:
     client.wait("status", lambda e: "number" in e["status"]["message"])
 
 
+def test_what_others_do_to_time_is_told(served: Served, client: Client) -> None:
+    client.wait("advertise")
+    client.do("watch", names=["/cartwheel/paused", "/cartwheel/speed"])
+    client.do("get", names=["/cartwheel/paused"], id="there")
+    client.wait("parameters", lambda e: e.get("id") == "there")
+    served.simulation.call(served.simulation.pause).result(30)
+
+    def says(name: str, value: object) -> None:
+        client.wait(
+            "parameters",
+            lambda e: (
+                not e.get("id")
+                and (name, value) in [(p["name"], p["value"]) for p in e["parameters"]]
+            ),
+        )
+
+    says("/cartwheel/paused", True)
+    served.simulation.call(lambda: served.simulation.set_speed(3.0)).result(30)
+    says("/cartwheel/speed", 3)
+    served.simulation.call(served.simulation.resume).result(30)
+    says("/cartwheel/paused", False)
+
+
 def test_time_is_the_simulations(served: Served, client: Client) -> None:
     client.wait("time", count=5)
     times = [event["time"] for event in client.of("time")]
@@ -294,6 +318,14 @@ def test_playback_control(folder: Path) -> None:
         client.send("raw", request(1, 1.0, seek=0))
         until(lambda: simulation.run_state is RunState.PAUSED, "pause")
         assert simulation.time_ns < 10**9
+        with connect(served.bridge.url, subprotocols=["foxglove.sdk.v1"]) as link:
+            # Another than the client lets it go on: its opcode, status, time, speed, seek, request.
+            simulation.call(simulation.resume).result(30)
+            for message in link:
+                if isinstance(message, bytes) and message[0] == 5 and message[1] == 0:
+                    break
+            _, _, told, speed, sought, length = struct.unpack("<BBQfBI", message)
+            assert (told < 10**9, speed, sought, length) == (True, 1.0, 0, 0)
         client.close()
 
 

@@ -12,7 +12,7 @@ import pytest
 from tests.bridges.ros1_peers import wait_for
 from tests.bridges.ros2_peers import DOMAIN, REASON, Peer, Ros2Bridged
 
-from cartwheel.messages import decode_cdr
+from cartwheel.messages import decode_cdr, encode_cdr, from_dict
 
 pytestmark = pytest.mark.skipif(bool(REASON), reason=REASON)
 
@@ -131,6 +131,28 @@ def test_images_arrive_whole(bridged: Ros2Bridged, peer: Peer) -> None:
     assert (image.height * image.width * 3, image.encoding) == (image.data.size, "rgb8")
     peer.close()
     wait_for(lambda: not bridged.wanted(CAMERA), "that nothing is drawn for nobody")
+
+
+def test_large_images_arrive_at_best_effort(bridged: Ros2Bridged, peer: Peer) -> None:
+    # 47 datagrams each, to a receiver that has room for three.
+    image = from_dict(IMAGE, {"width": 1280, "height": 720, "step": 3840, "encoding": "rgb8"})
+    image.data = np.zeros(1280 * 720 * 3, np.uint8)
+    publisher = bridged.graph.advertise("/large", IMAGE, node="test", qos="sensor")
+
+    def publish() -> None:
+        publisher.publish(image)
+
+    simulation = bridged.simulation
+    task = simulation.call(
+        lambda: simulation.schedule(30.0, after=publish, active=lambda: publisher.wanted)
+    ).result()
+    peer.subscribe("/large", IMAGE, reliable=False)
+    wait_for(lambda: len(peer.received("/large")) > 20, "images")
+    assert {size - size % 4 for size, _ in peer.received("/large")} == {
+        len(encode_cdr(image)) // 4 * 4
+    }
+    simulation.call(lambda: simulation.unschedule(task)).result()
+    bridged.simulation.call(publisher.close).result()
 
 
 def test_who_asks_for_more_than_is_offered_gets_nothing(bridged: Ros2Bridged, peer: Peer) -> None:

@@ -12,9 +12,9 @@ from typing import Any
 
 from cartwheel.bridges.foxglove.controls import Controls
 from cartwheel.bridges.foxglove.incoming import ENCODINGS, Incoming, offered
-from cartwheel.bridges.foxglove.listener import Listener
+from cartwheel.bridges.foxglove.listener import Listener, playback_state
 from cartwheel.bridges.foxglove.publication import READER, Publication
-from cartwheel.bridges.foxglove.values import Values
+from cartwheel.bridges.foxglove.values import PAUSED, SPEED, Values
 from cartwheel.bridges.mirror import offered_by_others
 from cartwheel.errors import CartwheelError, Diagnostic, Once, one_line
 from cartwheel.graph import Graph, Service, Subscription, TopicInfo
@@ -85,6 +85,8 @@ class FoxgloveBridge:
         self._pending: set[str] = set()
         self._surveying = False
         self._is_new = Once(_TOLD)
+        self._shown: tuple[bool, float | None] | None = None
+        """Whether time is held and its pace, as clients were last told."""
         self._closed = False
         self._incoming = Incoming(graph, self._warn)
         self._values = Values(
@@ -218,7 +220,15 @@ class FoxgloveBridge:
                 self._warn(f"a fault of the bridge: {one_line(error)}")
 
     def _tell_time(self) -> None:
-        self._server.broadcast_time(self._controls.time_ns)
+        state = self._controls.state()
+        self._server.broadcast_time(state.time_ns)
+        # Others hold time as well, or set its pace: what clients show must follow.
+        shown = (state.paused, state.speed)
+        if shown != self._shown:
+            self._shown = shown
+            self._server.publish_parameter_values(self._values.get([PAUSED, SPEED]))
+            if self._time_range is not None:
+                self._server.broadcast_playback_state(playback_state(state, request_id=None))
 
     def _send(self, topic: str) -> None:
         self._pending.discard(topic)

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-from cartwheel.bridges.foxglove.controls import Controls
+from cartwheel.bridges.foxglove.controls import Controls, TimeState
 from cartwheel.bridges.foxglove.incoming import Incoming
 from cartwheel.bridges.foxglove.values import Values
 from cartwheel.errors import CartwheelError
@@ -75,7 +75,7 @@ class Listener:
         """Nothing to do."""
 
     def on_playback_control_request(self, request: Any) -> Any:
-        from foxglove.websocket import PlaybackCommand, PlaybackState, PlaybackStatus
+        from foxglove.websocket import PlaybackCommand
 
         controls = self._controls
         try:
@@ -88,11 +88,21 @@ class Listener:
             (controls.resume if play else controls.pause)()
         except CartwheelError as error:
             self._tell(error.message)
-        state = controls.state()
-        return PlaybackState(
-            status=PlaybackStatus.Paused if state.paused else PlaybackStatus.Playing,
-            current_time=state.time_ns,
-            playback_speed=state.speed or 0.0,
+        return playback_state(
+            controls.state(),
             did_seek=request.seek_time is not None,
             request_id=request.request_id,
         )
+
+
+def playback_state(state: TimeState, *, did_seek: bool = False, request_id: str | None) -> Any:
+    """How time goes, in the library's words."""
+    from foxglove.websocket import PlaybackState, PlaybackStatus
+
+    return PlaybackState(
+        status=PlaybackStatus.Paused if state.paused else PlaybackStatus.Playing,
+        current_time=state.time_ns,
+        playback_speed=state.speed or 0.0,
+        did_seek=did_seek,
+        request_id=request_id,
+    )
