@@ -3,6 +3,7 @@
 import mujoco
 import numpy as np
 import pytest
+import trimesh
 
 
 @pytest.mark.parametrize("turn", ["0 0 0", "0.4 0 0"])
@@ -118,3 +119,22 @@ def test_a_mesh_that_is_round_about_its_axle_is_a_tyre_as_wide_as_its_tread(make
 def test_a_mesh_with_corners_stays_one(make, tmp_path):
     kind, _, _ = wheel(make, prism(tmp_path, 6), pose="0 0 0 0 0 0")
     assert kind == mujoco.mjtGeom.mjGEOM_MESH
+
+
+def test_a_fine_round_has_a_hull_of_few_corners_that_is_as_large(make, tmp_path):
+    """A cap of the sphere for each corner: 4π/n of its solid angle, so a sag of 2 r/n."""
+    radius = 0.3
+    path = tmp_path / "ball.stl"
+    trimesh.creation.icosphere(subdivisions=5, radius=radius).export(path)
+    ball = make.sdf(
+        f"""<model name="ball"><pose>0 0 0.31 0 0 0</pose><link name="l"><collision name="c">
+        <geometry><mesh><uri>file://{path}</uri></mesh></geometry></collision></link></model>"""
+    )
+    world = make.world(ball)
+    model = world.session.simulation.model
+    mesh = model.geom("ball::l::c").dataid[0]
+    corners = int(model.mesh_graph[model.mesh_graphadr[mesh]])
+    assert corners <= 2000 < 10242
+    world.run(2.0)
+    # It may come to rest on any of them, and is a contact's depth deep.
+    assert world.model("ball").pose.z == pytest.approx(radius, abs=4 * 2 * radius / corners)

@@ -40,6 +40,8 @@ _FLAT = 1e-6
 """Of a mesh's extent: thinner is flat."""
 _PLATE = 1e-3
 """m, what a flat mesh that collides is thick."""
+_HULL_CORNERS = 2000
+"""A hull of more, of a finely meshed round, takes seconds and differs by a thousandth."""
 _BELOW = 1.0
 """m of solid ground below the lowest point of a heightmap."""
 
@@ -64,6 +66,7 @@ class Assets:
             mesh = self._spec.add_mesh(
                 name=name, inertia=mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL
             )
+            mesh.maxhullvert = _HULL_CORNERS
             mesh.uservert = np.asarray(vertices, dtype=np.float64).ravel()
             if faces is not None:
                 mesh.userface = np.asarray(faces, dtype=np.int32).ravel()
