@@ -7,6 +7,8 @@ import time
 import numpy as np
 import pytest
 
+import cartwheel as cw
+from cartwheel.description import load_text
 from cartwheel.description.model import PluginTag
 from cartwheel.errors import PluginError, SimulationError, UnknownNameError, WorldError
 from cartwheel.geometry import Pose
@@ -356,3 +358,27 @@ def test_reset_ends_a_divergence(driving):
     driving.reset()
     driving.run(1.0)
     assert driving.model("box").pose.z == pytest.approx(0.2, abs=1e-3)
+
+
+def test_a_world_saved_with_turned_joints_begins_and_begins_again_with_them():
+    """A pendulum without gravity, saved at a right angle: its bob stands beside the pin."""
+    found = load_text(
+        """<sdf version="1.6"><world name="w"><gravity>0 0 0</gravity><model name="m">
+        <link name="bob"><pose>0 0 -1 0 0 0</pose></link><link name="pin"/>
+        <joint name="hang" type="fixed"><parent>world</parent><child>pin</child></joint>
+        <joint name="swing" type="revolute"><parent>pin</parent><child>bob</child>
+        <pose>0 0 1 0 0 0</pose><axis><xyz>0 1 0</xyz></axis></joint></model>
+        <state world_name="w"><model name="m"><pose>0 0 2 0 0 0</pose>
+        <link name="pin"><pose>0 0 2 0 0 0</pose></link>
+        <link name="bob"><pose>-1 0 2 0 1.570796 0</pose></link></model></state></world></sdf>""",
+        file="saved.world",
+    )
+    with cw.World(found) as world:
+        simulation = world.session.simulation
+        for _ in range(2):
+            place = simulation.engine.link_pose("m", "bob").position
+            assert place == pytest.approx((-1, 0, 2), abs=1e-5)
+            simulation.data.joint("m::swing").qvel[0] = 1.0
+            world.run(0.5)
+            assert simulation.engine.link_pose("m", "bob").position[2] > 2.1
+            world.reset()

@@ -403,6 +403,8 @@ class RobotDescription:
     self_collide: bool = False
     pose: Pose = Pose()
     """Where its file puts it in the world."""
+    joint_positions: tuple[tuple[str, float], ...] = ()
+    """rad or m, where its joints begin; at 0 those that are not named."""
     canonical_link: str
     """The link whose frame is the model's as Gazebo reports it: a URDF's root."""
     transmissions: tuple[Element, ...] = ()

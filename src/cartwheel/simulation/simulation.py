@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 from cartwheel.description.model import RobotDescription, WorldDescription
@@ -200,6 +200,7 @@ class Simulation(Run):
         if moved:
             self._compile(self._residents)
         self.engine.rewind(keep_time=keep_time)
+        self._take_positions(self._residents.values())
         self._guard_due = 0
         self._guard.forget()
         self._separation.forget()
@@ -484,8 +485,19 @@ class Simulation(Run):
                 raise
             self._residents[description.name] = resident
         self._compile(self._residents)
+        self._take_positions(self._residents.values())
         for index, description in enumerate(models):
             self._welcome(description.name, before=models[index + 1 :])
+
+    def _take_positions(self, residents: Iterable[Resident]) -> None:
+        """Turns joints to where their descriptions say that they begin."""
+        stated = [each.entry for each in residents if each.entry.description.joint_positions]
+        for entry in stated:
+            positions = dict(entry.description.joint_positions)
+            for joint, position in with_mimics(entry.description, positions).items():
+                self.engine.set_joint(self.engine.joint_id(entry.name, joint), position)
+        if stated:
+            self.engine.forward()
 
     def _admit(
         self,

@@ -15,6 +15,7 @@ from cartwheel.description.packages import Packages
 from cartwheel.description.sdf import read_sdf
 from cartwheel.description.xml import parse, read_file
 from cartwheel.errors import CartwheelError, DescriptionError
+from cartwheel.geometry import Pose
 
 QUARTER = math.pi / 2
 ROOT = Path(__file__).parents[3]
@@ -195,15 +196,52 @@ def test_saved_state_moves_models_lights_and_lone_links():
     assert "stranger" in found.diagnostics[0].message
 
 
-def test_saved_joint_positions_are_told():
-    found = world(
-        """<model name="a"><link name="base"/><link name="arm"/><joint name="j" type="revolute">
-        <parent>base</parent><child>arm</child><axis/></joint></model>
-        <state><model name="a"><pose>0 0 0 0 0 0</pose><link name="arm"><pose>0 0 0 0 0 1</pose>
-        </link></model></state>"""
+ARM = """<model name="arm"><link name="base"/>
+  <link name="upper"><pose>0 0 1 0 0 0</pose></link>
+  <link name="slider"><pose>0 0 2 0 0 0</pose></link>
+  <joint name="anchor" type="fixed"><parent>world</parent><child>base</child></joint>
+  <joint name="turn" type="revolute"><parent>base</parent><child>upper</child>
+    <pose>0 0 -0.5 0 0 0.3</pose><axis><xyz>0 1 0</xyz></axis></joint>
+  <joint name="reach" type="prismatic"><parent>upper</parent><child>slider</child>
+    <axis><xyz>0 0 1</xyz></axis></joint>{}</model>"""
+
+
+def saved(turn, reach, extra="", links=""):
+    """The arm as Gazebo saves it: each link's pose in the world, by its joints from the base on."""
+    base = Pose.from_xyz_rpy((2, 1, 0), (0, 0, 0.5))
+    hinge = Pose.from_xyz_rpy((0, 0, 0.5), (0, 0, 0.3))
+    upper = base @ hinge @ Pose.from_xyz_rpy((0, 0, 0), (0, turn, 0)) @ hinge.inverse()
+    upper = upper @ Pose((0, 0, 1))
+    slider = upper @ Pose((0, 0, 1 + reach))
+
+    def written(pose):
+        return " ".join(f"{value:.6f}" for value in (*pose.position, *pose.rpy))
+
+    poses = "".join(
+        f'<link name="{name}"><pose>{written(pose)}</pose></link>'
+        for name, pose in (("base", base), ("upper", upper), ("slider", slider))
     )
-    assert found.models[0].link("arm").pose == m.Link(name="", origin=found.origin).pose
-    assert "joint positions" in found.diagnostics[0].message
+    return f"""{ARM.format(extra)}<state world_name="w"><model name="arm">
+      <pose>{written(base)}</pose>{poses}{links}</model></state>"""
+
+
+def test_a_saved_state_tells_where_joints_stand():
+    found = world(saved(0.7, -0.2))
+    assert dict(found.models[0].joint_positions) == pytest.approx(
+        {"turn": 0.7, "reach": -0.2}, abs=1e-4
+    )
+    assert found.diagnostics == ()
+
+
+def test_a_joint_of_several_degrees_of_freedom_is_told():
+    ball = """<link name="ball"/><joint name="socket" type="ball"><parent>base</parent>
+      <child>ball</child></joint>"""
+    turned = '<link name="ball"><pose>2 1 0 0.2 0.3 0</pose></link>'
+    found = world(saved(0, 0, ball, turned))
+    assert found.models[0].joint_positions == ()
+    (told,) = found.diagnostics
+    assert told.severity == "warning"
+    assert 'the saved state is not restored for joint "socket"' in told.message
 
 
 @pytest.mark.parametrize(

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
 
 from cartwheel.description.model import Light, Link, RobotDescription
 from cartwheel.description.sdf.context import Context, read_pose, require_name
+from cartwheel.description.sdf.frames import WORLD
 from cartwheel.description.sdf.model import read_model
 from cartwheel.description.xml import Node
-from cartwheel.geometry import Pose
+from cartwheel.geometry import Pose, quat_from_axis_angle
 
 _NEAR = 1e-3
 """Metres and radians by which a saved link may differ: Gazebo writes six digits."""
@@ -21,8 +24,8 @@ def apply_state(
 ) -> tuple[list[RobotDescription], list[Light]]:
     """Models and lights as the state puts them.
 
-    Poses of models and lights are taken over, those of links only where no joint holds them:
-    joint positions are not restored, which is told.
+    Poses of models and lights are taken over, those of links that no joint holds, and positions
+    of joints that the poses of their links tell of. What they do not tell is reported.
     """
     for tag in ("sim_time", "real_time", "wall_time", "iterations"):
         for each in node.all(tag):
@@ -63,7 +66,7 @@ def _moved(model: RobotDescription, saved: Node, ctx: Context) -> RobotDescripti
     links = {each.get("name") or "": each for each in saved.all("link")}
     jointed = {end for joint in model.joints for end in (joint.parent, joint.child)}
     moved: list[Link] = []
-    told = False
+    places: dict[str, Pose] = {}
     for link in model.links:
         found = links.get(link.name)
         place = found.child("pose") if found is not None else None
@@ -72,20 +75,49 @@ def _moved(model: RobotDescription, saved: Node, ctx: Context) -> RobotDescripti
         if place is None:
             moved.append(link)
             continue
-        relative = pose.inverse() @ read_pose(place)
-        if link.name not in jointed and not _near(relative, link.pose):
-            moved.append(replace(link, pose=relative))
-            continue
-        if not told and not _near(relative, link.pose):
-            told = True
-            ctx.tell(
-                "warning",
-                f'the joint positions of model "{model.name}" in the saved state are not restored',
-                saved.origin,
-            )
-        moved.append(link)
+        relative = places[link.name] = pose.inverse() @ read_pose(place)
+        alone = link.name not in jointed and not _near(relative, link.pose)
+        moved.append(replace(link, pose=relative) if alone else link)
     saved.mark()
-    return replace(model, pose=pose, links=tuple(moved))
+    positions, lost = _positions(model, places)
+    if lost:
+        ctx.tell(
+            "warning",
+            f'model "{model.name}": the saved state is not restored for {", ".join(lost)}',
+            saved.origin,
+        )
+    return replace(model, pose=pose, links=tuple(moved), joint_positions=tuple(positions.items()))
+
+
+def _positions(
+    model: RobotDescription, places: Mapping[str, Pose]
+) -> tuple[dict[str, float], list[str]]:
+    """Where joints stand by their links' poses in the model, and joints that this does not tell."""
+    built = {WORLD: Pose(), **{link.name: link.pose for link in model.links}}
+    places = {WORLD: Pose(), **places}
+    found: dict[str, float] = {}
+    lost: list[str] = []
+    for joint in model.joints:
+        if joint.child not in places or joint.parent not in places:
+            continue
+        before = built[joint.parent].inverse() @ built[joint.child]
+        now = places[joint.parent].inverse() @ places[joint.child]
+        if _near(before, now):
+            continue
+        # What the joint did, in its own frame.
+        motion = (before @ joint.pose).inverse() @ now @ joint.pose
+        axis = np.array(joint.axis.xyz)
+        if joint.type == "prismatic":
+            found[joint.name] = float(np.dot(motion.position, axis))
+            told = Pose(tuple((found[joint.name] * axis).tolist()))
+        elif joint.type in ("revolute", "continuous"):
+            x, y, z, w = motion.orientation
+            angle = 2 * math.atan2(float(np.dot((x, y, z), axis)), w)
+            found[joint.name] = math.remainder(angle, 2 * math.pi)
+            told = Pose((0.0, 0.0, 0.0), quat_from_axis_angle(joint.axis.xyz, angle))
+        if joint.name not in found or not _near(told, motion):
+            lost.append(f'joint "{joint.name}"')
+    return found, lost
 
 
 def _near(a: Pose, b: Pose) -> bool:
