@@ -365,6 +365,19 @@ class Mimic:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
+class SoftLimits:
+    """A ``<safety_controller>``: limits that ros_control keeps a joint within."""
+
+    lower: float = 0.0
+    upper: float = 0.0
+    """rad or m."""
+    k_position: float = 0.0
+    """1/s: how fast it may go to a limit, by how far it is."""
+    k_velocity: float = 0.0
+    """N m s/rad or N s/m: how hard it may be driven beyond that."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
 class Joint:
     name: str
     type: JointType
@@ -376,6 +389,7 @@ class Joint:
     axis: Axis = Axis()
     axis2: Axis | None = None
     mimic: Mimic | None = None
+    soft: SoftLimits | None = None
     thread_pitch: float | None = None
     """Of a screw: metres along the axis for each turn, positive for a right-handed one."""
     stop_cfm: float | None = None

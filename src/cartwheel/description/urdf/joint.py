@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Iterable
 
-from cartwheel.description.model import Axis, Joint, JointType, Mimic
+from cartwheel.description.model import Axis, Joint, JointType, Mimic, SoftLimits
 from cartwheel.description.urdf.link import UrdfContext, read_origin
 from cartwheel.description.xml import Node
 from cartwheel.errors import DescriptionError, suggestion
@@ -44,10 +44,9 @@ def read_joint(node: Node, links: Collection[str], ctx: UrdfContext) -> tuple[Jo
             f'joint "{name}": the link "world" stands still and cannot be a child',
             "Swap parent and child.",
         )
-    for accepted in ("safety_controller", "calibration"):
-        part = node.child(accepted)
-        if part is not None:
-            part.mark()  # for a controller's and an encoder's own use
+    safety, calibration = node.child("safety_controller"), node.child("calibration")
+    if calibration is not None:
+        calibration.mark()  # for an encoder's own use
     mimic = node.child("mimic")
     limits = node.child("limit")
     axis = Axis() if kind in _WITHOUT_AXIS else _axis(node, limits, name, kind, ctx)
@@ -62,6 +61,7 @@ def read_joint(node: Node, links: Collection[str], ctx: UrdfContext) -> tuple[Jo
         child=child,
         axis=axis,
         mimic=_mimic(mimic) if mimic is not None else None,
+        soft=_soft(safety) if safety is not None else None,
         origin=node.origin,
     )
     return joint, read_origin(node)
@@ -149,6 +149,15 @@ def _mimic(node: Node) -> Mimic:
         joint=node.require("joint").strip(),
         multiplier=node.number_of("multiplier", 1.0),
         offset=node.number_of("offset", 0.0),
+    )
+
+
+def _soft(node: Node) -> SoftLimits:
+    return SoftLimits(
+        lower=node.number_of("soft_lower_limit", 0.0),
+        upper=node.number_of("soft_upper_limit", 0.0),
+        k_position=node.number_of("k_position", 0.0),
+        k_velocity=node.number_of("k_velocity", 0.0),
     )
 
 

@@ -6,11 +6,12 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from cartwheel.description.model import Axis, Mimic
+from cartwheel.description.model import Axis, Mimic, SoftLimits
 from cartwheel.errors import PluginError, UnknownNameError
 from cartwheel.plugins.base import Plugin
 from cartwheel.plugins.control.interfaces import JointInterfaces
 from cartwheel.plugins.control.pid import Gains, Pid
+from cartwheel.plugins.control.settings import Settings
 from cartwheel.simulation.handles import JointHandle, MotorHandle
 from cartwheel.simulation.servo import ServoHandle
 
@@ -25,6 +26,11 @@ class JointHardware:
         plugin: Whose robot it is.
         interfaces: What it offers.
         gains: An interface whose commands become efforts by a PID.
+        limits: Parameters that go before the description's limits; with them, even if there are
+            none, its soft limits count.
+
+    Raises:
+        PluginError: A limit is no number.
     """
 
     def __init__(
@@ -32,6 +38,7 @@ class JointHardware:
         plugin: Plugin[Any],
         interfaces: JointInterfaces,
         gains: tuple[str, Gains] | None = None,
+        limits: Settings | None = None,
     ) -> None:
         part, name, origin = plugin.part, interfaces.name, interfaces.origin
         joint = part.description.joint(name)
@@ -46,6 +53,10 @@ class JointHardware:
         if joint.type != "continuous":
             self.lower = -math.inf if joint.axis.lower is None else joint.axis.lower
             self.upper = math.inf if joint.axis.upper is None else joint.axis.upper
+        self._soft: SoftLimits | None = None
+        if limits is not None:
+            self._soft = joint.soft
+            self._take_limits(limits)
         self.state: JointHandle = part.joint(name, origin=origin)
         self.motor: MotorHandle | None = None
         self.servo: ServoHandle | None = None
@@ -66,6 +77,26 @@ class JointHardware:
         if interfaces.mimic is not None and joint.mimic is None:
             leader, multiplier = interfaces.mimic
             part.mimic(name, Mimic(joint=leader, multiplier=multiplier), origin=origin)
+
+    def _take_limits(self, limits: Settings) -> None:
+        """Source: joint_limits_interface, joint_limits_rosparam."""
+        if limits.boolean("has_position_limits", False):
+            self.lower, self.upper = limits.number("min_position"), limits.number("max_position")
+        if limits.boolean("has_velocity_limits", False):
+            self.velocity_limit = limits.number("max_velocity")
+        if limits.boolean("has_effort_limits", False):
+            self.effort_limit = limits.number("max_effort")
+
+    def _velocity_bounds(self) -> tuple[float, float]:
+        """The least and the largest velocity: near a soft limit less of it. Source: PR2."""
+        most, soft = self.velocity_limit, self._soft
+        if soft is None or math.inf in (-self.lower, self.upper):
+            return -most, most
+        low, high = (
+            min(max(-soft.k_position * (self.position - limit), -most), most)
+            for limit in (soft.lower, soft.upper)
+        )
+        return low, high
 
     @property
     def position(self) -> float:
@@ -150,14 +181,21 @@ class JointHardware:
             self.servo.command_velocity(0.0)
 
     def _write_position(self, seconds: float, lead: float) -> None:
-        target = min(max(self.command + lead * self.rate, self.lower), self.upper)
+        lower, upper, fastest = self.lower, self.upper, self.velocity_limit
+        target = self.command + lead * self.rate
+        soft = self._soft
+        if soft is not None and math.inf not in (-lower, upper):
+            lower, upper = max(lower, soft.lower), min(upper, soft.upper)
+            low, high = self._velocity_bounds()
+            fastest = max(high if target > self.position else -low, 0.0)
+        target = min(max(target, lower), upper)
         assert self.servo is not None
         pid = self.pids.get("position")
         if pid is None:
             self.servo.command_position(
                 target,
                 velocity=self.rate,
-                max_velocity=self.velocity_limit,
+                max_velocity=fastest,
                 max_effort=self.strength,
             )
             return
@@ -170,8 +208,8 @@ class JointHardware:
         self.servo.command_effort(law.effort, damping=law.damping)
 
     def _write_velocity(self, seconds: float) -> None:
-        limit = self.velocity_limit
-        target = min(max(self.command, -limit), limit)
+        low, high = self._velocity_bounds()
+        target = min(max(self.command, low), high)
         if self.motor is not None:
             self.motor.command(target)
             return
@@ -184,14 +222,24 @@ class JointHardware:
             self.servo.command_effort(law.effort, damping=law.damping)
 
     def _write_effort(self) -> None:
+        damping = self._damping
         effort = min(max(self.command, -self.effort_limit), self.effort_limit)
+        if self._soft is not None:
+            low, high = (
+                -self._soft.k_velocity * (self.velocity - bound)
+                for bound in self._velocity_bounds()
+            )
+            output = effort - damping * self.velocity
+            clamped = min(max(output, low), high)
+            if clamped != output:
+                effort, damping = clamped, 0.0
         # Beyond a limit it may only come back.
         if self.position < self.lower or self.velocity < -self.velocity_limit:
             effort = max(effort, 0.0)
         elif self.position > self.upper or self.velocity > self.velocity_limit:
             effort = min(effort, 0.0)
         assert self.servo is not None
-        self.servo.command_effort(effort, damping=self._damping)
+        self.servo.command_effort(effort, damping=damping)
 
 
 class Hardware:
@@ -201,6 +249,7 @@ class Hardware:
         plugin: Whose robot it is.
         joints: What they offer.
         gains: Of joints whose commands of an interface go through a PID, by joint.
+        limits: ROS 1's parameters ``joint_limits``; None in ROS 2, which has no soft limits.
     """
 
     def __init__(
@@ -208,9 +257,16 @@ class Hardware:
         plugin: Plugin[Any],
         joints: list[JointInterfaces],
         gains: Mapping[str, tuple[str, Gains]],
+        limits: Settings | None = None,
     ) -> None:
         self._joints = {
-            each.name: JointHardware(plugin, each, gains.get(each.name)) for each in joints
+            each.name: JointHardware(
+                plugin,
+                each,
+                gains.get(each.name),
+                limits.section(each.name) if limits is not None else None,
+            )
+            for each in joints
         }
         self.holds = False
         """Whether joints that take efforts hold as well before a controller commands them."""

@@ -76,7 +76,9 @@ class RosControl(ControlPlugin):
         if not joints:
             self.warn("no <transmission> drives a joint, so controllers have none to command")
         rate = 0.0 if config.period == 0 else 1.0 / config.period
-        hardware = Hardware(self, joints, self._gains(joints))
+        found = self.graph.parameters.get(f"/{self.namespace}/joint_limits")
+        limits = Settings(found if isinstance(found, Mapping) else {}, "joint_limits")
+        hardware = Hardware(self, joints, self._gains(joints), limits)
         self._hardware = hardware
         manager = self._run(
             Rig(
