@@ -225,14 +225,13 @@ class JointHardware:
         damping = self._damping
         effort = min(max(self.command, -self.effort_limit), self.effort_limit)
         if self._soft is not None:
-            low, high = (
-                -self._soft.k_velocity * (self.velocity - bound)
-                for bound in self._velocity_bounds()
-            )
-            output = effort - damping * self.velocity
-            clamped = min(max(output, low), high)
-            if clamped != output:
-                effort, damping = clamped, 0.0
+            # As a damper towards the bound, which the physics takes implicitly.
+            gain, output = self._soft.k_velocity, effort - damping * self.velocity
+            slowest, fastest = self._velocity_bounds()
+            if output < gain * (slowest - self.velocity):
+                effort, damping = gain * slowest, gain
+            elif output > gain * (fastest - self.velocity):
+                effort, damping = gain * fastest, gain
         # Beyond a limit it may only come back.
         if self.position < self.lower or self.velocity < -self.velocity_limit:
             effort = max(effort, 0.0)
