@@ -63,6 +63,7 @@ _FILES = {
     "roboticsgroup_gazebo_mimic_joint_plugin": "mimic_joint",
     "gazebo_mimic_joint_plugin": "mimic_joint",
     "leo_gazebo_differential_plugin": "mimic_joint",
+    "gazebo_underactuated_finger": "underactuated_finger",
     "gazebo_ros_ft_sensor": "ft_sensor",
     "gazebo_ros_f3d": "f3d",
     "gazebo_ros_force": "force",

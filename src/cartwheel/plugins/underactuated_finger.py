@@ -1,0 +1,82 @@
+"""``libgazebo_underactuated_finger.so``: a tendon that bends a finger's joints."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import ClassVar
+
+from cartwheel.description.model import Element
+from cartwheel.errors import PluginError
+from cartwheel.plugins.base import Plugin
+from cartwheel.plugins.parameters import tag
+from cartwheel.simulation.servo import ServoHandle
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class UnderactuatedFingerParameters:
+    actuated_joint: str = tag("actuatedJoint", doc="Joint of the motor that pulls.")
+    joints: tuple[str, ...] = tag(
+        "virtualJoint",
+        default=(),
+        doc="`<name>` of a joint of the finger, and `<scale_factor>`: the motor's angle "
+        "divided by it is its share. `<pid_gains>` have no effect: a servo bends it.",
+    )
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class _Phalanx:
+    servo: ServoHandle
+    scale: float
+    limits: tuple[float, float]
+
+
+class UnderactuatedFinger(Plugin[UnderactuatedFingerParameters]):
+    """Bends each joint of a finger by its share of a motor's angle, within its limits.
+
+    A joint that meets something gives it no more than its effort limit; the others go on. Source:
+    pal_gazebo_plugins, gazebo_underactuated_finger.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ("libgazebo_underactuated_finger.so",)
+    parameters: ClassVar[type] = UnderactuatedFingerParameters
+
+    def configure(self) -> None:
+        self._motor = self.part.joint(self.config.actuated_joint, origin=self.tag.origin)
+        self._phalanges = [
+            self._phalanx(element) for element in self.tag.element.find_all("virtualJoint")
+        ]
+        if not self._phalanges:
+            self.warn("no <virtualJoint>: this finger does not bend")
+        self.part.schedule(0, before=self._bend)
+
+    def _phalanx(self, element: Element) -> _Phalanx:
+        found = {}
+        for name in ("name", "scale_factor"):
+            child = element.find(name)
+            if child is None:
+                raise PluginError(f"<virtualJoint> needs <{name}>", origin=element.origin)
+            found[name] = child.text.strip()
+        try:
+            scale = float(found["scale_factor"])
+        except ValueError:
+            scale = math.nan
+        if not math.isfinite(scale) or scale == 0:
+            raise PluginError(
+                f'<scale_factor> "{found["scale_factor"]}" must be a number other than 0',
+                origin=element.origin,
+            )
+        servo = self.part.servo(found["name"], max_effort=None, origin=element.origin)
+        joint = self.part.description.joint(found["name"])
+        low, high = (joint.axis.lower, joint.axis.upper) if joint is not None else (None, None)
+        return _Phalanx(
+            servo=servo,
+            scale=scale,
+            limits=(-math.inf if low is None else low, math.inf if high is None else high),
+        )
+
+    def _bend(self) -> None:
+        pulled = self._motor.position
+        for phalanx in self._phalanges:
+            low, high = phalanx.limits
+            phalanx.servo.command_position(min(max(pulled / phalanx.scale, low), high))
