@@ -410,3 +410,28 @@ def test_an_argument_without_a_value_is_named_within_an_expression_too():
         )
     assert caught.value.message == 'the argument "side" has no value'
     assert "side:=" in caught.value.hint
+
+
+def test_an_element_named_by_an_expression_keeps_its_own_name(folder):
+    """``xacro:name`` and ``name`` are two attributes, which also macros copy."""
+    write(
+        "robot.xacro",
+        """<xacro:macro name="make" params="kind">
+        <xacro:element xacro:name="${kind}" name="made" gz:name="other"/></xacro:macro>
+        <xacro:make kind="link"/><xacro:element xacro:name="a"/>""",
+        'name="r" xmlns:gz="http://gazebosim.org/schema"',
+    )
+    root = expanded().root
+    link, other = root.children
+    assert (link.tag, link.attributes) == ("link", {"name": "made", "gz:name": "other"})
+    assert (other.tag, other.attributes) == ("a", {})
+
+
+def test_an_attribute_set_to_a_number(folder):
+    write("robot.xacro", '<a><xacro:attribute name="b" value="${1 + 1}"/></a>')
+    assert expanded().root.children[0].attributes == {"b": "2"}
+
+
+def test_an_expression_with_quotes_is_told_as_a_whole(folder):
+    write("robot.xacro", """<a b="${missing['key'] + 'x'}"/>""")
+    assert "when evaluating ${missing['key'] + 'x'}" in failure()

@@ -260,7 +260,7 @@ class _DomBuilder:
         element.ownerDocument = self.document
         element.origin = Origin(file=self._file, line=line)
         for name, value in attributes.items():
-            element.setAttribute(name, value)
+            _set(element, name, value)
         self._open[-1].appendChild(element)
         self._open.append(element)
 
@@ -269,6 +269,16 @@ class _DomBuilder:
 
     def data(self, text: str) -> None:
         self._open[-1].appendChild(self.document.createTextNode(text))
+
+
+def _set(element: _Element, name: str, value: str) -> None:
+    """Gives an element an attribute; ``xacro:name`` is another than ``name``."""
+    prefix, colon, _ = name.partition(":")
+    if colon:
+        # By the prefix in place of its namespace: the DOM compares no more than that.
+        element.setAttributeNS(prefix, name, value)
+    else:
+        element.setAttribute(name, value)
 
 
 def _clone(element: Any, stack: tuple[str, ...] | None) -> _Element:
@@ -280,7 +290,7 @@ def _clone(element: Any, stack: tuple[str, ...] | None) -> _Element:
         origin if stack is None else Origin(file=origin.file, line=origin.line, stack=stack)
     )
     for name, value in element.attributes.items():
-        copy.setAttribute(name, value)
+        _set(copy, name, value)
     for child in element.childNodes:
         if isinstance(child, _Element):
             copy.appendChild(_clone(child, stack))
@@ -298,7 +308,8 @@ def _to_node(element: Any) -> Node:
             texts.append(child.data)
     return Node(
         element.tagName,
-        dict(element.attributes.items()),
+        # What <xacro:attribute> sets may be a number.
+        {name: str(value) for name, value in element.attributes.items()},
         element.origin,
         children,
         "".join(texts).strip(),

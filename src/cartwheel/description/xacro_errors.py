@@ -37,7 +37,7 @@ _CONDITION = re.compile(r'Xacro conditional "(.*)" evaluated to "(.*)", which is
 _ATTRIBUTE = re.compile(r"(\S+): missing attribute '([^']*)'")
 _COMMAND = re.compile(r"Unknown substitution command \[(\S+)")
 _ENVIRONMENT = re.compile(r"environment variable '([^']*)' is not set")
-_EXPRESSION = re.compile(r"when evaluating expression '(.*?)'", re.DOTALL)
+_EXPRESSION = re.compile(r"when evaluating expression '(.*?)'\s*(?:\Z|when evaluating)", re.DOTALL)
 
 
 def explain(failure: Failure) -> DescriptionError:
