@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import sys
 
-from controller_manager.services import Manager, ManagerError, join_ros
+from controller_manager.services import Manager, ManagerError, join_ros, own_arguments
 
 USAGE = """\
 Commands:
@@ -18,7 +18,7 @@ Commands:
 
 def main() -> int:
     """Runs the program; returns its exit status."""
-    words = [word for word in sys.argv[1:] if ":=" not in word]
+    words = own_arguments()
     if not words or words[0] not in ("list", "spawn", "switch") or len(words) > 2:
         print(USAGE, file=sys.stderr)
         return 1
@@ -52,7 +52,7 @@ def main() -> int:
 
 def switch(manager: Manager, groups: dict[str, list[str]], group: str) -> int:
     """Lets the controllers of one group run, and of the other groups none."""
-    running = {each.name for each in manager.controllers() if each.state == "running"}
+    running = set(manager.running())
     wanted = groups[group]
     others = {name for members in groups.values() for name in members} - set(wanted)
     start = [name for name in wanted if name not in running]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 
-from controller_manager.services import Manager, ManagerError, join_ros
+from controller_manager.services import Manager, ManagerError, join_ros, own_arguments
 
 USAGE = """\
 Commands:
@@ -31,7 +31,7 @@ _DONE = {"load": "Loaded", "unload": "Unloaded", "start": "Started", "stop": "St
 
 def main() -> int:
     """Runs the program; returns its exit status."""
-    words = [word for word in sys.argv[1:] if ":=" not in word]
+    words = own_arguments()
     command = _SHORT.get(words[0], words[0]) if words else ""
     known = command in _STEPS or command in ("list", "list-types", "reload-libraries")
     if not known or (command in _STEPS and len(words) < 2):

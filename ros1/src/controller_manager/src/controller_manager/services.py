@@ -84,6 +84,10 @@ class Manager:
 
         return list(self._call("list_controllers", ListControllers).controller)
 
+    def running(self) -> list[str]:
+        """Names of the controllers that run."""
+        return [each.name for each in self.controllers() if each.state == "running"]
+
     def types(self) -> list[tuple[str, str]]:
         """Each type that can be loaded, with its base class."""
         from controller_manager_msgs.srv import ListControllerTypes
@@ -105,18 +109,19 @@ class Manager:
 
         try:
             return rospy.ServiceProxy(self._prefix + service, kind)(**request)
-        except rospy.ServiceException as error:
-            raise ManagerError(str(error)) from None
-        except rospy.ROSException as error:
+        except (rospy.ServiceException, rospy.ROSException) as error:
             raise ManagerError(str(error)) from None
 
 
-def join_ros(name: str) -> list[str]:
-    """Makes this program a node; returns its arguments without those of ROS."""
+def own_arguments() -> list[str]:
+    """This program's arguments without those of ROS; known before ROS is loaded."""
+    return [word for word in sys.argv[1:] if ":=" not in word]
+
+
+def join_ros(name: str) -> None:
+    """Makes this program a node."""
     import rospy
 
-    words: list[str] = rospy.myargv()[1:]
     sys.stdout.reconfigure(line_buffering=True)  # type: ignore[union-attr]
     # Its times are those of the wall: it must not wait for a clock that stands still.
     rospy.init_node(name, anonymous=True, disable_rostime=True)
-    return words

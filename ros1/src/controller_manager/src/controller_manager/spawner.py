@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import argparse
-import sys
 import threading
 from pathlib import Path
 
-from controller_manager.services import Manager, ManagerError, join_ros
+from controller_manager.services import Manager, ManagerError, join_ros, own_arguments
 
 
 def main() -> int:
     """Runs the program; returns its exit status."""
-    arguments = parse([word for word in sys.argv[1:] if ":=" not in word])
+    arguments = parse(own_arguments())
     import rospy
 
     join_ros("spawner")
@@ -119,7 +118,7 @@ def start(manager: Manager, names: list[str]) -> None:
 def leave(manager: Manager, names: list[str]) -> None:
     """Stops and unloads what was loaded, where the simulation is still there."""
     try:
-        running = [each.name for each in manager.controllers() if each.state == "running"]
+        running = manager.running()
         manager.switch([], [name for name in names if name in running])
         for name in reversed(names):
             manager.unload(name)

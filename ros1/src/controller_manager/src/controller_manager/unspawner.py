@@ -3,21 +3,20 @@
 from __future__ import annotations
 
 import argparse
-import sys
 
-from controller_manager.services import Manager, ManagerError, join_ros
+from controller_manager.services import Manager, ManagerError, join_ros, own_arguments
 
 
 def main() -> int:
     """Runs the program; returns its exit status."""
-    arguments = parse([word for word in sys.argv[1:] if ":=" not in word])
+    arguments = parse(own_arguments())
     import rospy
 
     join_ros("unspawner")
     manager = Manager(arguments.namespace or "")
     try:
         manager.wait(None if arguments.timeout <= 0 else arguments.timeout)
-        running = [each.name for each in manager.controllers() if each.state == "running"]
+        running = manager.running()
         stopped = [name for name in arguments.controllers if name in running]
         if not manager.switch([], stopped):
             rospy.logerr(f"Failed to stop controllers: {', '.join(stopped)}")
