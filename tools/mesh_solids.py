@@ -31,9 +31,6 @@ class Solid:
         rotation[i, i], rotation[i, j], rotation[j, i], rotation[j, j] = c, -s, s, c
         return Solid(self.vertices @ rotation.T, self.faces)
 
-    def mirrored_y(self) -> Solid:
-        return Solid(self.vertices * [1, -1, 1], self.faces[:, ::-1])
-
     def scaled(self, factor: float) -> Solid:
         return Solid(self.vertices * factor, self.faces)
 

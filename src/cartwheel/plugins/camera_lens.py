@@ -142,11 +142,6 @@ class Lens:
         )
         self._map = _Map(x * self.focal + width / 2, y * self.focal + height / 2, width, height)
 
-    @property
-    def is_bent(self) -> bool:
-        """Whether the image differs from the pinhole's."""
-        return self._map is not None
-
     def rays(self) -> tuple[Floats, Floats]:
         """What each pixel's middle looks at in the plane at depth 1: right and down."""
         return self._x, self._y

@@ -6,7 +6,7 @@ import math
 from typing import Any, ClassVar
 
 from cartwheel.messages import header, message_class
-from cartwheel.plugins.control.controller import Controller, Rhythm
+from cartwheel.plugins.control.controller import Controller
 from cartwheel.plugins.control.hardware import JointHardware
 from cartwheel.plugins.control.pid import Gains, Pid
 from cartwheel.plugins.control.settings import Settings
@@ -61,8 +61,6 @@ class JointPid(Controller):
         settings.ignore("pid")
         self._pid = Pid(self._gains)
         self._command = 0.0
-        self._heard_rate: float | None = None
-        self._rhythm = Rhythm(0.0)
         self.subscribe("command", "std_msgs/msg/Float64", self._on_command)
         self._publisher = self.advertise("state", "control_msgs/msg/JointControllerState")
         self._count = 0
