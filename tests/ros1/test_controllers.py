@@ -1,0 +1,103 @@
+"""The programs of the package controller_manager, against a robot of a running simulation."""
+
+from __future__ import annotations
+
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+URDF = """<robot name="arm"><link name="world"/>
+  <link name="beam"><inertial><mass value="1"/>
+    <inertia ixx="0.1" iyy="0.1" izz="0.1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+  <joint name="hinge" type="revolute"><parent link="world"/><child link="beam"/>
+    <axis xyz="0 0 1"/><limit lower="-1" upper="1" effort="10" velocity="1"/></joint>
+  <transmission name="t"><type>transmission_interface/SimpleTransmission</type>
+    <joint name="hinge"><hardwareInterface>hardware_interface/PositionJointInterface
+    </hardwareInterface></joint><actuator name="m"/></transmission>
+  <gazebo><plugin name="control" filename="libgazebo_ros_control.so">
+    <robotNamespace>/</robotNamespace></plugin></gazebo></robot>"""
+
+HELD = "held: {type: position_controllers/JointPositionController, joint: hinge}\n"
+TOLD = "told: {type: joint_state_controller/JointStateController, publish_rate: 50}\n"
+PARAMETERS = f"{HELD}{TOLD}controller_groups: {{both: [held, told], quiet: [told]}}\n"
+
+
+class Programs:
+    """Runs the programs, and reads what the first of them lists."""
+
+    def __init__(self, ros: Any) -> None:
+        self._ros = ros
+
+    def __call__(self, name: str, *words: str, status: int = 0) -> str:
+        done = self._ros.run("rosrun", "controller_manager", name, *words, status=status)
+        return str(done.stdout)
+
+    def start(self, name: str, *words: str) -> subprocess.Popen[str]:
+        program = self._ros.overlay.program("controller_manager", name)
+        process: subprocess.Popen[str] = self._ros.start(program, *words)
+        return process
+
+    def until(self, **states: str) -> None:
+        """Waits until these controllers are loaded, and no others."""
+        lines = {f"'{name}'": state for name, state in states.items()}
+
+        def reached() -> bool:
+            listed = self("controller_manager", "list").splitlines()
+            found = {line.split()[0]: line.split()[-2] for line in listed if "'" in line}
+            return found == lines
+
+        self._ros.until(reached, f"{states} never came")
+
+
+@pytest.fixture
+def programs(ros: Any) -> Programs:
+    ros.master()
+    ros.run("rosparam", "set", "/", PARAMETERS)
+    cartwheel = Path(sys.executable).with_name("cartwheel")
+    ros.start(cartwheel, "run", "empty.world", "--headless", "--ros1",
+              stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)  # fmt: skip
+    ros.run("rosrun", "gazebo_ros", "spawn_model", "-urdf", "-stdin", "-model", "arm", input=URDF)
+    return Programs(ros)
+
+
+def test_controllers_are_loaded_switched_and_taken_away(programs: Programs) -> None:
+    assert programs("controller_manager", "load", "held") == "Loaded 'held'\n"
+    programs.until(held="initialized")
+    assert programs("controller_manager", "start", "held") == "Started 'held'\n"
+    programs.until(held="running")
+    programs("controller_group", "spawn", "quiet")
+    programs.until(held="stopped", told="running")
+    programs("controller_group", "switch", "both")
+    programs.until(held="running", told="running")
+    assert programs("controller_group", "list") == (
+        "both (running): held, told\nquiet (running): told\n"
+    )
+    away = programs.start("unspawner", "held")
+    programs.until(held="stopped", told="running")
+    end(away)
+    programs.until(held="running", told="running")
+    programs("controller_manager", "kill", "held", "told")
+    programs.until()
+    spawner = programs.start("spawner", "held", "told")
+    programs.until(held="running", told="running")
+    end(spawner)
+    programs.until()
+
+
+def test_what_cannot_be_done_is_told(programs: Programs) -> None:
+    assert "could not load 'nothing'" in programs("controller_manager", "load", "nothing", status=1)
+    programs("controller_manager", "juggle", status=1)
+    programs("controller_group", "switch", "nobody", status=1)
+    programs("spawner", status=2)
+
+
+def end(process: subprocess.Popen[str]) -> None:
+    """As roslaunch ends it."""
+    time.sleep(0.2)
+    process.send_signal(signal.SIGINT)
+    process.communicate(timeout=30)
