@@ -5,6 +5,10 @@ import math
 import numpy as np
 import pytest
 
+from cartwheel.description.model import WorldDescription
+from cartwheel.world import build
+from cartwheel.world.entry import ModelEntry
+
 G = 9.8
 MU1, MU2 = 0.6, 0.15
 
@@ -117,6 +121,26 @@ def test_one_box_s_directions_are_not_another_s(make):
     assert braking(plain, 0.0)[0] == pytest.approx(MU1 * G, rel=0.05)
     first.close()
     assert braking(second, math.pi / 2)[0] == pytest.approx(MU1 * G, rel=0.05)
+
+
+def test_directions_that_make_no_difference_cost_nothing(make):
+    """Gazebo's ground has 100 one way and 50 the other; what is on it slips on neither."""
+    ground = make.sdf(
+        f"""<model name="ground"><static>1</static><link name="l"><collision name="c"><geometry>
+        <plane><normal>0 0 1</normal></plane></geometry><surface>{friction(100, 50)}</surface>
+        </collision></link></model>"""
+    )
+
+    def alignments(mu, mu2):
+        thing = make.sdf(box(friction(mu, mu2)))
+        entries = [
+            ModelEntry(name=each.name, description=each, pose=each.pose) for each in (ground, thing)
+        ]
+        return len(build(WorldDescription(name="w"), entries).alignments)
+
+    assert alignments(1, 1) == 0
+    assert alignments(1000, 1000) == 0
+    assert alignments(1000, 1) == 1
 
 
 TORSION = "<friction><ode><mu>1</mu><mu2>1</mu2></ode>{}</friction>"

@@ -21,6 +21,8 @@ from cartwheel.world.contact import BuiltSurface
 MOST_PAIRS = 500
 """Pairs with parameters of their own; each costs 6 ns a step."""
 _MESH_AREA = 1.0
+_HOLDS = 10.0
+"""A coefficient at which nothing slips: Gazebo's ground has 100 one way and 50 the other."""
 _PATCH = 3 * math.pi / 16
 """Of a round patch pressed as a sphere presses: the mean arm of its friction, of its radius."""
 
@@ -116,6 +118,8 @@ def _pair(first: BuiltSurface, second: BuiltSurface) -> Pair | None:
     a, b = first.surface, second.surface
     rules = first if first.friction[0] < second.friction[0] else second
     mu1, mu2 = map(min, contact.coefficients(a), contact.coefficients(b))
+    if min(mu1, mu2) > _HOLDS:
+        mu1 = mu2 = min(mu1, mu2)
     torsion = min(1.0 if s.torsional is None else s.torsional for s in (a, b))
     torsion *= _PATCH * max(s.patch_radius or 0.0 for s in (a, b))
     slides = not first.moves and not second.rolls
