@@ -10,7 +10,7 @@ import pytest
 from tests.bridges.conftest import Bridge, Bridged
 from tests.bridges.ros1_peers import Master, Subscriber, read_block, send_header, wait_for
 
-pytestmark = pytest.mark.timeout(60)
+pytestmark = pytest.mark.timeout(300)
 
 HEADS = [
     b"",

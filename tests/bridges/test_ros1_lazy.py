@@ -12,7 +12,7 @@ from tests.bridges.ros1_peers import Master, Subscriber, wait_for
 
 from cartwheel.messages import from_dict, message_class, zero
 
-pytestmark = pytest.mark.timeout(60)
+pytestmark = pytest.mark.timeout(300)
 
 IMAGE = "/rosbots/camera1/image_raw"
 READ = """

@@ -24,7 +24,7 @@ from cartwheel.errors import CartwheelError
 from cartwheel.graph import Graph
 
 pytestmark = [
-    pytest.mark.timeout(90),
+    pytest.mark.timeout(300),
     pytest.mark.skipif(bool(REASON), reason=REASON),
 ]
 

@@ -11,7 +11,7 @@ from cartwheel.bridges.ros1.names import Arguments, NodeNames
 from cartwheel.description import load_robot
 from cartwheel.errors import CartwheelError
 
-pytestmark = pytest.mark.timeout(60)
+pytestmark = pytest.mark.timeout(300)
 
 
 def names(*words: str, node: str = "gazebo") -> NodeNames:
@@ -68,6 +68,7 @@ def test_the_environment_gives_a_namespace(monkeypatch: pytest.MonkeyPatch) -> N
         (("__name:=1st",), "begins with a letter"),
         (("__ns:=a b",), "no namespace"),
         (("odom:=a b",), "can remap"),
+        (("odom:=" + 60 * "a" + "!",), "can remap"),
         (("odom",), "no name:=value"),
     ],
 )

@@ -18,7 +18,7 @@ from tests.bridges.ros1_peers import (
     wait_for,
 )
 
-pytestmark = pytest.mark.timeout(60)
+pytestmark = pytest.mark.timeout(300)
 
 CAMERA = "/rosbots/camera1"
 # Types and sums as a Gazebo 11 on ROS Noetic has them.

@@ -157,10 +157,14 @@ def test_packages_are_found_on_the_path(make, gazebo, tmp_path):
         + "endsolid t\n"
     )
     text = URDF.replace('<box size="0.2 0.2 0.2"/>', '<mesh filename="package://things/tri.stl"/>')
-    lost = gazebo(make.world())
-    assert "things" in lost.refused("spawn_urdf_model", model_xml=text)
-    found = gazebo(make.world(), package_path=[tmp_path])
-    found.done("spawn_urdf_model", model_xml=text)
+
+    def told(api):
+        api.done("spawn_urdf_model", model_xml=text)
+        return [d for d in api.world.session.diagnostics if "things" in d.message]
+
+    (lost,) = told(gazebo(make.world()))
+    assert lost.severity == "error"
+    assert told(gazebo(make.world(), package_path=[tmp_path])) == []
 
 
 @BOTH

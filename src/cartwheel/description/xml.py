@@ -23,7 +23,8 @@ __all__ = [
 
 MAX_BYTES = 64 * 1024 * 1024
 """Larger than any description; a mesh or a bag given by mistake stops here."""
-_LATE_DECLARATION = re.compile(r"\A(?:\s+|<!--.*?-->)+<\?xml.*?\?>", re.DOTALL)
+# What was matched stays matched: there would be two ways to part any comment from the next.
+_LATE_DECLARATION = re.compile(r"\A(?>\s+|<!--.*?-->)++<\?xml.*?\?>", re.DOTALL)
 _LATE_DECLARATION_BYTES = re.compile(_LATE_DECLARATION.pattern.encode(), re.DOTALL)
 _COMMENT = re.compile(r"(?s)<!--(.*?)-->|<!\[CDATA\[.*?\]\]>")
 _COMMENT_BYTES = re.compile(_COMMENT.pattern.encode())

@@ -13,7 +13,7 @@ import yaml
 from cartwheel.errors import CartwheelError
 
 _BASE = re.compile(r"[A-Za-z][A-Za-z0-9_]*\Z")
-_NAME = re.compile(r"[~/]?([A-Za-z][A-Za-z0-9_]*/?)*\Z")
+_NAME = re.compile(r"[~/]?(?:[A-Za-z][A-Za-z0-9_]*/)*(?:[A-Za-z][A-Za-z0-9_]*)?\Z")
 
 GLOBAL = ("/clock", "/tf", "/tf_static", "/rosout")
 """Topics that no namespace moves."""
