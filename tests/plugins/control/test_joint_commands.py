@@ -169,6 +169,20 @@ def test_a_group_takes_one_value_for_each(bench):
     assert any("1 values for 2 joints" in text for text in made.warnings)
 
 
+def test_a_group_of_one_interface_may_name_it(bench):
+    made = bench(
+        robot(beam("beam", "world") + transmission("beam_joint", "Position"), ROS1),
+        {
+            "group": {
+                "type": "position_controllers/JointGroupPositionController",
+                "joints": ["beam_joint"],
+                "interface_name": "position",
+            }
+        },
+    )
+    assert made.warnings == []
+
+
 def test_a_wrong_interface_is_told_and_the_rest_runs(bench):
     made = bench(
         one("Effort"),

@@ -139,6 +139,9 @@ class JointGroup(Controller):
                 if len(names) != 1:
                     raise settings.error('"interface_names" must hold one interface')
                 interface = names[0]
+        else:
+            # Published files state it for these too, whose type says it.
+            settings.ignore("interface_name")
         names = (
             [settings.text("joint")]
             if self.type.endswith("MultiInterfaceForwardCommandController")
