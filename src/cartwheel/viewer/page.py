@@ -61,6 +61,8 @@ class Page:
 
         check_port(host, port)
         self.viser = viser
+        # Whatever knocks at the port, a scanner say: its errors are not for the terminal.
+        logging.getLogger("websockets").addHandler(logging.NullHandler())
         self.server: Any = _quietly(lambda: viser.ViserServer(host, port, verbose=False))
         self._host = host
         self.gui: Any = self.server.gui
