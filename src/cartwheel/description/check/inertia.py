@@ -25,6 +25,8 @@ TOO_SMALL = 20.0
 """Times less than that of a solid of the geometry's shape."""
 OUTSIDE = 0.25
 """Of the box's diagonal: how far outside of it a centre of mass is a finding."""
+_LIGHT = 0.01
+"""Of the robot's mass: what weighs less is as good as none, and often stated so."""
 DENSEST = 30_000.0
 """kg/m³; osmium has 22 600."""
 _KEYS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
@@ -41,13 +43,16 @@ def inertia_impossible(subject: Subject) -> Iterator[Remark]:
         if moments is None or mass is None or mass <= 0:
             continue
         wrong = impossibility(moments)
-        if wrong is None or (not any(moments) and nodes.name_of(link) in held):
+        name = nodes.name_of(link)
+        if wrong is None or (not any(moments) and name in held):
             continue
         place = tensor or inertial
         yield Remark(
-            message=f'link "{nodes.name_of(link)}": {wrong[0]}',
+            # Of what is fixed to something heavier it is but a part of a sum.
+            severity="info" if _is_part(subject, name, max(moments)) else None,
+            message=f'link "{name}": {wrong[0]}',
             origin=place.origin,
-            instead=_inertia_text(_sketch(subject, nodes.name_of(link)), mass),
+            instead=_inertia_text(_sketch(subject, name), mass),
             place="element" if tensor is not None else "inside",
         )
 
@@ -135,8 +140,10 @@ def inertia_unlike_geometry(subject: Subject) -> Iterator[Remark]:
         if not solids or like is None:
             continue
         solid = sum(like.diagonal) / 2 * inertial.mass / like.mass
-        if 0 < stated < solid / TOO_SMALL and stated > 0:
+        if 0 < stated < solid / TOO_SMALL:
+            light = inertial.mass < _LIGHT * robot.description.mass
             yield Remark(
+                severity="info" if light else None,
                 message=f'link "{link.name}" resists turning {solid / stated:.3g} times less than '
                 f"a solid of its geometry and its {inertial.mass:g} kg: such a mass would lie "
                 f"within {_gyration(stated, inertial.mass)} of its centre",
@@ -152,7 +159,7 @@ def mass_outside(subject: Subject) -> Iterator[Remark]:
         box = bounds(robot.rigid_cloud(link.name))
         if box is None or not robot.whole(link.name):
             continue
-        if inertial.mass < 0.01 * robot.description.mass:
+        if inertial.mass < _LIGHT * robot.description.mass:
             continue
         centre = np.array(inertial.pose.position)
         beyond = np.maximum(np.maximum(box[0] - centre, centre - box[1]), 0.0)
@@ -260,6 +267,12 @@ def _held(subject: Subject) -> set[str]:
     holders = inbound(joints, names)
     found = {name for name, joint in holders.items() if nodes.text_of(joint, "type") == "fixed"}
     return found | {ends(holders[name])[0] for name in found}
+
+
+def _is_part(subject: Subject, name: str, moment: float) -> bool:
+    """Whether a link's inertia hardly counts beside that of what it is fixed to."""
+    robots = [robot for robot in subject.robots if name in robot.links]
+    return bool(robots) and not any(_matters(one, one.links[name], moment) for one in robots)
 
 
 def _shape_inertia(robot: Robot, link: Link) -> Inertial | None:

@@ -165,7 +165,7 @@ def mimic_unknown(subject: Subject) -> Iterator[Remark]:
             )
 
 
-@rule("reference-unknown", "error", "a <gazebo reference> names neither a link nor a joint")
+@rule("reference-unknown", "warning", "a <gazebo reference> names neither a link nor a joint")
 def reference_unknown(subject: Subject) -> Iterator[Remark]:
     known = link_names(subject) | {nodes.name_of(node) for node in _parts(subject, "joint")}
     for node in _parts(subject, "gazebo"):
