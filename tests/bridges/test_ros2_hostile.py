@@ -181,6 +181,8 @@ def test_variables_that_make_no_sense_are_told_of() -> None:
             domain_id({"ROS_DOMAIN_ID": wrong})
     with pytest.raises(CartwheelError, match="DISCOVERY_RANGE"):
         Reach.of({"ROS_AUTOMATIC_DISCOVERY_RANGE": "GALAXY"})
+    with pytest.raises(CartwheelError, match="LOCALHOST_ONLY"):
+        Reach.of({"ROS_LOCALHOST_ONLY": "yes"})
     with pytest.raises(CartwheelError, match="no name for a ROS 2 node"):
         Ros2Bridge(Graph(), node="my node")
     with pytest.raises(CartwheelError, match="middleware"):

@@ -50,8 +50,10 @@ class Reach:
             for peer in environment.get("ROS_STATIC_PEERS", "").split(";")
             if peer.strip()
         )
-        only = environment.get("ROS_LOCALHOST_ONLY", "")
+        only = environment.get("ROS_LOCALHOST_ONLY", "").strip()
         given = environment.get("ROS_AUTOMATIC_DISCOVERY_RANGE", "").upper()
+        if only not in ("", "0", "1"):
+            raise CartwheelError(f'ROS_LOCALHOST_ONLY is "{only}"', hint="It can be 0 or 1.")
         if only == "1":
             return cls(range="LOCALHOST")
         if not given:
