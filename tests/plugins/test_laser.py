@@ -215,7 +215,8 @@ def test_intensities_are_the_laser_retro_of_what_is_hit(make):
 
 
 @pytest.mark.parametrize(
-    ("samples", "resolution", "count"), [(100, 2, 200), (100, 0.5, 50), (3, 1.5, 4)]
+    ("samples", "resolution", "count"),
+    [(100, 2, 200), (100, 0.5, 50), (3, 1.5, 4), (66.7, 1, 66)],
 )
 def test_the_resolution_multiplies_the_samples(make, samples, resolution, count):
     text = sensor(samples=samples, resolution=resolution, low=-1.0, high=1.0)

@@ -130,10 +130,18 @@ def _sweep(element: Element, report: Callable[[Diagnostic], None], *, samples: i
     asked = _number(element, "samples", samples)
     resolution = _number(element, "resolution", 1.0)
     first, last = _number(element, "min_angle", 0.0), _number(element, "max_angle", 0.0)
-    if asked < 1 or asked != int(asked):
-        raise PluginError(
-            f"<samples> {asked:g} must be a whole number above 0", origin=_place(element, "samples")
+    if asked < 1:
+        raise PluginError(f"<samples> {asked:g} must be above 0", origin=_place(element, "samples"))
+    if asked != int(asked):
+        # A quotient of angles, mostly.
+        report(
+            Diagnostic(
+                severity="info",
+                message=f"<samples> {asked:g} is no whole number: {int(asked)} are taken",
+                origin=_place(element, "samples"),
+            )
         )
+        asked = float(int(asked))
     if resolution <= 0:
         raise PluginError(
             f"<resolution> {resolution:g} must be above 0",
