@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib
 import math
 import os
+import weakref
 from typing import Any
 
 import mujoco
@@ -117,6 +118,9 @@ class Renderer:
     def _prepare(self, width: int, height: int) -> None:
         if self._gl is None:
             self._gl = _open_gl(width, height)
+            # A script may end without closing its world: before Python takes OpenGL's modules
+            # apart, and not while it does.
+            weakref.finalize(self, self._gl.free)
         self._gl.make_current()
         if self._scene is None:
             self._scene = mujoco.MjvScene(self._model, maxgeom=self._model.ngeom + 100)
