@@ -2,7 +2,6 @@
 
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
@@ -172,18 +171,6 @@ def test_text_finds_packages_around_the_file_it_is_said_to_be(folder):
 def test_empty_text(text):
     with pytest.raises(DescriptionError, match="the description is empty"):
         load_text(text)
-
-
-def test_the_cart_loads_quickly():
-    load("rosbots.xacro")
-    best = min(timed() for _ in range(5))
-    assert best < 0.15
-
-
-def timed():
-    start = time.perf_counter()
-    load("rosbots.xacro")
-    return time.perf_counter() - start
 
 
 def test_nothing_slow_is_imported_before_it_is_needed():
