@@ -418,7 +418,6 @@ def test_many_rays_at_once_read_what_one_alone_reads(make):
     ("wrong", "said"),
     [
         ({"samples": 0}, "<samples>"),
-        ({"samples": 2.5}, "<samples>"),
         ({"samples": "many"}, "many"),
         ({"resolution": 0}, "<resolution>"),
         ({"resolution": -1}, "<resolution>"),

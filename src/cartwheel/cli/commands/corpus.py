@@ -42,7 +42,7 @@ def corpus(
     if json:
         say(json_module.dumps([as_mapping(verdict) for verdict in verdicts], indent=2))
     else:
-        _show(verdicts)
+        _show(verdicts, folders)
     return int(not all(verdict.good for verdict in verdicts))
 
 
@@ -114,8 +114,9 @@ def _tried(file: Path, package_path: Sequence[Path], standing: float) -> Verdict
         return replace(Verdict(file=file), error=f"a fault of Cartwheel: {error!r}")
 
 
-def _show(verdicts: Sequence[Verdict]) -> None:
-    head, *lines = table([_HEAD, *map(_row, verdicts)]).splitlines()
+def _show(verdicts: Sequence[Verdict], folders: Sequence[Path]) -> None:
+    rows = [(_name(verdict.file, folders), *_row(verdict)) for verdict in verdicts]
+    head, *lines = table([_HEAD, *rows]).splitlines()
     say(paint(head, "dim"))
     for line in lines:
         say(line)
@@ -135,10 +136,18 @@ def _show(verdicts: Sequence[Verdict]) -> None:
     say(f"\n{good} of {len(verdicts)} robots load and do all they should")
 
 
+def _name(file: Path, folders: Sequence[Path]) -> str:
+    """As short as it is clear: within the one folder that was asked for, or as elsewhere."""
+    if len(folders) == 1 and folders[0] in file.parents:
+        return str(file.relative_to(folders[0]))
+    return shown_path(file)
+
+
 def _row(verdict: Verdict) -> tuple[str, ...]:
     loaded = "yes" if verdict.loaded else "no"
     if verdict.loaded and verdict.missing_meshes:
-        loaded = f"{verdict.missing_meshes} meshes missing"
+        meshes = verdict.missing_meshes
+        loaded = f"{meshes} mesh{'es' if meshes > 1 else ''} missing"
     stand = verdict.stand
     state = stand.state if stand is not None else "-"
     if verdict.loaded and verdict.error and stand is None:
@@ -148,7 +157,6 @@ def _row(verdict: Verdict) -> tuple[str, ...]:
     if verdict.missing:
         plugins += f", missing {', '.join(verdict.missing)}"
     return (
-        shown_path(verdict.file),
         loaded,
         "-" if math.isnan(verdict.mass) else f"{verdict.mass:.4g} kg",
         state,
