@@ -26,6 +26,7 @@ from rosbags.highlevel import AnyReader
 import cartwheel as cw
 from cartwheel.bridges.recording import Recorder
 from cartwheel.bridges.recording.backlog import Backlog, Item
+from cartwheel.bridges.recording.formats import encoding_for, open_writer
 from cartwheel.bridges.recording.patterns import Patterns
 from cartwheel.bridges.recording.sink import Sink
 from cartwheel.errors import RecordingError
@@ -552,6 +553,45 @@ def test_a_write_that_fails_leaves_no_part_of_itself(tmp_path: Path) -> None:
     os.close(number)
     assert (tmp_path / "a").read_bytes() == b"whole"
     assert sink.position == 5
+
+
+@pytest.mark.parametrize("name", ["drive.mcap", "drive.bag", "drive"])
+@pytest.mark.parametrize("limit", range(30_000, 60_000, 1_500))
+def test_room_for_the_end_is_made_where_the_disk_has_none(
+    name: str, limit: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Wherever the disk is full, the file is complete: the last chunk gives way to the end."""
+    write = Sink.write
+
+    def limited(sink: Sink, data: bytes) -> None:
+        if sink.position + len(data) > limit:
+            raise OSError(28, "No space left on device")
+        write(sink, data)
+
+    monkeypatch.setattr(Sink, "write", limited)
+    path = tmp_path / name
+    wanted = encoding_for(path, None)
+    writer = open_writer(path, wanted, overwrite=False, notes={}, pack=encode_cdr)
+    channels = [writer.add(f"/t{i}", "std_msgs/msg/String", latched=False) for i in range(20)]
+    noise = random.Random(limit)
+    step = 0
+    with pytest.raises(OSError, match="No space"):
+        while True:
+            step += 1
+            text = noise.randbytes(40).hex()
+            message = message_class("std_msgs/msg/String")(data=text)
+            writer.write(channels[step % 20], step * 10**6, message)
+            if step % 25 == 0:
+                writer.flush()
+    writer.abandon()
+    found = read_with_rosbags(tmp_path / name)
+    times = sorted(t for each in found.values() for t, _ in each)
+    assert times == [i * 10**6 for i in range(1, len(times) + 1)]
+    assert len(times) > step / 2
+    assert writer.kept_ns == times[-1]
+    if name == "drive":
+        about = (tmp_path / name / "metadata.yaml").read_text()
+        assert f"message_count: {len(times)}\n" in about
 
 
 # -- the command

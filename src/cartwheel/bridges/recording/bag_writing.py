@@ -67,6 +67,8 @@ class BagWriter:
         self._chunk = bytearray()
         self._span: tuple[int, int] | None = None
         self._infos: list[bytes] = []
+        self._written: list[tuple[int, int]] = []
+        """Of each chunk in the file: where it begins, and `kept_ns` before it."""
         self._sink = Sink(path)
         self._sink.write(MAGIC + self._bag_header(0))
 
@@ -127,6 +129,7 @@ class BagWriter:
             "count": _u32(len(filled)),
         }
         self._infos.append(record(head, bytes(counts)))
+        self._written.append((begin, self.kept_ns))
         self.kept_ns = last
         self._forget_chunk()
 
@@ -140,7 +143,16 @@ class BagWriter:
 
     def abandon(self) -> None:
         self._forget_chunk()
-        self._sink.salvage(self.close)
+        self._sink.salvage(self.close, self._give_back)
+
+    def _give_back(self) -> bool:
+        """Takes the last chunk out of the file."""
+        if not self._written:
+            return False
+        begin, self.kept_ns = self._written.pop()
+        self._sink.cut(begin)
+        self._infos.pop()
+        return True
 
     def _forget_chunk(self) -> None:
         for each in self._connections:

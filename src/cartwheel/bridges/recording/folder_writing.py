@@ -65,6 +65,9 @@ class FolderWriter:
 
     def abandon(self) -> None:
         self._mcap.abandon()
+        for topic, count in zip(self._topics, self._mcap.counts, strict=True):
+            topic.count = count
+        self._span = self._mcap.span
         with suppress(OSError):
             self._tell()
 

@@ -26,6 +26,7 @@ from cartwheel.bridges.recording.sink import Sink
 
 CHUNK = 1 << 20
 """Bytes of messages that are compressed together at most, but for a message that is larger."""
+_INDEXES = (Op.ATTACHMENT_INDEX, Op.METADATA_INDEX, Op.CHUNK_INDEX)
 _HEAD = struct.Struct(f"{RECORD.format}{MESSAGE.format.removeprefix('<')}")
 _LEVEL = 1
 """Of zstd: images of a simulation shrink well at any."""
@@ -39,6 +40,20 @@ class _Channel:
     count: int = 0
     index: list[tuple[int, int]] = field(default_factory=list)
     """Time and place of its messages in the chunk at hand."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Written:
+    """A chunk in the file, and what was before it."""
+
+    begin: int
+    """Its place."""
+    counts: list[int]
+    """Messages of each channel before it."""
+    indexes: int
+    """Index records before it."""
+    span: tuple[int, int] | None
+    """Times of the first and last message before it."""
 
 
 class McapWriter:
@@ -77,7 +92,8 @@ class McapWriter:
         self._whole: tuple[int, int] | None = None
         self._indexes: list[bytes] = []
         """Of chunks, attachments and metadata, for the end of the file."""
-        self._counts = {Op.ATTACHMENT_INDEX: 0, Op.METADATA_INDEX: 0, Op.CHUNK_INDEX: 0}
+        self._written: list[_Written] = []
+        """The chunks in the file."""
         self._sink = Sink(path)
         self._sink.write(MAGIC + record(Op.HEADER, text(encoding), text("cartwheel")))
         if notes:
@@ -160,6 +176,8 @@ class McapWriter:
             packed,
         )
         begin = self._sink.position
+        counts = [each.count - len(each.index) for each in self._channels]
+        before = _Written(begin, counts, len(self._indexes), self._whole)
         offsets, indexes = [], bytearray()
         for channel in self._channels:
             if channel.index:
@@ -181,6 +199,7 @@ class McapWriter:
         begun, ended = self._whole or self._span
         self._whole = (min(begun, first), max(ended, last))
         self.kept_ns = self._whole[1]
+        self._written.append(before)
         self._forget_chunk()
 
     def close(self) -> None:
@@ -193,7 +212,7 @@ class McapWriter:
             (Op.SCHEMA, list(dict.fromkeys(channel.schema for channel in stated))),
             (Op.CHANNEL, [channel.record for channel in stated]),
             (Op.STATISTICS, [self._statistics(stated)]),
-            *((op, [one for one in self._indexes if one[0] == op]) for op in self._counts),
+            *((op, self._indexes_of(op)) for op in _INDEXES),
         )
         for op, records in groups:
             if records:
@@ -206,11 +225,36 @@ class McapWriter:
         self._sink.write(summary + offsets + head + foot + struct.pack("<I", crc) + MAGIC)
         self._sink.close()
 
+    @property
+    def counts(self) -> list[int]:
+        """Messages of each channel."""
+        return [channel.count for channel in self._channels]
+
+    @property
+    def span(self) -> tuple[int, int] | None:
+        """Times of the first and last message in the file, in ns; None where it has none."""
+        return self._whole
+
     def abandon(self) -> None:
         for channel in self._channels:
             channel.count -= len(channel.index)
         self._forget_chunk()
-        self._sink.salvage(self.close)
+        self._sink.salvage(self.close, self._give_back)
+
+    def _give_back(self) -> bool:
+        """Takes the last chunk, and what came after it, out of the file."""
+        if not self._written:
+            return False
+        last = self._written.pop()
+        self._sink.cut(last.begin)
+        del self._indexes[last.indexes :]
+        for channel in self._channels:
+            # One that came later holds nothing yet.
+            known = channel.number <= len(last.counts)
+            channel.count = last.counts[channel.number - 1] if known else 0
+        self._whole = last.span
+        self.kept_ns = self._whole[1] if self._whole else 0
+        return True
 
     def _forget_chunk(self) -> None:
         for channel in self._channels:
@@ -227,7 +271,9 @@ class McapWriter:
 
     def _index(self, op: Op, *parts: bytes) -> None:
         self._indexes.append(record(op, *parts))
-        self._counts[op] += 1
+
+    def _indexes_of(self, op: Op) -> list[bytes]:
+        return [one for one in self._indexes if one[0] == op]
 
     def _statistics(self, stated: list[_Channel]) -> bytes:
         counts = b"".join(struct.pack("<HQ", one.number, one.count) for one in stated)
@@ -240,9 +286,7 @@ class McapWriter:
                 sum(channel.count for channel in stated),
                 schemas,
                 len(stated),
-                self._counts[Op.ATTACHMENT_INDEX],
-                self._counts[Op.METADATA_INDEX],
-                self._counts[Op.CHUNK_INDEX],
+                *(len(self._indexes_of(op)) for op in _INDEXES),
                 first,
                 last,
             ),

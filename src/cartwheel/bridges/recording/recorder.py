@@ -254,25 +254,24 @@ class Recorder:
             if self._writer is not None:
                 self._writer.close()
         except OSError as error:
-            self._fail(RecordingError(self._broken(reason_of(error)), hint=_HINT))
+            self._fail(reason_of(error), hint=_HINT)
         except CartwheelError as error:
-            self._fail(RecordingError(self._broken(str(error))))
+            self._fail(str(error))
         except Exception as error:  # noqa: BLE001 - the simulation must not wait for ever
-            self._fail(RecordingError(self._broken(one_line(error))))
+            self._fail(one_line(error))
 
-    def _broken(self, why: str) -> str:
-        path = self._files[-1]
-        kept = self._writer.kept_ns if self._writer else 0
-        return f'the recording "{path}" broke off at {kept / 1e9:.3f} s: {why}'
-
-    def _fail(self, failure: RecordingError) -> None:
-        self.failure = failure
-        self._backlog.close()
-        writer = self._writer
-        if writer is not None:
+    def _fail(self, why: str, *, hint: str | None = None) -> None:
+        kept = 0
+        if self._writer is not None:
             with suppress(OSError):
-                writer.abandon()
-        self._on_failure(failure)
+                self._writer.abandon()
+            # Its last chunk may have made room for the file's end.
+            kept = self._writer.kept_ns
+        self.failure = RecordingError(
+            f'the recording "{self._files[-1]}" broke off at {kept / 1e9:.3f} s: {why}', hint=hint
+        )
+        self._backlog.close()
+        self._on_failure(self.failure)
 
     def _flush(self) -> None:
         if self._writer is not None:

@@ -44,15 +44,23 @@ class Sink:
         self._file.seek(position)
         self.position = position
 
-    def salvage(self, finish: Callable[[], None]) -> None:
-        """After a write that failed: ends the file by `finish`, or where it is whole."""
-        whole = self.position
-        with suppress(OSError):
-            # What was cut off may have left room for the end.
-            finish()
-            return
-        with suppress(OSError):
-            self.cut(whole)
+    def salvage(self, finish: Callable[[], None], give_back: Callable[[], bool]) -> None:
+        """After a write that failed: ends the file by `finish`, or where it is whole.
+
+        Args:
+            finish: Writes the end.
+            give_back: Makes room for it where there is too little: cuts off the last chunk.
+                Says whether there was one.
+        """
+        while True:
+            whole = self.position
+            with suppress(OSError):
+                finish()
+                return
+            with suppress(OSError):
+                self.cut(whole)
+            if not give_back():
+                break
         self.close()
 
     def rewrite(self, position: int, data: bytes) -> None:
