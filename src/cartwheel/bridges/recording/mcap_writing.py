@@ -248,10 +248,9 @@ class McapWriter:
         last = self._written.pop()
         self._sink.cut(last.begin)
         del self._indexes[last.indexes :]
-        for channel in self._channels:
-            # One that came later holds nothing yet.
-            known = channel.number <= len(last.counts)
-            channel.count = last.counts[channel.number - 1] if known else 0
+        # Channels that came later hold nothing any more: what they held is cut off already.
+        for channel, count in zip(self._channels, last.counts, strict=False):
+            channel.count = count
         self._whole = last.span
         self.kept_ns = self._whole[1] if self._whole else 0
         return True
