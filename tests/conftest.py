@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from hypothesis import HealthCheck, settings
 
 import cartwheel as cw
 from cartwheel.description import load_robot, load_text
@@ -33,6 +34,15 @@ GRAVITY = 9.8
 HERE = Pose()
 _PLACE = Origin(file="test.sdf", line=1)
 
+# The same examples in each run, however long a busy machine takes to make and to try them.
+settings.register_profile(
+    "cartwheel",
+    derandomize=True,
+    deadline=None,
+    database=None,
+    suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
+)
+settings.load_profile("cartwheel")
 
 BESIDE_OTHERS = {"bridges", "cli", "docs", "ros1", "viewer"}
 """Rooms whose tests run programs beside Cartwheel: a browser, a master, rviz, peers, terminals."""

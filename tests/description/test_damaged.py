@@ -3,7 +3,7 @@
 import re
 
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from cartwheel.description import load_text
@@ -22,12 +22,7 @@ NUMBER = re.compile(r"(?<![\w.])-?\d+(\.\d+)?")
 NAME = re.compile(r"(?<=[<\"/ ])[a-z_]{3,}")
 VALUES = ["", "nan", "inf", "-1", "0", "1e308", "1e-308", "abc", "1 2 3", "${x}", "$(find x)", "ü"]
 
-bounded = settings(
-    derandomize=True,
-    max_examples=120,
-    deadline=None,
-    suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
-)
+bounded = settings(max_examples=120)
 texts = st.sampled_from([URDF, *SOURCES.values()])
 
 

@@ -10,7 +10,7 @@ from cartwheel.description.inertia import impossibility, made_possible, principa
 values = st.floats(-10, 10, allow_nan=False).map(lambda x: round(x, 6))
 
 
-@settings(derandomize=True, max_examples=200, deadline=None)
+@settings(max_examples=200)
 @given(st.tuples(*[values] * 6))
 def test_moments_are_the_eigenvalues(entries):
     xx, yy, zz, xy, xz, yz = entries
@@ -19,7 +19,6 @@ def test_moments_are_the_eigenvalues(entries):
     assert principal_moments((xx, yy, zz), (xy, xz, yz)) == pytest.approx(expected, abs=1e-6)
 
 
-@settings(derandomize=True, max_examples=100, deadline=None)
 @given(
     st.lists(st.tuples(values, values, values), min_size=5, max_size=8),
     st.lists(st.floats(0.1, 5), min_size=8, max_size=8),
@@ -49,7 +48,6 @@ def test_moments_beyond_all_measure_are_no_crash():
     assert principal_moments((1.0, 1e308, 1.0), (0.5, 0.0, 0.0)) == (1.0, 1.0, 1e308)
 
 
-@settings(derandomize=True, max_examples=100, deadline=None)
 @given(st.tuples(*[st.floats(0, 10)] * 3), st.tuples(*[st.floats(-3, 3)] * 3))
 def test_what_no_body_has_is_made_possible_about_the_same_axes(moments, turn):
     if max(moments) < 1e-3:

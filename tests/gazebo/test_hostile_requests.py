@@ -161,7 +161,7 @@ def test_anything_is_answered(api, name, broken):
     requests = message(kind) if broken == "anything" else nearly(kind, VALID[name])
     api.met = 0
 
-    @settings(max_examples=40, deadline=None, suppress_health_check=list(HealthCheck))
+    @settings(max_examples=40, suppress_health_check=list(HealthCheck))
     @given(requests)
     def ask(fields):
         simulation = api.simulation

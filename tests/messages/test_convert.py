@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 import yaml
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as npst
 
@@ -42,12 +42,7 @@ TYPES = [
     "tf2_msgs/msg/TFMessage",
     "trajectory_msgs/msg/JointTrajectory",
 ]
-SETTINGS = settings(
-    derandomize=True,
-    deadline=None,
-    max_examples=60,
-    suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
-)
+SETTINGS = settings(max_examples=60)
 
 
 # Texts that CDR can carry: it ends them with a zero and encodes them as UTF-8.

@@ -21,12 +21,7 @@ NUMBER = re.compile(r"(?<![\w.])-?\d+(\.\d+)?")
 WHOLE = re.compile(r"<(\w+)[^<>]*>[^<>]*</\1>|<\w+[^<>]*/>")
 VALUES = ["", "nan", "inf", "-1", "0", "1e308", "1e-308", "abc", "1 2 3", "ü", "1e9", "90"]
 
-bounded = settings(
-    derandomize=True,
-    max_examples=25,
-    deadline=None,
-    suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
-)
+bounded = settings(max_examples=25, suppress_health_check=[HealthCheck.function_scoped_fixture])
 
 
 @pytest.fixture(scope="module")

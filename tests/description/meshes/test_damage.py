@@ -51,8 +51,6 @@ def test_samples_are_whole(folder, kind):
 @pytest.mark.parametrize("kind", sorted(SAMPLES))
 @settings(
     max_examples=120,
-    derandomize=True,
-    deadline=None,
     suppress_health_check=[HealthCheck.function_scoped_fixture],
 )
 @given(data=st.data())
@@ -77,7 +75,7 @@ def test_damage(folder, kind, data):
 
 
 @pytest.mark.parametrize("kind", sorted(SAMPLES))
-@settings(max_examples=30, derandomize=True, deadline=None)
+@settings(max_examples=30)
 @given(content=st.binary(max_size=400))
 def test_noise(folder, kind, content):
     path = folder / f"noise.{kind}"

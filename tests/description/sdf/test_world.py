@@ -382,7 +382,7 @@ def test_the_sample_is_whole():
     assert read_sdf(parse(SAMPLE, "s.sdf"), Packages(environment={})).diagnostics == ()
 
 
-@settings(max_examples=300, derandomize=True, deadline=None)
+@settings(max_examples=300)
 @given(
     st.lists(
         st.tuples(
