@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 import struct
 import subprocess
@@ -311,8 +312,9 @@ def test_missing_file_folder_and_flat_scale(tmp_path):
     with pytest.raises(MeshError, match="cannot be read"):
         load_mesh(Mesh(uri="", path=tmp_path / "folder.stl"))
     mesh = write(tmp_path, "t.stl", tetra_stl())
-    with pytest.raises(MeshError, match="flattens"):
-        load_mesh(Mesh(uri="", path=mesh.path, scale=(1, 0, 1)))
+    for scale in ((1, 0, 1), (1, 1, 1e-50), (-1e50, 1, 1), (1, math.nan, 1)):
+        with pytest.raises(MeshError, match="leaves nothing of it"):
+            load_mesh(Mesh(uri="", path=mesh.path, scale=scale))
 
 
 def test_robots_meshes_load_without_the_slow_importers():

@@ -54,8 +54,9 @@ def load_mesh(mesh: model.Mesh, *, origin: Origin | None = None) -> tuple[Submes
     Raises:
         MeshError: the file is missing, empty, damaged or of an unknown format.
     """
-    if not all(np.isfinite(mesh.scale)) or 0.0 in mesh.scale:
-        raise MeshError(mesh.path, f"scale {mesh.scale} flattens it", origin=origin)
+    # Below and above these a single-precision coordinate is nothing, or without an end.
+    if not all(1e-30 < abs(factor) < 1e30 for factor in mesh.scale):
+        raise MeshError(mesh.path, f"scale {mesh.scale} leaves nothing of it", origin=origin)
     submeshes = _loaded(mesh.path, origin).submeshes
     if mesh.submesh is not None:
         submeshes = _select(mesh, submeshes, origin)
