@@ -41,6 +41,8 @@ from cartwheel.session import Session
 TARGET = Path(__file__).resolve().parent.parent / "docs" / "plugins.md"
 HERE = Origin(file="<reference>")
 MODEL, SENSOR = "my_robot", "my_sensor"
+_NEEDED = {("joint", ""), ("body", "")}
+"""Fields and their defaults, which say what to move or watch all the same."""
 
 INTRODUCTION = """\
 # Plugins and sensors
@@ -195,7 +197,7 @@ def _tag(plugin: type[Plugin[Any]]) -> PluginTag:
         )
         for item, kind in _fields(plugin)
         # A joint to be measured has no default that a robot could have.
-        if item.default is dataclasses.MISSING or (item.name, item.default) == ("joint", "")
+        if item.default is dataclasses.MISSING or (item.name, item.default) in _NEEDED
     ]
     element = _element("plugin", children=(*switches, *needed))
     return PluginTag(name="plugin", filename=_title(plugin), element=element, origin=HERE)

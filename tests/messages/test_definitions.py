@@ -88,6 +88,8 @@ MESSAGES = {
     "roscpp/Logger": "a6069a2ff40db7bd32143dd66e1f408e",
     "rosgraph_msgs/Log": "acffd30cd6b6de30f120938c17c593fb",
     "tf2_msgs/TFMessage": "94810edda583a504dfda3829e70d7eec",
+    "unitree_legged_msgs/MotorCmd": "bbb3b7d91319c3a1b99055f0149ba221",
+    "unitree_legged_msgs/MotorState": "94c55ee3b7852be2bd437b20ce12a254",
     "sensor_msgs/Imu": "6a62c6daae103f4ff57a132d6f95cec2",
     "nav_msgs/Odometry": "cd5e73d190d741a2f92e81eda573aca7",
     "geometry_msgs/Twist": "9f195f881246fdfa2798d1d3eebca84a",

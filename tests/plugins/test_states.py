@@ -115,6 +115,16 @@ def test_pal_s_world_odometry_tells_the_twist_in_the_link_s_axes(make, read):
     assert message.child_frame_id == "link"
 
 
+def test_pal_s_world_odometry_needs_no_body_and_is_in_the_world_s_axes(make, read):
+    model = p3d("<frameName>link</frameName>").replace("<bodyName>link</bodyName>", "")
+    model = model.replace("libgazebo_ros_p3d.so", "libgazebo_world_odometry.so")
+    world = make.world(ground=None, gravity=0.0)
+    world.session.spawn(make.sdf(model), pose=Pose((1, 2, 3), (0.0, 0.0, 0.0, 1.0)))
+    message = read(world, "/truth", 0.1)[0]
+    assert vector(message.pose.pose.position) == pytest.approx([1, 2, 3], abs=1e-9)
+    assert (message.header.frame_id, message.child_frame_id) == ("link", "link")
+
+
 def test_p3d_of_a_frame_that_is_no_link_is_told(make, read):
     world = make.world(make.sdf(p3d("<frameName>odom_combined</frameName>")), ground=None)
     assert any("is no link" in d.message for d in world.diagnostics)

@@ -30,6 +30,19 @@ def test_a_point_mass_fixed_to_another_body_adds_its_mass(make):
     assert abs(model.dof_M0[0] - (0.1 + 2 * 0.5**2)) < 1e-5
 
 
+def test_a_part_that_weighs_next_to_nothing_is_built(make):
+    """As drawing programs write a frame without a body: masses of 1e-15 kg."""
+    robot = load_text(
+        """<robot name="r"><link name="base"><inertial><mass value="3"/>
+        <inertia ixx="0.1" iyy="0.1" izz="0.1"/></inertial></link><link name="frame"><inertial>
+        <mass value="4.19E-15"/><inertia ixx="1.68E-27" iyy="1.68E-27" izz="1.68E-27" ixy="0"
+        ixz="7.68E-44" iyz="0"/></inertial></link><joint name="weld" type="fixed">
+        <parent link="base"/><child link="frame"/></joint></robot>"""
+    )
+    model = make.world(robot, ground=None).session.simulation.model
+    assert abs(model.body_subtreemass[0] - 3.0) < 1e-9
+
+
 def test_a_robot_fixed_to_the_world_is_hulls_and_a_static_model_its_surface(make, tmp_path):
     """A cup: five walls of a box. Inside it a static model is empty."""
     x = [[a, b, c] for a in (-1, 1) for b in (-1, 1) for c in (-1, 1)]

@@ -78,14 +78,17 @@ class P3D(Plugin[P3DParameters]):
     parameters: ClassVar[type] = P3DParameters
     in_link: ClassVar[bool] = False
     """Whether the twist is in the link's axes, and not in the frame's."""
+    in_world: ClassVar[bool] = False
+    """Whether the frame is a name alone, for a pose in the world."""
 
     def configure(self) -> None:
         config, part = self.config, self.part
         if config.noise < 0 or config.update_rate < 0:
             raise PluginError("a rate or noise cannot be below 0", origin=self.tag.origin)
-        self._link = part.link(config.body, origin=self.tag.origin)
+        body = config.body or config.frame
+        self._link = part.link(body, origin=self.tag.origin)
         self._reference = None
-        if config.frame not in _WORLD:
+        if config.frame not in _WORLD and not self.in_world:
             if part.description.link(config.frame) is not None:
                 self._reference = part.link(config.frame)
             else:
@@ -94,7 +97,7 @@ class P3D(Plugin[P3DParameters]):
                     "under that name; Gazebo would tell nothing"
                 )
         self._turn = quat_from_rpy(*config.rpy_offset)
-        self._frame, self._child = self.frame(config.frame), self.frame(config.body)
+        self._frame, self._child = self.frame(config.frame), self.frame(body)
         self._covariance = np.diag([config.noise**2] * 6).ravel()
         self._Odometry = message_class("nav_msgs/msg/Odometry")
         self._PoseWithCovariance = message_class("geometry_msgs/msg/PoseWithCovariance")
@@ -143,13 +146,28 @@ class P3D(Plugin[P3DParameters]):
         )
 
 
+@dataclass(frozen=True, kw_only=True, slots=True)
+class WorldOdometryParameters(P3DParameters):
+    body: str = tag(
+        "bodyName",
+        "body_name",
+        default="",
+        doc="Link whose pose is told; the one that frameName names when empty.",
+    )
+    frame: str = tag(
+        "frameName", "frame_name", default="world", doc="Frame of the messages, a name alone."
+    )
+
+
 class WorldOdometry(P3D):
-    """As libgazebo_ros_p3d.so, with the twist in the link's axes.
+    """As libgazebo_ros_p3d.so, always in the world's axes, with the twist in the link's.
 
     Source: pal_gazebo_plugins, gazebo_world_odometry.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_world_odometry.so",)
+    parameters: ClassVar[type] = WorldOdometryParameters
+    in_world: ClassVar[bool] = True
     in_link: ClassVar[bool] = True
 
 

@@ -65,6 +65,8 @@ _STRONGEST = 1e6
 """N m or N of a motor without a limit."""
 _THINNEST = 1e-6
 """The least of a body's three moments, of the largest."""
+_LEAST = 1e-12
+"""kg m², the least of a moment: the engine takes what is smaller for nothing."""
 _POINT = 1e-6
 """m², the inertia of a point mass for its mass: the engine wants one above 0."""
 _WORLD_SITE = "world::site"
@@ -382,9 +384,9 @@ def _possible(inertia: Array) -> Array:
     by more has been refused when it was read.
     """
     moments, axes = np.linalg.eigh(inertia)
-    lowest = _THINNEST * float(moments[2])
+    lowest = max(_THINNEST * float(moments[2]), _LEAST)
     if moments[0] < lowest:
-        # A rod without thickness: the engine divides by all three.
+        # A rod without thickness, or a frame that weighs nothing: the engine divides by all three.
         moments = np.maximum(moments, lowest)
         inertia = (axes * moments) @ axes.T
     excess = moments[2] - (moments[0] + moments[1]) * (1 - 1e-9)

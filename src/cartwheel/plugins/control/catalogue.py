@@ -22,6 +22,7 @@ def controller_types() -> dict[str, type[Controller]]:
     from cartwheel.plugins.control.joint_states import JointStateController
     from cartwheel.plugins.control.joint_trajectory import JointTrajectoryController
     from cartwheel.plugins.control.mecanum import MecanumDriveController
+    from cartwheel.plugins.control.motor_command import UnitreeJointController
     from cartwheel.plugins.control.sensors import ForceTorqueBroadcaster, ImuBroadcaster
     from cartwheel.plugins.control.steering import (
         SingleSteering,
@@ -34,6 +35,7 @@ def controller_types() -> dict[str, type[Controller]]:
         JointCommand,
         JointPid,
         JointGroup,
+        UnitreeJointController,
         JointTrajectoryController,
         GripperActionController,
         ParallelGripperActionController,
