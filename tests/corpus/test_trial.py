@@ -149,8 +149,9 @@ def test_plugins_that_are_not_there_are_listed_and_cost_nothing_else(tried):
     assert verdict.good
 
 
-def test_a_missing_mesh_is_counted_and_the_rest_is_tried(tried):
-    visual = '<visual><geometry><mesh filename="file:///no/such.stl"/></geometry></visual></link>'
+@pytest.mark.parametrize("uri", ["file:///no/such.stl", "package://no_such/a.stl"])
+def test_a_missing_mesh_is_counted_and_the_rest_is_tried(tried, uri):
+    visual = f'<visual><geometry><mesh filename="{uri}"/></geometry></visual></link>'
     verdict = tried(BOX.format(name="base", at="0 0 0", size="1 1 1").replace("</link>", visual))
     assert verdict.missing_meshes == 1
     assert verdict.loaded

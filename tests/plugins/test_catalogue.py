@@ -5,6 +5,8 @@ import pkgutil
 import subprocess
 import sys
 
+import pytest
+
 import cartwheel.plugins
 from cartwheel.plugins.base import Plugin
 from cartwheel.plugins.catalogue import (
@@ -43,6 +45,18 @@ def test_every_name_leads_to_a_plugin():
         plugin = plugin_named(name)
         assert plugin is not None, name
         assert name in {short_name(filename) for filename in plugin.filenames}
+
+
+@pytest.mark.parametrize(
+    "filename",
+    [
+        "libignition-gazebo-diff-drive-system.so",
+        "ignition-gazebo6-diff-drive-system",
+        "/opt/lib/libgz-sim8-diff-drive-system.so",
+    ],
+)
+def test_a_library_of_one_version_of_new_gazebo_is_known(filename):
+    assert plugin_named(filename) is plugin_named("gz-sim-diff-drive-system")
 
 
 def test_a_name_of_none_is_none():

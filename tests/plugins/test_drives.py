@@ -1,10 +1,13 @@
 """Skid steer, tricycle, car, planar move and the drives of new Gazebo: by their geometry."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
+import trimesh
 
+from cartwheel.description.model import Mesh
 from cartwheel.errors import PluginError
 from cartwheel.geometry import Pose, yaw_of
 
@@ -340,6 +343,28 @@ def test_car_in_reverse_turns_the_way_it_is_told(make, cart, read):
     told = read(world, "/odom", 2.0)
     assert told[-1].twist.twist.linear.x == pytest.approx(-0.5, rel=0.05)
     assert turned(told) > 0
+
+
+def test_car_is_measured_at_its_axles_where_meshes_are_elsewhere(make, cart, read, tmp_path):
+    """As CAD exports them: each mesh where it is in the whole car, its frame set back by that."""
+    base, away = 0.4, 5.0
+    tyre = trimesh.creation.cylinder(radius=RADIUS, height=0.04)
+    tyre.apply_translation((away, 0, 0))
+    tyre.export(tmp_path / "tyre.stl")
+    shape = Mesh(uri="tyre.stl", path=tmp_path / "tyre.stl")
+    car = cart(CAR, ackermann(), forks=FRONT)
+    front = [f"{name}_wheel" for name in FRONT]
+    links = [
+        replace(link, collisions=(replace(link.collisions[0], shape=shape, pose=back),))
+        if link.name in front
+        else link
+        for link in car.links
+        for back in [Pose((-away, 0, 0))]
+    ]
+    world = spawn(make, replace(car, links=tuple(links)))
+    world.publish("/cmd_vel", linear_x=0.6, angular_z=0.4)
+    world.run(2.0)
+    assert circle(path(read(world, "/odom", 5.0))) == pytest.approx(base / math.tan(0.4), rel=0.03)
 
 
 def gz_ackermann(tags=""):

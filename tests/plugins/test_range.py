@@ -145,3 +145,9 @@ def test_tags_that_make_no_sense_are_refused(make, tags):
     with pytest.raises(CartwheelError) as error:
         make.world(make.sdf(finder(tags)))
     assert error.value.origin is not None
+
+
+def test_of_several_numbers_the_first_counts_where_one_is_wanted(make):
+    world = make.world(make.sdf(finder("<topicName>front</topicName><fov>0.5 0.4 0.3</fov>")))
+    assert messages(world)[0].field_of_view == 0.5
+    assert any("of '0.5 0.4 0.3' 0.5 counts" in each.message for each in world.diagnostics)

@@ -138,3 +138,15 @@ def test_a_fine_round_has_a_hull_of_few_corners_that_is_as_large(make, tmp_path)
     world.run(2.0)
     # It may come to rest on any of them, and is a contact's depth deep.
     assert world.model("ball").pose.z == pytest.approx(radius, abs=4 * 2 * radius / corners)
+
+
+def test_a_lone_triangle_is_drawn_and_costs_nothing_else(make, tmp_path):
+    """Such parts are all over what architects' programs write."""
+    (tmp_path / "shard.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    shape = f"<geometry><mesh><uri>file://{tmp_path}/shard.obj</uri></mesh></geometry>"
+    shard = make.sdf(
+        f"""<model name="shard"><static>1</static><link name="l">
+        <visual name="v">{shape}</visual><collision name="c">{shape}</collision></link></model>"""
+    )
+    model = make.world(shard).session.simulation.model
+    assert model.mesh_facenum.min() == 1

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -28,6 +29,7 @@ _LISTENING = 1.0
 _LONGEST = 5.0
 _HIGH = 5.0
 """m."""
+_NO_MESH = re.compile(r"the mesh|; a (visual|collision) of link")
 
 
 def try_robot(
@@ -91,7 +93,7 @@ def _described(verdict: Verdict, robot: RobotDescription) -> Verdict:
         links=len(robot.links),
         plugins=tuple(name for name in names if name in known),
         missing=tuple(name for name in names if name not in known),
-        missing_meshes=sum("the mesh" in each.message for each in robot.diagnostics),
+        missing_meshes=sum(bool(_NO_MESH.search(each.message)) for each in robot.diagnostics),
         diagnostics=robot.diagnostics,
     )
 

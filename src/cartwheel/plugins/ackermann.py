@@ -188,8 +188,11 @@ class AckermannDrive(SteeredDrive):
                     f'the wheel of joint "{name}" has no collision to be measured', origin=origin
                 )
             collision = link.collisions[0]
-            centres.append(poses[link.name].apply(collision.pose.position))
             shape = collision.shape
+            round_one = isinstance(shape, Cylinder | Sphere | Capsule)
+            # A mesh's frame may be anywhere: the wheel is where its axle is.
+            place = collision.pose if round_one or joint is None else joint.pose
+            centres.append(poses[link.name].apply(place.position))
         if not isinstance(shape, Cylinder | Sphere | Capsule):
             raise PluginError(
                 f'the wheel of joint "{name}" is neither cylinder nor sphere: it has no radius',

@@ -120,7 +120,8 @@ def short_name(filename: str) -> str:
     stem = filename.rsplit("/", 1)[-1]
     stem = re.sub(r"\.(so|dylib|dll)$", "", stem)
     stem = stem.removeprefix("lib")
-    return stem.replace("ignition-gazebo-", "gz-sim-")
+    # Some name the library of one major version: ignition-gazebo6-, gz-sim8-.
+    return re.sub(r"^(ignition-gazebo|gz-sim)\d*-", "gz-sim-", stem)
 
 
 def plugin_named(filename: str) -> type[Plugin[object]] | None:

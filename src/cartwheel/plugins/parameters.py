@@ -48,6 +48,7 @@ def read(
         PluginError: A value of the wrong kind, or a missing tag; with its place.
     """
     values: dict[str, Any] = {}
+    diagnostics: list[Diagnostic] = []
     known = set(_COMMON) | set(ignore)
     hints = typing.get_type_hints(cls)
     for item in dataclasses.fields(cls):  # type: ignore[arg-type]
@@ -56,6 +57,9 @@ def read(
         found = next((child for name in names if (child := element.find(name)) is not None), None)
         if found is not None:
             kind = hints[item.name]
+            if kind in (float, float | None) and len(found.text.split()) > 1:
+                found, told = _first(found)
+                diagnostics.append(told)
             if get_origin(kind) is tuple and Ellipsis in get_args(kind):
                 values[item.name] = tuple(
                     _value(get_args(kind)[0], child)
@@ -68,7 +72,7 @@ def read(
             raise PluginError(
                 f"<{element.tag}> needs <{names[0]}>: {item.metadata['doc']}", origin=element.origin
             )
-    diagnostics = [
+    diagnostics += [
         Diagnostic(
             severity="warning",
             message=f"<{child.tag}> has no effect: this plugin does not know it. "
@@ -79,6 +83,16 @@ def read(
         if child.tag not in known
     ]
     return cls(**values), diagnostics
+
+
+def _first(element: Element) -> tuple[Element, Diagnostic]:
+    """The element with the first word alone, which is what Gazebo reads where one is wanted."""
+    word = element.text.split()[0]
+    return dataclasses.replace(element, text=word), Diagnostic(
+        severity="warning",
+        message=f"<{element.tag}> is one number: of '{element.text.strip()}' {word} counts",
+        origin=element.origin,
+    )
 
 
 def _value(kind: Any, element: Element) -> Any:

@@ -67,11 +67,11 @@ class Assets:
                 name=name, inertia=mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL
             )
             mesh.maxhullvert = _HULL_CORNERS
-            mesh.uservert = np.asarray(vertices, dtype=np.float64).ravel()
+            mesh.uservert = _four(vertices).ravel()
             if faces is not None:
                 mesh.userface = np.asarray(faces, dtype=np.int32).ravel()
             if uv is not None:
-                mesh.usertexcoord = np.asarray(uv, dtype=np.float64).ravel()
+                mesh.usertexcoord = _four(uv).ravel()
             self._meshes[key] = name
         return self._meshes[key]
 
@@ -111,6 +111,12 @@ class Assets:
             material.textures[mujoco.mjtTextureRole.mjTEXROLE_RGB] = name
             self._materials[image] = name
         return self._materials[image]
+
+
+def _four(rows: Any) -> Any:
+    """The rows, the last one repeated up to four: the engine takes no lone triangle."""
+    some = np.asarray(rows, dtype=np.float64)
+    return np.concatenate([some, np.repeat(some[-1:], max(0, 4 - len(some)), axis=0)])
 
 
 @lru_cache(maxsize=256)
