@@ -150,6 +150,9 @@ class Material:
     specular: float = 0.1
     emissive: Rgba = (0.0, 0.0, 0.0, 1.0)
     texture: Path | None = None
+    """Times `diffuse`, where that is stated."""
+    texture_scale: tuple[float, float] = (1.0, 1.0)
+    """How much of a surface one copy of the texture covers, across and along; about its middle."""
 
     def colour_of(self, own: Rgba | None) -> Rgba | None:
         """The colour of a part that brings `own`, such as a mesh's; None where nobody says."""

@@ -10,11 +10,10 @@ import mujoco
 import numpy as np
 
 from cartwheel.geometry import Array, Pose, matrix_from_quat
-from cartwheel.world.bodies import COLLISION_GROUP, VISUAL_GROUP
+from cartwheel.world.bodies import COLLISION_GROUP
 from cartwheel.world.entry import scoped
+from cartwheel.world.visuals import HIDDEN_GROUP, VISUAL_GROUP
 
-_HIDDEN_GROUP = 5
-"""Holds what a sensor looks past, for the time of one cast; nothing lives there."""
 _NO_LIMIT = 1e10
 """m: the engine's own cutoff would lose planes whose frame is farther away."""
 _AXES = np.vstack([np.eye(3), -np.eye(3)])
@@ -136,9 +135,9 @@ class RayHandle:
             # be turned. Without trees it makes none; the bundles take their place.
             trees[:] = -1
             open_groups = saved_groups.copy()
-            open_groups[self._housing] = _HIDDEN_GROUP
+            open_groups[self._housing] = HIDDEN_GROUP
             for part, visible in self._candidates(start, turn, open_groups):
-                groups[:] = np.where(visible, open_groups, _HIDDEN_GROUP)
+                groups[:] = np.where(visible, open_groups, HIDDEN_GROUP)
                 self._cast(start, rays[part], distances[part], geoms[part])
             groups[:] = open_groups
             while True:
@@ -146,7 +145,7 @@ class RayHandle:
                 near = near[self._own[geoms[near]]]
                 if not near.size:
                     break
-                groups[np.unique(geoms[near])] = _HIDDEN_GROUP
+                groups[np.unique(geoms[near])] = HIDDEN_GROUP
                 again, others = np.empty(near.size), np.empty(near.size, dtype=np.int32)
                 self._cast(start, rays[near], again, others)
                 distances[near], geoms[near] = again, others

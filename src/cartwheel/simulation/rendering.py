@@ -11,12 +11,17 @@ from typing import Any
 import mujoco
 import numpy as np
 
+from cartwheel.description.model import CameraIntrinsics
 from cartwheel.errors import SimulationError
 from cartwheel.simulation.handles import CameraHandle
-from cartwheel.world.bodies import VISUAL_GROUP
+from cartwheel.world.visuals import HIDDEN_GROUP, VISUAL_GROUP
 
 _PACKAGES = "libegl1 libgl1 libgl1-mesa-dri"
 _BACKENDS = {"egl": "mujoco.egl", "osmesa": "mujoco.osmesa"}
+
+_WALL = 0.99
+"""Of the far distance, where a wall is put behind everything."""
+_FULL = 255
 
 _PIXEL = np.dtype((np.void, 3))
 """Three bytes as one value: numpy fills those by a mask many times faster."""
@@ -33,7 +38,8 @@ class Renderer:
 
     def __init__(self) -> None:
         self._model: Any = None
-        self._background: Any = np.zeros(3, dtype=np.uint8).view(_PIXEL)[0]
+        self._background: Any = np.zeros(3, dtype=np.uint8)
+        self._opaque: Any = None
         self._gl: Any = None
         self._context: Any = None
         self._scene: Any = None
@@ -49,6 +55,7 @@ class Renderer:
         """Draws this model from now on."""
         self._model = model
         self._background = _background(model)
+        self._opaque = _opaque(model)
         self._drop_scene()
 
     def close(self) -> None:
@@ -90,6 +97,21 @@ class Renderer:
         lens = camera.intrinsics
         self._prepare(lens.width, lens.height)
         self._camera.fixedcamid = camera.id
+        pixels = np.empty((lens.height, lens.width, 3), dtype=np.uint8)
+        buffer = np.empty((lens.height, lens.width), dtype=np.float32)
+        self._show(data, lens)
+        self._shoot(pixels, buffer)
+        # The background, where nothing was drawn.
+        empty = buffer == 0
+        if self._opaque is None:
+            pixels.reshape(-1).view(_PIXEL)[empty.ravel()] = self._background.view(_PIXEL)[0]
+        else:
+            share = self._transmitted(data, lens)[empty].astype(np.uint16)
+            pixels[empty] += (share * self._background // _FULL).astype(np.uint8)
+        return pixels, buffer
+
+    def _show(self, data: Any, lens: CameraIntrinsics) -> None:
+        """Puts what is visible of the model into the scene, before the lens."""
         mujoco.mjv_updateScene(
             self._model,
             data,
@@ -106,14 +128,47 @@ class Renderer:
             view.frustum_near, view.frustum_far = lens.near, lens.far
             view.frustum_bottom, view.frustum_top = -half, half
             view.frustum_center = 0.0
-        viewport = mujoco.MjrRect(0, 0, lens.width, lens.height)
+
+    def _shoot(self, pixels: Image, buffer: Depth | None) -> None:
+        """Draws the scene and reads the picture, and the depth buffer where one is given."""
+        viewport = mujoco.MjrRect(0, 0, pixels.shape[1], pixels.shape[0])
         mujoco.mjr_render(viewport, self._scene, self._context)
-        pixels = np.empty((lens.height, lens.width, 3), dtype=np.uint8)
-        buffer = np.empty((lens.height, lens.width), dtype=np.float32)
         mujoco.mjr_readPixels(pixels, buffer, viewport, self._context)
-        # The background, where nothing was drawn.
-        pixels.reshape(-1).view(_PIXEL)[(buffer == 0).ravel()] = self._background
-        return pixels, buffer
+
+    def _transmitted(self, data: Any, lens: CameraIntrinsics) -> Image:
+        """How much of the background shows through what is transparent, of 255.
+
+        What is transparent leaves no depth, and the engine draws it before black. Here it is drawn
+        black and alone, before a white wall.
+        """
+        groups = self._model.geom_group
+        saved = groups.copy()
+        try:
+            groups[self._opaque] = HIDDEN_GROUP
+            self._show(data, lens)
+        finally:
+            groups[:] = saved
+        scene = self._scene
+        for index in range(scene.ngeom):
+            scene.geoms[index].rgba[:3] = 0.0
+            scene.geoms[index].emission = 0.0
+        view = scene.camera[0]
+        away = _WALL * lens.far
+        wide = lens.far * math.tan(lens.horizontal_fov / 2)
+        wall = scene.geoms[scene.ngeom]
+        mujoco.mjv_initGeom(
+            wall,
+            mujoco.mjtGeom.mjGEOM_BOX,
+            np.array([wide, wide * lens.height / lens.width, (1 - _WALL) / 2 * away]),
+            view.pos + away * view.forward,
+            np.stack([np.cross(view.forward, view.up), view.up, -view.forward], axis=1).ravel(),
+            np.ones(4, dtype=np.float32),
+        )
+        wall.emission = 1.0
+        scene.ngeom += 1
+        shares = np.empty((lens.height, lens.width, 3), dtype=np.uint8)
+        self._shoot(shares, None)
+        return shares
 
     def _prepare(self, width: int, height: int) -> None:
         if self._gl is None:
@@ -146,12 +201,18 @@ class Renderer:
 
 
 def _background(model: Any) -> Any:
-    """The colour of the model's sky."""
+    """The colour of the model's sky, shape (3,)."""
     for index in range(model.ntex):
         if model.tex_type[index] == mujoco.mjtTexture.mjTEXTURE_SKYBOX:
             start = model.tex_adr[index]
-            return np.ascontiguousarray(model.tex_data[start : start + 3]).view(_PIXEL)[0]
-    return np.zeros(3, dtype=np.uint8).view(_PIXEL)[0]
+            return np.ascontiguousarray(model.tex_data[start : start + 3])
+    return np.zeros(3, dtype=np.uint8)
+
+
+def _opaque(model: Any) -> Any:
+    """Which visuals hide what is behind them, shape (ngeom,); None where all do."""
+    transparent = (model.geom_group == VISUAL_GROUP) & (model.geom_rgba[:, 3] < 1)
+    return ~transparent if transparent.any() else None
 
 
 def _open_gl(width: int, height: int) -> Any:

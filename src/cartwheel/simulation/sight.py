@@ -9,8 +9,8 @@ import mujoco
 import numpy as np
 
 from cartwheel.geometry import Vec3
-from cartwheel.world.bodies import VISUAL_GROUP
 from cartwheel.world.entry import scoped
+from cartwheel.world.visuals import VISUAL_GROUP
 
 _GROUPS = np.zeros(mujoco.mjNGROUP, dtype=np.uint8)
 _GROUPS[VISUAL_GROUP] = 1

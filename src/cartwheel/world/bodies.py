@@ -7,17 +7,14 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from cartwheel.description import meshes
 from cartwheel.description.inertia import tensor
 from cartwheel.description.model import (
     Collision,
     Inertial,
     Joint,
     Link,
-    Mesh,
     Plane,
     RobotDescription,
-    Visual,
 )
 from cartwheel.errors import WorldError
 from cartwheel.geometry import (
@@ -45,12 +42,11 @@ from cartwheel.world.entry import (
     scoped,
 )
 from cartwheel.world.lights import add_light
-from cartwheel.world.shapes import Assets, place, pose_arguments, solids
+from cartwheel.world.shapes import Assets, pose_arguments, solids
 from cartwheel.world.tyres import Axle, axle_of, tyre
+from cartwheel.world.visuals import add_visual
 
-VISUAL_GROUP = 1
 COLLISION_GROUP = 4
-_GREY = (0.7, 0.7, 0.7, 1.0)
 _CAMERA_AXES = np.array([[0.0, 0, -1], [-1, 0, 0], [0, 1, 0]])
 """Columns: MuJoCo's camera axes (right, up, back) in a sensor frame that looks along x."""
 _MOTOR_REFERENCE = (0.01, 1.0)
@@ -156,7 +152,7 @@ class BodyBuilder:
         if not link.gravity:
             body.gravcomp = 1.0
         for visual in link.visuals:
-            self._add_visual(body, visual)
+            add_visual(body, visual, self._assets)
         for light in link.lights:
             add_light(body, scoped(entry.name, link.name, light.name), light)
         if axle is not None and link.name in entry.slips:
@@ -204,44 +200,6 @@ class BodyBuilder:
                         direction=_direction(entry, link, collision),
                     )
                 )
-
-    def _add_visual(self, body: Any, visual: Visual) -> None:
-        common: dict[str, Any] = {
-            "group": VISUAL_GROUP,
-            "contype": 0,
-            "conaffinity": 0,
-            "density": 0,
-            "userdata": [visual.laser_retro or 0.0],
-        }
-        material = visual.material
-        opacity = 1.0 - visual.transparency
-        shape = visual.shape
-        if isinstance(shape, Mesh):
-            for index, part in enumerate(meshes.load_mesh(shape)):
-                mesh = self._assets.mesh(
-                    ("visual", shape, index), part.vertices, part.faces, uv=part.uv
-                )
-                texture = material.texture or (
-                    part.texture if material.diffuse is None or material.yields_to_mesh else None
-                )
-                rgba = material.colour_of(part.rgba) or _GREY
-                look: dict[str, Any] = {"rgba": [*rgba[:3], rgba[3] * opacity]}
-                if texture is not None and part.uv is not None:
-                    look = {"material": self._assets.texture_material(texture)}
-                body.add_geom(
-                    type=mujoco.mjtGeom.mjGEOM_MESH,
-                    meshname=mesh,
-                    **look,
-                    **common,
-                    **pose_arguments(visual.pose),
-                )
-            return
-        rgba = material.diffuse or _GREY
-        look = {"rgba": [*rgba[:3], rgba[3] * opacity]}
-        if material.texture is not None:
-            look = {"material": self._assets.texture_material(material.texture)}
-        arguments, pose = place(shape, visual.pose, visual.origin, self._assets)
-        body.add_geom(**arguments, **look, **common, **pose_arguments(pose))
 
     def _exclude(self, entry: ModelEntry, description: RobotDescription) -> None:
         """Links of one model collide only where both ask for it, as in Gazebo."""

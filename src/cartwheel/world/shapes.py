@@ -53,6 +53,7 @@ class Assets:
         self._spec = spec
         self._meshes: dict[object, str] = {}
         self._materials: dict[object, str] = {}
+        self._textures: dict[object, str] = {}
         self._heightmaps: dict[Heightmap, tuple[str, float]] = {}
 
     def mesh(self, key: object, vertices: Any, faces: Any, *, uv: Any = None) -> str:
@@ -93,10 +94,26 @@ class Assets:
             self._heightmaps[shape] = (name, low)
         return self._heightmaps[shape]
 
-    def texture_material(self, image: Any) -> str:
-        """The name of a material that shows an image (a path or its encoded bytes)."""
-        if image not in self._materials:
-            name = f"texture_{len(self._materials)}"
+    def material(self, image: Path | bytes | None, emission: float) -> str:
+        """The name of a material that shows an image, its path or encoded bytes, and glows.
+
+        Args:
+            image: None is none.
+            emission: Light of its own, as a factor on its colour.
+        """
+        key = (image, emission)
+        if key not in self._materials:
+            name = f"material_{len(self._materials)}"
+            material = self._spec.add_material(name=name, emission=emission)
+            if image is not None:
+                role = mujoco.mjtTextureRole.mjTEXROLE_RGB
+                material.textures[role] = self._texture(image)
+            self._materials[key] = name
+        return self._materials[key]
+
+    def _texture(self, image: Path | bytes) -> str:
+        if image not in self._textures:
+            name = f"texture_{len(self._textures)}"
             changed = image.stat().st_mtime_ns if isinstance(image, Path) else 0
             pixels = _pixels(image, changed)
             texture = self._spec.add_texture(
@@ -107,10 +124,8 @@ class Assets:
                 nchannel=3,
             )
             texture.data = pixels.tobytes()
-            material = self._spec.add_material(name=name)
-            material.textures[mujoco.mjtTextureRole.mjTEXROLE_RGB] = name
-            self._materials[image] = name
-        return self._materials[image]
+            self._textures[image] = name
+        return self._textures[image]
 
 
 def _four(rows: Any) -> Any:

@@ -308,10 +308,40 @@ def test_material_script_of_a_model(tmp_path):
     assert material.name == "My/Brick"
     assert material.diffuse == (0.5, 0.25, 0, 1)
     assert material.texture == textures / "brick.png"
+    assert material.texture_scale == (1.0, 1.0)
     assert found.diagnostics == ()
     unknown = link(text.format("My/Brck"), folder=tmp_path)
     assert unknown.links[0].visuals[0].material.name == "My/Brck"
     assert "My/Brck" in unknown.diagnostics[0].message
+
+
+@pytest.mark.parametrize(
+    ("said", "scale"),
+    [
+        ("scale 0.25 0.5", (0.25, 0.5)),
+        ("scale 0 1", (1.0, 1.0)),
+        ("scale 2", (1.0, 1.0)),
+        ("scale wide 1", (1.0, 1.0)),
+        ("scale inf 1", (1.0, 1.0)),
+    ],
+)
+def test_a_script_scales_its_texture(tmp_path, said, scale):
+    """Without a diffuse colour of its own, and never with the ambient one, as OGRE has it."""
+    (tmp_path / "floor.png").write_bytes(b"")
+    (tmp_path / "my.material").write_text(
+        f"""material My/Floor {{ technique {{ pass {{ ambient 0.1 0.2 0.3 1
+        texture_unit {{
+          texture floor.png
+          {said}
+        }} }} }} }}"""
+    )
+    text = """<visual name="v"><geometry><plane/></geometry><material><script>
+      <uri>my.material</uri><name>My/Floor</name></script><ambient>0.3 0.3 0.3 1</ambient>
+      </material></visual>"""
+    material = link(text, folder=tmp_path).links[0].visuals[0].material
+    assert material.texture == tmp_path / "floor.png"
+    assert material.texture_scale == scale
+    assert material.diffuse is None
 
 
 def test_gazebo_material_by_name():

@@ -24,22 +24,25 @@ def read_material(node: Node | None, ctx: Context) -> Material:
         uris = script.all("uri")
         if name:
             scripted = _scripted(name, uris, script, ctx)
-    diffuse = _colour(node, "diffuse") or scripted.diffuse or _colour(node, "ambient")
+    diffuse = _colour(node, "diffuse") or scripted.diffuse
+    ambient = _colour(node, "ambient")
     specular = _colour(node, "specular")
     emissive = _colour(node, "emissive")
-    _colour(node, "ambient")
     for path in ("lighting", "shininess", "double_sided", "render_order"):
         node.find(path)
     shader = node.child("shader")
     if shader is not None:
         shader.mark()
     texture = _albedo(node, ctx) or scripted.texture
+    if diffuse is None and texture is None:
+        diffuse = ambient
     return Material(
         name=name,
         diffuse=diffuse,
         specular=sum(specular[:3]) / 3 if specular else scripted.specular,
         emissive=emissive or scripted.emissive,
         texture=texture,
+        texture_scale=scripted.texture_scale,
     )
 
 
@@ -96,4 +99,5 @@ def _scripted(name: str, uris: list[Node], script: Node, ctx: Context) -> Materi
         diffuse=found.diffuse,
         emissive=found.emissive or Material().emissive,
         texture=found.texture,
+        texture_scale=found.texture_scale,
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,6 +19,8 @@ class Script:
     diffuse: Rgba | None = None
     emissive: Rgba | None = None
     texture: Path | None = None
+    texture_scale: tuple[float, float] = (1.0, 1.0)
+    """How much of a surface one copy of the texture covers."""
     missing: str | None = None
     """The texture that is named but not there."""
 
@@ -70,6 +73,7 @@ def _read(statements: list[list[str]], nearby: list[Path]) -> Script:
     """The first pass counts: further ones add effects that are not rendered."""
     diffuse = emissive = ambient = None
     texture: Path | None = None
+    scale: tuple[float, float] | None = None
     missing: str | None = None
     for key, *values in statements:
         if key == "diffuse" and diffuse is None:
@@ -82,7 +86,20 @@ def _read(statements: list[list[str]], nearby: list[Path]) -> Script:
             found = [folder / values[0] for folder in nearby if (folder / values[0]).is_file()]
             texture = found[0] if found else None
             missing = None if found else values[0]
-    return Script(diffuse or ambient, emissive, texture, missing)
+        elif key == "scale" and scale is None and texture is not None:
+            scale = _scale(values)
+    if diffuse is None and texture is None:
+        diffuse = ambient
+    return Script(diffuse, emissive, texture, scale or (1.0, 1.0), missing)
+
+
+def _scale(values: list[str]) -> tuple[float, float] | None:
+    try:
+        across, along = (float(value) for value in values)
+    except ValueError:
+        return None
+    finite = math.isfinite(across) and math.isfinite(along)
+    return (across, along) if finite and across and along else None
 
 
 def _colour(values: list[str]) -> Rgba | None:
