@@ -29,6 +29,9 @@ _RATES = {topic: 30.0 if topic == IMAGE else 100.0 for topic in TYPES}
 """Hz of wall time."""
 _PATIENCE = 30.0
 _TRANSFORMS = 10
+_TURN, _TURNS = 0.25, 4
+"""s at full speed, and how many such turns for a pair of seconds: the machine's own changes of
+speed are to fall on both of a pair."""
 
 
 class Load:
@@ -111,10 +114,10 @@ def _picture() -> Any:
 
 
 def run(wires: list[str], pairs: int) -> dict[str, Any]:
-    """Seconds in turn with the same topics in process alone, and on the wires.
+    """In turns with the same topics in process alone, and on the wires.
 
     Returns:
-        For `real` time and `full` speed, for each pair of seconds, of the first and the second:
+        For `real` time and `full` speed, for each pair of turns, of the first and the second:
         CPU seconds of the process in a second, and simulated seconds in one that the simulation's
         thread did not wait for a core: others use the machine as well. And how late messages were.
     """
@@ -142,8 +145,8 @@ def run(wires: list[str], pairs: int) -> dict[str, Any]:
             cpu, waited = time.process_time() - cpu, _waited() - waited
             return [cpu / wall, (simulation.time_ns - before) / 1e9 / (wall - waited)]
 
-        def compare(speed: float | None) -> list[list[list[float]]]:
-            return [[go(speed, loud=loud) for loud in (False, True)] for _ in range(pairs)]
+        def compare(speed: float | None, seconds: float, count: int) -> list[list[list[float]]]:
+            return [[go(speed, seconds, loud=loud) for loud in (False, True)] for _ in range(count)]
 
         def go_until(condition: Callable[[], bool]) -> None:
             deadline = time.monotonic() + _PATIENCE
@@ -160,11 +163,11 @@ def run(wires: list[str], pairs: int) -> dict[str, Any]:
         go(1.0, 1.0)
         for reader in readers.values():
             reader.ages()
-        real = compare(1.0)
+        real = compare(1.0, 1.0, pairs)
         return {
             "real": real,
             "ages": {wire: reader.ages() for wire, reader in readers.items()},
-            "full": compare(None),
+            "full": compare(None, _TURN, _TURNS * pairs),
         }
 
 

@@ -112,10 +112,13 @@ class Master:
         return tuple(dict(part) for part in self.api.getSystemState("/test")[2])
 
     def node(self, name: str) -> Any:
-        """The XML-RPC interface of a node."""
-        code, _, uri = self.api.lookupNode("/test", name)
-        assert code == 1, f"no node {name}"
-        return xmlrpc.client.ServerProxy(uri)
+        """The XML-RPC interface of a node, as soon as the master knows it."""
+
+        def known() -> str:
+            code, _, uri = self.api.lookupNode("/test", name)
+            return uri if code == 1 else ""
+
+        return xmlrpc.client.ServerProxy(wait_for(known, f"node {name}"))
 
 
 @contextlib.contextmanager
