@@ -5,6 +5,9 @@ import math
 import numpy as np
 import pytest
 
+import cartwheel as cw
+from cartwheel.description import load_text
+
 G = 9.8
 
 INERTIAL = """<inertial><mass>{mass}</mass><inertia><ixx>{i}</ixx><iyy>{i}</iyy><izz>{i}</izz>
@@ -158,3 +161,52 @@ def test_a_joint_that_closes_a_loop_holds_the_axis_too(make, kind):
     turned = 2 * np.linalg.norm(data_of(world).body("m::bar").xquat[[1, 3]])
     # The torque of 5 N m on a soft constraint: a hundredth of a degree for each N m.
     assert turned < 0.02
+
+
+JOINED = """<sdf version="1.10"><world name="w"><gravity>0 0 -9.8</gravity>
+  <model name="a"><pose>0 0 2 0 0 0</pose><link name="l">{solid}</link></model>
+  <model name="b"><pose>{pose}</pose><link name="l">{solid}</link></model>
+  <joint name="held" type="fixed"><parent>world</parent><child>a</child></joint>
+  <joint name="j" type="{type}"><parent>a</parent><child>b</child>
+    <pose>0 0 {arm} 0 0 0</pose><axis><xyz>0 1 0</xyz></axis></joint></world></sdf>"""
+SOLID = (
+    INERTIAL.format(mass=1.0, i=0.01)
+    + """<collision name="c"><geometry><box><size>0.6 0.6 0.6</size></box></geometry></collision>"""
+)
+
+
+def joined(kind, pose, arm=0.0):
+    text = JOINED.format(type=kind, pose=pose, arm=arm, solid=SOLID)
+    return cw.World(load_text(text, file="w.sdf"))
+
+
+def test_a_fixed_joint_of_the_world_holds_two_models_that_do_not_collide():
+    """0.5 m aside with boxes of 0.6 m: what holds them bears 1 kg at that arm."""
+    with joined("fixed", "0.5 0 2 0 0 0") as world:
+        world.run(1.0)
+        assert world.model("a").pose.position == pytest.approx((0, 0, 2), abs=1e-9)
+        pose = world.model("b").pose
+        assert pose.position == pytest.approx((0.5, 0, 2), abs=1e-3)
+        assert pose.rpy == pytest.approx((0, 0, 0), abs=1e-3)
+        assert [d for d in world.diagnostics if "put into" in d.message] == []
+
+
+def test_a_hinge_between_models_swings_as_a_pendulum():
+    """T = 2 pi sqrt((I + m l^2) / (m g l)), from 0.1 rad; the amplitude adds a part in 1600."""
+    arm, tilt = 0.5, 0.1
+    start = f"{-arm * math.sin(tilt)} 0 {2 - arm * math.cos(tilt)} 0 {tilt} 0"
+    period = 2 * math.pi * math.sqrt((0.01 + arm**2) / (G * arm))
+    way = arm * math.sin(tilt)
+    with joined("revolute", start, arm) as world:
+        # 1 % of a period is 6 % of the way where it is fastest: half of that.
+        for part, expected in ((0.25, 0.0), (0.5, way), (0.75, 0.0), (1.0, -way)):
+            world.run(part * period - world.time)
+            assert world.model("b").pose.position[0] == pytest.approx(expected, abs=0.03 * way)
+            assert world.model("b").pose.position[1] == pytest.approx(0, abs=1e-4)
+
+
+def test_a_model_stands_free_when_what_it_was_joined_to_is_deleted():
+    with joined("fixed", "0.5 0 2 0 0 0") as world:
+        world.model("a").delete()
+        world.run(0.5)
+        assert world.model("b").pose.position[2] == pytest.approx(2 - G * 0.125, abs=0.02)

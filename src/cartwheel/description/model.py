@@ -189,6 +189,8 @@ class Surface:
     """m/s."""
     max_contacts: int | None = None
     restitution: float | None = None
+    bounce_threshold: float | None = None
+    """m/s: what meets more slowly does not bounce."""
     collide_bitmask: int | None = None
     """32 bits: what it touches, by their category."""
     category_bitmask: int | None = None
@@ -466,6 +468,8 @@ class WorldDescription:
     name: str
     models: tuple[RobotDescription, ...] = ()
     lights: tuple[Light, ...] = ()
+    joints: tuple[Joint, ...] = ()
+    """Between links of different models, by ``model::link``."""
     gravity: Vec3 = (0.0, 0.0, -9.8)
     magnetic_field: Vec3 = (6e-06, 2.3e-05, -4.2e-05)
     """T, east-north-up, Gazebo's default."""

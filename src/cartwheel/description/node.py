@@ -334,7 +334,8 @@ def _meant(name: str, known: Iterable[str], form: str) -> str:
 def needs_xacro(root: Node) -> bool:
     """Whether a tree has xacro's elements, or expressions where it declares xacro's namespace.
 
-    ``$(find …)`` means something to xacro alone, so launch files run it on such a URDF too.
+    ``$(find …)`` means something to xacro alone, so launch files run it on such a URDF too. In
+    the ``<uri>`` of an SDF it is found like any other file: a missing one costs one model.
     """
     declared = "xmlns:xacro" in root.attributes
     stack = [root]
@@ -345,7 +346,8 @@ def needs_xacro(root: Node) -> bool:
         words = (*node.attributes.values(), node.text)
         if declared and any("${" in word or "$(" in word for word in words):
             return True
-        if any("$(find " in word for word in words):
+        left = root.tag == "sdf" and node.tag == "uri"
+        if not left and any("$(find " in word for word in words):
             return True
         stack.extend(node.children)
     return False

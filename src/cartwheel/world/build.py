@@ -58,6 +58,11 @@ def build(world: WorldDescription, entries: Iterable[ModelEntry], *, xml: bool =
     entries = list(entries)
     for entry in entries:
         bodies.add(entry)
+    joined = {
+        frozenset((joint.parent, joint.child))
+        for joint in world.joints
+        if joints.join_models(spec, joint)
+    }
     for name in (name for entry in entries for name in entry.attachments):
         joints.add_attachment(spec, name)
     if any(_feels_touch(entry) for entry in entries if entry.description.static):
@@ -67,7 +72,7 @@ def build(world: WorldDescription, entries: Iterable[ModelEntry], *, xml: bool =
     for surface in bodies.surfaces:
         surface.geom.priority = ranks[surface.friction[0]]
     alignments = []
-    for pair in pairs.stated_pairs(bodies.surfaces):
+    for pair in pairs.stated_pairs(bodies.surfaces, joined):
         spec.add_pair(**pair.arguments())
         if pair.alignment is not None:
             alignments.append(pair.alignment)
@@ -83,9 +88,9 @@ def build(world: WorldDescription, entries: Iterable[ModelEntry], *, xml: bool =
     # What has no extent is as far from rest as its speed says, and not asleep while it spins.
     model.dof_length[:] = np.maximum(model.dof_length, _SHORTEST)
     _judge_without_rotors(model)
-    for joint, coefficient in chains.apply(model).items():
+    for index, coefficient in chains.apply(model).items():
         # For the text alone: the compiled model has it.
-        made = spec.joint(model.joint(joint).name)
+        made = spec.joint(model.joint(index).name)
         made.damping = [made.damping[0], made.damping[1], coefficient]
     return Build(model=model, alignments=tuple(alignments), xml=spec.to_xml() if xml else None)
 

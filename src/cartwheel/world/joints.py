@@ -93,24 +93,45 @@ def close_loop(spec: mujoco.MjSpec, entry: ModelEntry, joint: Joint) -> None:
 
     A fixed joint holds all of it, a revolute one two points of its axis, any other one point.
     """
+    parent = "world" if joint.parent == "world" else scoped(entry.name, joint.parent)
+    _hold(spec, scoped(entry.name, joint.name), scoped(entry.name, joint.child), parent, joint)
+
+
+def join_models(spec: mujoco.MjSpec, joint: Joint) -> bool:
+    """Holds links of two models together as `close_loop` does; they do not collide.
+
+    Returns:
+        False where one of them is not there: its model may have been deleted.
+    """
+    if any(spec.body(name) is None for name in (joint.parent, joint.child)):
+        return False
+    made = _hold(spec, scoped("world", joint.name), joint.child, joint.parent, joint)
+    for each in made:
+        each.solref, each.solimp = list(_COUPLING_REFERENCE), list(_COUPLING_IMPEDANCE)
+    spec.add_exclude(bodyname1=joint.parent, bodyname2=joint.child)
+    return True
+
+
+def _hold(spec: mujoco.MjSpec, name: str, child: str, parent: str, joint: Joint) -> list[Any]:
     points = [joint.pose.position]
     if joint.type in ("revolute", "continuous"):
         axis = rotate(joint.pose.orientation, joint.axis.xyz)
         x, y, z = joint.pose.position
         arm = [_LOOP_ARM * c for c in axis]
         points.append((x + arm[0], y + arm[1], z + arm[2]))
-    name = scoped(entry.name, joint.name)
-    for number, point in enumerate(points):
+    return [
         spec.add_equality(
             name=f"{name}::{number}" if number else name,
             type=_EQUALITY.mjEQ_WELD if joint.type == "fixed" else _EQUALITY.mjEQ_CONNECT,
             objtype=mujoco.mjtObj.mjOBJ_BODY,
-            name1=scoped(entry.name, joint.child),
-            name2="world" if joint.parent == "world" else scoped(entry.name, joint.parent),
+            name1=child,
+            name2=parent,
             # A weld's relative pose is that of the model as built; the last number is how hard
             # it holds the orientation.
             data=equality_data(*point, *([0.0] * 7), 1.0),
         )
+        for number, point in enumerate(points)
+    ]
 
 
 def add_attachment(spec: mujoco.MjSpec, name: str) -> None:

@@ -8,7 +8,7 @@ turning on the spot.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -72,7 +72,9 @@ class Pair:
         return found
 
 
-def stated_pairs(surfaces: Iterable[BuiltSurface]) -> Iterator[Pair]:
+def stated_pairs(
+    surfaces: Iterable[BuiltSurface], joined: Collection[frozenset[str]] = ()
+) -> Iterator[Pair]:
     """Moving geoms with those of other models, where the two have something of their own.
 
     In MuJoCo's convex contact model a sliding body is lifted: one that slides at v hovers at
@@ -82,6 +84,10 @@ def stated_pairs(surfaces: Iterable[BuiltSurface]) -> Iterator[Pair]:
 
     Each pair is looked at in each step, near or far: a world with more than `MOST_PAIRS` states
     those of its largest floors, and what slides on something smaller is lifted.
+
+    Args:
+        surfaces: Of all models.
+        joined: Bodies of different models that a joint holds together: they do not touch.
     """
     surfaces = list(surfaces)
     special = any(map(_special, surfaces))
@@ -93,7 +99,7 @@ def stated_pairs(surfaces: Iterable[BuiltSurface]) -> Iterator[Pair]:
     count = 0
     for mover in movers:
         for still in standing:
-            if (pair := _pair(still, mover)) is not None:
+            if (pair := _pair(still, mover, joined)) is not None:
                 count += 1
                 yield pair
     for index, first in enumerate(movers if special else ()):
@@ -101,7 +107,7 @@ def stated_pairs(surfaces: Iterable[BuiltSurface]) -> Iterator[Pair]:
             if count >= MOST_PAIRS:
                 return
             if _special(first) or _special(second):
-                pair = _pair(first, second)
+                pair = _pair(first, second, joined)
                 if pair is not None:
                     count += 1
                     yield pair
@@ -112,7 +118,11 @@ def _special(surface: BuiltSurface) -> bool:
     return mu1 != mu2 or bool(surface.surface.patch_radius)
 
 
-def _pair(first: BuiltSurface, second: BuiltSurface) -> Pair | None:
+def _pair(
+    first: BuiltSurface, second: BuiltSurface, joined: Collection[frozenset[str]]
+) -> Pair | None:
+    if joined and frozenset(each.geom.parent.name for each in (first, second)) in joined:
+        return None
     if first.model == second.model or not contact.masks_fit(first.surface, second.surface):
         return None
     a, b = first.surface, second.surface

@@ -229,3 +229,15 @@ def test_a_joint_may_be_called_as_a_link_in_older_files():
     close(found.joint("b").pose, (0, 0, 1))
     assert found.diagnostics == ()
     assert "name of a link" in robot(inside, version="1.7").diagnostics[0].message
+
+
+@pytest.mark.parametrize(
+    ("attributes", "reason"),
+    [
+        ('rotation_format="quat_xyz"', 'Did you mean "quat_xyzw"'),
+        ('rotation_format="quat_xyzw" degrees="true"', "a quaternion has no degrees"),
+    ],
+)
+def test_a_notation_that_is_none_is_refused(attributes, reason):
+    with pytest.raises(DescriptionError, match=reason):
+        robot(f'<link name="a"><pose {attributes}>1 0 0 0 0 0</pose></link>')

@@ -243,7 +243,7 @@ def test_surface():
         <friction><ode><mu>0.5</mu><mu2>0.25</mu2><fdir1>0 1 0</fdir1><slip1>0.1</slip1>
           <slip2>0.2</slip2></ode><torsional><coefficient>0.75</coefficient></torsional></friction>
         <contact><collide_bitmask>0x0f</collide_bitmask><ode><kp>1e6</kp><kd>100</kd>
-          <max_vel>0.1</max_vel><min_depth>0.001</min_depth><soft_cfm>0</soft_cfm></ode></contact>
+          <max_vel>0.1</max_vel><min_depth>0.001</min_depth></ode></contact>
         <bounce><restitution_coefficient>0.5</restitution_coefficient><threshold>1</threshold>
         </bounce></surface></collision>"""
     )
@@ -252,6 +252,7 @@ def test_surface():
     assert collision.surface == m.Surface(
         mu1=0.5, mu2=0.25, fdir1=(0, 1, 0), slip1=0.1, slip2=0.2, torsional=0.75, kp=1e6, kd=100,
         min_depth=0.001, max_vel=0.1, max_contacts=4, restitution=0.5,
+        bounce_threshold=1,
         collide_bitmask=15, patch_radius=0,
     )  # fmt: skip
     assert found.diagnostics == ()
@@ -365,6 +366,11 @@ def test_link_flags():
     assert (part.gravity, part.self_collide, part.kinematic) == (False, True, True)
     assert (part.linear_damping, part.angular_damping) == (0.1, 0.2)
     assert link("").links[0].self_collide is None
+    nested = """<self_collide>{}</self_collide><link name="a"/>
+      <model name="in"><self_collide>{}</self_collide><link name="b"/></model>"""
+    for outer, inner, expected in ((0, 1, True), (1, 0, False), (1, 1, None)):
+        found = robot(nested.format(outer, inner))
+        assert [each.self_collide for each in found.links] == [None, expected]
     assert robot("<static>1</static><self_collide>1</self_collide><link name='a'/>").static
 
 

@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from cartwheel.description import load_world
 from cartwheel.description import model as m
 from cartwheel.description.packages import Packages
 from cartwheel.description.sdf import read_sdf
@@ -74,7 +75,9 @@ def test_physics_scene_and_the_rest():
     assert not found.shadows
     assert found.spherical_coordinates.find("latitude_deg").text == "48"
     assert found.plugins[0].filename == "libgazebo_ros_state.so"
-    assert found.diagnostics == ()
+    told = sorted(d.message.partition(" has no effect")[0] for d in found.diagnostics)
+    assert told == ["<ode> in <physics>", "<sky> in <scene>", "a further <physics>"]
+    assert {d.severity for d in found.diagnostics} == {"info"}
 
 
 def test_gravity_stood_in_the_physics_before():
@@ -192,8 +195,10 @@ def test_saved_state_moves_models_lights_and_lone_links():
     assert found.models[0].pose.position == (2, 0, 0)
     assert found.models[0].links[0].pose.position == pytest.approx((0, 0, 0.5))
     assert found.lights[0].pose.position == (0, 0, 20)
-    assert [d.severity for d in found.diagnostics] == ["info"]
-    assert "stranger" in found.diagnostics[0].message
+    assert {d.severity for d in found.diagnostics} == {"info"}
+    stranger, time = sorted((d.message for d in found.diagnostics), reverse=True)
+    assert "stranger" in stranger
+    assert time == "<sim_time> in <state> has no effect: time begins at 0"
 
 
 ARM = """<model name="arm"><link name="base"/>
@@ -247,8 +252,6 @@ def test_a_joint_of_several_degrees_of_freedom_is_told():
 @pytest.mark.parametrize(
     ("inside", "reason"),
     [
-        ("<include/>", "has no <uri>"),
-        ("<include><uri/></include>", "<uri> is empty"),
         (box("a", '<pose relative_to="b"/>') + box("b", '<pose relative_to="a"/>'), "in a circle"),
         ("<physics><max_step_size>0</max_step_size></physics>", "step must be above 0"),
         ("<gravity>0 -9.8</gravity>", "3 are needed"),
@@ -277,6 +280,109 @@ def test_a_missing_model_costs_the_one_model(uri, reason, tmp_path):
     assert reason in told.message
     assert "left out" in told.message
     assert told.origin.line >= 2
+
+
+@pytest.mark.parametrize(
+    ("include", "reason"),
+    [
+        ("<include/>", "<include> has no <uri>"),
+        ("<include><uri/></include>", "<uri> is empty"),
+        (
+            "<include><uri>package://no_such/m</uri></include>",
+            'the package "no_such" was not found',
+        ),
+        (
+            "<include><uri>file://$(find no_such)/m</uri></include>",
+            'the package "no_such" was not found',
+        ),
+    ],
+)
+def test_an_include_that_names_nothing_costs_itself_alone(include, reason, tmp_path):
+    file = tmp_path / "w.world"
+    file.write_text(f'<sdf version="1.6"><world name="w">\n{include}{box("a")}</world></sdf>')
+    found = load_world(file)
+    assert [model.name for model in found.models] == ["a"]
+    (told,) = found.diagnostics
+    assert told.severity == "error"
+    assert told.message.startswith(f"{reason}; it is left out")
+    assert (told.origin.file, told.origin.line) == (str(file), 2)
+
+
+def test_a_package_of_a_plain_world_is_found(tmp_path):
+    package = tmp_path / "src" / "props"
+    package.mkdir(parents=True)
+    (package / "package.xml").write_text("<package><name>props</name></package>")
+    save_model(package, "crate", box("crate"))
+    file = tmp_path / "src" / "w.world"
+    uri = "file://$(find props)/models/crate"
+    file.write_text(
+        f'<sdf version="1.6"><world name="w"><include><uri>{uri}</uri></include></world></sdf>'
+    )
+    found = load_world(file)
+    assert [model.name for model in found.models] == ["crate"]
+    assert found.diagnostics == ()
+
+
+JOINED = """<model name="a"><pose>0 0 2 0 0 0</pose><link name="l"/></model>
+  <model name="b"><pose>1 0 2 0 0 0</pose><link name="k"/><link name="l"/></model>
+  <model name="wall"><static>true</static><link name="l"/></model>
+  <joint name="j" type="{type}"><parent>{parent}</parent><child>{child}</child>
+    <pose>0 0 0.5 0 0 0</pose><axis><xyz>0 1 0</xyz></axis></joint>"""
+
+
+@pytest.mark.parametrize(
+    ("parent", "child"), [("world", "b"), ("world", "b::k"), ("wall", "b::k"), ("wall::l", "b")]
+)
+def test_a_joint_of_the_world_holds_a_model(parent, child):
+    found = world(JOINED.format(type="revolute", parent=parent, child=child), "1.10")
+    assert found.joints == ()
+    assert found.diagnostics == ()
+    (joint,) = found.models[1].joints
+    assert (joint.parent, joint.child, joint.type) == ("world", "k", "revolute")
+    assert joint.pose.position == (0, 0, 0.5)
+
+
+def test_a_joint_of_the_world_that_names_a_static_child_holds_the_parent():
+    found = world(JOINED.format(type="fixed", parent="a", child="wall"), "1.10")
+    (joint,) = found.models[0].joints
+    assert (joint.parent, joint.child) == ("world", "l")
+
+
+def test_a_joint_between_models():
+    found = world(JOINED.format(type="revolute", parent="a", child="b::l"), "1.10")
+    (joint,) = found.joints
+    assert (joint.parent, joint.child) == ("a::l", "b::l")
+    assert found.diagnostics == ()
+
+
+def test_a_joint_of_the_world_that_cannot_act_is_told():
+    (told,) = world(JOINED.format(type="prismatic", parent="a", child="b"), "1.10").diagnostics
+    assert (told.severity, told.origin.line) == ("error", 6)
+    assert told.message == 'joint "j" is left out: a prismatic joint cannot hold two models'
+    damped = JOINED.format(type="revolute", parent="a", child="b").replace(
+        "<xyz>", "<dynamics><damping>1</damping></dynamics><xyz>"
+    )
+    (told,) = world(damped, "1.10").diagnostics
+    assert told.severity == "warning"
+    assert "turns freely" in told.message
+    with pytest.raises(DescriptionError, match='child link "c" does not exist'):
+        world(JOINED.format(type="fixed", parent="a", child="c"), "1.10")
+    gone = "<include><uri>model://c</uri></include>"
+    _, told = world(gone + JOINED.format(type="fixed", parent="a", child="c"), "1.10").diagnostics
+    assert told.message.startswith('joint "j" is left out: ')
+
+
+def test_a_saved_state_reaches_nested_models_and_tells_of_motion():
+    found = world(
+        """<model name="m"><link name="a"/><model name="in"><link name="i"/></model></model>
+        <state world_name="w"><model name="m"><pose>0 2 0 0 0 0</pose>
+          <link name="a"><velocity>0 0 0.5 0 0 0</velocity></link>
+          <model name="in"><link name="i"><pose>0 2 9 0 0 0</pose></link></model></model></state>"""
+    )
+    assert found.models[0].link("in::i").pose.position == (0, 0, 9)
+    (told,) = found.diagnostics
+    assert told.message == 'the velocity of link "a" is not restored'
+    assert told.origin.line == 5
 
 
 @pytest.mark.parametrize("tag", ["actor", "population", "road"])

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from cartwheel.errors import DescriptionError, Diagnostic, Origin, Severity
+from cartwheel.errors import DescriptionError, Diagnostic, Origin, Severity, suggestion
 from cartwheel.geometry import Pose, Quat, quat_normalize
 
 if TYPE_CHECKING:
@@ -19,13 +19,7 @@ if TYPE_CHECKING:
 Version = tuple[int, int]
 OLDEST: Version = (1, 3)
 NEWEST: Version = (1, 12)
-HARMLESS = {
-    ("link", "static"): "it belongs to the model",
-    ("model", "static"): "the first counts",
-    ("ode", "max_vel"): "it belongs to <contact>",
-    ("ode", "min_depth"): "it belongs to <contact>",
-}
-"""What other programs write where Gazebo does not read it either, and why it has no effect."""
+_NOTATIONS = ("euler_rpy", "quat_xyzw")
 MAX_INCLUDES = 16
 """Deeper includes are a model that includes itself by a detour."""
 
@@ -69,8 +63,15 @@ def read_pose(node: Node | None) -> Pose:
     """A ``<pose>``: ``x y z roll pitch yaw``, in degrees or as a quaternion where it says so."""
     if node is None:
         return Pose()
-    quaternion = node.get("rotation_format") == "quat_xyzw"
+    notation = (node.get("rotation_format") or "euler_rpy").strip()
+    quaternion = notation == "quat_xyzw"
     in_degrees = node.boolean_of("degrees", False)
+    if notation not in _NOTATIONS:
+        raise node.fail(
+            f'rotation_format "{notation}" is not known', suggestion(notation, _NOTATIONS)
+        )
+    if quaternion and in_degrees:
+        raise node.fail("a quaternion has no degrees", 'Leave degrees="true" out.')
     if not node.text.strip():
         return Pose()
     if quaternion:

@@ -44,7 +44,9 @@ def open_include(node: Node, ctx: Context) -> Included:
         NotThereError: it is missing, or an actor.
         DescriptionError: it includes itself, or holds nothing to include.
     """
-    uri = node.require_child("uri")
+    uri = node.child("uri")
+    if uri is None:
+        raise NotThereError("<include> has no <uri>", origin=node.origin)
     path = _file(uri, ctx).resolve()
     if path in ctx.including or len(ctx.including) >= MAX_INCLUDES:
         raise node.fail(f'"{uri.text}" includes itself')
@@ -66,9 +68,6 @@ def open_include(node: Node, ctx: Context) -> Included:
         raise root.fail("there is neither a <model> nor a <light> to include")
     name = node.child("name")
     static = node.child("static")
-    ignored = node.child("allow_auto_disable")
-    if ignored is not None:
-        ignored.mark()
     return Included(
         node=chosen,
         root=root,
@@ -87,7 +86,8 @@ def _file(uri: Node, ctx: Context) -> Path:
     """The SDF file of a model's folder, or the file itself."""
     text = uri.text.strip()
     if not text:
-        raise uri.fail("<uri> is empty", "Write <uri>model://sun</uri>, for example.")
+        hint = "Write <uri>model://sun</uri>, for example."
+        raise NotThereError("<uri> is empty", origin=uri.origin, hint=hint)
     name = fuel.model_name(text)
     if name is not None:
         found = _fuel_model(name, uri, ctx)

@@ -30,6 +30,44 @@ _UNLIMITED = 1e15
 _WITHOUT_AXIS = ("fixed", "ball")
 
 
+def add_joint(frames: Frames, node: Node, ctx: Context, joints: list[str]) -> str:
+    """Adds a joint's frame; returns what it is called there.
+
+    Args:
+        frames: Of the model or world, complete but for joints.
+        node: The ``<joint>``.
+        ctx: The document's.
+        joints: The names of all joints: one may stand on the frame of another.
+    """
+    name = require_name(node)
+    pose = node.child("pose")
+    frame = name
+    if frames.kind_of(name) not in (None, "joint"):
+        # Until 1.6 a joint could be called as its link, which many a file still does.
+        frame = f"__joint__{name}"
+        if ctx.version >= (1, 7):
+            ctx.tell("warning", f'joint "{name}" has the name of a link or frame too', node.origin)
+    child = node.require_child("child").text.strip()
+    if child == WORLD and node.attributes.get("type") == "fixed":
+        child = node.text_at("parent").strip()
+    if child == WORLD:
+        raise node.fail(f'joint "{name}": the child cannot be the world', "Swap parent and child.")
+    if not frames.has(child) and child not in joints:
+        raise node.fail(
+            f'joint "{name}": child link "{child}" does not exist',
+            suggestion(child, frames.names()),
+        )
+    frames.add(
+        "joint",
+        frame,
+        read_pose(pose),
+        relative_to=reference_of(pose) or child,
+        attached_to=child,
+        origin=node.origin,
+    )
+    return frame
+
+
 def read_joint(node: Node, ctx: Context, frames: Frames, frame: str) -> Joint | None:
     """A joint with its frame in the child link and its axes in the joint frame.
 
@@ -85,19 +123,14 @@ def read_joint(node: Node, ctx: Context, frames: Frames, frame: str) -> Joint | 
         feedback = ode.boolean_at("provide_feedback", False)
         older = ode.boolean_at("cfm_damping", False)
         damper = ode.boolean_at("implicit_spring_damper", older)
-        for path in ("fudge_factor", "cfm", "erp", "bounce", "max_force", "velocity"):
-            ode.find(path)
-        suspension = ode.child("suspension")
+        suspension = ode.child("suspension") if written == "revolute2" else None
         if suspension is not None:
             suspension.mark()
-            if suspension.children and written == "revolute2":
+            if suspension.children:
                 ctx.tell("warning", f'joint "{name}": <suspension> is rigid', suspension.origin)
     provide = node.find("physics/provide_feedback")
     if provide is not None:
         feedback = provide.boolean()
-    simbody = node.find("physics/simbody")
-    if simbody is not None:
-        simbody.mark()
     return Joint(
         name=name,
         type=kind,
@@ -130,11 +163,6 @@ def read_joint_sensors(node: Node, joint: Joint, frames: Frames) -> list[Sensor]
             pose = joint.pose @ own
         found.append(replace(read_sensor(each, joint.child, pose), joint=joint.name))
     return found
-
-
-def child_frame_of(node: Node) -> str:
-    """The frame that a joint's pose is relative to unless it says otherwise."""
-    return node.require_child("child").text.strip()
 
 
 def _end(node: Node, tag: str, joint: str, frames: Frames) -> str:
@@ -175,8 +203,6 @@ def _axis(node: Node, joint: str, ctx: Context, frames: Frames, in_model: Pose) 
         raise node.fail(
             f'joint "{joint}": the lower limit {lower:g} is above the upper limit {upper:g}'
         )
-    for path in ("limit/stiffness", "limit/dissipation", "initial_position"):
-        node.find(path)
     return Axis(
         xyz=xyz,
         lower=lower,
@@ -204,7 +230,6 @@ def _mimic(axis: Node) -> Mimic | None:
     node = axis.child("mimic")
     if node is None:
         return None
-    node.get("axis")
     multiplier = node.number_at("multiplier", 1.0)
     offset = node.number_at("offset", 0.0) - multiplier * node.number_at("reference", 0.0)
     return Mimic(joint=node.require("joint").strip(), multiplier=multiplier, offset=offset)

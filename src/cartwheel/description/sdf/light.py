@@ -31,8 +31,6 @@ def read_light(node: Node, pose: Pose) -> Light:
     direction = node.vec3_at("direction", (0.0, 0.0, -1.0))
     if not any(direction):
         raise node.fail("the direction of a light must not be 0 0 0")
-    for path in ("spot/inner_angle", "spot/falloff", "visualize"):
-        node.find(path)  # the renderer's cones have one edge
     brightness = max(0.0, node.number_at("intensity", 1.0))
     if not node.boolean_at("light_on", True):
         brightness = 0.0

@@ -115,11 +115,10 @@ def _inertial(link: Node, ctx: Context, place: Place, collisions: list[Collision
         return Inertial(mass=1.0, ixx=1.0, iyy=1.0, izz=1.0, origin=link.origin)
     if node.boolean_of("auto", False):
         return _auto_inertial(link, node, ctx, collisions)
-    for ignored in ("fluid_added_mass", "auto_inertia_params"):
-        part = node.child(ignored)
-        if part is not None:
-            part.mark()
-            ctx.tell("warning", f"<{ignored}> is not simulated", part.origin)
+    water = node.child("fluid_added_mass")
+    if water is not None:
+        water.mark()
+        ctx.tell("warning", "<fluid_added_mass> is not simulated", water.origin)
     tensor = node.child("inertia")
     if tensor is not None and any("nan" in each.text.lower() for each in tensor.children):
         # What a model editor wrote for a mesh whose volume it could not tell.
@@ -155,7 +154,6 @@ def _auto_inertial(link: Node, node: Node, ctx: Context, collisions: list[Collis
         each.attributes.get("name"): each.number_at("density", default)
         for each in link.all("collision")
     }
-    node.mark()
     densities = [stated.get(each.name, default) for each in collisions]
     found = inertial_of(collisions, densities, node.origin)
     if found is None:
@@ -179,11 +177,9 @@ def _visual(node: Node, ctx: Context, place: Place) -> Visual | None:
     shadows = node.boolean_at("cast_shadows", True)
     retro = node.optional_number_at("laser_retro")
     pose = place(node)
-    for tag in ("meta", "visibility_flags", "plugin"):
-        for part in node.all(tag):
-            part.mark()
-            if tag == "plugin":
-                ctx.tell("warning", "a plugin of a visual is not run", part.origin)
+    for part in node.all("plugin"):
+        part.mark()
+        ctx.tell("warning", "a plugin of a visual is not run", part.origin)
     shape = read_shape(node, ctx)
     if shape is None:
         return None
@@ -210,9 +206,6 @@ def _collision(
     surface = Surface(max_contacts=limit.integer() if limit is not None else None, **fields)
     retro = node.optional_number_at("laser_retro")
     pose = place(node)
-    for tag in ("density", "auto_inertia_params"):
-        for part in node.all(tag):
-            part.mark()
     shape = read_shape(node, ctx)
     if shape is None:
         return None

@@ -25,17 +25,15 @@ def read_material(node: Node | None, ctx: Context) -> Material:
         if name:
             scripted = _scripted(name, uris, script, ctx)
     diffuse = _colour(node, "diffuse") or scripted.diffuse
-    ambient = _colour(node, "ambient")
     specular = _colour(node, "specular")
     emissive = _colour(node, "emissive")
-    for path in ("lighting", "shininess", "double_sided", "render_order"):
-        node.find(path)
-    shader = node.child("shader")
-    if shader is not None:
-        shader.mark()
     texture = _albedo(node, ctx) or scripted.texture
-    if diffuse is None and texture is None:
-        diffuse = ambient
+    ambient = next((each for each in node.children if each.tag == "ambient"), None)
+    if ambient is not None and (
+        diffuse == read_rgba(ambient) or (diffuse is None and texture is None)
+    ):
+        # Another one stays unread, and is told of.
+        diffuse = _colour(node, "ambient")
     return Material(
         name=name,
         diffuse=diffuse,
@@ -57,7 +55,6 @@ def _albedo(node: Node, ctx: Context) -> Path | None:
     if pbr is None:
         return None
     image = pbr.find("metal/albedo_map") or pbr.find("specular/albedo_map")
-    pbr.mark()
     if image is None or not image.text.strip():
         return None
     try:

@@ -8,7 +8,6 @@ from dataclasses import dataclass, field, replace
 
 from cartwheel.description.model import Element, Joint, Link, PluginTag, RobotDescription, Sensor
 from cartwheel.description.sdf.context import (
-    HARMLESS,
     Context,
     read_pose,
     reference_of,
@@ -16,9 +15,15 @@ from cartwheel.description.sdf.context import (
 )
 from cartwheel.description.sdf.frames import MODEL, WORLD, Frames
 from cartwheel.description.sdf.gearbox import mesh_gears
+from cartwheel.description.sdf.harmless import HARMLESS
 from cartwheel.description.sdf.include import Included, NotThereError, open_include
 from cartwheel.description.sdf.inertia import judged_inertia
-from cartwheel.description.sdf.joint import GEARBOX, child_frame_of, read_joint, read_joint_sensors
+from cartwheel.description.sdf.joint import (
+    GEARBOX,
+    add_joint,
+    read_joint,
+    read_joint_sensors,
+)
 from cartwheel.description.sdf.link import read_link
 from cartwheel.description.sdf.sensors import read_plugins
 from cartwheel.description.xml import Node, unread
@@ -155,7 +160,7 @@ def read_model(node: Node, ctx: Context, included: Included | None = None, depth
     for each in node.all("frame"):
         _add(frames, "frame", each)
     later = [each.attributes.get("name", "") for each in node.all("joint")]
-    joint_nodes = [(each, _add_joint(frames, each, ctx, later)) for each in node.all("joint")]
+    joint_nodes = [(each, add_joint(frames, each, ctx, later)) for each in node.all("joint")]
     for known in frames.names():
         frames.pose(known, node.origin)  # a circle is told even where nobody needs the pose
     links = [read_link(each, ctx, frames) for each in link_nodes]
@@ -174,8 +179,6 @@ def read_model(node: Node, ctx: Context, included: Included | None = None, depth
         node.child("pose")
         placement = included.placement_frame or placement
     static = node.boolean_at("static", False)
-    for ignored in ("allow_auto_disable", "enable_wind"):
-        node.child(ignored)
     model = Model(
         name=name,
         frames=frames,
@@ -214,44 +217,6 @@ def _add(frames: Frames, kind: str, node: Node) -> None:
         attached_to=(node.get("attached_to") or "").strip() if kind == "frame" else "",
         origin=node.origin,
     )
-
-
-def _add_joint(frames: Frames, node: Node, ctx: Context, joints: list[str]) -> str:
-    """Adds a joint's frame; returns what it is called there.
-
-    Args:
-        frames: Of the model, complete but for joints.
-        node: The ``<joint>``.
-        ctx: The document's.
-        joints: The names of all joints: one may stand on the frame of another.
-    """
-    name = require_name(node)
-    pose = node.child("pose")
-    frame = name
-    if frames.kind_of(name) not in (None, "joint"):
-        # Until 1.6 a joint could be called as its link, which many a file still does.
-        frame = f"__joint__{name}"
-        if ctx.version >= (1, 7):
-            ctx.tell("warning", f'joint "{name}" has the name of a link or frame too', node.origin)
-    child = child_frame_of(node)
-    if child == WORLD and node.attributes.get("type") == "fixed":
-        child = node.text_at("parent").strip()
-    if child == WORLD:
-        raise node.fail(f'joint "{name}": the child cannot be the world', "Swap parent and child.")
-    if not frames.has(child) and child not in joints:
-        raise node.fail(
-            f'joint "{name}": child link "{child}" does not exist',
-            suggestion(child, frames.names()),
-        )
-    frames.add(
-        "joint",
-        frame,
-        read_pose(pose),
-        relative_to=reference_of(pose) or child,
-        attached_to=child,
-        origin=node.origin,
-    )
-    return frame
 
 
 def _add_nested(frames: Frames, inner: Model) -> None:
@@ -312,6 +277,9 @@ def _flatten(model: Model, inner: Model) -> None:
             link,
             name=scoped(link.name),
             pose=base @ link.pose,
+            self_collide=_own_collide(model, inner)
+            if link.self_collide is None
+            else link.self_collide,
             collisions=tuple(
                 replace(each, surface=replace(each.surface, fdir1_frame=scoped(frame)))
                 if (frame := each.surface.fdir1_frame)
@@ -342,6 +310,11 @@ def _flatten(model: Model, inner: Model) -> None:
         replace(plugin, element=_renamed(plugin.element, names, prefix)) if prefix else plugin
         for plugin in inner.plugins
     ]
+
+
+def _own_collide(model: Model, inner: Model) -> bool | None:
+    """What a nested model says of its links' colliding, where that is not what the outer says."""
+    return inner.self_collide if inner.self_collide != model.self_collide else None
 
 
 def _hold(model: Model, inner: Model) -> None:

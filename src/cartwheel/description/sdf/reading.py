@@ -13,7 +13,8 @@ from pathlib import Path
 
 from cartwheel.description.model import RobotDescription, WorldDescription
 from cartwheel.description.packages import Packages
-from cartwheel.description.sdf.context import HARMLESS, NEWEST, Context, read_version
+from cartwheel.description.sdf.context import NEWEST, Context, read_version
+from cartwheel.description.sdf.harmless import HARMLESS
 from cartwheel.description.sdf.model import Model, read_model
 from cartwheel.description.sdf.world import read_world
 from cartwheel.description.xml import Node, unread

@@ -171,9 +171,6 @@ def _mesh(node: Node, ctx: Context) -> Mesh:
         )
     submesh = node.child("submesh")
     optimization = node.get("optimization") or ""
-    decompose = node.child("convex_decomposition")
-    if decompose is not None:
-        decompose.mark()
     try:
         path = ctx.packages.resolve(uri.text, uri.origin, what="mesh")
     except DescriptionError as error:
@@ -203,16 +200,12 @@ def _heightmap(node: Node, ctx: Context) -> Heightmap:
         raise _UnusableFileError(error.message, origin=uri.origin, hint=error.hint) from error
     texture = None
     for each in node.all("texture"):
-        each.mark()
         diffuse = each.find("diffuse")
         if diffuse is not None and texture is None:
             try:
                 texture = ctx.packages.resolve(diffuse.text, diffuse.origin, what="texture")
             except DescriptionError as error:
                 ctx.tell("warning", error.message, diffuse.origin)
-    for ignored in ("blend", "use_terrain_paging", "sampling"):
-        for each in node.all(ignored):
-            each.mark()
     if path.suffix.lower() in ELEVATION_MODELS:
         raise _UnusableFileError(
             f'the heightmap "{path.name}" is geographic elevation data, which is not read',

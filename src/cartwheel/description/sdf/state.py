@@ -27,12 +27,13 @@ def apply_state(
     Poses of models and lights are taken over, those of links that no joint holds, and positions
     of joints that the poses of their links tell of. What they do not tell is reported.
     """
-    for tag in ("sim_time", "real_time", "wall_time", "iterations"):
-        for each in node.all(tag):
-            each.mark()
     node.get("world_name")
     deletions = node.child("deletions")
     gone = {each.text.strip() for each in deletions.all("name")} if deletions is not None else set()
+    known = {model.name for model in models} | {light.name for light in lights}
+    for name in sorted(gone - known):
+        assert deletions is not None
+        ctx.tell("info", f'the state deletes the unknown model "{name}"', deletions.origin)
     models = [model for model in models if model.name not in gone]
     lights = [light for light in lights if light.name not in gone]
     insertions = node.child("insertions")
@@ -63,7 +64,8 @@ def _moved(model: RobotDescription, saved: Node, ctx: Context) -> RobotDescripti
         ctx.tell("warning", f'the scale of model "{model.name}" is not applied', scale.origin)
     stated = saved.child("pose")
     pose = read_pose(stated) if stated is not None else model.pose
-    links = {each.get("name") or "": each for each in saved.all("link")}
+    links = _saved_parts(saved, "link")
+    angles = {name: _angle(each) for name, each in _saved_parts(saved, "joint").items()}
     jointed = {end for joint in model.joints for end in (joint.parent, joint.child)}
     moved: list[Link] = []
     places: dict[str, Pose] = {}
@@ -71,22 +73,53 @@ def _moved(model: RobotDescription, saved: Node, ctx: Context) -> RobotDescripti
         found = links.get(link.name)
         place = found.child("pose") if found is not None else None
         if found is not None:
-            found.mark()
+            _tell_motion(found, ctx)
         if place is None:
             moved.append(link)
             continue
         relative = places[link.name] = pose.inverse() @ read_pose(place)
         alone = link.name not in jointed and not _near(relative, link.pose)
         moved.append(replace(link, pose=relative) if alone else link)
-    saved.mark()
     positions, lost = _positions(model, places)
+    drivable = {joint.name for joint in model.joints if joint.drivable}
+    for name, angle in angles.items():
+        if angle is not None and name in drivable:
+            positions.setdefault(name, angle)
+    lost += [f'link "{name}"' for name in links.keys() - {link.name for link in model.links}]
+    lost += [f'joint "{name}"' for name in angles.keys() - {joint.name for joint in model.joints}]
     if lost:
         ctx.tell(
             "warning",
-            f'model "{model.name}": the saved state is not restored for {", ".join(lost)}',
+            f'model "{model.name}": the saved state is not restored for '
+            f"{', '.join(sorted(set(lost)))}",
             saved.origin,
         )
     return replace(model, pose=pose, links=tuple(moved), joint_positions=tuple(positions.items()))
+
+
+def _saved_parts(saved: Node, tag: str, prefix: str = "") -> dict[str, Node]:
+    """The links or joints of a saved model, those of nested models by their scoped names."""
+    found = {prefix + (each.get("name") or ""): each for each in saved.all(tag)}
+    for inner in saved.all("model"):
+        inner.child("pose")  # its links say where it is
+        found |= _saved_parts(inner, tag, f"{prefix}{inner.get('name') or ''}::")
+    return found
+
+
+def _angle(joint: Node) -> float | None:
+    """Where a saved joint stood, rad or m; None where it has no axis or several."""
+    axes = joint.all("angle")
+    for each in axes:
+        each.get("axis")
+    return axes[0].number() if len(axes) == 1 else None
+
+
+def _tell_motion(link: Node, ctx: Context) -> None:
+    """Warns of a velocity that would be felt: what is restored stands."""
+    velocity = link.child("velocity")
+    if velocity is not None and any(abs(value) > _NEAR for value in velocity.vector(6)):
+        name = link.attributes.get("name", "")
+        ctx.tell("warning", f'the velocity of link "{name}" is not restored', velocity.origin)
 
 
 def _positions(

@@ -17,19 +17,12 @@ _NUMBERS = {
     "contact/ode/kd": "kd",
     "contact/ode/min_depth": "min_depth",
     "bounce/restitution_coefficient": "restitution",
+    "bounce/threshold": "bounce_threshold",
 }
 _BITMASKS = {
     "contact/collide_bitmask": "collide_bitmask",
     "contact/category_bitmask": "category_bitmask",
 }
-_OTHERWISE = (
-    # Stiffness as ODE's solver parameters, which kp and kd say as well.
-    "contact/ode/soft_cfm", "contact/ode/soft_erp", "contact/poissons_ratio",
-    "contact/elastic_modulus", "contact/collide_without_contact_bitmask",
-    "bounce/threshold",
-    # Of other engines.
-    "friction/bullet", "contact/bullet", "soft_contact", "friction/torsional/ode",
-)  # fmt: skip
 _BITS = 0xFFFFFFFF
 
 
@@ -39,10 +32,6 @@ def read_surface(node: Node, ctx: Context) -> dict[str, Any]:
     Raises:
         DescriptionError: a value that makes no sense.
     """
-    for path in _OTHERWISE:
-        part = node.find(path)
-        if part is not None:
-            part.mark()
     fields: dict[str, Any] = {}
     for path, name in _NUMBERS.items():
         value = not_negative(node.find(path), ctx)

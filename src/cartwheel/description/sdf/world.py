@@ -8,7 +8,6 @@ from dataclasses import replace
 
 from cartwheel.description.model import Light, Physics, WorldDescription
 from cartwheel.description.sdf.context import (
-    HARMLESS,
     Context,
     read_pose,
     read_rgba,
@@ -16,6 +15,7 @@ from cartwheel.description.sdf.context import (
     require_name,
 )
 from cartwheel.description.sdf.frames import WORLD, Frames
+from cartwheel.description.sdf.harmless import HARMLESS
 from cartwheel.description.sdf.include import Included, NotThereError, open_include
 from cartwheel.description.sdf.light import read_light
 from cartwheel.description.sdf.model import (
@@ -27,12 +27,11 @@ from cartwheel.description.sdf.model import (
 )
 from cartwheel.description.sdf.sensors import read_plugins
 from cartwheel.description.sdf.state import apply_state
+from cartwheel.description.sdf.world_joints import join_models
 from cartwheel.description.xml import Node, to_element, unread
 from cartwheel.errors import DescriptionError
 from cartwheel.geometry import Vec3
 
-_WITHOUT_COUNTERPART = ("gui", "audio")
-"""Read and left out: they belong to Gazebo's own window."""
 _NOT_SIMULATED = ("actor", "population", "road")
 
 
@@ -68,11 +67,9 @@ def read_world(node: Node, ctx: Context) -> WorldDescription:
         with _tolerant(ctx, model.name):
             placed.append(model.describe(frames.pose(model.name, model.origin), ctx))
     lights = [_light(each, included, frames) for each, included in light_nodes]
+    placed, joints = join_models(node, placed, frames, ctx)
     for state in node.all("state"):
         placed, lights = apply_state(state, placed, lights, ctx)
-    for tag in _WITHOUT_COUNTERPART:
-        for each in node.all(tag):
-            each.mark()
     for tag in _NOT_SIMULATED:
         for each in node.all(tag):
             each.mark()
@@ -84,7 +81,9 @@ def read_world(node: Node, ctx: Context) -> WorldDescription:
             each.mark()
             if each.children and not _still(each):
                 ctx.tell("warning", f"<{tag}> is not simulated", each.origin)
-    physics = _default_physics(node)
+    for each in node.all("gui"):
+        each.mark()  # of Gazebo's window, and of nothing in the world
+    physics = _default_physics(node, ctx)
     field = node.child("magnetic_field")
     scene = node.child("scene")
     coordinates = node.child("spherical_coordinates")
@@ -92,6 +91,7 @@ def read_world(node: Node, ctx: Context) -> WorldDescription:
         name=name,
         models=tuple(placed),
         lights=tuple(lights),
+        joints=joints,
         gravity=_gravity(node, physics, default.gravity),
         magnetic_field=field.vec3() if field is not None else default.magnetic_field,
         ambient=_scene_colour(scene, "ambient", default.ambient),
@@ -164,13 +164,17 @@ def _light(node: Node, included: Included | None, frames: Frames) -> Light:
     return replace(light, name=included.name or light.name)
 
 
-def _default_physics(node: Node) -> Node | None:
+def _default_physics(node: Node, ctx: Context) -> Node | None:
     profiles = node.all("physics")
-    chosen = next((each for each in profiles if each.boolean_of("default", False)), None)
+    if not profiles:
+        return None
+    chosen = next((each for each in profiles if each.boolean_of("default", False)), profiles[0])
     for each in profiles:
-        if each is not (chosen or profiles[0]):
+        each.get("name"), each.get("type")
+        if each is not chosen:
             each.mark()
-    return chosen or (profiles[0] if profiles else None)
+            ctx.tell("info", "a further <physics> has no effect: one counts", each.origin)
+    return chosen
 
 
 def _gravity(node: Node, physics: Node | None, default: Vec3) -> Vec3:
@@ -189,13 +193,11 @@ def _physics(node: Node, ctx: Context) -> Physics:
     if step is not None and step.number() <= 0:
         raise step.fail(f"the step must be above 0, but is {step.text}")
     rate = node.child("real_time_update_rate") or node.child("update_rate")
-    result = Physics(
+    return Physics(
         max_step_size=step.number() if step is not None else None,
         real_time_factor=node.optional_number_at("real_time_factor"),
         real_time_update_rate=rate.number() if rate is not None else None,
     )
-    node.mark()  # the rest tunes solvers that are not used here
-    return result
 
 
 def _scene_colour(
@@ -203,9 +205,6 @@ def _scene_colour(
 ) -> tuple[float, float, float, float]:
     if scene is None:
         return default
-    for ignored in ("sky", "fog", "grid", "origin_visual", "shadow_caster_material_name"):
-        for each in scene.all(ignored):
-            each.mark()
     found = scene.child(tag)
     return read_rgba(found) if found is not None else default
 

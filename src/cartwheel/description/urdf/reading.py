@@ -11,6 +11,7 @@ from dataclasses import replace
 
 from cartwheel.description.model import Inertial, Link, RobotDescription
 from cartwheel.description.packages import Packages
+from cartwheel.description.sdf.harmless import HARMLESS as HARMLESS_IN_SDF
 from cartwheel.description.urdf.collision_names import check_contact_sensors, name_collisions
 from cartwheel.description.urdf.estimate import with_masses
 from cartwheel.description.urdf.gazebo_tags import GazeboTags, read_gazebo_tags
@@ -85,7 +86,7 @@ def read_urdf(
     transmissions = tuple(to_element(node) for node in root.all("transmission"))
     ros2_control = tuple(to_element(node) for node in root.all("ros2_control"))
     _tell_unprefixed(root, ctx)
-    ctx.diagnostics.extend(unread(root, HARMLESS))
+    ctx.diagnostics.extend(unread(root, HARMLESS_IN_SDF | HARMLESS))
     return RobotDescription(
         name=name,
         links=tuple(links),
