@@ -108,6 +108,16 @@ def test_gazebo_classics_ray_without_plugin_is_silent_and_told(make):
     assert "test.sdf" in told[0]
 
 
+@pytest.mark.parametrize(("kind", "publishes"), [("gpu_lidar", True), ("ray", False)])
+def test_a_plugin_that_is_none_takes_nothing_from_a_sensor_of_new_gazebo(make, kind, publishes):
+    dummy = '<plugin name="dummy" filename="dummyfile"/>'
+    world = make.world(make.sdf(lidar(kind=kind, tags=dummy)))
+    assert any(name.endswith("/scan") for name in topics(world)) == publishes
+    assert [d.message for d in world.session.diagnostics if "plugin" in d.message] == [
+        'plugin "dummyfile" is not supported: what it does is missing here.'
+    ]
+
+
 @pytest.mark.parametrize("system", [SYSTEM, SYSTEM.replace("gz-sim", "libignition-gazebo")])
 def test_a_system_of_the_model_makes_its_sensors_publish(make, system):
     world = make.world(make.sdf(lidar(kind="ray", tags="", plugin=system)))

@@ -14,7 +14,7 @@ import numpy as np
 
 from cartwheel.description.model import Sensor
 from cartwheel.errors import PluginError
-from cartwheel.geometry import Pose, quat_from_rpy
+from cartwheel.geometry import Pose, quat_conjugate, quat_from_rpy, rotate
 from cartwheel.messages import header, message_class
 from cartwheel.plugins.base import Plugin
 from cartwheel.plugins.gz_sensor import default_topic, frame_tag
@@ -45,10 +45,13 @@ class ImuParameters:
     )
 
 
-class _ImuBase(Plugin[Any]):
+class ImuBase(Plugin[Any]):
     """Reads a link and publishes what a unit mounted on it measures."""
 
-    def _start(
+    with_gravity: ClassVar[bool] = True
+    """Whether its acceleration holds gravity's reaction, as an accelerometer's does."""
+
+    def start(
         self,
         *,
         link: str,
@@ -80,6 +83,9 @@ class _ImuBase(Plugin[Any]):
 
     def _measure(self) -> None:
         orientation, rate, acceleration = self._unit.measure()
+        if not self.with_gravity:
+            fall = rotate(quat_conjugate(orientation), self._unit.gravity)
+            acceleration = [a + b for a, b in zip(acceleration, fall, strict=True)]
         if self._noise > 0:
             random = self.part.random(f"imu {self._publisher.topic}")
             rate = (rate + random.normal(0.0, self._noise, 3)).tolist()
@@ -98,7 +104,7 @@ class _ImuBase(Plugin[Any]):
         )
 
 
-class Imu(_ImuBase):
+class Imu(ImuBase):
     """An IMU on a link of the model. Source: gazebo_plugins, gazebo_ros_imu; REP 145."""
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_imu.so",)
@@ -106,7 +112,7 @@ class Imu(_ImuBase):
 
     def configure(self) -> None:
         config: ImuParameters = self.config
-        self._start(
+        self.start(
             link=config.body,
             mount=Pose(config.xyz_offset, quat_from_rpy(*config.rpy_offset)),
             topic=config.topic,
@@ -149,7 +155,7 @@ class ImuSensorParameters:
     )
 
 
-class ImuSensor(_ImuBase):
+class ImuSensor(ImuBase):
     """The plugin of an ``imu`` sensor, with the noise that its ``<imu>`` states.
 
     In ROS 2's spelling, with ``<ros>``, the topic is ``~/out``, to be remapped. Source:
@@ -174,7 +180,7 @@ class ImuSensor(_ImuBase):
         named = element.find("topicName") or element.find("topic")
         if element.find("ros") is not None and named is None:
             topic = "out" if self.remaps("out") else f"{self.tag.name or 'imu'}/out"
-        self._start(
+        self.start(
             link=self.sensor.link,
             mount=self.sensor.pose @ offset,
             topic=topic,
@@ -191,7 +197,7 @@ class GzImuParameters:
     frame: str = frame_tag()
 
 
-class GzImu(_ImuBase):
+class GzImu(ImuBase):
     """An ``imu`` sensor that needs no plugin, with the noise that its ``<imu>`` states.
 
     Source: gz-sensors, ImuSensor; REP 145.
@@ -206,7 +212,7 @@ class GzImu(_ImuBase):
         sensor = self.sensor
         assert sensor is not None
         config: GzImuParameters = self.config
-        self._start(
+        self.start(
             link=sensor.link,
             mount=sensor.pose,
             topic=config.topic or default_topic(self.part, sensor, "imu"),

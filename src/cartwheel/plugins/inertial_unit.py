@@ -60,6 +60,11 @@ class InertialUnit:
             acceleration = self.acceleration_noise.add(acceleration)
         return orientation, rates, acceleration
 
+    @property
+    def gravity(self) -> Sequence[float]:
+        """m/s², in the world's axes."""
+        return self._link.gravity
+
     def rates(self) -> Sequence[float]:
         """What its gyroscopes measure, rad/s, with the sensor's noise."""
         _, turning = self._link.motion(local=True)

@@ -53,7 +53,12 @@ def attach(part: Part, graph: Graph) -> list[Behaviour]:
                 made += _made(
                     part, graph, plugin, tag, sensor, lenient="in worlds" if new else "never"
                 )
-        alone = [one for one in sensors if not one.plugins and one.name not in part.read_sensors]
+        alone = [
+            one
+            for one in sensors
+            if one.name not in part.read_sensors
+            and not any(plugin_named(tag.filename) for tag in one.plugins)
+        ]
         made += _serve(part, graph, alone, systems)
     except CartwheelError:
         for plugin_made in made:
@@ -103,6 +108,9 @@ def _serve(
         if wanted and plugin is not None:
             tag = own_tag(sensor, tags_of(plugin.parameters))
             yield from _made(part, graph, plugin, tag, sensor, lenient="always")
+            continue
+        if sensor.plugins:
+            # What is missing was told of the plugin.
             continue
         message = f'sensor "{sensor.name}" has no <plugin>, so it publishes nothing'
         if wanted:

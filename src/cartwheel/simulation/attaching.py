@@ -173,8 +173,17 @@ class SurroundingsHandle:
             found[owner, link] = body
         self.links = tuple(found)
         self.moving = frozenset(key for key, body in found.items() if model.body_treeid[body] >= 0)
+        self._found = found
         self._bodies = list(found.values())
         self._data = data
+
+    def pose(self, model: str, link: str) -> Pose | None:
+        """Of a link in the world; None where there is none of that name."""
+        body = self._found.get((model, link))
+        if body is None:
+            return None
+        x, y, z = self._data.xpos[body].tolist()
+        return Pose((x, y, z), from_wxyz(self._data.xquat[body].tolist()))
 
     def distances(self, point: Vec3) -> Array:
         """From a point in the world to the frames of all `links`, m, shape (links,)."""

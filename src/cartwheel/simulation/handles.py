@@ -154,6 +154,12 @@ class LinkHandle:
         return force.copy(), torque - np.cross(arm, force)
 
     @property
+    def gravity(self) -> list[float]:
+        """What pulls at the world's bodies, m/s², in the world's axes."""
+        pull: list[float] = self._model.opt.gravity.tolist()
+        return pull
+
+    @property
     def mass(self) -> float:
         """kg."""
         return float(self._model.body_mass[self.id])

@@ -1,0 +1,270 @@
+"""The sensors of iRobot's Create 3, the base of the TurtleBot 4, as Gazebo Classic has them."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+
+from cartwheel.geometry import quat_conjugate, rotate
+from cartwheel.messages import header, message_class
+from cartwheel.plugins.base import Plugin
+from cartwheel.plugins.contact import watched_collisions
+from cartwheel.plugins.imu import ImuBase
+from cartwheel.plugins.parameters import tag
+from cartwheel.plugins.scan import Scanner
+
+HAZARD = "irobot_create_msgs/msg/HazardDetection"
+_ZONES = ("bump_right", "bump_front_right", "bump_front_center", "bump_front_left", "bump_left")
+"""Of the bumper, each a fifth of its half circle, from the right to the left."""
+_BRIGHTEST = 3500.0
+"""What an infrared sensor reads of something that touches it."""
+_DROPPED, _LIFTED = 0.95, 0.75
+"""Parts of the threshold at which a wheel counts as dropped, and as back."""
+
+
+def out_topic(plugin: Plugin[Any]) -> str:
+    """``~/out``, which tags remap."""
+    return "out" if plugin.remaps("out") else f"{plugin.tag.name}/out"
+
+
+class _Hazard(Plugin[Any]):
+    """Publishes a HazardDetection, at each turn as long as there is one."""
+
+    def _watch(self, rate: float) -> None:
+        self._HazardDetection = message_class(HAZARD)
+        self._publisher = self.advertise(out_topic(self), HAZARD, qos="sensor")
+        self.part.schedule(rate, after=self._look, active=self._looks)
+
+    def _looks(self) -> bool:
+        return self._publisher.wanted
+
+    def _look(self) -> None:
+        raise NotImplementedError
+
+    def _warn_of(self, kind: int, frame: str) -> None:
+        self._publisher.publish(
+            self._HazardDetection(header(self.part.time_ns, self.frame(frame)), kind)
+        )
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Create3BumperParameters:
+    pass
+
+
+class Create3Bumper(_Hazard):
+    """Tells which of five zones of the bumper something presses, as the frame of a BUMP.
+
+    Of several it is the one that is pressed in most. Source: irobot_create_gazebo_plugins,
+    gazebo_ros_bumper.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_create_bumper.so",)
+    parameters: ClassVar[type] = Create3BumperParameters
+    for_sensor: ClassVar[bool] = True
+
+    def configure(self) -> None:
+        assert self.sensor is not None
+        self._collisions = watched_collisions(self, self.sensor)
+        self._base = self.part.link(self.part.description.canonical_link)
+        self._watch(self.sensor.update_rate)
+
+    def _look(self) -> None:
+        contacts = self.part.contacts(self._collisions)
+        if not contacts:
+            return
+        place, turned = self._base.place()
+        deepest = max(contacts, key=lambda contact: contact.depth)
+        arm = [a - b for a, b in zip(deepest.position.tolist(), place, strict=True)]
+        x, y, _ = rotate(quat_conjugate(turned), arm)
+        zone = math.floor((math.atan2(y, x) / math.pi + 0.5) * len(_ZONES))
+        if 0 <= zone < len(_ZONES):
+            self._warn_of(self._HazardDetection.BUMP, _ZONES[zone])
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Create3CliffParameters:
+    threshold: float = tag(
+        "detection_threshold", default=0.01, unit="m", doc="A floor so far away is a cliff."
+    )
+    frame: str = tag("frame_id", default="", doc="Frame of the messages.")
+
+
+class Create3Cliff(_Hazard):
+    """Tells of a CLIFF while the nearest of a ray sensor's ranges is beyond its threshold.
+
+    Source: irobot_create_gazebo_plugins, gazebo_ros_cliff_sensor.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_create_cliff_sensor.so",)
+    parameters: ClassVar[type] = Create3CliffParameters
+    for_sensor: ClassVar[bool] = True
+
+    def configure(self) -> None:
+        assert self.sensor is not None
+        self._scanner = Scanner(self.part, self.sensor)
+        self._watch(self.sensor.update_rate)
+
+    def _look(self) -> None:
+        if _nearest(self._scanner) >= self.config.threshold:
+            self._warn_of(self._HazardDetection.CLIFF, self.config.frame)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Create3IntensityParameters:
+    frame: str = tag("frame_name", default="", doc="Frame of the messages; the link's when empty.")
+
+
+class Create3Intensity(Plugin[Create3IntensityParameters]):
+    """Publishes how much infrared light comes back: 3500 exp(-2 e d / range) at a distance d.
+
+    Source: irobot_create_gazebo_plugins, gazebo_ros_ir_intensity_sensor.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_create_ir_intensity_sensor.so",)
+    parameters: ClassVar[type] = Create3IntensityParameters
+    for_sensor: ClassVar[bool] = True
+
+    def configure(self) -> None:
+        sensor = self.sensor
+        assert sensor is not None
+        kind = "irobot_create_msgs/msg/IrIntensity"
+        self._scanner = Scanner(self.part, sensor)
+        self._frame = self.frame(self.config.frame or sensor.link)
+        self._IrIntensity = message_class(kind)
+        rate = sensor.update_rate
+        self._publisher = self.advertise(out_topic(self), kind, rate=rate or None, qos="sensor")
+        self.part.schedule(rate, after=self._publish, active=lambda: self._publisher.wanted)
+
+    def _publish(self) -> None:
+        distance = _nearest(self._scanner)
+        value = _BRIGHTEST * math.exp(-2 * math.e * distance / self._scanner.pattern.maximum)
+        moment = header(self.part.time_ns, self._frame)
+        self._publisher.publish(self._IrIntensity(moment, int(value)))
+
+
+def _nearest(scanner: Scanner) -> float:
+    """The least range, m, within what the sensor can tell."""
+    least = float(scanner.measure().ranges.min())
+    return float(np.clip(least, scanner.pattern.minimum, scanner.pattern.maximum))
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Create3ImuParameters:
+    frame: str = tag("frame_name", default="", doc="Frame of the messages; the link's when empty.")
+
+
+class Create3Imu(ImuBase):
+    """An IMU sensor whose acceleration is without gravity, as its plugin has it in Gazebo.
+
+    Source: irobot_create_gazebo_plugins, gazebo_ros_imu.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_create_imu.so",)
+    parameters: ClassVar[type] = Create3ImuParameters
+    for_sensor: ClassVar[bool] = True
+    with_gravity: ClassVar[bool] = False
+
+    def configure(self) -> None:
+        sensor = self.sensor
+        assert sensor is not None
+        config: Create3ImuParameters = self.config
+        self.start(
+            link=sensor.link,
+            mount=sensor.pose,
+            topic=out_topic(self),
+            frame=config.frame or sensor.link,
+            noise=0.0,
+            rate=sensor.update_rate,
+            sensor=sensor,
+        )
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Create3MouseParameters:
+    link: str = tag("link_name", doc="Link whose way is told.")
+    rate: float = tag("update_rate", default=62.0, unit="Hz", doc="Of what is told.")
+
+
+class Create3Mouse(Plugin[Create3MouseParameters]):
+    """Publishes the way of a link along its own axes, summed up.
+
+    Source: irobot_create_gazebo_plugins, gazebo_ros_optical_mouse.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_create_optical_mouse.so",)
+    parameters: ClassVar[type] = Create3MouseParameters
+
+    def configure(self) -> None:
+        config = self.config
+        self.check_above_zero(update_rate=config.rate)
+        kind = "irobot_create_msgs/msg/Mouse"
+        self._link = self.part.link(config.link, origin=self.tag.origin)
+        self._Mouse = message_class(kind)
+        self._frame = self.frame(config.link)
+        self._publisher = self.advertise(out_topic(self), kind, rate=config.rate, qos="sensor")
+        self.part.schedule(config.rate, after=self._publish)
+        self.reset()
+
+    def reset(self) -> None:
+        self._was: Any = None
+        self._gone = [0.0, 0.0]
+
+    def _publish(self) -> None:
+        place, turned = self._link.place()
+        if self._was is not None:
+            before, axes = self._was
+            way = [a - b for a, b in zip(place, before, strict=True)]
+            x, y, _ = rotate(quat_conjugate(axes), way)
+            self._gone = [self._gone[0] + x, self._gone[1] + y]
+        self._was = (place, turned)
+        if self._publisher.wanted:
+            moment = header(self.part.time_ns, self._frame)
+            # It never loses track, and sees the floor well.
+            self._publisher.publish(self._Mouse(moment, *self._gone, frame_id=0, last_squal=90))
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Create3WheelDropParameters:
+    joint: str = tag("joint_name", doc="By which the wheel drops out of the robot.")
+    threshold: float = tag(
+        "detection_threshold",
+        default=0.7,
+        unit="m",
+        doc="Dropped from 95 % of this on, until it is below 75 %.",
+    )
+    frame: str = tag("frame_id", default="", doc="Frame of the messages.")
+    rate: float = tag("update_rate", default=62.0, unit="Hz", doc="Of looking, and of telling.")
+
+
+class Create3WheelDrop(_Hazard):
+    """Tells of a WHEEL_DROP while a wheel hangs out of the robot.
+
+    Source: irobot_create_gazebo_plugins, gazebo_ros_wheel_drop.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_create_wheel_drop.so",)
+    parameters: ClassVar[type] = Create3WheelDropParameters
+
+    def configure(self) -> None:
+        config: Create3WheelDropParameters = self.config
+        self.check_above_zero(update_rate=config.rate, detection_threshold=config.threshold)
+        self._joint = self.part.joint(config.joint, origin=self.tag.origin)
+        self.reset()
+        self._watch(config.rate)
+
+    def reset(self) -> None:
+        self._dropped = False
+
+    def _looks(self) -> bool:
+        # Between its two bounds it is as it was, whoever listens.
+        return True
+
+    def _look(self) -> None:
+        bound = _LIFTED if self._dropped else _DROPPED
+        self._dropped = self._joint.position >= bound * self.config.threshold
+        if self._dropped:
+            self._warn_of(self._HazardDetection.WHEEL_DROP, self.config.frame)
