@@ -150,3 +150,21 @@ def test_a_lone_triangle_is_drawn_and_costs_nothing_else(make, tmp_path):
     )
     model = make.world(shard).session.simulation.model
     assert model.mesh_facenum.min() == 1
+
+
+def test_a_plane_that_is_seen_on_a_moving_link_is_a_plate(make):
+    """Where its normal and its size put it; the engine's planes stand still."""
+    label = make.sdf(
+        """<model name="label"><pose>0 0 0.1 0 0 0</pose><link name="l">
+        <collision name="c"><geometry><box><size>0.2 0.2 0.2</size></box></geometry></collision>
+        <visual name="v"><pose>0.101 0 0 0 0 0</pose><geometry><plane><normal>1 0 0</normal>
+        <size>0.1 0.06</size></plane></geometry></visual></link></model>"""
+    )
+    model = make.world(label).session.simulation.model
+    (seen,) = [model.geom(i) for i in range(model.ngeom) if model.geom(i).group[0] == 1
+               and model.geom(i).bodyid[0] == model.body("label::l").id]  # fmt: skip
+    assert seen.type[0] == mujoco.mjtGeom.mjGEOM_BOX
+    axis = np.zeros(9)
+    mujoco.mju_quat2Mat(axis, seen.quat)
+    assert axis.reshape(3, 3)[:, 2] == pytest.approx([1, 0, 0], abs=1e-9)
+    assert seen.size[:2] == pytest.approx([0.05, 0.03])

@@ -152,7 +152,7 @@ class BodyBuilder:
         if not link.gravity:
             body.gravcomp = 1.0
         for visual in link.visuals:
-            add_visual(body, visual, self._assets)
+            add_visual(body, visual, self._assets, moves=moves)
         for light in link.lights:
             add_light(body, scoped(entry.name, link.name, light.name), light)
         if axle is not None and link.name in entry.slips:

@@ -39,7 +39,7 @@ _LARGEST_TEXTURE = 1024
 _FLAT = 1e-6
 """Of a mesh's extent: thinner is flat."""
 _PLATE = 1e-3
-"""m, what a flat mesh that collides is thick."""
+"""m, how thick a flat mesh that collides is, and a plane that moves."""
 _HULL_CORNERS = 2000
 """A hull of more, of a finely meshed round, takes seconds and differs by a thousandth."""
 _BELOW = 1.0
@@ -145,10 +145,13 @@ def _pixels(image: Path | bytes, _changed: int) -> Any:
         return np.ascontiguousarray(flipped)
 
 
-def place(shape: Shape, pose: Pose, origin: Origin, assets: Assets) -> tuple[dict[str, Any], Pose]:
+def place(
+    shape: Shape, pose: Pose, origin: Origin, assets: Assets, *, moves: bool = False
+) -> tuple[dict[str, Any], Pose]:
     """Geom arguments of a shape that is seen, and its pose: a plane's normal may turn it.
 
-    A mesh is one geom, whatever parts and colours it has.
+    A mesh is one geom, whatever parts and colours it has. A plane that moves is a plate, since
+    the engine's planes stand still.
 
     Raises:
         CartwheelError: The shape's file cannot be used.
@@ -168,6 +171,8 @@ def place(shape: Shape, pose: Pose, origin: Origin, assets: Assets) -> tuple[dic
         case Plane(normal=normal, size=size):
             turned = pose @ Pose((0, 0, 0), quat_between((0, 0, 1), normal))
             x, y = (side / 2 if side < _ENDLESS else _PLANE_HALF_SIZE for side in size)
+            if moves:
+                return {"type": geom.mjGEOM_BOX, "size": [x, y, _PLATE / 2]}, turned
             # The third number is the spacing of the drawn grid: one cell, since a software
             # renderer pays for each.
             return {"type": geom.mjGEOM_PLANE, "size": [x, y, max(x, y)]}, turned

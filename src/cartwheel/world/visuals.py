@@ -24,8 +24,8 @@ _GREY: Rgba = (0.7, 0.7, 0.7, 1.0)
 _WHITE: Rgba = (1.0, 1.0, 1.0, 1.0)
 
 
-def add_visual(body: Any, visual: Visual, assets: Assets) -> None:
-    """Adds what is seen of a link, and nothing collides with, to its body."""
+def add_visual(body: Any, visual: Visual, assets: Assets, *, moves: bool) -> None:
+    """Adds what is seen of a link, and nothing collides with, to its body, which may move."""
     common: dict[str, Any] = {
         "group": VISUAL_GROUP,
         "contype": 0,
@@ -63,7 +63,7 @@ def add_visual(body: Any, visual: Visual, assets: Assets) -> None:
                 **pose_arguments(visual.pose),
             )
         return
-    arguments, pose = place(shape, visual.pose, visual.origin, assets)
+    arguments, pose = place(shape, visual.pose, visual.origin, assets, moves=moves)
     image = material.texture
     colour = material.diffuse or (_GREY if image is None else _WHITE)
     surface = wrapped(shape) if image is not None else None
