@@ -360,11 +360,6 @@ ERRORS = [
         'origin xyz "0 0" has 2 numbers, 3 are needed',
     ),
     (
-        urdf('<material name="m">', '<color rgba="1 1 1"/></material>', link("a")),
-        3,
-        'color rgba "1 1 1" has 3 numbers, 4 are needed',
-    ),
-    (
         urdf('<link name="world"/>'),
         2,
         'the only link is "world", which stands for the world itself',
@@ -464,6 +459,15 @@ WARNINGS = [
     (
         urdf('<material name="g"><color rgba="255 0 0 1"/></material>', link("a")),
         'robot.urdf:2: warning: the colour "255 0 0 1" is not within 0 and 1',
+    ),
+    (
+        urdf('<material name="g">', '<color rgba="1 0 0"/></material>', link("a")),
+        'robot.urdf:3: warning: the colour "1 0 0" has no opacity: it is taken for 1',
+    ),
+    (
+        urdf('<material name="g">', '<color rgba="1 0"/></material>', link("a")),
+        'robot.urdf:3: warning: color rgba "1 0" has 2 numbers, 4 are needed: '
+        "the colour is left out",
     ),
     (
         urdf('<material name="g"><texture filename="x.png"/></material>', link("a")),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 
+from cartwheel.description import numbers
 from cartwheel.description.inertia import impossibility, made_possible, principal_moments
 from cartwheel.description.meshes import load_mesh
 from cartwheel.description.model import (
@@ -169,16 +170,7 @@ def _stated(node: Node, name: str, ctx: UrdfContext) -> Material | None:
     colour, texture = node.child("color"), node.child("texture")
     if colour is None and texture is None:
         return None
-    rgba: Rgba | None = None
-    if colour is not None:
-        r, g, b, a = colour.vector_of("rgba", 4)
-        rgba = tuple(min(1.0, max(0.0, value)) for value in (r, g, b, a))  # type: ignore[assignment]
-        if rgba != (r, g, b, a):
-            ctx.tell(
-                "warning",
-                f'the colour "{colour.attributes["rgba"]}" is not within 0 and 1',
-                colour.origin,
-            )
+    rgba = _colour(colour, ctx) if colour is not None else None
     path = None
     if texture is not None:
         try:
@@ -187,6 +179,30 @@ def _stated(node: Node, name: str, ctx: UrdfContext) -> Material | None:
             hint = f". {error.hint}" if error.hint else ""
             ctx.tell("warning", f"{error.message}{hint}", texture.origin)
     return Material(name=name, diffuse=rgba, texture=path)
+
+
+def _colour(node: Node, ctx: UrdfContext) -> Rgba | None:
+    """Of a material; None where it is none, which leaves a robot without it. Source: urdfdom."""
+    text = node.require("rgba")
+    values = text.split()
+    try:
+        if len(values) == 3:
+            ctx.tell(
+                "warning", f'the colour "{text}" has no opacity: it is taken for 1', node.origin
+            )
+            values = [*values, "1"]
+        r, g, b, a = numbers.vector(" ".join(values), 4, "color rgba", node.origin)
+    except DescriptionError as error:
+        ctx.tell("warning", f"{error.message}: the colour is left out", node.origin)
+        return None
+    rgba = (_share(r), _share(g), _share(b), _share(a))
+    if rgba != (r, g, b, a):
+        ctx.tell("warning", f'the colour "{text}" is not within 0 and 1', node.origin)
+    return rgba
+
+
+def _share(value: float) -> float:
+    return min(1.0, max(0.0, value))
 
 
 def read_geometry(owner: Node, kind: str, link: str, ctx: UrdfContext) -> Shape | None:

@@ -37,7 +37,8 @@ class JointTrajectoryController(Controller):
     ROS 1 listens to ``command``, ROS 2 to ``joint_trajectory``; both take the action
     ``follow_joint_trajectory``. A goal ends with success when the last point's time has come
     and all joints are within their goal tolerances; where they are not within ``goal_time``
-    more, or leave their path's tolerance, it is aborted, and the joints stand. Source:
+    more, or leave their path's tolerance, it is aborted, and the joints stand. Those of UR and of
+    Pilz, which can be slowed down or held from outside, go on at full speed. Source:
     joint_trajectory_controller.
     """
 
@@ -48,6 +49,10 @@ class JointTrajectoryController(Controller):
         "pos_vel_controllers/JointTrajectoryController",
         "pos_vel_acc_controllers/JointTrajectoryController",
         "joint_trajectory_controller/JointTrajectoryController",
+        "position_controllers/ScaledJointTrajectoryController",
+        "velocity_controllers/ScaledJointTrajectoryController",
+        "ur_controllers/ScaledJointTrajectoryController",
+        "position_controllers/PilzJointTrajectoryController",
     )
 
     def configure(self, settings: Settings) -> None:
