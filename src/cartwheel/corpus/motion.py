@@ -87,7 +87,9 @@ def reaches(world: World, model: Model, description: RobotDescription) -> list[R
     joints = {joint.name: joint for joint in description.joints}
     told: list[tuple[Controller, Joint, float]] = []
     for controller in ControllerFiles.of(world.graph).started:
-        names = [name for name in controller.claims if name in joints]
+        if controller.chained:
+            continue
+        names = [claim.joint for claim in controller.claims.values()]
         targets = {name: _target(joints[name], model.joint(name)) for name in names}
         if targets and _command(world, controller, targets):
             told += [(controller, joints[name], value) for name, value in targets.items()]
@@ -137,7 +139,7 @@ def _command(world: World, controller: Controller, targets: dict[str, float]) ->
     kind = controller.type.rpartition("/")[2]
     positions = set(controller.interfaces.values()) == {"position"}
     values = list(targets.values())
-    if kind == "JointTrajectoryController":
+    if kind.endswith("JointTrajectoryController"):
         point = {
             "positions": values,
             "velocities": [0.0] * len(values),

@@ -23,6 +23,7 @@ def controller_types() -> dict[str, type[Controller]]:
     from cartwheel.plugins.control.joint_trajectory import JointTrajectoryController
     from cartwheel.plugins.control.mecanum import MecanumDriveController
     from cartwheel.plugins.control.motor_command import UnitreeJointController
+    from cartwheel.plugins.control.pid_controller import PidController
     from cartwheel.plugins.control.sensors import ForceTorqueBroadcaster, ImuBroadcaster
     from cartwheel.plugins.control.steering import (
         SingleSteering,
@@ -36,6 +37,7 @@ def controller_types() -> dict[str, type[Controller]]:
         JointPid,
         JointGroup,
         UnitreeJointController,
+        PidController,
         JointTrajectoryController,
         GripperActionController,
         ParallelGripperActionController,

@@ -11,6 +11,7 @@ from cartwheel.description.model import Sensor
 from cartwheel.errors import CartwheelError, Diagnostic, Origin
 from cartwheel.graph import Graph, Publisher, Qos, Service, resolve_name
 from cartwheel.plugins.base import Plugin
+from cartwheel.plugins.control.chaining import Reference
 from cartwheel.plugins.control.hardware import Hardware, JointHardware
 from cartwheel.plugins.control.settings import Settings
 from cartwheel.plugins.ft_sensor import JointLoad
@@ -103,6 +104,8 @@ class Controller:
         """The joints it commands."""
         self.interfaces: dict[str, str] = {}
         """By which interface."""
+        self.references: list[Reference] = []
+        """What other controllers may command of it."""
         self._open: list[Closable | Service] = []
         try:
             self.configure(settings)
@@ -164,6 +167,9 @@ class Controller:
             else:
                 item.close()
         self._open.clear()
+        for each in self.references:
+            self.rig.hardware.references.pop(each.full_name, None)
+        self.references.clear()
 
     def claim(self, joint: str, interface: str) -> JointHardware:
         """A joint that it commands while it runs.
@@ -176,6 +182,18 @@ class Controller:
         self.claims[joint] = hardware
         self.interfaces[joint] = interface
         return hardware
+
+    def export(self, joint: JointHardware, interface: str) -> Reference:
+        """Lets other controllers command it: a reference in place of the joint itself."""
+        made = Reference(self.name, joint, interface)
+        self.references.append(made)
+        self.rig.hardware.references[made.full_name] = made
+        return made
+
+    @property
+    def chained(self) -> bool:
+        """Whether another controller commands it."""
+        return any(each.taken for each in self.references)
 
     def state_interfaces(self) -> list[str]:
         """What it measures, for listings: ``joint/position``; of the joints that it commands."""

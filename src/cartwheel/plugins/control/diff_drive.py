@@ -38,10 +38,10 @@ class DiffDriveController(Controller):
             raise settings.error(f"{len(left)} left and {len(right)} right wheels make no drive")
         self._left = [self.claim(name, "velocity") for name in left]
         self._right = [self.claim(name, "velocity") for name in right]
-        for name in (*left, *right):
-            check_axis(self, name, LEFT)
-        separation = self._separation(settings, left[0], right[0])
-        radius = self._radius(settings, left[0])
+        for wheel in (*self._left, *self._right):
+            check_axis(self, wheel.joint, LEFT)
+        separation = self._separation(settings, self._left[0].joint, self._right[0].joint)
+        radius = self._radius(settings, self._left[0].joint)
         self._separation_used = separation * settings.number("wheel_separation_multiplier", 1.0)
         both = settings.number("wheel_radius_multiplier", 1.0)
         self._left_radius = radius * settings.number("left_wheel_radius_multiplier", both)

@@ -44,6 +44,8 @@ class JointHardware:
         joint = part.description.joint(name)
         assert joint is not None
         self.name = name
+        self.joint = name
+        """Of the description, where `name` is that of a controller's reference to it."""
         self.interfaces = interfaces
         self.type = joint.type
         self.axis: Axis = joint.axis
@@ -267,6 +269,8 @@ class Hardware:
             )
             for each in joints
         }
+        self.references: dict[str, JointHardware] = {}
+        """What controllers take commands for, by its full name: ``controller/joint/velocity``."""
         self.holds = False
         """Whether joints that take efforts hold as well before a controller commands them."""
         self.halted = False
@@ -278,14 +282,20 @@ class Hardware:
         return list(self._joints)
 
     def joint(self, name: str, interface: str | None = None) -> JointHardware:
-        """A joint, which must offer a command interface where one is given.
+        """A joint, which must offer a command interface where one is given; or a reference to one.
 
         Raises:
             UnknownNameError: There is none of that name.
             PluginError: It has no such interface.
         """
+        if interface is not None and f"{name}/{interface}" in self.references:
+            return self.references[f"{name}/{interface}"]
         if name not in self._joints:
-            raise UnknownNameError("joint of a controller", name, self._joints)
+            raise UnknownNameError(
+                "joint of a controller",
+                name,
+                [*self._joints, *(each.name for each in self.references.values())],
+            )
         found = self._joints[name]
         if interface is not None and interface not in found.interfaces.commands:
             offered = ", ".join(found.interfaces.commands) or "none"

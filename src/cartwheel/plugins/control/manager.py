@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from cartwheel.errors import CartwheelError, GraphError
 from cartwheel.plugins.control.catalogue import find_type
+from cartwheel.plugins.control.chaining import Reference, owners
 from cartwheel.plugins.control.controller import Controller, Rig
 from cartwheel.plugins.control.files import ControllerEntry
 from cartwheel.plugins.control.settings import Settings
@@ -21,6 +22,8 @@ class ControllerManager:
     def __init__(self, rig: Rig) -> None:
         self.rig = rig
         self._controllers: dict[str, Controller] = {}
+        self._order: list[Controller] = []
+        """As they are updated: those that command others first."""
         self._begun: set[str] = set()
         """Controllers that were started once."""
         self._starting: list[Controller] = []
@@ -60,6 +63,7 @@ class ControllerManager:
         if unread:
             self.rig.report(f"controller {name}: without effect: {', '.join(unread)}")
         self._controllers[name] = made
+        self._sort()
         return made
 
     def load_entry(self, entry: ControllerEntry) -> Controller:
@@ -79,6 +83,7 @@ class ControllerManager:
         if controller.running:
             raise GraphError(f'controller "{name}" runs: stop it first')
         del self._controllers[name]
+        self._sort()
         self._begun.discard(name)
         controller.close()
 
@@ -95,6 +100,11 @@ class ControllerManager:
                 joint that another one does; while strict.
         """
         stopping = [each for name in stop if (each := self._one(name, True, strict))]
+        for name in self.with_leaders(stop)[len(stop) :]:
+            led = [each for each in self._led(name) if each in stop]
+            if led:
+                self._refuse(f'controller "{led[0]}" cannot stop: "{name}" commands it', strict)
+            stopping = [each for each in stopping if each.name not in led]
         starting = [each for name in start if (each := self._one(name, False, strict))]
         # What is stopped and started at once begins anew.
         for name in start:
@@ -109,15 +119,9 @@ class ControllerManager:
         }
         able = []
         for controller in starting:
-            taken = [joint for joint in controller.claims if joint in held]
-            if taken:
-                message = (
-                    f'controller "{controller.name}" cannot start: joint "{taken[0]}" is '
-                    f'commanded by "{held[taken[0]]}"'
-                )
-                if strict:
-                    raise GraphError(message)
-                self.rig.report(message)
+            problem = self._hindrance(controller, starting, stopping, held)
+            if problem:
+                self._refuse(problem, strict)
                 continue
             held.update(dict.fromkeys(controller.claims, controller.name))
             able.append(controller)
@@ -130,6 +134,15 @@ class ControllerManager:
             controller.running = True
             self._begun.add(controller.name)
             self._starting.append(controller)
+
+    def with_leaders(self, names: Sequence[str]) -> list[str]:
+        """Some controllers and all that run and command one of them: what must stop with them."""
+        found = list(names)
+        for each in reversed(self._order):
+            led = self._led(each.name)
+            if each.running and each.name not in found and any(name in found for name in led):
+                found.append(each.name)
+        return found
 
     def update(self, time_ns: int, nominal: float) -> None:
         """Starts, stops and updates controllers, and commands the joints.
@@ -154,7 +167,7 @@ class ControllerManager:
                     joint.activate(controller.interfaces[name])
                 controller.begin(time_ns)
             self._starting.clear()
-        for controller in self._controllers.values():
+        for controller in self._order:
             if controller.running:
                 controller.update(time_ns, seconds)
             else:
@@ -196,6 +209,59 @@ class ControllerManager:
         for controller in self._controllers.values():
             controller.close()
         self._controllers.clear()
+        self._order = []
+
+    def _sort(self) -> None:
+        def height(name: str) -> int:
+            below = (other for other in self._led(name) if other in self._controllers)
+            return 1 + max((height(other) for other in below), default=-1)
+
+        names = sorted(self._controllers, key=height, reverse=True)
+        self._order = [self._controllers[name] for name in names]
+
+    def _led(self, name: str) -> list[str]:
+        """The controllers that one commands."""
+        return owners(self._controllers[name].claims.values())
+
+    def _hindrance(
+        self,
+        controller: Controller,
+        starting: Sequence[Controller],
+        stopping: Sequence[Controller],
+        held: Mapping[str, str],
+    ) -> str:
+        """Why a controller cannot start; nothing where it can.
+
+        Args:
+            controller: That shall start.
+            starting: What starts as well.
+            stopping: What stops.
+            held: Joints that are commanded, and by whom.
+        """
+        for name, claim in controller.claims.items():
+            if name in held:
+                why = f'joint "{name}" is commanded by "{held[name]}"'
+            elif isinstance(claim, Reference) and not self._offered(claim, starting, stopping):
+                why = f'it commands "{claim.owner}", which does not run'
+            else:
+                continue
+            return f'controller "{controller.name}" cannot start: {why}'
+        return ""
+
+    def _offered(
+        self, claim: Reference, starting: Sequence[Controller], stopping: Sequence[Controller]
+    ) -> bool:
+        """Whether its controller runs then, and was not loaded anew since it was claimed."""
+        owner = self._controllers.get(claim.owner)
+        if owner is None or not any(each is claim for each in owner.references):
+            return False
+        return owner in starting or (owner.running and owner not in stopping)
+
+    def _refuse(self, message: str, strict: bool) -> None:
+        """Says what is not done; raises it while strict."""
+        if strict:
+            raise GraphError(message)
+        self.rig.report(message)
 
     def _one(self, name: str, running: bool, strict: bool) -> Controller | None:
         """A controller that is to change its state; None where it cannot and need not."""

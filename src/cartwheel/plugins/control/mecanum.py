@@ -47,6 +47,7 @@ class MecanumDriveController(Controller):
             else:
                 names.append(settings.text(f"{plain}_wheel_joint", f"{plain}_wheel_joint"))
         self._wheels = [self.claim(name, "velocity") for name in names]
+        names = [wheel.joint for wheel in self._wheels]
         for name in names:
             check_axis(self, name, LEFT)
         description = self.part.description

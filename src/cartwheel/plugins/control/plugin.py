@@ -8,6 +8,7 @@ from typing import Any
 from cartwheel.description.model import Sensor
 from cartwheel.errors import CartwheelError
 from cartwheel.plugins.base import Plugin
+from cartwheel.plugins.control.chaining import in_order
 from cartwheel.plugins.control.controller import Rig, SensedLink
 from cartwheel.plugins.control.files import ControllerEntry, ControllerFiles
 from cartwheel.plugins.control.manager import ControllerManager
@@ -83,7 +84,7 @@ class ControlPlugin(Plugin[Any]):
         manager = self.manager
         assert manager is not None
         loaded = ControllerFiles.of(self.graph).loaded
-        for entry in entries:
+        for entry in in_order(list(entries)):
             try:
                 loaded.append(manager.load_entry(entry))
                 manager.switch([entry.name], [])

@@ -11,6 +11,7 @@ from cartwheel.errors import CartwheelError, GraphError
 from cartwheel.messages import message_class
 from cartwheel.plugins.base import Plugin
 from cartwheel.plugins.control.catalogue import controller_types, find_type
+from cartwheel.plugins.control.chaining import Reference, owners
 from cartwheel.plugins.control.components import HardwareComponents
 from cartwheel.plugins.control.controller import Controller
 from cartwheel.plugins.control.files import (
@@ -98,6 +99,20 @@ class Ros2ManagerServices:
             claimed_interfaces=commands if controller.running else [],
             required_command_interfaces=commands,
             required_state_interfaces=controller.state_interfaces(),
+            is_chainable=bool(controller.references),
+            is_chained=controller.chained,
+            reference_interfaces=[each.own_name for each in controller.references],
+            chain_connections=[
+                message_class(f"{_MESSAGES}/msg/ChainConnection")(
+                    name=owner,
+                    reference_interfaces=[
+                        each.full_name
+                        for each in controller.claims.values()
+                        if isinstance(each, Reference) and each.owner == owner
+                    ],
+                )
+                for owner in owners(controller.claims.values())
+            ],
         )
 
     @property
@@ -159,7 +174,7 @@ class Ros2ManagerServices:
         elif name in self._by_itself:
             self._by_itself.discard(name)
             if controller.running:
-                self._manager.switch([], [name])
+                self._manager.switch([], self._manager.with_leaders([name]))
         elif controller.running:
             raise GraphError(f'controller "{name}" is active: it cannot be configured')
         else:
@@ -231,7 +246,7 @@ class Ros2ManagerServices:
                 for each in self._manager.controllers
                 if each.running and self._components.lacks(each)
             ]
-            self._manager.switch([], away)
+            self._manager.switch([], self._manager.with_leaders(away))
         except CartwheelError as error:
             tell(self._manager.rig, error)
             return _response("SetHardwareComponentState")(

@@ -120,10 +120,10 @@ class SteeringController(Controller):
                 raise settings.error(f"{len(names)} wheels of an axle: there must be one or two")
         self._traction = self._axle(traction, "velocity")
         self._steering = self._axle(steering, "position")
-        for name in steering:
-            check_axis(self, name, UP)
-        for name in traction:
-            check_axis(self, name, LEFT)
+        for joint in self._steering:
+            check_axis(self, joint.joint, UP)
+        for joint in self._traction:
+            check_axis(self, joint.joint, LEFT)
         self._base = self._positive(settings, "wheelbase")
         tracks = ("traction_track_width", "wheel_track", f"{driven}_wheel_track")
         self._traction_track = self._first(settings, tracks, len(traction) == 2)
@@ -184,12 +184,10 @@ class SteeringController(Controller):
 
     def _axle(self, names: Sequence[str], interface: str) -> list[JointHardware]:
         """The wheels of an axle, the left one first."""
-        ordered = sorted(names, key=lambda name: -self._across(name))
-        return [self.claim(name, interface) for name in ordered]
-
-    def _across(self, name: str) -> float:
-        self.rig.hardware.joint(name)
-        return joint_place(self.part.description, name)[1]
+        claimed = [self.claim(name, interface) for name in names]
+        return sorted(
+            claimed, key=lambda joint: -joint_place(self.part.description, joint.joint)[1]
+        )
 
     def _steer(self, angle: float) -> None:
         if len(self._steering) == 1:
@@ -265,8 +263,8 @@ class TricycleController(Controller):
     def configure(self, settings: Settings) -> None:
         self._traction = self.claim(settings.text("traction_joint_name"), "velocity")
         self._steer = self.claim(settings.text("steering_joint_name"), "position")
-        check_axis(self, self._traction.name, LEFT)
-        check_axis(self, self._steer.name, UP)
+        check_axis(self, self._traction.joint, LEFT)
+        check_axis(self, self._steer.joint, UP)
         self._base = settings.number("wheelbase")
         self._radius = settings.number("wheel_radius")
         if self._base <= 0 or self._radius <= 0:
