@@ -26,9 +26,10 @@ from rosbags.highlevel import AnyReader
 import cartwheel as cw
 from cartwheel.bridges.recording import Recorder
 from cartwheel.bridges.recording.backlog import Backlog, Item
-from cartwheel.bridges.recording.formats import encoding_for, open_writer
+from cartwheel.bridges.recording.formats import encoding_for
 from cartwheel.bridges.recording.patterns import Patterns
 from cartwheel.bridges.recording.sink import Sink
+from cartwheel.bridges.recording.writing import open_writer
 from cartwheel.errors import RecordingError
 from cartwheel.graph import Graph
 from cartwheel.messages import encode_cdr, from_dict, message_class

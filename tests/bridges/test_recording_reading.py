@@ -20,7 +20,8 @@ from tests.bridges.test_recording import HAS_ROSBAG, PROGRAM, PYTHON, drive, run
 
 from cartwheel.bridges.recording.decoding import decoder
 from cartwheel.bridges.recording.encoding import codec
-from cartwheel.bridges.recording.reading import RecordedTopic, open_recording
+from cartwheel.bridges.recording.opening import open_recording
+from cartwheel.bridges.recording.reading import RecordedTopic
 from cartwheel.errors import RecordingError
 from cartwheel.messages import encode_cdr, zero
 

@@ -16,7 +16,7 @@ import pytest
 from tests.bridges.test_recording_reading import COUNT, WRITERS
 
 import cartwheel as cw
-from cartwheel.bridges.recording.reading import open_recording
+from cartwheel.bridges.recording.opening import open_recording
 from cartwheel.description import load_robot, load_world
 from cartwheel.errors import RecordingError
 from cartwheel.messages import encode_cdr

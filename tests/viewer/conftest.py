@@ -162,11 +162,25 @@ def shared_page(browser, arena):
 @pytest.fixture
 def page(shared_page, arena):
     """The module's page, at the start of a new run."""
+    close_search(shared_page)
     arena.twists.clear()
     shared_page.keyboard.press("k")
     eventually(lambda: arena.twists, what="the stop")
     arena.start_over()
     yield shared_page
+
+
+def close_search(page):
+    """Puts the list of commands away; the key again where it met the list still unfolding."""
+    search = page.get_by_placeholder("Search commands...")
+
+    def gone():
+        if not search.is_visible():
+            return True
+        page.keyboard.press("Escape")
+        return False
+
+    eventually(gone, what="the end of the list of commands")
 
 
 def close_notes(page):

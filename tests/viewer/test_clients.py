@@ -104,10 +104,12 @@ def test_nothing_is_sent_of_a_world_that_stands_still(fresh):
 
         def quiet():
             before = messages_sent(fresh)
-            shown = fresh.viewer._desk.scene.snapshot
-            eventually(lambda: fresh.viewer._desk.scene.snapshot is not shown, what="a state")
-            later = fresh.viewer._desk.scene.snapshot
-            eventually(lambda: fresh.viewer._desk.scene.snapshot is not later, what="the next")
+            shown = fresh.viewer._desk.stage.scene.snapshot
+            eventually(lambda: fresh.viewer._desk.stage.scene.snapshot is not shown, what="a state")
+            later = fresh.viewer._desk.stage.scene.snapshot
+            eventually(
+                lambda: fresh.viewer._desk.stage.scene.snapshot is not later, what="the next"
+            )
             return messages_sent(fresh) == before
 
         # The last figures of a second ago may still be on their way.

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from .conftest import TWIST, eventually, open_page
+from .conftest import TWIST, close_search, eventually, open_page
 
 
 def press(page, arena, key, count=1):
@@ -84,8 +84,7 @@ def test_typing_does_not_drive(page, arena):
     search.wait_for()
     search.press_sequentially("jilo,.")
     assert search.input_value() == "jilo,."
-    page.keyboard.press("Escape")
-    search.wait_for(state="hidden")
+    close_search(page)
     # A key after it arrives after all that typing would have sent.
     assert press(page, arena, "k") == (0.0, 0.0)
     assert arena.twists == [(0.0, 0.0)]

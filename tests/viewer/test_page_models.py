@@ -127,7 +127,7 @@ def test_the_scene_goes_on_as_the_gizmo_is_let_go(page, arena):
     world = world_panel(arena)
     yaw = arena.pose().yaw
     arena.viewer._page.post(
-        lambda: world.move("post", arena.viewer._desk.scene.pose("post").__matmul__(_ahead()))
+        lambda: world.move("post", arena.viewer._desk.stage.scene.pose("post").__matmul__(_ahead()))
     )
     eventually(lambda: arena.pose("post").x > 2.8, what="the post half a metre further")
     assert arena.pose().yaw == pytest.approx(yaw, abs=0.01)

@@ -5,7 +5,7 @@ import threading
 import pytest
 
 import cartwheel as cw
-from cartwheel.bridges.recording.reading import open_recording
+from cartwheel.bridges.recording.opening import open_recording
 from cartwheel.playback import PlaybackSession
 from cartwheel.simulation.snapshot import RunState
 from cartwheel.viewer import Viewer
@@ -43,7 +43,7 @@ class Cinema:
 
     @property
     def shown(self):
-        return self.viewer._desk.scene.snapshot
+        return self.viewer._desk.stage.scene.snapshot
 
 
 @pytest.fixture(scope="module")

@@ -10,7 +10,7 @@ import pytest
 from cartwheel.errors import Diagnostic, Origin
 from cartwheel.graph import TopicInfo
 from cartwheel.messages import header, message_class
-from cartwheel.viewer.panels.base import Every
+from cartwheel.viewer.every import Every
 from cartwheel.viewer.panels.bumper import light_html, other_side
 from cartwheel.viewer.panels.camera import pixels_of
 from cartwheel.viewer.panels.imu import row_of, thin

@@ -105,7 +105,8 @@ def run(
     taken as well: __name:=NAME, _PARAMETER:=VALUE, /TOPIC:=OTHER, and TOPIC:=OTHER beside a
     world.
     """
-    from cartwheel.cli.commands.run import Options, simulate
+    from cartwheel.cli.commands.options import Options
+    from cartwheel.cli.commands.run import simulate
 
     ros1_arguments: list[str] = []
     if ros1:

@@ -9,13 +9,10 @@ from __future__ import annotations
 import enum
 import itertools
 from collections.abc import Callable, Iterable
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import Any, Protocol
 
 from cartwheel.graph.names import resolve_name
 from cartwheel.messages import message_class
-
-if TYPE_CHECKING:
-    from cartwheel.graph.graph import Graph
 
 _KEPT_NS = 10_000_000_000
 """How long a goal that is done is known at least, for those who ask for its result."""
@@ -108,6 +105,20 @@ class ActionListener(Protocol):
         """How a goal goes."""
 
 
+class Offers(Protocol):
+    """Where actions are known by their names."""
+
+    def offer(self, action: Action) -> None:
+        """Makes an action known.
+
+        Raises:
+            GraphError: The name is taken.
+        """
+
+    def take_back(self, action: Action) -> None:
+        """It is known no longer."""
+
+
 class Action:
     """An action of a graph, offered until it is closed.
 
@@ -126,7 +137,7 @@ class Action:
 
     def __init__(
         self,
-        graph: Graph,
+        graph: Offers,
         name: str,
         type_name: str,
         *,

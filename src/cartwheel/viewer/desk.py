@@ -7,8 +7,7 @@ from typing import Any
 
 from cartwheel.session import Session
 from cartwheel.simulation.snapshot import Snapshot
-from cartwheel.viewer.framing import Framing, robot_of
-from cartwheel.viewer.overlays import Overlays
+from cartwheel.viewer.framing import robot_of
 from cartwheel.viewer.page import Page
 from cartwheel.viewer.panels.base import Panel
 from cartwheel.viewer.panels.bumper import BumperPanel
@@ -22,7 +21,7 @@ from cartwheel.viewer.panels.topics import TopicsPanel
 from cartwheel.viewer.panels.view import ViewPanel
 from cartwheel.viewer.panels.world import WorldPanel
 from cartwheel.viewer.scans import Scans
-from cartwheel.viewer.scene_view import SceneView
+from cartwheel.viewer.stage import Stage
 
 
 class Desk:
@@ -35,14 +34,8 @@ class Desk:
 
     def __init__(self, page: Page, session: Session) -> None:
         self.page = page
-        self.session = session
-        self.now = time.monotonic()
-        """s of wall time of the state that is being shown."""
-        self.robot: str | None = None
-        """The model that the camera follows and that things are inserted in front of."""
-        self.scene = SceneView(page)
-        self.framing = Framing(page, session.simulation)
-        self.overlays = Overlays(self)
+        self.stage = Stage(page, session)
+        self._graph = session.graph
         self._panels = self.build()
         self._graph_changed = -1
         self._watched = False
@@ -50,19 +43,19 @@ class Desk:
 
     def update(self, snapshot: Snapshot) -> None:
         """Shows a state."""
-        self.now = time.monotonic()
-        if self.session.graph.changed != self._graph_changed:
-            self._graph_changed = self.session.graph.changed
-            topics = self.session.graph.topics()
+        now = time.monotonic()
+        if self._graph.changed != self._graph_changed:
+            self._graph_changed = self._graph.changed
+            topics = self._graph.topics()
             for panel in self._panels:
                 panel.show_topics(topics)
-        if self.scene.update(snapshot):
-            self.robot = robot_of(snapshot.scene)
+        if self.stage.scene.update(snapshot):
+            self.stage.robot = robot_of(snapshot.scene)
             for panel in self._panels:
                 panel.show_models(snapshot)
         for panel in self._panels:
-            panel.update(snapshot, self.now)
-        self.overlays.update(snapshot, self.now)
+            panel.update(snapshot, now)
+        self.stage.overlays.update(snapshot, self.stage.robot, now)
 
     def close(self) -> None:
         """Lets go of all subscriptions."""
@@ -86,38 +79,38 @@ class Desk:
 
         camera = gui.add_panel()
         with camera.add_tab("Camera", icons.CAMERA):
-            panels.append(CameraPanel(self))
+            panels.append(CameraPanel(self.stage))
         camera.dock_below(gui.main_panel)
 
         left = gui.add_panel()
         panels += self.build_left(left)
         with left.add_tab("View", icons.EYE):
-            panels.append(ViewPanel(self))
+            panels.append(ViewPanel(self.stage))
         left.dock_left()
         left.set_width(300)
 
         lower = gui.add_panel()
         with lower.add_tab("IMU", icons.CHART_LINE):
-            panels.append(ImuPanel(self))
+            panels.append(ImuPanel(self.stage))
         with lower.add_tab("Topics", icons.LIST):
-            panels.append(TopicsPanel(self))
+            panels.append(TopicsPanel(self.stage))
         with lower.add_tab("Warnings", icons.ALERT_TRIANGLE):
-            panels.append(NotesPanel(self))
+            panels.append(NotesPanel(self.stage))
         lower.dock_below(left)
-        panels.append(Scans(self))
+        panels.append(Scans(self.stage))
         return panels
 
     def build_main(self) -> list[Panel]:
         """The panels of the main column, above the camera."""
-        return [ClockPanel(self), BumperPanel(self), DrivePanel(self)]
+        return [ClockPanel(self.stage), BumperPanel(self.stage), DrivePanel(self.stage)]
 
     def build_left(self, left: Any) -> list[Panel]:
         """The panels to the left, above the toggles of the scene."""
         icons = self.page.viser.Icon
         tab = left.add_tab("World", icons.WORLD)
         with tab:
-            world = WorldPanel(self, tab)
-            self.scene.selected = world.select
+            world = WorldPanel(self.stage, tab)
+            self.stage.scene.selected = world.select
         with left.add_tab("Insert", icons.PLUS):
-            insert = InsertPanel(self)
+            insert = InsertPanel(self.stage)
         return [world, insert]

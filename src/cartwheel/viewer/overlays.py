@@ -4,17 +4,16 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from cartwheel.description.model import CameraIntrinsics, RobotDescription
 from cartwheel.geometry import Array, Pose, to_wxyz
 from cartwheel.simulation.snapshot import Snapshot
-from cartwheel.viewer.panels.base import Every
-
-if TYPE_CHECKING:
-    from cartwheel.viewer.desk import Desk
+from cartwheel.viewer.every import Every
+from cartwheel.viewer.page import Page
+from cartwheel.viewer.scene_view import SceneView
 
 _TRAIL_STEP = 0.03
 """m between two points of the trail."""
@@ -24,15 +23,16 @@ _OPTICAL = Pose.from_xyz_rpy((0, 0, 0), (-math.pi / 2, 0, -math.pi / 2))
 
 
 class Overlays:
-    """Follows the robot, the first model that has plugins or sensors.
+    """Follows the robot, the model that the page is about.
 
     Args:
-        desk: For the scene and its toggles.
+        page: To draw on.
+        scene: With the models and the toggles.
     """
 
-    def __init__(self, desk: Desk) -> None:
-        self._desk = desk
-        self._page = desk.page
+    def __init__(self, page: Page, scene: SceneView) -> None:
+        self._page = page
+        self._scene = scene
         self._pyramids: dict[tuple[str, str, str], Any] = {}
         self._trail: deque[Array] = deque(maxlen=_TRAIL_POINTS)
         self._line: Any = None
@@ -40,14 +40,15 @@ class Overlays:
         self._image_due = Every(4)
         self._followed: Array | None = None
         self._time_ns = 0
+        self._now = 0.0
 
-    def update(self, snapshot: Snapshot, now: float) -> None:
-        """Moves the trail and the following camera on."""
-        robot = self._desk.robot
+    def update(self, snapshot: Snapshot, robot: str | None, now: float) -> None:
+        """Moves the trail and the following camera on, those of the model `robot`."""
+        self._now = now
         if snapshot.time_ns < self._time_ns:
             self._trail.clear()
         self._time_ns = snapshot.time_ns
-        pose = self._desk.scene.pose(robot) if robot else None
+        pose = self._scene.pose(robot) if robot else None
         if pose is None:
             self._followed = None
             return
@@ -55,15 +56,15 @@ class Overlays:
         if not self._trail or float(np.linalg.norm(place - self._trail[-1])) > _TRAIL_STEP:
             self._trail.append(place)
             self._draw_trail(now)
-        elif self._desk.scene.display.trail != (self._line is not None):
+        elif self._scene.display.trail != (self._line is not None):
             self._draw_trail(now)
         self._follow(place)
 
     def show(self) -> None:
         """Makes the camera pyramids those of the models that stand there."""
         wanted: dict[tuple[str, str, str], tuple[RobotDescription, Pose, CameraIntrinsics]] = {}
-        if self._desk.scene.display.camera:
-            for name, view in self._desk.scene.models.items():
+        if self._scene.display.camera:
+            for name, view in self._scene.models.items():
                 for link in view.description.links:
                     for sensor in link.sensors:
                         for lens in sensor.cameras[:1]:
@@ -84,8 +85,7 @@ class Overlays:
 
     def show_image(self, topic: str, picture: Any) -> None:
         """Hangs a camera's image into its pyramid, a few times a second."""
-        now = self._desk.now
-        if not self._pyramids or not self._image_due(now):
+        if not self._pyramids or not self._image_due(self._now):
             return
         parts = topic.split("/")
         named = [pyramid for key, pyramid in self._pyramids.items() if key[2] in parts]
@@ -96,7 +96,7 @@ class Overlays:
         aspect = lens.width / max(1, lens.height)
         vertical = 2 * math.atan(math.tan(min(lens.horizontal_fov, 2.8) / 2) / aspect)
         name, link, sensor = key
-        view = self._desk.scene.models[name]
+        view = self._scene.models[name]
         return self._page.scene.add_camera_frustum(
             f"{view.path(link)}/camera_{sensor.replace('/', '|')}",
             fov=vertical,
@@ -112,7 +112,7 @@ class Overlays:
         )
 
     def _draw_trail(self, now: float) -> None:
-        if not self._desk.scene.display.trail:
+        if not self._scene.display.trail:
             if self._line is not None:
                 self._line.remove()
                 self._line = None
@@ -127,7 +127,7 @@ class Overlays:
         )
 
     def _follow(self, place: Array) -> None:
-        if not self._desk.scene.display.follow:
+        if not self._scene.display.follow:
             self._followed = None
             return
         if self._followed is None:

@@ -13,7 +13,7 @@ class PlayDesk(Desk):
     """The page of a recording."""
 
     def build_main(self) -> list[Panel]:
-        return [TimelinePanel(self)]
+        return [TimelinePanel(self.stage)]
 
     def build_left(self, left: Any) -> list[Panel]:  # noqa: ARG002 - nothing can be moved
         return []

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections import deque
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -13,11 +13,10 @@ from cartwheel.geometry import Array, from_wxyz, matrix_from_quat
 from cartwheel.graph import TopicInfo
 from cartwheel.messages import nanoseconds
 from cartwheel.simulation.snapshot import Snapshot
-from cartwheel.viewer.panels.base import Every, Panel
+from cartwheel.viewer.every import Every
+from cartwheel.viewer.panels.base import Panel
+from cartwheel.viewer.stage import Stage
 from cartwheel.viewer.tap import Tap
-
-if TYPE_CHECKING:
-    from cartwheel.viewer.desk import Desk
 
 SCAN = "sensor_msgs/msg/LaserScan"
 CLOUD = "sensor_msgs/msg/PointCloud2"
@@ -37,8 +36,8 @@ class Scans(Panel):
     what stands still stays in place while the robot turns.
     """
 
-    def __init__(self, desk: Desk) -> None:
-        super().__init__(desk)
+    def __init__(self, stage: Stage) -> None:
+        super().__init__(stage)
         self._topics: dict[str, TopicInfo] = {}
         self._taps: dict[str, Tap] = {}
         self._counts: dict[str, int] = {}
@@ -71,7 +70,7 @@ class Scans(Panel):
 
     def _choose(self) -> None:
         """Reads what is switched on; a topic that is not read is not measured."""
-        display = self.desk.scene.display
+        display = self.stage.scene.display
         on = {SCAN: display.scans, CLOUD: display.clouds}
         wanted = {name for name, topic in self._topics.items() if on[topic.type]}
         if not self.page.clients:

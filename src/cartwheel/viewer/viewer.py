@@ -92,7 +92,7 @@ class Viewer:
             return
         if snapshot.scene.version != self._version:
             self._version = snapshot.scene.version
-            page.post(lambda: self._desk.framing.update(snapshot))
+            page.post(lambda: self._desk.stage.framing.update(snapshot))
         if not page.clients:
             return
         first = self._slot is None

@@ -9,7 +9,7 @@ from typing import Any
 
 from cartwheel.bridges.recording.compression import decompress
 from cartwheel.bridges.recording.db3_reading import Db3Recording
-from cartwheel.bridges.recording.reading import Recorded, RecordedTopic, Recording, open_recording
+from cartwheel.bridges.recording.reading import Recorded, RecordedTopic, Recording
 from cartwheel.errors import RecordingError
 
 
@@ -64,8 +64,12 @@ class FolderRecording:
             yield message._replace(number=numbers[message.number])
 
 
-def open_folder(path: Path) -> Recording:
+def open_folder(path: Path, open_file: Callable[[Path], Recording]) -> Recording:
     """Opens the files of a folder.
+
+    Args:
+        path: The folder.
+        open_file: Opens one of them, other than a database.
 
     Raises:
         RecordingError: There are none, or they cannot be read.
@@ -82,7 +86,7 @@ def open_folder(path: Path) -> Recording:
         kind = str(about.get("compression_format", "zstd"))
         unpack = lambda data: decompress(data, kind)  # noqa: E731
     opened = [
-        Db3Recording(file, unpack=unpack) if file.suffix == ".db3" else open_recording(file)
+        Db3Recording(file, unpack=unpack) if file.suffix == ".db3" else open_file(file)
         for file in files
     ]
     return FolderRecording(opened, complete=bool(about))

@@ -14,13 +14,12 @@ from cartwheel.bridges.mirror import offered_by_others
 from cartwheel.bridges.recording.backlog import Backlog, Item
 from cartwheel.bridges.recording.formats import (
     Encoding,
-    Writer,
     check_writable,
     encoding_for,
-    open_writer,
     reason_of,
 )
 from cartwheel.bridges.recording.patterns import Patterns
+from cartwheel.bridges.recording.writing import Writer, open_writer
 from cartwheel.errors import (
     CartwheelError,
     Diagnostic,

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from urllib.parse import unquote
 
 from cartwheel.cli import interrupts
+from cartwheel.cli.commands.options import Options
 from cartwheel.cli.commands.report import Report
 from cartwheel.description.packages import Packages
 from cartwheel.errors import CartwheelError
@@ -17,7 +18,6 @@ from cartwheel.simulation import RunState
 
 if TYPE_CHECKING:
     from cartwheel.bridges.foxglove.controls import TimeState
-    from cartwheel.cli.commands.run import Options
     from cartwheel.session import Session
     from cartwheel.simulation import Simulation
 

@@ -8,8 +8,9 @@ from dataclasses import replace
 
 from cartwheel.cli.commands.gazebo_arguments import ServerArguments, parse_server
 from cartwheel.cli.commands.gazebo_paths import adopt_exports, find_world
+from cartwheel.cli.commands.options import Options
 from cartwheel.cli.commands.ports import free_port
-from cartwheel.cli.commands.run import Options, simulate
+from cartwheel.cli.commands.run import simulate
 
 NODE = "gazebo"
 """Of ROS, where ``__name:=`` gives no other."""

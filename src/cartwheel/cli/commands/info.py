@@ -6,7 +6,8 @@ import json
 from pathlib import Path
 from typing import Any
 
-from cartwheel.bridges.recording.reading import Recording, open_recording, span_of
+from cartwheel.bridges.recording.opening import open_recording
+from cartwheel.bridges.recording.reading import Recording, span_of
 from cartwheel.cli.commands.report import size_text
 from cartwheel.cli.console import paint, print_warning, say, say_table
 

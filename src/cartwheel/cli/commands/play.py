@@ -45,7 +45,7 @@ def play(options: Options) -> None:
     """
     if not 0 <= options.start < math.inf:
         raise CartwheelError(f"--start {options.start:g} is no time to start at")
-    from cartwheel.bridges.recording.reading import open_recording
+    from cartwheel.bridges.recording.opening import open_recording
 
     recording = open_recording(options.file)
     if not options.headless:

@@ -8,12 +8,12 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from cartwheel.cli import interrupts
+from cartwheel.cli.commands.options import Options
 from cartwheel.cli.commands.report import Report
 from cartwheel.errors import RecordingError, UnknownNameError
 
 if TYPE_CHECKING:
     from cartwheel.bridges.recording import Encoding, Recorder
-    from cartwheel.cli.commands.run import Options
     from cartwheel.session import Session
 
 

@@ -4,30 +4,27 @@ from __future__ import annotations
 
 import html
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
 
 from cartwheel.description.model import RobotDescription
 from cartwheel.graph import TopicInfo
 from cartwheel.simulation.snapshot import Snapshot
-
-if TYPE_CHECKING:
-    from cartwheel.viewer.desk import Desk
+from cartwheel.viewer.stage import Stage
 
 
 class Panel:
     """A part of the page. All its methods run on the page's thread.
 
     Args:
-        desk: What the panels share.
+        stage: What the panels share.
     """
 
-    def __init__(self, desk: Desk) -> None:
-        self.desk = desk
-        self.page = desk.page
-        self.gui = desk.page.gui
-        self.session = desk.session
-        self.graph = desk.session.graph
-        self.simulation = desk.session.simulation
+    def __init__(self, stage: Stage) -> None:
+        self.stage = stage
+        self.page = stage.page
+        self.gui = stage.page.gui
+        self.session = stage.session
+        self.graph = stage.session.graph
+        self.simulation = stage.session.simulation
 
     def watch(self) -> None:
         """The first browser came: subscribe."""
@@ -48,20 +45,6 @@ class Panel:
             snapshot: It.
             now: s of wall time.
         """
-
-
-class Every:
-    """Says when something that is done at most `rate` times a second of wall time is due."""
-
-    def __init__(self, rate: float) -> None:
-        self._period = 1.0 / rate
-        self._due = 0.0
-
-    def __call__(self, now: float) -> bool:
-        if now < self._due:
-            return False
-        self._due = now + self._period
-        return True
 
 
 def escape(text: object) -> str:

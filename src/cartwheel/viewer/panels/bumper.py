@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from cartwheel.graph import Mailbox, TopicInfo
 from cartwheel.simulation.snapshot import Snapshot
 from cartwheel.viewer.panels.base import Panel, escape, of_type
-
-if TYPE_CHECKING:
-    from cartwheel.viewer.desk import Desk
+from cartwheel.viewer.stage import Stage
 
 CONTACTS = "gazebo_msgs/msg/ContactsState"
 LATCH = 0.5
@@ -24,8 +22,8 @@ _LONGEST = 0.8
 class BumperPanel(Panel):
     """Lit while any ContactsState topic reports a touch, with the names of what was hit."""
 
-    def __init__(self, desk: Desk) -> None:
-        super().__init__(desk)
+    def __init__(self, stage: Stage) -> None:
+        super().__init__(stage)
         self._boxes: dict[str, Mailbox] = {}
         self._topics: tuple[str, ...] = ()
         self._seen: dict[str, float] = {}
@@ -69,7 +67,7 @@ class BumperPanel(Panel):
             self._light.content = self._shown = content
 
     def _show_forces(self, states: Sequence[Any]) -> None:
-        if not self.desk.scene.display.contacts or not states:
+        if not self.stage.scene.display.contacts or not states:
             if self._arrows is not None:
                 self._arrows.remove()
                 self._arrows = None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,11 +11,10 @@ from numpy.typing import NDArray
 from cartwheel.graph import TopicInfo
 from cartwheel.messages import nanoseconds
 from cartwheel.simulation.snapshot import Snapshot
-from cartwheel.viewer.panels.base import Every, Panel, escape, of_type
+from cartwheel.viewer.every import Every
+from cartwheel.viewer.panels.base import Panel, escape, of_type
+from cartwheel.viewer.stage import Stage
 from cartwheel.viewer.tap import Tap
-
-if TYPE_CHECKING:
-    from cartwheel.viewer.desk import Desk
 
 IMAGE = "sensor_msgs/msg/Image"
 _NONE = "no camera"
@@ -46,8 +45,8 @@ _DARKEST = 30
 class CameraPanel(Panel):
     """Shows one image topic; nothing is rendered for it while nobody looks."""
 
-    def __init__(self, desk: Desk) -> None:
-        super().__init__(desk)
+    def __init__(self, stage: Stage) -> None:
+        super().__init__(stage)
         self._topics: tuple[str, ...] = ()
         self._tap: Tap | None = None
         self._due = Every(_RATE)
@@ -97,7 +96,7 @@ class CameraPanel(Panel):
         if not self._image.visible:
             self._image.visible = True
         self._say(f"{size} · {self._rate:.1f} Hz" if self._rate else size)
-        self.desk.overlays.show_image(self._topic.value, picture)
+        self.stage.overlays.show_image(self._topic.value, picture)
 
     def _choose(self) -> None:
         wanted = self._topic.value

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from cartwheel.simulation.snapshot import RunState, Snapshot
-from cartwheel.viewer.panels.base import Every, Panel
-
-if TYPE_CHECKING:
-    from cartwheel.viewer.desk import Desk
+from cartwheel.viewer.every import Every
+from cartwheel.viewer.panels.base import Panel
+from cartwheel.viewer.stage import Stage
 
 SPEEDS: dict[str, float | None] = {
     "0.1": 0.1,
@@ -25,8 +24,8 @@ SPEEDS: dict[str, float | None] = {
 class ClockPanel(Panel):
     """Pause, step, reset, speed."""
 
-    def __init__(self, desk: Desk) -> None:
-        super().__init__(desk)
+    def __init__(self, stage: Stage) -> None:
+        super().__init__(stage)
         page, gui = self.page, self.gui
         self._due = Every(8)
         self._text = gui.add_html(clock_html(None))

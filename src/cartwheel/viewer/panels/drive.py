@@ -11,15 +11,13 @@ that a button and its key cannot differ.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from cartwheel.graph import TopicInfo
 from cartwheel.messages import message_class
 from cartwheel.viewer.panels.base import Panel
+from cartwheel.viewer.stage import Stage
 from cartwheel.viewer.teleop import MOVES, Teleop
-
-if TYPE_CHECKING:
-    from cartwheel.viewer.desk import Desk
 
 TWIST = "geometry_msgs/msg/Twist"
 _ALL = "all that listen"
@@ -47,8 +45,8 @@ _ANGLES = {"u": -45, "i": 0, "o": 45, "j": -90, "l": 90, "m": -135, ",": 180, ".
 class DrivePanel(Panel):
     """Publishes Twists on the topics that drive."""
 
-    def __init__(self, desk: Desk) -> None:
-        super().__init__(desk)
+    def __init__(self, stage: Stage) -> None:
+        super().__init__(stage)
         self._teleop = Teleop()
         self._drivable: tuple[str, ...] = ()
         self._topic = self.gui.add_dropdown("Drive", (_NONE,))

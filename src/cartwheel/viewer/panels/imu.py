@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections import deque
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -13,10 +13,9 @@ from cartwheel.geometry import rpy_from_quat
 from cartwheel.graph import Mailbox, TopicInfo
 from cartwheel.messages import nanoseconds
 from cartwheel.simulation.snapshot import Snapshot
-from cartwheel.viewer.panels.base import Every, Panel, escape, of_type
-
-if TYPE_CHECKING:
-    from cartwheel.viewer.desk import Desk
+from cartwheel.viewer.every import Every
+from cartwheel.viewer.panels.base import Panel, escape, of_type
+from cartwheel.viewer.stage import Stage
 
 IMU = "sensor_msgs/msg/Imu"
 WINDOW = 10.0
@@ -36,8 +35,8 @@ _COLORS = ("#d9480f", "#2b8a3e", "#1864ab")
 class ImuPanel(Panel):
     """Angular velocity, linear acceleration and orientation over the last seconds."""
 
-    def __init__(self, desk: Desk) -> None:
-        super().__init__(desk)
+    def __init__(self, stage: Stage) -> None:
+        super().__init__(stage)
         self._topic = ""
         self._box: Mailbox | None = None
         self._rows: deque[tuple[float, ...]] = deque()

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import tempfile
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from cartwheel.description.model import RobotDescription
 from cartwheel.description.packages import share
@@ -14,9 +14,7 @@ from cartwheel.geometry import Pose, quat_from_rpy, rotate
 from cartwheel.simulation.naming import free_name
 from cartwheel.viewer.model_view import footprint
 from cartwheel.viewer.panels.base import Panel
-
-if TYPE_CHECKING:
-    from cartwheel.viewer.desk import Desk
+from cartwheel.viewer.stage import Stage
 
 _GAP = 0.15
 """m of air between what is inserted and what is there."""
@@ -27,8 +25,8 @@ _LARGEST = 20_000_000
 class InsertPanel(Panel):
     """Loads a description and spawns it in front of the robot, where nothing stands."""
 
-    def __init__(self, desk: Desk) -> None:
-        super().__init__(desk)
+    def __init__(self, stage: Stage) -> None:
+        super().__init__(stage)
         page, gui = self.page, self.gui
         gui.add_html('<div class="cw cw-dim cw-rows">In front of the robot</div>')
         for name, path in palette(share() / "models").items():
@@ -81,13 +79,13 @@ class InsertPanel(Panel):
     def _place(self, description: RobotDescription) -> Pose:
         reach, below = footprint(description)
         taken = []
-        for name, view in self.desk.scene.models.items():
-            pose = self.desk.scene.pose(name)
+        for name, view in self.stage.scene.models.items():
+            pose = self.stage.scene.pose(name)
             other, _ = footprint(view.description)
             if pose is not None and other < 20.0:
                 taken.append((pose.x, pose.y, other))
-        robot = self.desk.robot
-        start = self.desk.scene.pose(robot) if robot is not None else None
+        robot = self.stage.robot
+        start = self.stage.scene.pose(robot) if robot is not None else None
         return free_place(start or Pose(), taken, reach=reach, below=below)
 
 

@@ -3,21 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 from cartwheel.errors import Diagnostic
 from cartwheel.simulation.snapshot import Snapshot
-from cartwheel.viewer.panels.base import Every, Panel, escape
-
-if TYPE_CHECKING:
-    from cartwheel.viewer.desk import Desk
+from cartwheel.viewer.every import Every
+from cartwheel.viewer.panels.base import Panel, escape
+from cartwheel.viewer.stage import Stage
 
 
 class NotesPanel(Panel):
     """The list of diagnostics."""
 
-    def __init__(self, desk: Desk) -> None:
-        super().__init__(desk)
+    def __init__(self, stage: Stage) -> None:
+        super().__init__(stage)
         self._due = Every(1)
         self._shown = -1
         self._list = self.gui.add_html("")

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from cartwheel.simulation.snapshot import Snapshot
-from cartwheel.viewer.panels.base import Every
+from cartwheel.viewer.every import Every
 from cartwheel.viewer.panels.clock import ClockPanel
-
-if TYPE_CHECKING:
-    from cartwheel.viewer.desk import Desk
+from cartwheel.viewer.stage import Stage
 
 _PATIENCE = 0.5
 """s that the slider is left alone after a user has moved it."""
@@ -18,8 +16,8 @@ _PATIENCE = 0.5
 class TimelinePanel(ClockPanel):
     """A slider beside the clock; Step goes on by a picture, Reset to the start."""
 
-    def __init__(self, desk: Desk) -> None:
-        super().__init__(desk)
+    def __init__(self, stage: Stage) -> None:
+        super().__init__(stage)
         player: Any = self.simulation
         self._start_ns = int(player.start_ns)
         length = max((player.end_ns - player.start_ns) / 1e9, 0.001)

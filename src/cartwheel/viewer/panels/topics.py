@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 from cartwheel.graph import TopicInfo
 from cartwheel.messages import to_yaml
 from cartwheel.simulation.snapshot import Snapshot
-from cartwheel.viewer.panels.base import Every, Panel, escape
+from cartwheel.viewer.every import Every
+from cartwheel.viewer.panels.base import Panel, escape
+from cartwheel.viewer.stage import Stage
 from cartwheel.viewer.tap import Tap
-
-if TYPE_CHECKING:
-    from cartwheel.viewer.desk import Desk
 
 _NONE = "nothing"
 _LONGEST = 6000
@@ -22,8 +20,8 @@ _LONGEST = 6000
 class TopicsPanel(Panel):
     """The list of topics and an echo."""
 
-    def __init__(self, desk: Desk) -> None:
-        super().__init__(desk)
+    def __init__(self, stage: Stage) -> None:
+        super().__init__(stage)
         self._tap: Tap | None = None
         self._due = Every(5)
         self._list_due = Every(1)

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from cartwheel.simulation.snapshot import Snapshot
 from cartwheel.viewer.panels.base import Panel
-
-if TYPE_CHECKING:
-    from cartwheel.viewer.desk import Desk
+from cartwheel.viewer.stage import Stage
 
 LABELS = {
     "visual": "Visual shapes",
@@ -33,9 +31,9 @@ LABELS = {
 class ViewPanel(Panel):
     """A checkbox for each field of `Display`."""
 
-    def __init__(self, desk: Desk) -> None:
-        super().__init__(desk)
-        display = desk.scene.display
+    def __init__(self, stage: Stage) -> None:
+        super().__init__(stage)
+        display = stage.scene.display
         assert set(LABELS) == {field.name for field in dataclasses.fields(display)}
         self._boxes = {}
         for name, label in LABELS.items():
@@ -45,8 +43,8 @@ class ViewPanel(Panel):
         self.gui.add_command("Follow the robot").on_trigger(self.page.do(self._toggle, "follow"))
 
     def show_models(self, snapshot: Snapshot) -> None:
-        self.desk.overlays.forget({model.name for model in snapshot.scene.models})
-        self.desk.overlays.show()
+        self.stage.overlays.forget({model.name for model in snapshot.scene.models})
+        self.stage.overlays.show()
 
     def _toggle(self, name: str) -> None:
         self._boxes[name].value = not self._boxes[name].value
@@ -60,6 +58,6 @@ class ViewPanel(Panel):
         return set_from
 
     def _apply(self, name: str) -> None:
-        setattr(self.desk.scene.display, name, bool(self._boxes[name].value))
-        self.desk.scene.show()
-        self.desk.overlays.show()
+        setattr(self.stage.scene.display, name, bool(self._boxes[name].value))
+        self.stage.scene.show()
+        self.stage.overlays.show()

@@ -3,21 +3,20 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from cartwheel.geometry import Pose, from_wxyz, to_wxyz
 from cartwheel.simulation.snapshot import PlacedModel, Snapshot
-from cartwheel.viewer.panels.base import Every, Panel, escape, facts, rows_html
-
-if TYPE_CHECKING:
-    from cartwheel.viewer.desk import Desk
+from cartwheel.viewer.every import Every
+from cartwheel.viewer.panels.base import Panel, escape, facts, rows_html
+from cartwheel.viewer.stage import Stage
 
 
 class WorldPanel(Panel):
     """The list of models and the gizmo of the selected one."""
 
-    def __init__(self, desk: Desk, tab: Any) -> None:
-        super().__init__(desk)
+    def __init__(self, stage: Stage, tab: Any) -> None:
+        super().__init__(stage)
         self._tab = tab
         self.selected: str | None = None
         self._rows: dict[str, Any] = {}
@@ -53,13 +52,13 @@ class WorldPanel(Panel):
         for row, button in self._rows.items():
             button.color = None if row == name else "gray"
         self._delete.visible = name is not None
-        snapshot = self.desk.scene.snapshot
-        pose = self.desk.scene.pose(name) if name is not None else None
+        snapshot = self.stage.scene.snapshot
+        pose = self.stage.scene.pose(name) if name is not None else None
         if name is None or pose is None or snapshot is None:
             self._say("")
             return
         self._delete.label = f"Delete {name}"
-        size = self.desk.scene.models[name].size
+        size = self.stage.scene.models[name].size
         self._gizmo = self.page.scene.add_transform_controls(
             "/gizmo",
             scale=min(1.2, max(0.25, 0.8 * size)),
@@ -73,7 +72,7 @@ class WorldPanel(Panel):
         self._describe(snapshot)
 
     def _let_clicks_through(self, name: str | None, through: bool) -> None:
-        view = self.desk.scene.models.get(name) if name is not None else None
+        view = self.stage.scene.models.get(name) if name is not None else None
         if view is not None:
             view.set_clickable(not through)
 
@@ -108,7 +107,7 @@ class WorldPanel(Panel):
             if not self._is_static(snapshot) or self._static_due(now):
                 self._hold(self._held)
         else:
-            pose = self.desk.scene.pose(self.selected)
+            pose = self.stage.scene.pose(self.selected)
             if pose is not None and pose != self._shown:
                 self._shown = pose
                 with self.page.server.atomic():
@@ -143,7 +142,7 @@ class WorldPanel(Panel):
 
     def _describe(self, snapshot: Snapshot) -> None:
         placed = next((m for m in snapshot.scene.models if m.name == self.selected), None)
-        pose = self.desk.scene.pose(self.selected) if self.selected is not None else None
+        pose = self.stage.scene.pose(self.selected) if self.selected is not None else None
         if placed is None or pose is None:
             return
         self._say(properties_html(placed, pose))

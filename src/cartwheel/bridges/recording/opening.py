@@ -1,0 +1,47 @@
+"""Recordings of any form, as their topics and messages."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from cartwheel.bridges.recording.reading import Recording
+from cartwheel.errors import RecordingError
+
+
+def open_recording(path: Path | str) -> Recording:
+    """Opens a recording; its content, not its name, says which form it has.
+
+    Raises:
+        RecordingError: It is none, or cannot be read.
+    """
+    path = Path(path)
+    try:
+        if path.is_dir():
+            from cartwheel.bridges.recording.folder_reading import open_folder
+
+            return open_folder(path, open_recording)
+        with path.open("rb") as file:
+            begin = file.read(16)
+        return _opened(path, begin)
+    except OSError as error:
+        raise RecordingError(f'"{path}" cannot be read: {error.strerror or error}') from error
+
+
+def _opened(path: Path, begin: bytes) -> Recording:
+    if begin.startswith(b"\x89MCAP"):
+        from cartwheel.bridges.recording.mcap_reading import open_mcap
+
+        return open_mcap(path)
+    if begin.startswith(b"#ROSBAG"):
+        from cartwheel.bridges.recording.bag_reading import open_bag
+
+        return open_bag(path)
+    if begin.startswith(b"SQLite format 3"):
+        from cartwheel.bridges.recording.db3_reading import Db3Recording
+
+        return Db3Recording(path)
+    packed = path.suffix == ".zstd"
+    hint = "It is compressed as a whole: unzstd it first." if packed else None
+    raise RecordingError(
+        f'"{path}" is no recording: it begins neither as MCAP nor as a bag', hint=hint
+    )

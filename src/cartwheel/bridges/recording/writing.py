@@ -1,0 +1,106 @@
+"""A recording that is written, in the form that its name asks for."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any, Protocol
+
+from cartwheel.bridges.recording.formats import Encoding, check_writable, form_of, reason_of
+from cartwheel.errors import RecordingError
+
+
+class Writer(Protocol):
+    """A file that takes messages, in the order of their times."""
+
+    path: Path
+
+    @property
+    def kept_ns(self) -> int:
+        """Time of the last message that the operating system has."""
+
+    def add(self, topic: str, type_name: str, *, latched: bool) -> int:
+        """A channel for a topic.
+
+        Raises:
+            UnknownNameError: The encoding has no such type.
+        """
+
+    def write(self, channel: int, time_ns: int, message: Any) -> int:
+        """Takes a message of the graph; returns the size of its bytes.
+
+        Raises:
+            GraphError: It cannot be encoded; nothing was written.
+            OSError: The file takes no more.
+        """
+
+    def attach(self, name: str, media_type: str, data: bytes, time_ns: int) -> None:
+        """Keeps a text beside the messages, where the form can."""
+
+    def flush(self) -> None:
+        """Hands all that was taken to the operating system: from now on a crash cannot take it.
+
+        Raises:
+            OSError: The file takes no more.
+        """
+
+    def close(self) -> None:
+        """Makes the file complete.
+
+        Raises:
+            OSError: The file takes no more.
+        """
+
+    def abandon(self) -> None:
+        """After an `OSError`: saves what was whole before it."""
+
+
+def open_writer(
+    path: Path,
+    encoding: Encoding,
+    *,
+    overwrite: bool,
+    notes: Mapping[str, str],
+    pack: Callable[[Any], bytes],
+) -> Writer:
+    """Begins a recording.
+
+    Args:
+        path: Its name says its form.
+        encoding: Of its messages.
+        overwrite: Whether to replace what is there.
+        notes: To be kept with it, where the form can.
+        pack: Makes ROS 2's bytes of a message.
+
+    Raises:
+        RecordingError: It cannot be written there.
+    """
+    check_writable(path, overwrite=overwrite)
+    try:
+        if path.is_dir():
+            shutil.rmtree(path)
+        return _opened(path, encoding, notes, pack)
+    except OSError as error:
+        raise RecordingError(f'"{path}" cannot be written: {reason_of(error)}') from error
+
+
+def _opened(
+    path: Path, encoding: Encoding, notes: Mapping[str, str], pack: Callable[[Any], bytes]
+) -> Writer:
+    form = form_of(path)
+    if form == "mcap":
+        from cartwheel.bridges.recording.mcap_writing import McapWriter
+
+        return McapWriter(path, encoding, notes=notes, pack=pack)
+    if form == "bag":
+        from cartwheel.bridges.recording.bag_writing import BagWriter
+
+        return BagWriter(path)
+    if form == "db3":
+        from cartwheel.bridges.recording.db3_writing import Db3Writer
+
+        return Db3Writer(path, notes=notes, pack=pack)
+    from cartwheel.bridges.recording.folder_writing import FolderWriter
+
+    return FolderWriter(path, notes=notes, pack=pack)
