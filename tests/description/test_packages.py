@@ -1,5 +1,7 @@
 """Where packages, models and files are looked for, and what is told when they are not there."""
 
+import tempfile
+
 import pytest
 
 from cartwheel.description.packages import Packages, share
@@ -173,6 +175,16 @@ def test_shipped_things_are_found_from_anywhere(tmp_path):
     assert (share() / "robots").is_dir()
     found = Packages(tmp_path / "robot.urdf", environment={})
     assert found.find("rosbots_description") == share() / "robots" / "rosbots_description"
+
+
+def test_what_lies_among_temporary_files_belongs_to_nobody(tmp_path, monkeypatch):
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    package(tmp_path / "b")
+    beside = package(tmp_path / "ws" / "c")
+    found = packages(robot(package(tmp_path / "ws" / "a")))
+    assert found.find("c") == beside
+    with pytest.raises(DescriptionError, match='"b" was not found'):
+        found.find("b")
 
 
 @pytest.mark.parametrize("root", ["ws/src", "ws"])

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 import re
+import tempfile
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
@@ -241,14 +242,16 @@ class Packages:
         """The folders above the file, nearest first, that may be a workspace."""
         parents = [self.folder, *self.folder.parents]
         home = Path.home()
+        # None of them is a workspace: they are slow to read, and in the one for temporary
+        # files lies what anybody put there.
+        none = {home, home.parent, Path(tempfile.gettempdir()), Path(self.folder.anchor)}
         levels = MAX_LEVELS_UP
         for index, parent in enumerate(parents):
             if (parent / "package.xml").is_file():
                 levels = max(levels, index + MAX_LEVELS_UP)
         chosen = []
         for parent in parents[:levels]:
-            # Neither the root nor the folder of all homes is one, and they are slow to read.
-            if parent in (home, home.parent) or parent == Path(parent.anchor):
+            if parent in none:
                 break
             chosen.append(parent)
         return chosen or parents[:1]
