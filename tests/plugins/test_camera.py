@@ -405,15 +405,6 @@ def test_opengl_that_is_named_and_missing_is_told_and_no_more(tmp_path):
     assert "no OpenGL here" in told[0]
 
 
-def test_a_format_that_is_none_is_an_error(make):
-    from cartwheel.errors import PluginError
-
-    world = make.world()
-    with pytest.raises(PluginError, match='image format "HUNTER"') as caught:
-        world.session.spawn(make.sdf(camera(form="HUNTER")))
-    assert "R8G8B8" in str(caught.value)
-
-
 def test_a_camera_turned_on_its_link_looks_where_it_is_turned(make):
     """The sensor's own pose: a quarter turn to the left sees what stands there."""
     eye = camera().replace("<update_rate>", f"<pose>0 0 0 0 0 {math.pi / 2}</pose><update_rate>")

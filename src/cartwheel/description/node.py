@@ -257,11 +257,16 @@ class Node:
 def to_element(node: Node) -> Element:
     """The subtree as parameters for its owner, who reports what it does not know of them."""
     node.mark()
+    return copied(node)
+
+
+def copied(node: Node) -> Element:
+    """The subtree as it is written; nothing of it counts as read."""
     return Element(
         tag=node.tag,
         text=node.text,
         attributes=tuple(node.attributes.items()),
-        children=tuple(to_element(child) for child in node.children),
+        children=tuple(copied(child) for child in node.children),
         origin=node.origin,
     )
 

@@ -13,11 +13,11 @@ from typing import Protocol
 from xml.parsers import expat
 
 from cartwheel.description import numbers
-from cartwheel.description.node import Node, needs_xacro, to_element, unread
+from cartwheel.description.node import Node, copied, needs_xacro, to_element, unread
 from cartwheel.errors import DescriptionError, Origin
 
 __all__ = [
-    "Handler", "Node", "near_files", "needs_xacro", "parse", "read_bytes", "read_file",
+    "Handler", "Node", "copied", "near_files", "needs_xacro", "parse", "read_bytes", "read_file",
     "run_expat", "shown_path", "to_element", "unread",
 ]  # fmt: skip
 

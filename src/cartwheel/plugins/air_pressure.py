@@ -56,8 +56,10 @@ class AirPressure(Plugin[AirPressureParameters]):
             raise PluginError(
                 "<reference_altitude> is not a number", origin=sensor.origin
             ) from None
-        noise = read_noise(sensor.element.find("air_pressure/pressure/noise"))
-        self._noise = VectorNoise(part, f"pressure {sensor.name}", [noise])
+        noise = read_noise(sensor.element.find("air_pressure/pressure/noise"), part.report)
+        self._noise = VectorNoise(
+            part, f"pressure {sensor.link} {sensor.name}", [noise], rate=sensor.update_rate
+        )
         self._FluidPressure = message_class("sensor_msgs/msg/FluidPressure")
         topic = self.config.topic or default_topic(part, sensor, "air_pressure")
         rate = sensor.update_rate

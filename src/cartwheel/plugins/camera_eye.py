@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cartwheel.description.model import CameraIntrinsics, Sensor
-from cartwheel.errors import PluginError
 from cartwheel.graph import Publisher, ReconfigureParameter
 from cartwheel.messages import header, message_class
 from cartwheel.plugins.base import Plugin
@@ -83,7 +82,7 @@ class Eye:
         self.calibration = calibration
         self.frame = frame
         self._noise = (lens.noise_mean, lens.noise_stddev)
-        self._format = image_format(sensor, lens.format)
+        self._format = image_format(plugin, lens.format)
         self._camera = plugin.part.camera(
             sensor.name, sensor.link, sensor.pose @ lens.pose, bent.drawn
         )
@@ -188,20 +187,15 @@ def joined(base: str, topic: str) -> str:
     return f"{base}/{topic}" if base and not topic.startswith("/") else topic
 
 
-def image_format(sensor: Sensor, name: str) -> ImageFormat:
-    """The format of that name.
-
-    Raises:
-        PluginError: There is none.
-    """
+def image_format(plugin: Plugin[Any], name: str) -> ImageFormat:
+    """The format of that name; colours, and a word of it, where there is none."""
     known = FORMATS.get(name.strip().upper())
-    if known is None and "FLOAT" in name.upper():
-        # Of a depth camera's depths, which are floats whatever is said.
-        known = FORMATS["R8G8B8"]
-    if known is None:
-        raise PluginError(
-            f'image format "{name}" is not supported',
-            origin=sensor.origin,
-            hint=f"There are: {', '.join(FORMATS)}.",
+    if known is not None:
+        return known
+    # One of floats is of a depth camera's depths, which are floats whatever is said.
+    if "FLOAT" not in name.upper():
+        plugin.warn(
+            f'image format "{name}" is not supported, so it is R8G8B8. '
+            f"There are: {', '.join(FORMATS)}."
         )
-    return known
+    return FORMATS["R8G8B8"]

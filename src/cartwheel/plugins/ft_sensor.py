@@ -134,11 +134,13 @@ class JointLoad:
         ):
             self._sign = -1.0
         noises = [
-            read_noise(element.find(f"{what}/{axis}/noise"))
+            read_noise(element.find(f"{what}/{axis}/noise"), part.report)
             for what in ("force", "torque")
             for axis in _AXES
         ]
-        self._noise = VectorNoise(part, f"force {sensor.name}", noises)
+        self._noise = VectorNoise(
+            part, f"force {sensor.joint} {sensor.name}", noises, rate=sensor.update_rate
+        )
         joint = part.description.joint(sensor.joint or "")
         assert joint is not None
         self._child = part.link(joint.child)

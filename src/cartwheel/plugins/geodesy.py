@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from cartwheel.description.model import Element
+from cartwheel.errors import PluginError
 from cartwheel.geometry import Vec3
 
 EQUATOR = 6378137.0
@@ -69,3 +71,27 @@ class Datum:
             y + cos_lon * east + sin_lon * outwards,
             z + cos_lat * north + sin_lat * up,
         )
+
+
+def world_datum(spherical: Element | None) -> Datum | None:
+    """The origin that a world's ``<spherical_coordinates>`` states; None where it states none.
+
+    Raises:
+        PluginError: A number that is none.
+    """
+    if spherical is None:
+        return None
+
+    def number(name: str) -> float:
+        child = spherical.find(name)
+        try:
+            return float(child.text) if child is not None else 0.0
+        except ValueError:
+            raise PluginError(f"<{name}> is not a number", origin=spherical.origin) from None
+
+    return Datum(
+        latitude=math.radians(number("latitude_deg")),
+        longitude=math.radians(number("longitude_deg")),
+        height=number("elevation"),
+        heading=math.radians(number("heading_deg")),
+    )

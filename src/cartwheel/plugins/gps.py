@@ -8,12 +8,11 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from cartwheel.description.model import Element
 from cartwheel.errors import Diagnostic, PluginError
 from cartwheel.geometry import Vec3
 from cartwheel.messages import header, message_class
 from cartwheel.plugins.base import Plugin
-from cartwheel.plugins.geodesy import ECCENTRICITY2, EQUATOR, Datum
+from cartwheel.plugins.geodesy import ECCENTRICITY2, EQUATOR, Datum, world_datum
 from cartwheel.plugins.gz_sensor import default_topic, frame_tag
 from cartwheel.plugins.noise import DriftingError, VectorNoise, read_noise
 from cartwheel.plugins.parameters import tag
@@ -22,30 +21,6 @@ _NONE = (0.0, 0.0, 0.0)
 _HOUR = (1 / 3600.0,) * 3
 _KNOWN_DIAGONAL = 2
 """``NavSatFix.COVARIANCE_TYPE_DIAGONAL_KNOWN``."""
-
-
-def world_datum(spherical: Element | None) -> Datum | None:
-    """The origin that a world's ``<spherical_coordinates>`` states; None where it states none.
-
-    Raises:
-        PluginError: A number that is none.
-    """
-    if spherical is None:
-        return None
-
-    def number(name: str) -> float:
-        child = spherical.find(name)
-        try:
-            return float(child.text) if child is not None else 0.0
-        except ValueError:
-            raise PluginError(f"<{name}> is not a number", origin=spherical.origin) from None
-
-    return Datum(
-        latitude=math.radians(number("latitude_deg")),
-        longitude=math.radians(number("longitude_deg")),
-        height=number("elevation"),
-        heading=math.radians(number("heading_deg")),
-    )
 
 
 class _Receiver(Plugin[Any]):
@@ -266,10 +241,13 @@ class _GpsSensor(_Receiver):
         """Noise along east, north and up."""
         assert self.sensor is not None
         of = self.sensor.element.find(f"{element}/{what}")
-        both = [read_noise(of.find(f"{axis}/noise") if of is not None else None)
-                for axis in ("horizontal", "vertical")]  # fmt: skip
+        both = [
+            read_noise(of.find(f"{axis}/noise") if of is not None else None, self.part.report)
+            for axis in ("horizontal", "vertical")
+        ]
         noises = (both[0], both[0], both[1])
-        return VectorNoise(self.part, f"gps {self.sensor.name} {what}", noises)
+        name = f"gps {self.sensor.link} {self.sensor.name} {what}"
+        return VectorNoise(self.part, name, noises, rate=self.sensor.update_rate)
 
     def _wanted(self) -> bool:
         return self._fixes.wanted or (self._velocities is not None and self._velocities.wanted)

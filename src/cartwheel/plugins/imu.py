@@ -72,6 +72,10 @@ class ImuBase(Plugin[Any]):
         self._Quaternion = message_class("geometry_msgs/msg/Quaternion")
         self._covariance = np.diag([noise**2] * 3).ravel()
         self._rate_covariance = self._accel_covariance = self._covariance
+        self._orientation_covariance = self._covariance
+        if not self._unit.has_orientation:
+            # sensor_msgs/Imu: -1 in its first element says that there is none.
+            self._orientation_covariance = np.array([-1.0, *[0.0] * 8])
         both = (self._unit.rate_noise, self._unit.acceleration_noise)
         if both[0] is not None and both[1] is not None:
             self._rate_covariance = self._covariance + np.diag(both[0].variance).ravel()
@@ -95,7 +99,7 @@ class ImuBase(Plugin[Any]):
             Imu(
                 header(self.part.time_ns, self._frame),
                 Quaternion(*orientation),
-                self._covariance,
+                self._orientation_covariance,
                 Vector3(*rate),
                 self._rate_covariance,
                 Vector3(*acceleration),
@@ -158,7 +162,8 @@ class ImuSensorParameters:
 class ImuSensor(ImuBase):
     """The plugin of an ``imu`` sensor, with the noise that its ``<imu>`` states.
 
-    In ROS 2's spelling, with ``<ros>``, the topic is ``~/out``, to be remapped. Source:
+    In ROS 2's spelling, with ``<ros>``, the topic is ``~/out``, to be remapped. Its orientation is
+    against the world, or what the sensor's ``<orientation_reference_frame>`` says. Source:
     gazebo_plugins, gazebo_ros_imu_sensor; REP 145.
     """
 
@@ -199,6 +204,9 @@ class GzImuParameters:
 
 class GzImu(ImuBase):
     """An ``imu`` sensor that needs no plugin, with the noise that its ``<imu>`` states.
+
+    Its orientation is against the world, or what ``<orientation_reference_frame>`` says; none
+    where ``<enable_orientation>`` is false.
 
     Source: gz-sensors, ImuSensor; REP 145.
     """

@@ -2,13 +2,31 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
-from cartwheel.description.model import Sensor
-from cartwheel.errors import Origin
-from cartwheel.geometry import IDENTITY, Pose, Quat, matrix_from_quat, quat_multiply
+from cartwheel.description.model import Element, Sensor
+from cartwheel.errors import Diagnostic, Origin, PluginError
+from cartwheel.geometry import (
+    IDENTITY,
+    Pose,
+    Quat,
+    matrix_from_quat,
+    quat_conjugate,
+    quat_from_axis_angle,
+    quat_from_rpy,
+    quat_multiply,
+)
+from cartwheel.plugins.geodesy import world_datum
 from cartwheel.plugins.noise import VectorNoise, read_noise
 from cartwheel.simulation import Part
+
+_NORTH = {
+    "ENU": (0.0, 0.0, 0.0),
+    "NWU": (0.0, 0.0, math.pi / 2),
+    "NED": (math.pi, 0.0, math.pi / 2),
+}
+"""Roll, pitch and yaw of the axes of SDF's localizations, from east, north and up."""
 
 
 class InertialUnit:
@@ -37,22 +55,37 @@ class InertialUnit:
         self._aligned = mount.orientation == IDENTITY
         self.rate_noise: VectorNoise | None = None
         self.acceleration_noise: VectorNoise | None = None
+        self.has_orientation = True
+        """Whether it tells its orientation; else that is none at all."""
+        self._reference = IDENTITY
         element = sensor.element.find("imu") if sensor is not None else None
         if sensor is None or element is None:
             return
+        told = element.find("enable_orientation")
+        self.has_orientation = told is None or told.text.strip().lower() not in ("false", "0")
+        self._reference = quat_conjugate(_reference(part, element))
         both = []
         for what, older in (("angular_velocity", "rate"), ("linear_acceleration", "accel")):
-            noises = [read_noise(element.find(f"{what}/{axis}/noise")) for axis in "xyz"]
+            noises = [
+                read_noise(element.find(f"{what}/{axis}/noise"), part.report) for axis in "xyz"
+            ]
             if element.find(f"noise/{older}") is not None and element.find(what) is None:
                 # As SDF 1.4 wrote it, one for all axes.
-                noises = [read_noise(element.find(f"noise/{older}"))] * 3
-            both.append(VectorNoise(part, f"imu {sensor.name} {what}", noises))
+                noises = [read_noise(element.find(f"noise/{older}"), part.report)] * 3
+            name = f"imu {sensor.link} {sensor.name} {what}"
+            both.append(VectorNoise(part, name, noises, rate=sensor.update_rate))
         self.rate_noise, self.acceleration_noise = both
 
     def measure(self) -> tuple[Quat, Sequence[float], Sequence[float]]:
-        """Orientation, rates in rad/s and proper acceleration in m/s², with the sensor's noise."""
+        """Orientation, rates in rad/s and proper acceleration in m/s², with the sensor's noise.
+
+        The orientation is against the world, or what ``<orientation_reference_frame>`` says.
+        """
         _, turned = self._link.place()
-        orientation = quat_multiply(turned, self._mount.orientation)
+        orientation = IDENTITY
+        if self.has_orientation:
+            mounted = quat_multiply(turned, self._mount.orientation)
+            orientation = quat_multiply(self._reference, mounted)
         # Rates first: the unit sits on a rigid link, so only its acceleration depends on where.
         rates = self.rates()
         acceleration = self._turned(self._link.proper_acceleration(self._mount.position).tolist())
@@ -77,3 +110,57 @@ class InertialUnit:
             return vector
         x, y, z = vector
         return [a * x + b * y + c * z for a, b, c in self._turn]
+
+
+def _reference(part: Part, imu: Element) -> Quat:
+    """The axes of an ``<orientation_reference_frame>`` in the world.
+
+    Raises:
+        PluginError: A word or numbers that there are not.
+    """
+    frame = imu.find("orientation_reference_frame")
+    if frame is None:
+        return IDENTITY
+    child = frame.find("localization")
+    word = child.text.strip().upper() if child is not None else "CUSTOM"
+    if word in _NORTH:
+        datum = world_datum(part.world.spherical_coordinates)
+        heading = datum.heading if datum is not None else 0.0
+        return quat_multiply(
+            quat_from_axis_angle((0.0, 0.0, 1.0), -heading), quat_from_rpy(*_NORTH[word])
+        )
+    idle = ""
+    if word == "CUSTOM":
+        custom = frame.find("custom_rpy")
+        if custom is None or not custom.text.strip():
+            return IDENTITY
+        if not custom.attribute("parent_frame"):
+            return quat_from_rpy(*_three(custom))
+        idle = "a <custom_rpy> with a parent_frame"
+    elif word in ("GRAV_UP", "GRAV_DOWN"):
+        idle = f"<localization> {word}"
+    else:
+        raise PluginError(
+            f'<localization> "{word}" is none of: CUSTOM, ENU, NED, NWU, GRAV_UP, GRAV_DOWN',
+            origin=frame.origin,
+        )
+    part.report(
+        Diagnostic(
+            severity="warning",
+            message=f"{idle} has no effect: the orientation is against the world",
+            origin=frame.origin,
+        )
+    )
+    return IDENTITY
+
+
+def _three(element: Element) -> tuple[float, float, float]:
+    try:
+        roll, pitch, yaw = (float(word) for word in element.text.split())
+    except ValueError:
+        roll = pitch = yaw = math.nan
+    if not math.isfinite(roll + pitch + yaw):
+        raise PluginError(
+            f'<{element.tag}> "{element.text}" is not three numbers', origin=element.origin
+        )
+    return roll, pitch, yaw

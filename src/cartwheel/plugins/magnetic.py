@@ -12,7 +12,7 @@ from cartwheel.errors import PluginError
 from cartwheel.geometry import quat_conjugate, quat_multiply, rotate
 from cartwheel.messages import header, message_class
 from cartwheel.plugins.base import Plugin
-from cartwheel.plugins.gps import world_datum
+from cartwheel.plugins.geodesy import world_datum
 from cartwheel.plugins.gz_sensor import default_topic, frame_tag
 from cartwheel.plugins.noise import DriftingError, VectorNoise, read_noise
 from cartwheel.plugins.parameters import tag
@@ -139,8 +139,13 @@ class GzMagnetometer(Plugin[GzMagnetometerParameters]):
         assert sensor is not None
         self._link, self._mount = part.link(sensor.link), sensor.pose.orientation
         self._frame = self.frame(self.config.frame or sensor.link)
-        noises = [read_noise(sensor.element.find(f"magnetometer/{axis}/noise")) for axis in "xyz"]
-        self._noise = VectorNoise(part, f"magnetometer {sensor.name}", noises)
+        noises = [
+            read_noise(sensor.element.find(f"magnetometer/{axis}/noise"), part.report)
+            for axis in "xyz"
+        ]
+        self._noise = VectorNoise(
+            part, f"magnetometer {sensor.link} {sensor.name}", noises, rate=sensor.update_rate
+        )
         self._covariance = np.diag(self._noise.variance).ravel()
         self._Vector3 = message_class("geometry_msgs/msg/Vector3")
         self._MagneticField = message_class("sensor_msgs/msg/MagneticField")

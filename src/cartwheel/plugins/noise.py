@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from cartwheel.description.model import Element
-from cartwheel.errors import PluginError
+from cartwheel.errors import Diagnostic, PluginError
 from cartwheel.geometry import Array
 from cartwheel.simulation import Part
 
@@ -22,10 +22,34 @@ class Noise:
     stddev: float = 0.0
     bias_mean: float = 0.0
     bias_stddev: float = 0.0
+    walk: float = 0.0
+    """How fast the bias wanders: the standard deviation after 1 s; from then on times the root of
+    the time."""
+    memory: float = 0.0
+    """s, the time constant with which it forgets; without one it does not wander."""
+    precision: float = 0.0
+    """What is measured is a multiple of this, where it is above 0."""
 
 
-def read_noise(element: Element | None) -> Noise:
+_FIELDS = {
+    "mean": "mean",
+    "stddev": "stddev",
+    "bias_mean": "bias_mean",
+    "bias_stddev": "bias_stddev",
+    "dynamic_bias_stddev": "walk",
+    "dynamic_bias_correlation_time": "memory",
+    "precision": "precision",
+}
+"""SDF's tags and what they are here."""
+_SIGNED = ("mean", "bias_mean")
+
+
+def read_noise(element: Element | None, report: Callable[[Diagnostic], None]) -> Noise:
     """What a ``<noise>`` element says; none at all without one.
+
+    Args:
+        element: The tag.
+        report: Takes what has no effect.
 
     Raises:
         PluginError: A type or a number that makes no sense.
@@ -43,16 +67,80 @@ def read_noise(element: Element | None) -> Noise:
             hint="There are: none, gaussian, gaussian_quantized.",
         )
     values = {}
-    for field in ("mean", "stddev", "bias_mean", "bias_stddev"):
-        child = element.find(field)
+    for tag, field in _FIELDS.items():
+        child = element.find(tag)
         try:
             value = float(child.text) if child is not None else 0.0
         except ValueError:
             value = math.nan
-        if not math.isfinite(value) or (value < 0 and field.endswith("stddev")):
-            raise PluginError(f"<{field}> of a noise makes no sense", origin=element.origin)
+        if not math.isfinite(value) or (value < 0 and tag not in _SIGNED):
+            raise PluginError(f"<{tag}> of a noise makes no sense", origin=element.origin)
         values[field] = value
-    return Noise(**values)
+    noise = Noise(**values)
+    idle = ""
+    if noise.precision and name != "gaussian_quantized":
+        noise = replace(noise, precision=0.0)
+        idle = "<precision> has no effect: it belongs to noise of type gaussian_quantized"
+    elif noise.walk and not noise.memory:
+        idle = "<dynamic_bias_stddev> has no effect without <dynamic_bias_correlation_time>"
+    if idle:
+        report(Diagnostic(severity="warning", message=idle, origin=element.origin))
+    return noise
+
+
+class _Drift:
+    """Gauss-Markov processes: what they are at a time does not depend on who has asked when.
+
+    Args:
+        part: Whose seed counts.
+        name: Of the sequence.
+        rate: Hz at which it is asked; 0 is every step.
+        deviation: Standard deviations, of all times.
+        frequency: 1/s, inverse of the time constants.
+        settled: Whether it has one at the beginning; else it begins at 0.
+    """
+
+    def __init__(
+        self,
+        part: Part,
+        name: str,
+        *,
+        rate: float,
+        deviation: Array,
+        frequency: Array,
+        settled: bool,
+    ) -> None:
+        self._part, self._name, self._settled = part, name, settled
+        self._period_ns = part.period_ns(rate)
+        self._deviation = deviation
+        self._keep = np.exp(-frequency * self._period_ns * 1e-9)
+        self._grow = deviation * np.sqrt(1.0 - self._keep**2)
+        self.restart()
+
+    def restart(self) -> None:
+        """Time is what it is now; the drift begins anew."""
+        self._random = self._part.random(f"{self._name} drift")
+        drawn: Array = self._random.normal(0.0, self._deviation)
+        self._value = drawn if self._settled else np.zeros_like(drawn)
+        self._told_ns = self._part.time_ns
+
+    def put(self, value: Sequence[float]) -> None:
+        """Sets it, as calibration does; it wanders on from there."""
+        self.now()
+        self._value = np.array(value, dtype=float)
+
+    def now(self) -> Array:
+        """The drift of this moment, shape (n,)."""
+        steps = (self._part.time_ns - self._told_ns) // self._period_ns
+        if steps < 0:
+            # Time went back.
+            self.restart()
+            return self._value
+        self._told_ns += steps * self._period_ns
+        if self._deviation.any():
+            for _ in range(steps):
+                self._value = self._keep * self._value + self._random.normal(0.0, self._grow)
+        return self._value
 
 
 class VectorNoise:
@@ -62,12 +150,15 @@ class VectorNoise:
         part: Whose seed counts.
         name: Of the sequence.
         noises: One for each quantity.
+        rate: Hz at which they are measured; 0 is every step.
     """
 
-    def __init__(self, part: Part, name: str, noises: Sequence[Noise]) -> None:
+    def __init__(self, part: Part, name: str, noises: Sequence[Noise], *, rate: float) -> None:
         self._part, self._name = part, name
         self._stddev = np.array([noise.stddev for noise in noises])
         self._mean = np.array([noise.mean for noise in noises])
+        self._precision = np.array([noise.precision for noise in noises])
+        self._rounds = self._precision > 0
         self.variance = self._stddev**2
         """Shape (n,)."""
         random = part.random(f"{name} bias")
@@ -75,16 +166,39 @@ class VectorNoise:
             [noise.bias_mean for noise in noises], [noise.bias_stddev for noise in noises]
         )
         # Gazebo gives a bias either sign.
-        self._offset = self._mean + np.where(random.random(len(noises)) < 0.5, bias, -bias)
-        self._none = not (self._stddev.any() or self._offset.any())
+        self._fixed = self._mean + np.where(random.random(len(noises)) < 0.5, bias, -bias)
+        memory = np.array([noise.memory for noise in noises])
+        walk = np.where(memory > 0, [noise.walk for noise in noises], 0.0)
+        self._drift = _Drift(
+            part,
+            name,
+            rate=rate,
+            # What a walk comes to that forgets: its density is the tag's.
+            deviation=walk * np.sqrt(memory / 2),
+            frequency=1.0 / np.where(memory > 0, memory, 1.0),
+            settled=False,
+        )
+        self._none = not (
+            self._stddev.any() or self._fixed.any() or walk.any() or self._precision.any()
+        )
+
+    @property
+    def offset(self) -> Array:
+        """Mean and bias of this moment, shape (n,)."""
+        total: Array = self._fixed + self._drift.now()
+        return total
 
     def add(self, values: Sequence[float]) -> Sequence[float]:
         """The values as they are measured at this moment."""
         if self._none:
             return values
-        drawn = self._part.random(self._name).normal(0.0, self._stddev)
-        measured: list[float] = (np.asarray(values) + self._offset + drawn).tolist()
-        return measured
+        measured = np.asarray(values) + self.offset
+        measured += self._part.random(self._name).normal(0.0, self._stddev)
+        if self._rounds.any():
+            step = np.where(self._rounds, self._precision, 1.0)
+            measured = np.where(self._rounds, np.round(measured / step) * step, measured)
+        told: list[float] = measured.tolist()
+        return told
 
 
 class DriftingError:
@@ -118,42 +232,34 @@ class DriftingError:
         scale: Sequence[float],
     ) -> None:
         self._part, self._name = part, name
-        self._period_ns = part.period_ns(rate)
         self._offset, self._noise, self._scale = (np.array(v) for v in (offset, noise, scale))
-        self._deviation = np.array(drift)
-        self._keep = np.exp(-np.array(frequency) * self._period_ns * 1e-9)
-        self._grow = self._deviation * np.sqrt(1.0 - self._keep**2)
+        self._drift = _Drift(
+            part,
+            name,
+            rate=rate,
+            deviation=np.array(drift),
+            frequency=np.array(frequency),
+            settled=True,
+        )
         self.variance = self._noise**2
         """Shape (n,), of the noise alone."""
-        self.restart()
 
     def restart(self) -> None:
         """Time is what it is now; the drift begins anew."""
-        self._random = self._part.random(f"{self._name} drift")
-        self._drift: Array = self._random.normal(0.0, self._deviation)
-        self._told_ns = self._part.time_ns
+        self._drift.restart()
 
     def put(self, drift: Sequence[float]) -> None:
         """Sets the drift, as calibration does; it wanders on from there."""
-        self._advance()
-        self._drift = np.array(drift, dtype=float)
+        self._drift.put(drift)
 
     @property
     def bias(self) -> Array:
         """Offset and drift of this moment, shape (n,)."""
-        self._advance()
-        return self._offset + self._drift
+        total: Array = self._offset + self._drift.now()
+        return total
 
     def add(self, values: Sequence[float] | Array) -> Array:
         """The values as they are measured at this moment, shape (n,)."""
         noise = self._part.random(self._name).normal(0.0, self._noise)
         measured: Array = np.asarray(values) * self._scale + self.bias + noise
         return measured
-
-    def _advance(self) -> None:
-        steps = (self._part.time_ns - self._told_ns) // self._period_ns
-        self._told_ns += steps * self._period_ns
-        if not self._deviation.any():
-            return
-        for _ in range(steps):
-            self._drift = self._keep * self._drift + self._random.normal(0.0, self._grow)

@@ -36,21 +36,21 @@ class _RangeBase(Plugin[Any]):
         if min(noise or 0.0, rate, drift, frequency) < 0:
             raise PluginError("a rate, drift or noise cannot be below 0", origin=self.tag.origin)
         self._scanner = Scanner(self.part, self.sensor)
-        own = self._scanner.pattern.noise
         self._fov = min(self._scanner.pattern.field_of_view) if fov is None else fov
         self._infrared = infrared
         self._frame = self.frame(frame or self.sensor.link)
         rates = [hertz for hertz in (rate, self.sensor.update_rate) if hertz > 0]
         slower = min(rates, default=0.0)
         # Gazebo leaves the sensor's own noise out; who states that alone means it.
+        self._own_noise = noise is None
         self._error = DriftingError(
             self.part,
             f"range {self.sensor.link} {self.sensor.name}",
             rate=slower,
-            offset=[offset + (own.mean if noise is None else 0.0)],
+            offset=[offset],
             drift=[drift],
             frequency=[frequency],
-            noise=[own.stddev if noise is None else noise],
+            noise=[noise or 0.0],
             scale=[1.0],
         )
         self._publisher = self.advertise(
@@ -66,6 +66,8 @@ class _RangeBase(Plugin[Any]):
         ranges = self._scanner.measure(noisy=False).ranges
         value = float(np.clip(ranges.min(), pattern.minimum, pattern.maximum))
         if value < pattern.maximum:
+            if self._own_noise:
+                (value,) = self._scanner.error.add([value])
             value = float(self._error.add([value])[0])
             value = min(max(value, pattern.minimum), pattern.maximum)
         moment = header(self.part.time_ns, self._frame)

@@ -11,7 +11,7 @@ import numpy as np
 from cartwheel.description.model import Element, Sensor
 from cartwheel.errors import Diagnostic, Origin, PluginError
 from cartwheel.geometry import Array
-from cartwheel.plugins.noise import Noise, read_noise
+from cartwheel.plugins.noise import Noise, VectorNoise, read_noise
 from cartwheel.simulation import Part
 
 _MOST_RAYS = 4_000_000
@@ -50,8 +50,6 @@ class ScanPattern:
     maximum: float
     """m."""
     noise: Noise
-    precision: float
-    """m; ranges are multiples of it where it is above 0."""
 
     @property
     def field_of_view(self) -> tuple[float, float]:
@@ -108,21 +106,12 @@ def read_pattern(sensor: Sensor, report: Callable[[Diagnostic], None]) -> ScanPa
             origin=limits.origin if limits is not None else ray.origin,
         )
     noise = ray.find("noise") or sensor.element.find("noise")
-    kind = noise.find("type") if noise is not None else None
-    quantized = kind is not None and kind.text.strip() == "gaussian_quantized"
-    precision = _number(noise, "precision", 0.0) if quantized else 0.0
-    if precision < 0:
-        raise PluginError(
-            "the <precision> of a noise cannot be below 0",
-            origin=noise.origin if noise is not None else ray.origin,
-        )
     return ScanPattern(
         horizontal=horizontal,
         vertical=vertical,
         minimum=minimum,
         maximum=maximum,
-        noise=read_noise(noise),
-        precision=precision,
+        noise=read_noise(noise, report),
     )
 
 
@@ -228,7 +217,8 @@ class Scanner:
             maximum=self.pattern.maximum,
             visuals=sensor.type in _GPU_TYPES,
         )
-        self._bias = self._draw_bias()
+        self.error = VectorNoise(part, self._name, [self.pattern.noise], rate=sensor.update_rate)
+        """That of one range; mean and bias are those of all rays."""
 
     def measure(self, *, noisy: bool = True) -> Scan:
         """The ranges of this moment, with the sensor's own noise where `noisy`."""
@@ -243,11 +233,11 @@ class Scanner:
         return self._part.random(f"{self._name} {purpose}")
 
     def _blur(self, ranges: Array) -> None:
-        noise, precision = self.pattern.noise, self.pattern.precision
-        if noise == Noise() and not precision:
+        noise, precision = self.pattern.noise, self.pattern.noise.precision
+        if noise == Noise():
             return
         measured = np.isfinite(ranges)
-        blurred = ranges + (noise.mean + self._bias)
+        blurred = ranges + self.error.offset
         if noise.stddev > 0:
             # One for each ray, so that what one ray meets changes no other's noise.
             blurred += self.random("noise").normal(0.0, noise.stddev, ranges.shape)
@@ -255,10 +245,3 @@ class Scanner:
             blurred = np.round(blurred / precision) * precision
         np.clip(blurred, self.pattern.minimum, self.pattern.maximum, out=blurred)
         ranges[measured] = blurred[measured]
-
-    def _draw_bias(self) -> float:
-        noise = self.pattern.noise
-        random = self.random("bias")
-        bias = float(random.normal(noise.bias_mean, noise.bias_stddev))
-        # Gazebo gives a bias either sign.
-        return bias if random.random() < 0.5 else -bias

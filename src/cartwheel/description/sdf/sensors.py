@@ -6,7 +6,8 @@ import math
 
 from cartwheel.description.model import CameraIntrinsics, PluginTag, Sensor
 from cartwheel.description.sdf.context import read_pose
-from cartwheel.description.xml import Node, to_element
+from cartwheel.description.sdf.sensor_tags import mark_known
+from cartwheel.description.xml import Node, copied, to_element
 from cartwheel.geometry import Pose
 
 
@@ -41,6 +42,7 @@ def read_sensor(node: Node, link: str, pose: Pose | None = None, name: str = "")
     if update_rate < 0:
         raise node.fail(f'the update_rate of sensor "{title}" must not be below 0')
     cameras = [read_camera(camera) for camera in node.all("camera")]
+    mark_known(node)
     contact = node.child("contact")
     collisions = [each.text for each in contact.all("collision")] if contact is not None else []
     topic = node.text_at("topic").strip()
@@ -58,7 +60,7 @@ def read_sensor(node: Node, link: str, pose: Pose | None = None, name: str = "")
         cameras=tuple(cameras),
         collisions=tuple(name for name in collisions if name and name != "__default__"),
         plugins=tuple(read_plugins(node)),
-        element=to_element(node),
+        element=copied(node),
         origin=node.origin,
     )
 
@@ -83,6 +85,7 @@ def read_camera(node: Node) -> CameraIntrinsics:
         )
     centre = node.find("distortion/center")
     cx, cy = centre.vector(2) if centre is not None else default.distortion_center
+    mean, stddev = _noise(node.child("noise"))
     return CameraIntrinsics(
         name=(node.get("name") or "").strip(),
         pose=read_pose(node.child("pose")),
@@ -98,6 +101,21 @@ def read_camera(node: Node) -> CameraIntrinsics:
         p1=node.number_at("distortion/p1", 0.0),
         p2=node.number_at("distortion/p2", 0.0),
         distortion_center=(cx, cy),
-        noise_mean=node.number_at("noise/mean", 0.0),
-        noise_stddev=node.number_at("noise/stddev", 0.0),
+        noise_mean=mean,
+        noise_stddev=stddev,
     )
+
+
+def _noise(node: Node | None) -> tuple[float, float]:
+    """Mean and standard deviation of a pixel's noise, of its full brightness."""
+    if node is None:
+        return 0.0, 0.0
+    kind = (node.text_at("type") or node.get("type") or "gaussian").strip()
+    if kind == "none":
+        return 0.0, 0.0
+    if kind != "gaussian":
+        raise node.fail(f'noise of type "{kind}" is not supported', "There are: none, gaussian.")
+    mean, stddev = node.number_at("mean", 0.0), node.number_at("stddev", 0.0)
+    if stddev < 0:
+        raise node.fail("<stddev> of a noise makes no sense below 0")
+    return mean, stddev
