@@ -11,10 +11,12 @@ import mujoco
 from cartwheel.description.model import WorldDescription
 from cartwheel.errors import Diagnostic, SimulationError
 from cartwheel.geometry import Pose, Vec3, from_wxyz, quat_conjugate, rotate, to_wxyz
+from cartwheel.simulation.bouncing import Bounces
 from cartwheel.simulation.clock import Task, to_ns
 from cartwheel.simulation.directions import Directions
 from cartwheel.simulation.rendering import Renderer
 from cartwheel.world.build import step_of
+from cartwheel.world.contact import Bounce
 from cartwheel.world.entry import scoped
 from cartwheel.world.pairs import Alignment
 
@@ -86,12 +88,15 @@ class Engine:
         for callback in self.on_diagnostic:
             callback(diagnostic)
 
-    def replace(self, model: Any, alignments: Sequence[Alignment] = ()) -> None:
+    def replace(
+        self, model: Any, alignments: Sequence[Alignment] = (), bounces: Sequence[Bounce] = ()
+    ) -> None:
         """Goes on with another model, with the state of every joint that both have.
 
         Args:
             model: MuJoCo's.
             alignments: In which directions friction counts.
+            bounces: The surfaces that bounce.
         """
         model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_AUTORESET
         data = mujoco.MjData(model)
@@ -103,6 +108,7 @@ class Engine:
         except SimulationError as error:
             hint = f" {error.hint}" if error.hint else ""
             self.report(Diagnostic(severity="warning", message=f"{error.message}.{hint}"))
+        self._bounces = Bounces(model, bounces) if len(bounces) > 1 else None
         self.renderer.bind(model)
 
     def forward(self) -> None:
@@ -125,6 +131,14 @@ class Engine:
         """
         self.step += count
         self.time_ns += count * self.step_ns
+        if self._bounces is not None:
+            for each in range(count):
+                if each or not forwarded:
+                    self.forward()
+                if self._bounces.apply(self.model, self.data):
+                    self.forward()
+                mujoco.mj_Euler(self.model, self.data)
+            return
         if forwarded:
             mujoco.mj_Euler(self.model, self.data)
             count -= 1

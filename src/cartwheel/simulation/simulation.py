@@ -571,7 +571,7 @@ class Simulation(Run):
         """Compiles a new set of models and carries over the state of those that stay."""
         entries = [resident.entry for resident in residents.values()]
         built = build(self.world, [self._house.entry, *entries])
-        self.engine.replace(built.model, built.alignments)
+        self.engine.replace(built.model, built.alignments, built.bounces)
         step_ns = to_ns(step_of(self.world))
         if step_ns != self.engine.step_ns:
             self.engine.set_step(step_ns)

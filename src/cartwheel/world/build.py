@@ -34,6 +34,8 @@ class Build:
     model: mujoco.MjModel
     alignments: tuple[pairs.Alignment, ...] = ()
     """In which directions friction counts where it is not the same in all."""
+    bounces: tuple[contact.Bounce, ...] = ()
+    """The surfaces that bounce."""
     xml: str | None = None
 
 
@@ -92,7 +94,13 @@ def build(world: WorldDescription, entries: Iterable[ModelEntry], *, xml: bool =
         # For the text alone: the compiled model has it.
         made = spec.joint(model.joint(index).name)
         made.damping = [made.damping[0], made.damping[1], coefficient]
-    return Build(model=model, alignments=tuple(alignments), xml=spec.to_xml() if xml else None)
+    bounces = (contact.bounce(surface.name, surface.surface) for surface in bodies.surfaces)
+    return Build(
+        model=model,
+        alignments=tuple(alignments),
+        bounces=tuple(each for each in bounces if each is not None),
+        xml=spec.to_xml() if xml else None,
+    )
 
 
 def _judge_without_rotors(model: mujoco.MjModel) -> None:

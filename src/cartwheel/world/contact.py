@@ -34,6 +34,8 @@ FRICTION_TIME_CONSTANT = 0.03
 """s; in which a slip that the friction can hold dies out. Below mu g T/2 friction is viscous."""
 TORSION = 0.005
 """m; MuJoCo's own, which no contact of three dimensions looks at."""
+NO_BOUNCE = 1e5
+"""m/s; SDF's default threshold, which nothing reaches."""
 ALL_BITS = 0xFFFF
 """SDF's default of both bitmasks."""
 FRICTION_IMPEDANCE_RATIO = 100.0
@@ -56,6 +58,25 @@ class BuiltSurface:
     surface: Surface
     direction: tuple[str, Vec3] | None = None
     """Along which mu1 counts, in the axes of a body; None where the description states none."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Bounce:
+    """A geom that throws back what meets it, if that bounces too."""
+
+    geom: str
+    restitution: float
+    """Speed after an impact by speed before; of two surfaces the smaller counts."""
+    threshold: float
+    """m/s: what meets more slowly does not bounce; of two surfaces the smaller counts."""
+
+
+def bounce(geom: str, surface: Surface) -> Bounce | None:
+    """How a surface bounces; None where it does not, as without a threshold in Gazebo."""
+    restitution, threshold = surface.restitution, surface.bounce_threshold
+    if not restitution or threshold is None or threshold >= NO_BOUNCE:
+        return None
+    return Bounce(geom=geom, restitution=min(restitution, 1.0), threshold=threshold)
 
 
 def friction(surface: Surface) -> tuple[float, float, float]:

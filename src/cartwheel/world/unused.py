@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from cartwheel.description.meshes import standing_parts
 from cartwheel.description.model import Mesh, RobotDescription
 from cartwheel.errors import Diagnostic, Origin
+from cartwheel.world import contact
 
 _SURFACE = {
     "slip1": "friction is Coulomb's",
@@ -14,7 +15,6 @@ _SURFACE = {
     "min_depth": "contacts are as hard as the step allows",
     "max_vel": "contacts part as fast as they must",
     "max_contacts": "all contacts count",
-    "restitution": "nothing bounces",
     "surface_radius": "the patch that touches does not grow with depth: state a patch_radius",
     "collide_without_contact": "it touches nothing, and a contact sensor does not see it",
 }
@@ -44,6 +44,11 @@ def unused(description: RobotDescription) -> Iterator[Diagnostic]:
                 # 0 is what Gazebo writes where nothing is asked for.
                 if getattr(surface, field):
                     note(field, collision.origin, why)
+            if surface.restitution and contact.bounce("", surface) is None:
+                why = "nothing reaches its <threshold>, which is 100000 m/s where none is stated"
+                note("restitution", collision.origin, why)
+            if (surface.restitution or 0.0) > 1:
+                note("a restitution above 1", collision.origin, "an impact gains no energy")
         if link.linear_damping or link.angular_damping:
             note("velocity decay", link.origin, "the air does not brake")
     heeded = _controlled(description)
