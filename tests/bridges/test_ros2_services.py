@@ -109,6 +109,27 @@ def test_states_are_set_and_got(bridged: Ros2Bridged, peer: Peer) -> None:
     assert not none.success
 
 
+def test_properties_are_told_and_set(bridged: Ros2Bridged, peer: Peer) -> None:
+    told = peer.call(
+        "/get_model_properties", "gazebo_msgs/srv/GetModelProperties", {"model_name": "rosbots"}
+    )
+    assert told.success, told.status_message
+    assert "rosbots::camera_link" in told.body_names
+    (cart,) = [placed for placed in bridged.simulation.scene.models if placed.name == "rosbots"]
+    joint = next(one.name for one in cart.description.joints if one.type == "continuous")
+    assert joint in told.joint_names
+    done = peer.call(
+        "/set_joint_properties",
+        "gazebo_msgs_ros2/srv/SetJointProperties",
+        {"joint_name": joint, "ode_joint_config": {"damping": [0.25]}},
+    )
+    assert done.success, done.status_message
+    found = peer.call(
+        "/get_joint_properties", "gazebo_msgs/srv/GetJointProperties", {"joint_name": joint}
+    )
+    assert found.damping.tolist() == [0.25]
+
+
 def test_time_is_held_and_reset(bridged: Ros2Bridged, peer: Peer) -> None:
     simulation = bridged.simulation
     peer.call("/pause_physics", "std_srvs/srv/Empty", {})

@@ -61,21 +61,22 @@ CHAIN = """<model name="chain"><pose>0 0 4 0 0 0</pose>
 class Gazebo:
     """Calls services as another thread would, while this one owns the simulation."""
 
-    def __init__(self, world, **more):
+    def __init__(self, world, *, api=GazeboApi, prefix="/gazebo", **more):
         self.world = world
+        self.prefix = prefix
         self.simulation = world.session.simulation
-        self.api = GazeboApi(world.session, **more)
+        self.api = api(world.session, **more)
         self.api.start()
 
-    def request(self, name, **fields):
-        service = self.world.graph.service(f"/gazebo/{name}")
+    def request(self, name, /, **fields):
+        service = self.world.graph.service(f"{self.prefix}/{name}")
         return from_dict(f"{service.type}_Request", fields)
 
-    def __call__(self, name, request=None, **fields):
+    def __call__(self, name, /, request=None, **fields):
         request = self.request(name, **fields) if request is None else request
         found = []
         thread = threading.Thread(
-            target=lambda: found.append(self.world.graph.call(f"/gazebo/{name}", request))
+            target=lambda: found.append(self.world.graph.call(f"{self.prefix}/{name}", request))
         )
         thread.start()
         while thread.is_alive():
@@ -84,13 +85,13 @@ class Gazebo:
         self.simulation.drain()
         return found[0].result(timeout=60)
 
-    def done(self, name, **fields):
+    def done(self, name, /, **fields):
         """The answer of a call that must succeed."""
         answer = self(name, **fields)
         assert answer.success, answer.status_message
         return answer
 
-    def refused(self, name, **fields):
+    def refused(self, name, /, **fields):
         """The message of a call that must fail, and changes nothing."""
         before = self.simulation.data.qpos.copy(), self.simulation.data.qvel.copy()
         models = self.simulation.models

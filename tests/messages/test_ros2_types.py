@@ -58,6 +58,40 @@ SERVICES = {
     "rcl_interfaces/srv/SetParameters": (
         "56eed9a67e169f9cb6c1f987bc88f868c14a8fc9f743a263bc734c154015d7e0"
     ),
+    # As rosidl_generator_type_description hashes gazebo_msgs 3.9 and simulation_interfaces 2.1.
+    "gazebo_msgs/srv/SpawnEntity": (
+        "a01b6c5a00d47ced8923b43e9e24764fcaa176d2eac6d88163cdb50a02f6cfb5"
+    ),
+    "gazebo_msgs/srv/SetEntityState": (
+        "a7ec3c56a44484ff2b7fbf0449c4bc39366a93d940f335b891f7851b1c46fdc5"
+    ),
+    "gazebo_msgs/srv/ApplyLinkWrench": (
+        "726243c2279f825204c81c4416019a06cbf02c55996f8a1a4fb7123ecf38a0d2"
+    ),
+    "gazebo_msgs/srv/ApplyJointEffort": (
+        "3e94edd0b2942718ab07ae1b6ca5caefd2d2948d756265ea142fe4244e5e706a"
+    ),
+    "gazebo_msgs/srv/GetModelProperties": (
+        "49525097678f4c00f1d0b1f79649f4b212403225dce6e70b959ce52b7336a23f"
+    ),
+    "gazebo_msgs_ros2/srv/SetJointProperties": (
+        "7a8f5721f145da5e51e724d8584bbaf2cec821128ef8ce3fa19cd1d36a5f0656"
+    ),
+    "gazebo_msgs_ros2/srv/SetLightProperties": (
+        "0f9f2e73a54e9e372274608c302437a4a044c6d489712b1f71af88e8ac9bb529"
+    ),
+    "simulation_interfaces/srv/GetSimulatorFeatures": (
+        "abb9439c8cf196722a469fb6c68b44b484f198c2a1356ac38849a29c2a20a794"
+    ),
+    "simulation_interfaces/srv/SpawnEntity": (
+        "66860313e11009faddbfc8568e5d410d1a11607fe75eeb1308671dc0406fe3a7"
+    ),
+    "simulation_interfaces/srv/GetEntitiesStates": (
+        "0a76170d0c1c90e1eaf805cfab78ea801d1f82df309a28c1f0fae4b570f19754"
+    ),
+    "simulation_interfaces/srv/ResetSimulation": (
+        "4ce285d7ff9b8ac70dcc95161f32bf54c05a6f4b13427990e41ab40c36c39646"
+    ),
 }
 
 

@@ -16,11 +16,12 @@ from cartwheel.simulation import Simulation
 
 
 class Pushes:
-    """apply_body_wrench, clear_body_wrenches, apply_joint_effort and clear_joint_forces.
+    """Wrenches on links and efforts on joints, by ROS 1's names and by ROS 2's.
 
     A wrench is turned into the world's axes when it is asked for, and does not turn with the
     body. In the world's frame and in the body's own, the reference point counts from the body's
-    centre of mass; in any other it is that point. Source: gazebo_ros, ``applyBodyWrench``.
+    centre of mass; in any other it is that point. Source: gazebo_ros, ``applyBodyWrench``;
+    gazebo_ros_force_system.
     """
 
     def __init__(
@@ -31,7 +32,7 @@ class Pushes:
         self._report = report
 
     def offers(self) -> list[Offer]:
-        """The services."""
+        """The services of ROS 1."""
         package = "gazebo_msgs/srv"
         return [
             Offer("apply_body_wrench", f"{package}/ApplyBodyWrench", self.apply_body_wrench),
@@ -40,9 +41,27 @@ class Pushes:
             Offer("clear_joint_forces", f"{package}/JointRequest", self.clear_joint_forces),
         ]
 
+    def ros2_offers(self) -> list[Offer]:
+        """The services of ROS 2."""
+        package = "gazebo_msgs/srv"
+        return [
+            Offer("apply_link_wrench", f"{package}/ApplyLinkWrench", self.apply_link_wrench),
+            Offer("clear_link_wrenches", f"{package}/LinkRequest", self.clear_link_wrenches),
+            Offer("apply_joint_effort", f"{package}/ApplyJointEffort", self.apply_joint_effort),
+            Offer("clear_joint_efforts", f"{package}/JointRequest", self.clear_joint_efforts),
+        ]
+
     def apply_body_wrench(self, request: Any) -> Answer:
+        self._push(request.body_name, request)
+        return Answer("ApplyBodyWrench: wrench set")
+
+    def apply_link_wrench(self, request: Any) -> Answer:
+        self._push(request.link_name, request)
+        return Answer("ApplyLinkWrench: wrench set")
+
+    def _push(self, name: str, request: Any) -> None:
         simulation = self._simulation
-        model, link = self._entities.link(request.body_name)
+        model, link = self._entities.link(name)
         force = vector(request.wrench.force, "wrench.force", most=STRONGEST)
         torque = vector(request.wrench.torque, "wrench.torque", most=STRONGEST)
         point = vector(request.reference_point, "reference_point")
@@ -63,7 +82,6 @@ class Pushes:
         simulation.forces.wrench(
             model, link.name, force=turned, torque=(x, y, z), start_ns=start, duration_ns=duration
         )
-        return Answer("ApplyBodyWrench: wrench set")
 
     def clear_body_wrenches(self, request: Any) -> Answer:
         try:
@@ -72,6 +90,11 @@ class Pushes:
             self._report(f"/gazebo/clear_body_wrenches: {one_line(error)}")
         else:
             self._simulation.forces.clear_wrenches(model, link.name)
+        return Answer()
+
+    def clear_link_wrenches(self, request: Any) -> Answer:
+        model, link = self._entities.link(request.link_name)
+        self._simulation.forces.clear_wrenches(model, link.name)
         return Answer()
 
     def apply_joint_effort(self, request: Any) -> Answer:
@@ -100,6 +123,11 @@ class Pushes:
             self._report(f"/gazebo/clear_joint_forces: {one_line(error)}")
         else:
             self._simulation.forces.clear_efforts(model, joint.name)
+        return Answer()
+
+    def clear_joint_efforts(self, request: Any) -> Answer:
+        model, joint = self._entities.joint(request.joint_name)
+        self._simulation.forces.clear_efforts(model, joint.name)
         return Answer()
 
 

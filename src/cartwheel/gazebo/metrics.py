@@ -34,11 +34,13 @@ class Metrics:
     gazebo_ros_api_plugin.
     """
 
-    def __init__(self, simulation: Simulation, graph: Graph, node: str) -> None:
+    def __init__(
+        self, simulation: Simulation, graph: Graph, node: str, *, prefix: str = "/gazebo"
+    ) -> None:
         self._simulation = simulation
         self._graph = graph
         self._publisher = graph.advertise(
-            "/gazebo/performance_metrics",
+            f"{prefix}/performance_metrics",
             "gazebo_msgs/msg/PerformanceMetrics",
             node=node,
             rate=RATE,

@@ -21,6 +21,7 @@ from cartwheel.gazebo.requests import (
 )
 from cartwheel.messages import message_class
 from cartwheel.simulation import Simulation
+from cartwheel.world.entry import scoped
 
 _JOINT_TYPES = {
     "revolute": 0,
@@ -31,6 +32,19 @@ _JOINT_TYPES = {
     "universal": 5,
 }
 _NO_TYPE = 255
+_JOINT_FIELDS = (
+    "damping",
+    "hiStop",
+    "loStop",
+    "erp",
+    "cfm",
+    "stop_erp",
+    "stop_cfm",
+    "fudge_factor",
+    "fmax",
+    "vel",
+)
+_IN_ROS2 = {"hiStop": "hi_stop", "loStop": "lo_stop"}
 _HEAVIEST = 1e9
 """kg, kg m², N m s/rad."""
 
@@ -39,7 +53,7 @@ class Properties:
     """``get_`` and ``set_`` of properties.
 
     What is set becomes part of the model's description: it outlasts what is spawned and deleted
-    later, and a reset. Source: gazebo_ros, gazebo_ros_api_plugin.
+    later, and a reset. Source: gazebo_ros, gazebo_ros_api_plugin; gazebo_ros_properties.
     """
 
     def __init__(self, simulation: Simulation, entities: Entities) -> None:
@@ -47,7 +61,7 @@ class Properties:
         self._entities = entities
 
     def offers(self) -> list[Offer]:
-        """The services."""
+        """The services of ROS 1."""
         package = "gazebo_msgs/srv"
         return [
             Offer(
@@ -71,6 +85,34 @@ class Properties:
                 "set_light_properties", f"{package}/SetLightProperties", self.set_light_properties
             ),
         ]
+
+    def ros2_offers(self) -> list[Offer]:
+        """The services of ROS 2: some of ROS 1's, with types of their own where those differ."""
+        own = [
+            Offer(
+                "get_model_properties",
+                "gazebo_msgs/srv/GetModelProperties",
+                self.get_scoped_properties,
+            ),
+            Offer(
+                "set_joint_properties",
+                "gazebo_msgs_ros2/srv/SetJointProperties",
+                self.set_joint_properties,
+            ),
+            Offer(
+                "set_light_properties", "gazebo_msgs_ros2/srv/SetLightProperties", self.set_light
+            ),
+        ]
+        without = {"get_world_properties", *(offer.name for offer in own)}
+        return [*own, *(offer for offer in self.offers() if offer.name not in without)]
+
+    def get_scoped_properties(self, request: Any) -> Answer:
+        """As ROS 2 tells them: links have their model's name before theirs."""
+        answer = self.get_model_properties(request)
+        model, told = request.model_name, answer.fields
+        told["canonical_body_name"] = scoped(model, told["canonical_body_name"])
+        told["body_names"] = [scoped(model, name) for name in told["body_names"]]
+        return answer
 
     def get_model_properties(self, request: Any) -> Answer:
         description = self._entities.model(request.model_name)
@@ -160,20 +202,10 @@ class Properties:
         config = request.ode_joint_config
         given = {
             field: [
-                number(v, f"ode_joint_config.{field}", most=1e308) for v in getattr(config, field)
+                number(v, f"ode_joint_config.{name}", most=1e308) for v in getattr(config, name)
             ]
-            for field in (
-                "damping",
-                "hiStop",
-                "loStop",
-                "erp",
-                "cfm",
-                "stop_erp",
-                "stop_cfm",
-                "fudge_factor",
-                "fmax",
-                "vel",
-            )
+            for field in _JOINT_FIELDS
+            for name in (field if hasattr(config, field) else _IN_ROS2[field],)
         }
         changed, notes = _joint_with(joint, given)
         driven = {field: given[field][0] for field in ("fmax", "vel") if given[field]}
@@ -218,35 +250,42 @@ class Properties:
 
     def set_light_properties(self, request: Any) -> Answer:
         light = self._entities.light(request.light_name)
-        where = pose(request.pose, "pose")
         direction = vector(request.direction, "direction")
-        notes = []
-        if not any(direction):
-            direction = light.direction
-        if request.cast_shadows:
-            notes.append("no shadows are drawn")
-        changed = Light(
-            name=light.name,
-            type=light.type,
-            pose=where,
-            diffuse=_colour(request.diffuse, "diffuse"),
+        changed = dataclasses.replace(
+            _lit(light, request),
+            pose=pose(request.pose, "pose"),
             specular=_colour(request.specular, "specular"),
-            direction=direction,
-            range=light.range,
-            attenuation=(
-                number(request.attenuation_constant, "attenuation_constant"),
-                number(request.attenuation_linear, "attenuation_linear"),
-                number(request.attenuation_quadratic, "attenuation_quadratic"),
-            ),
-            spot_angle=light.spot_angle,
+            direction=direction if any(direction) else light.direction,
             cast_shadows=bool(request.cast_shadows),
-            origin=light.origin,
         )
+        self._relight(light, changed)
+        notes = ("no shadows are drawn",) if request.cast_shadows else ()
+        return Answer("SetLightProperties: properties set", notes=notes)
+
+    def set_light(self, request: Any) -> Answer:
+        """ROS 2's request, which leaves where a light is, and its highlights."""
+        light = self._entities.light(request.light_name)
+        self._relight(light, _lit(light, request))
+        return Answer("SetLightProperties: properties set")
+
+    def _relight(self, light: Light, changed: Light) -> None:
         if changed != light:
             world = self._simulation.world
             lights = tuple(changed if each is light else each for each in world.lights)
             self._simulation.change_world(dataclasses.replace(world, lights=lights))
-        return Answer("SetLightProperties: properties set", notes=tuple(notes))
+
+
+def _lit(light: Light, request: Any) -> Light:
+    """A light with what ROS 1 and ROS 2 set of it."""
+    return dataclasses.replace(
+        light,
+        diffuse=_colour(request.diffuse, "diffuse"),
+        attenuation=(
+            number(request.attenuation_constant, "attenuation_constant"),
+            number(request.attenuation_linear, "attenuation_linear"),
+            number(request.attenuation_quadratic, "attenuation_quadratic"),
+        ),
+    )
 
 
 def _nested(description: RobotDescription) -> list[str]:

@@ -8,7 +8,10 @@ from typing import Any
 
 from cartwheel.errors import CartwheelError, UnknownNameError
 from cartwheel.gazebo.entities import Entities
+from cartwheel.gazebo.forces import Pushes
+from cartwheel.gazebo.metrics import Metrics
 from cartwheel.gazebo.physics import Physics
+from cartwheel.gazebo.properties import Properties
 from cartwheel.gazebo.requests import (
     Answer,
     Offer,
@@ -23,6 +26,7 @@ from cartwheel.gazebo.spawning import Spawning
 from cartwheel.gazebo.state import States, StateTopics
 from cartwheel.graph import Service
 from cartwheel.messages import header, message_class
+from cartwheel.plugins.catalogue import short_name
 from cartwheel.session import Session
 
 NODE = "gazebo"
@@ -32,8 +36,10 @@ class Ros2Api:
     """Offers what Gazebo offers in ROS 2, and simulation_interfaces.
 
     A request that cannot be met is answered with ``success`` false and, where the response has
-    room for it, the reason; it never changes anything by half. Source: gazebo_ros 3,
-    gazebo_ros_init, gazebo_ros_factory, gazebo_ros_state.
+    room for it, the reason; it never changes anything by half. What Gazebo has from plugins of the
+    world is there without them; those add the namespaces that they state. Source: gazebo_ros 3,
+    gazebo_ros_init, gazebo_ros_factory, gazebo_ros_force_system, gazebo_ros_state,
+    gazebo_ros_properties.
 
     Args:
         session: To act on.
@@ -47,11 +53,13 @@ class Ros2Api:
         self._entities = Entities(session.simulation)
         self._spawning = Spawning(session, self._entities, package_path)
         self._states = States(session.simulation, self._entities)
+        self._properties = Properties(session.simulation, self._entities)
+        self._pushes = Pushes(session.simulation, self._entities, self._tell)
         self._interfaces = SimulationInterfaces(
             session, self._entities, self._spawning, self._states, package_path
         )
         self._services: list[Service] = []
-        self._topics: StateTopics | None = None
+        self._topics: list[StateTopics | Metrics] = []
 
     def start(self) -> None:
         """Advertises everything; on the owner's thread, or before there is one.
@@ -72,16 +80,18 @@ class Ros2Api:
                     )
                 )
             self._services += self._interfaces.start(NODE)
-            self._topics = StateTopics(self._simulation, graph, NODE, prefix="")
+            for prefix in self._namespaces("gazebo_ros_state"):
+                self._topics.append(StateTopics(self._simulation, graph, NODE, prefix=prefix))
+            self._topics.append(Metrics(self._simulation, graph, NODE, prefix=""))
         except CartwheelError:
             self.close()
             raise
 
     def close(self) -> None:
         """Takes everything off the graph."""
-        if self._topics is not None:
-            self._topics.close()
-            self._topics = None
+        for topic in self._topics:
+            topic.close()
+        self._topics.clear()
         self._interfaces.close()
         for service in self._services:
             self._session.graph.withdraw(service)
@@ -95,22 +105,42 @@ class Ros2Api:
             if offer.name in own
         ]
         package = "gazebo_msgs/srv"
-        # gazebo_ros_state is loaded with a namespace by some worlds and without by others.
         states = [
             offer
-            for prefix in ("", "/gazebo")
+            # Where most worlds have it.
+            for prefix in dict.fromkeys((*self._namespaces("gazebo_ros_state"), "/gazebo"))
             for offer in (
                 Offer(f"{prefix}/get_entity_state", f"{package}/GetEntityState", self._get_state),
                 Offer(f"{prefix}/set_entity_state", f"{package}/SetEntityState", self._set_state),
             )
         ]
+        properties = [
+            Offer(f"{prefix}/{offer.name}", offer.type, offer.handler)
+            for prefix in self._namespaces("gazebo_ros_properties")
+            for offer in self._properties.ros2_offers()
+        ]
+        pushes = [
+            Offer(f"/{offer.name}", offer.type, offer.handler)
+            for offer in self._pushes.ros2_offers()
+        ]
         return [
             *physics,
+            *pushes,
+            *properties,
             Offer("/spawn_entity", f"{package}/SpawnEntity", self._spawn, threaded=True),
             Offer("/delete_entity", f"{package}/DeleteEntity", self._delete),
             Offer("/get_model_list", f"{package}/GetModelList", self._list_models),
             *states,
         ]
+
+    def _namespaces(self, plugin: str) -> list[str]:
+        """The root, and those that the world's plugins of that name state."""
+        found = [""]
+        for tag in self._simulation.world.plugins:
+            stated = tag.element.find("ros/namespace")
+            if short_name(tag.filename) == plugin and stated is not None:
+                found.append(f"/{stated.text.strip().strip('/')}".rstrip("/"))
+        return list(dict.fromkeys(found))
 
     def _spawn(self, request: Any) -> Answer:
         self._spawning.spawn_text(

@@ -85,6 +85,8 @@ class SimulationInterfaces:
         self._original: frozenset[str] = frozenset()
         self._action: Action | None = None
         self._stepping = False
+        self._stopped = False
+        """Whether it was stopped and not paused since, as far as requests say."""
 
     def start(self, node: str) -> list[Service]:
         """Offers everything; what stands in the world now is what a reset leaves there."""
@@ -259,17 +261,23 @@ class SimulationInterfaces:
         response.state.state = self._run_state()
 
     def _run_state(self) -> int:
+        simulation = self._simulation
+        at_start = simulation.run_state is RunState.PAUSED and not simulation.time_ns
+        self._stopped = self._stopped and at_start
+        if self._stopped:
+            return _STOPPED
         states = {
             RunState.RUNNING: _PLAYING,
             RunState.PAUSED: _PAUSED,
             RunState.STOPPED: _QUITTING,
         }
-        return states[self._simulation.run_state]
+        return states[simulation.run_state]
 
     def _set_run_state(self, request: Any, _: Any) -> None:
         wanted, simulation = request.state.state, self._simulation
         if wanted == self._run_state():
             raise _Refusal(_ALREADY, "it is in that state already")
+        self._stopped = wanted == _STOPPED
         if wanted == _PLAYING:
             simulation.resume()
         elif wanted == _PAUSED:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import re
 from dataclasses import dataclass
 from typing import Any
 
@@ -19,7 +20,15 @@ _ROS1_ONLY = frozenset(
     }
 )
 """Packages that ROS 2 does not have, or whose texts here are ROS 1's alone."""
-_ROS1_TYPES = frozenset({"rosgraph_msgs/msg/Log"})
+_ROS1_TYPES = frozenset(
+    {
+        "rosgraph_msgs/msg/Log",
+        "gazebo_msgs/msg/ODEJointProperties",
+        "gazebo_msgs/srv/SetJointProperties",
+        "gazebo_msgs/srv/SetLightProperties",
+    }
+)
+_PART = re.compile(r"_(Request|Response)\Z")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -117,7 +126,7 @@ def twin_name(name: str) -> str:
 
 def is_ros1_only(name: str) -> bool:
     """Whether a type is none that a ROS 2 program could know."""
-    return name.partition("/")[0] in _ROS1_ONLY or name in _ROS1_TYPES
+    return name.partition("/")[0] in _ROS1_ONLY or _PART.sub("", name) in _ROS1_TYPES
 
 
 def dds_name(name: str) -> str:

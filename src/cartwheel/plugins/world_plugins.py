@@ -16,7 +16,9 @@ _BUILT_IN = {
     "gz-sim-scene-broadcaster-system",
     "gazebo_ros_init",
     "gazebo_ros_factory",
+    "gazebo_ros_force_system",
     "gazebo_ros_state",
+    "gazebo_ros_properties",
     "gazebo_ros_api_plugin",
     "gazebo_ros_paths_plugin",
 }
