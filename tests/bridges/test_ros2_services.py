@@ -127,6 +127,7 @@ def test_properties_are_told_and_set(bridged: Ros2Bridged, peer: Peer) -> None:
     found = peer.call(
         "/get_joint_properties", "gazebo_msgs/srv/GetJointProperties", {"joint_name": joint}
     )
+    assert found.success, found.status_message
     assert found.damping.tolist() == [0.25]
 
 

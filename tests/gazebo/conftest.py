@@ -5,7 +5,7 @@ import threading
 import pytest
 
 from cartwheel.gazebo import GazeboApi
-from cartwheel.messages import from_dict
+from cartwheel.messages import encode_cdr, from_dict
 
 # As a Gazebo 11 lists them, types in ROS 2's spelling.
 SERVICES = {
@@ -83,7 +83,10 @@ class Gazebo:
             self.simulation.drain()
             thread.join(0.001)
         self.simulation.drain()
-        return found[0].result(timeout=60)
+        answer = found[0].result(timeout=60)
+        # Whichever wire it goes out on.
+        encode_cdr(answer)
+        return answer
 
     def done(self, name, /, **fields):
         """The answer of a call that must succeed."""

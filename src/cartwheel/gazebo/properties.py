@@ -6,6 +6,8 @@ import dataclasses
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+import numpy as np
+
 from cartwheel.description.inertia import impossibility, principal_moments
 from cartwheel.description.model import Inertial, Joint, Light, RobotDescription
 from cartwheel.errors import GraphError, WorldError
@@ -188,9 +190,9 @@ class Properties:
         axes = [joint.axis] if joint.axis2 is None else [joint.axis, joint.axis2]
         fields = {
             "type": _JOINT_TYPES.get(joint.type, _NO_TYPE),
-            "damping": [axis.damping for axis in axes] if positions else [],
-            "position": positions,
-            "rate": rates,
+            "damping": np.array([axis.damping for axis in axes] if positions else []),
+            "position": np.array(positions),
+            "rate": np.array(rates),
         }
         notes: tuple[str, ...] = ()
         if joint.type not in _JOINT_TYPES:
