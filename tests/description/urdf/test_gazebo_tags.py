@@ -231,6 +231,15 @@ def test_sensor_of_a_joint():
     assert (sensor.joint, sensor.link) == ("hinge", "arm")
 
 
+def test_a_sensor_of_a_name_that_is_a_link_and_a_joint_is_there_once():
+    text = f'<robot name="r">{LINKS}'.replace('name="hinge"', 'name="arm"')
+    tags = on("arm", '<sensor type="camera" name="c"/>', '<sensor type="force_torque" name="ft"/>')
+    robot = load_text(f"{text}{tags}</robot>", file="robot.urdf")
+    found = {sensor.name: sensor.joint for sensor in robot.link("arm").sensors}
+    assert len(robot.link("arm").sensors) == 2
+    assert found == {"c": None, "ft": "arm"}
+
+
 def test_light():
     robot = load(on("tip", '<light type="spot" name="lamp"><pose>0 0 1 0 0 0</pose></light>'))
     (light,) = robot.link("tip").lights

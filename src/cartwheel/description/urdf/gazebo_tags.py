@@ -21,6 +21,8 @@ JOINT_TAGS = (
     "implicitSpringDamper", "cfmDamping", "disableFixedJointLumping", "preserveFixedJoint",
     "sensor", "physics",
 )  # fmt: skip
+_OF_JOINTS = "force_torque"
+"""The type of the sensors that joints have."""
 _WITH_PARTS = ("sensor", "plugin", "light", "visual", "collision")
 ROBOT_TAGS = ("plugin", "static", "self_collide", "selfCollide")
 
@@ -103,8 +105,12 @@ def read_gazebo_tags(
         if reference in links:
             of_link = tags.links.setdefault(reference, LinkTags())
             read_link_tags(node, reference, of_link, ctx)
+            if reference in joints:
+                # Of the two only a joint measures what it bears.
+                of_link.sensors = [one for one in of_link.sensors if one.type != _OF_JOINTS]
         if reference in joints:
-            _read_joint_tags(node, joints[reference], tags, ctx)
+            of_both = reference in links
+            _read_joint_tags(node, joints[reference], tags, ctx, of_both=of_both)
         tags.robot_plugins.extend(_misplaced_plugins(node, reference, ctx))
         if (reference in links) != (reference in joints):
             _tell_misplaced(node, reference, reference in links, ctx)
@@ -159,7 +165,9 @@ def _misplaced_plugins(node: Node, reference: str, ctx: UrdfContext) -> list[Plu
     return plugins
 
 
-def _read_joint_tags(node: Node, joint: Joint, tags: GazeboTags, ctx: UrdfContext) -> None:
+def _read_joint_tags(
+    node: Node, joint: Joint, tags: GazeboTags, ctx: UrdfContext, *, of_both: bool
+) -> None:
     fields = tags.joints.setdefault(joint.name, {})
     axis = fields.setdefault("axis", {})
     for tag, name in (("stopCfm", "stop_cfm"), ("stopErp", "stop_erp")):
@@ -192,7 +200,9 @@ def _read_joint_tags(node: Node, joint: Joint, tags: GazeboTags, ctx: UrdfContex
         ctx.tell("info", "<fudgeFactor> is not needed: limits here do not overshoot", fudge.origin)
     child_tags = tags.links.setdefault(joint.child, LinkTags())
     for sensor in node.all("sensor"):
-        child_tags.sensors.append(replace(read_sensor(sensor, joint.child), joint=joint.name))
+        read = replace(read_sensor(sensor, joint.child), joint=joint.name)
+        if not of_both or read.type == _OF_JOINTS:
+            child_tags.sensors.append(read)
     if joint.type != "fixed" and fields.get("preserve_fixed"):
         ctx.tell(
             "info", f'joint "{joint.name}" is not fixed: there is nothing to preserve', node.origin
