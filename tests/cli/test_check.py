@@ -22,7 +22,7 @@ GOOD = """<?xml version="1.0"?>
 </robot>
 """
 WARNING = GOOD.replace('ixx="2" iyy="2" izz="2"', 'ixx="90" iyy="90" izz="90"')
-ERROR = GOOD.replace('izz="2"', 'izz="9"')
+ERROR = GOOD.replace('izz="2"', 'izz="-2"')
 NOTE = GOOD.replace("<collision>", '<collision colour="blue">')
 KEYS = {
     "rule": str, "severity": str, "message": str, "file": str, "line": int, "column": int,
@@ -65,7 +65,7 @@ def test_a_finding_shows_its_line_a_caret_and_the_text_to_write(checked):
     lines = checked(ERROR, status=1).splitlines()
     assert ":6: error: link" in lines[0]
     assert lines[0].endswith("[inertia-impossible]")
-    assert lines[1] == '    6 | <inertia ixx="2" iyy="2" izz="9"/>'
+    assert lines[1] == '    6 | <inertia ixx="2" iyy="2" izz="-2"/>'
     assert lines[2] == " " * 8 + "^" + "~" * (len(lines[1]) - 9)
     assert lines[3] == '  write: <inertia ixx="2" ixy="0" ixz="0" iyy="2" iyz="0" izz="2"/>'
     assert lines[-1].endswith("bar.urdf: 1 error")
@@ -107,6 +107,32 @@ def test_json_of_a_clean_description_has_no_findings(checked):
     assert json.loads(checked(GOOD, "--json", status=0))["findings"] == []
 
 
+def test_json_tells_what_ended_the_check(checked):
+    report = json.loads(checked(GOOD.replace("  </link>\n", ""), "--json", status=2))
+    assert report["complete"] is False
+    assert [(one["rule"], one["severity"], one["line"]) for one in report["findings"]] == [
+        ("unreadable", "error", 11)
+    ]
+
+
+def test_what_ends_the_check_shows_its_line(checked):
+    lines = checked(GOOD.replace("  </link>\n", ""), status=2).splitlines()
+    assert ":11: error: " in lines[0]
+    assert lines[1] == "   11 | </robot>"
+
+
+def test_the_same_of_several_lines_is_shown_once(checked):
+    part = '<collision>\n      <geometry><box size="1 1 1"/></geometry>\n    </collision>'
+    three = "\n".join([part] * 3).replace("<geometry>", '<geometry name="a">')
+    text = GOOD.replace(part, three)
+    assert text.count('name="a"') == 3
+    shown = checked(text, status=0)
+    assert shown.count("[tag-ignored]") == 1
+    assert "and 2 more, in line 12, 15" in shown
+    assert "3 notes" in shown
+    assert len(json.loads(checked(text, "--json", status=0))["findings"]) == 3
+
+
 def test_a_rule_can_be_ignored_and_a_wrong_name_is_told(checked, program, tmp_path):
     out = checked(ERROR, "--ignore", "inertia-impossible", status=0)
     assert "1 ignored" in out
@@ -125,7 +151,7 @@ def test_arguments_of_a_xacro_are_taken(program, tmp_path):
     path = tmp_path / "bar.xacro"
     path.write_text(
         ERROR.replace('name="bar">\n', 'name="bar" xmlns:xacro="http://www.ros.org/wiki/xacro">\n'
-        '<xacro:arg name="izz" default="9"/>', 1).replace('izz="9"/>\n', 'izz="$(arg izz)"/>\n')
+        '<xacro:arg name="izz" default="9"/>', 1).replace('izz="-2"/>\n', 'izz="$(arg izz)"/>\n')
     )  # fmt: skip
     program("check", path, status=1)
     program("check", path, "izz:=2", status=0)

@@ -32,7 +32,11 @@ def check(
     ] = False,
     package_path: arguments.PackagePath = None,
 ) -> None:
-    """Tell what breaks or misleads in a description, where, and what to write instead."""
+    """Tell what breaks or misleads in a description, where, and what to write instead.
+
+    The exit status is 0 where there is no error and no warning (with --strict no note either), 1
+    where there are findings, and 2 where the file cannot be read or is no description.
+    """
     from cartwheel.cli.commands import check as work
 
     if rules:

@@ -115,6 +115,38 @@ WITH_ADVICE = {
         "<material>Gazebo/Black</material>"),
     "material": ("material-undefined", [('<material name="blue"/>', '<material name="bleu"/>')],
         '"bleu"', 'name="blue"'),
+    "topic with a blank": ("topic-invalid", [("<topicName>imu<", "<topicName>imu data<")], "imu data",
+        "<topicName>imu_data</topicName>"),
+    "topic of digits": ("topic-invalid", [("<odometryTopic>odom<", "<odometryTopic>1/odom<")],
+        "1/odom", "<odometryTopic>_1/odom</odometryTopic>"),
+    "sensor's type": ("sensor-type-unknown", [('type="camera"', 'type="camrea"')], 'type="camrea"',
+        'type="camera"'),
+    "sensor's tag": ("sensor-tag-unknown", [("<min_angle>-1</min_angle>",
+        "<min_anlge>-1</min_anlge>")], "min_anlge", "<min_angle>-1</min_angle>"),
+    "no rays": ("sensor-range", [("<horizontal>", "<horizontal>\n<samples>0</samples>")],
+        "<samples>", "<samples>640</samples>"),
+    "range reversed": ("sensor-range", [("<min>0.05<", "<min>20<")], "<min>20", "<min>10</min>"),
+    "angle in degrees": ("sensor-range", [("<max_angle>1<", "<max_angle>90<")], "<max_angle>90",
+        "<max_angle>1.5708</max_angle>"),
+    "plugin's joint": ("plugin-joint-unknown", [("  <gazebo>\n", "  <gazebo>\n"
+        '<plugin name="js" filename="libgazebo_ros_joint_state_publisher.so">\n'
+        "<jointName>arm_joint, left_wheel_jiont</jointName></plugin>")], "<jointName>",
+        "<jointName>arm_joint, left_wheel_joint</jointName>"),
+    "transmission": ("transmission-joint-unknown", [("  <gazebo>\n", '<transmission name="t">'
+        '<type>transmission_interface/SimpleTransmission</type>\n<joint name="arm_jiont"/>'
+        "</transmission><gazebo>\n")], "arm_jiont", 'name="arm_joint"'),
+    "interface": ("interface-unknown", [("  <gazebo>\n", '<transmission name="t">'
+        '<type>transmission_interface/SimpleTransmission</type><joint name="arm_joint">\n'
+        "<hardwareInterface>hardware_interface/EfortJointInterface</hardwareInterface></joint>"
+        "</transmission><gazebo>\n")], "EfortJoint",
+        "<hardwareInterface>hardware_interface/EffortJointInterface</hardwareInterface>"),
+    "ros2_control": ("ros2-control-joint-unknown", [("  <gazebo>\n",
+        '<ros2_control name="c" type="system">\n<joint name="arm_jiont"/></ros2_control>'
+        "<gazebo>\n")], "arm_jiont", 'name="arm_joint"'),
+    "command": ("interface-unknown", [("  <gazebo>\n",
+        '<ros2_control name="c" type="system"><joint name="arm_joint">\n'
+        '<command_interface name="postion"/></joint></ros2_control><gazebo>\n')], "postion",
+        'name="position"'),
     "misspelt": ("tag-ignored", [("<mu1>1.0</mu1>", "<minDepht>1.0</minDepht>")], "minDepht",
         "<minDepth>1.0</minDepth>"),
 }  # fmt: skip
@@ -155,6 +187,7 @@ WITHOUT_PLACE = {
         '<box size="0.4 0.3 0.25"/>\n      </geometry>\n    </collision>')], None, "Raise it"),
     "overlap": ("collisions-overlap", [("  <gazebo>\n", "  <gazebo><self_collide>true</self_collide>"),
         ('<origin xyz="0 0 0.21"/>', '<origin xyz="0 0 -0.06"/>')], None, "smaller"),
+    "clockwise": ("sensor-range", [("<min_angle>-1<", "<min_angle>1.5<")], "<min_angle>", "max_angle"),
     "mesh": ("file-missing", [('<box size="0.03 0.03 0.01"/>', '<mesh filename="finger.stl"/>')],
         "finger.stl", "Looked for"),
     "number": ("unreadable", [('<box size="0.03 0.03 0.01"/>', '<box size="0.03 0.03 x"/>')],
@@ -378,3 +411,121 @@ def test_a_plugin_of_gazebos_own_is_no_misspelt_one(bench, spoil):
 def test_a_material_of_the_robots_own_script_is_a_note(bench, spoil):
     found = bench.find(spoil(("Gazebo/Black", "PR2/Black")), "material-unknown")
     assert [(f.severity, f.instead) for f in found] == [("info", "")]
+
+
+def test_a_name_is_proposed_only_where_it_was_surely_meant(bench, spoil):
+    def proposed(name):
+        (finding,) = bench.find(
+            spoil(('reference="caster_link"', f'reference="{name}"')), "reference-unknown"
+        )
+        return finding.instead, finding.hint
+
+    assert proposed("castor_link")[0] == 'reference="caster_link"'
+    assert proposed("Caster-Link")[0] == 'reference="caster_link"'
+    assert proposed("robot_caster_link")[0] == 'reference="caster_link"'
+    for other in ("roller_link", "caster_link_2", "wheel"):
+        instead, hint = proposed(other)
+        assert instead == "", other
+        assert hint.startswith("The nearest are ")
+
+
+def test_a_package_that_is_missing_is_told_once_with_the_one_that_was_meant(bench, spoil, tmp_path):
+    package = tmp_path / "tester_description"
+    package.mkdir()
+    (package / "package.xml").write_text("<package><name>tester_description</name></package>")
+    (package / "finger.stl").write_text("solid s\nendsolid s\n")
+    mesh = '<mesh filename="package://tester_descripton/finger.stl"/>'
+    text = spoil(('<box size="0.03 0.03 0.01"/>', mesh), ('<sphere radius="0.03"/>', mesh))
+    (finding,) = bench.find(text, "file-missing")
+    assert '"tester_descripton" was not found: 2 places' in finding.message
+    assert finding.instead == 'filename="package://tester_description/finger.stl"'
+    lines = [number for number, line in enumerate(text.splitlines(), 1) if mesh in line]
+    assert finding.origin.line == lines[0]
+    assert f"robot.urdf:{lines[1]}" in finding.hint
+
+
+def test_a_mesh_without_its_scale_is_a_giant(bench, spoil, tmp_path):
+    corners = [(0, 0, 0), (3, 0, 0), (0, 3, 0), (0, 0, 3)]
+    faces = [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]
+    lines = [f"v {x} {y} {z}" for x, y, z in corners]
+    lines += ["f " + " ".join(str(i + 1) for i in face) for face in faces]
+    (tmp_path / "tip.obj").write_text("\n".join(lines))
+    text = spoil(('<box size="0.03 0.03 0.01"/>', '<mesh filename="tip.obj"/>'))
+    assert bench.find(text, "shape-size")[0].instead == 'scale="0.001 0.001 0.001"'
+
+
+def test_wheels_that_skid_may_be_told_a_wider_separation(bench, spoil):
+    more = "<leftJoint>left_wheel_joint</leftJoint>\n<rightJoint>right_wheel_joint</rightJoint>\n"
+    pairs = ("<wheelSeparation>", more + "<wheelSeparation>")
+    wide = ("<wheelSeparation>0.4<", "<wheelSeparation>0.6<")
+    assert bench.find(spoil(wide), "wheel-separation")
+    assert not bench.find(spoil(wide, pairs), "wheel-separation")
+    narrow = ("<wheelSeparation>0.4<", "<wheelSeparation>0.3<")
+    assert bench.find(spoil(narrow, pairs), "wheel-separation")
+
+
+def test_a_wheel_beside_its_axis_has_its_own_diameter(bench, spoil):
+    """A cylinder 4 mm off: it reaches 0.084 m from the axis, and is 0.16 m wide all the same."""
+    assert not bench.find(
+        spoil(('<origin rpy="1.5707963 0 0"/>', '<origin xyz="0 0 0.004" rpy="1.5707963 0 0"/>')),
+        "wheel-diameter",
+    )
+
+
+def test_tags_of_a_link_that_stand_at_its_joint_are_told_together(bench, spoil, take):
+    text = spoil(('reference="caster_link"', 'reference="caster_joint"'))
+    (finding,) = bench.find(text, "tag-misplaced")
+    assert finding.message.startswith("<mu1>, <mu2> act on a link")
+    assert finding.instead == 'reference="caster_link"'
+    assert not bench.find(take(text, finding), "tag-misplaced")
+
+
+def test_a_motor_without_force_is_given_what_bears_its_load(bench, spoil):
+    """The arm's 0.3 kg at 0.1 m and the finger's 0.1 kg at 0.21 m, twice: 1 N m, so the least."""
+    drive = (
+        "  <gazebo>\n",
+        '<ros2_control name="c" type="system"><joint name="arm_joint"/></ros2_control><gazebo>\n',
+    )
+    weak = ('lower="-1" upper="1" effort="5"', 'lower="-1" upper="1" effort="0"')
+    assert bench.find(spoil(drive, weak), "effort-zero")[0].instead == 'effort="10"'
+    # 30 kg at 0.1 m and 0.1 kg at 0.21 m: 2 * 9.8 * 3.021 = 59.2
+    heavy = ('<mass value="0.3"/>', '<mass value="30"/>')
+    assert bench.find(spoil(drive, weak, heavy), "effort-zero")[0].instead == 'effort="60"'
+
+
+CONTROLLERS = """arm:
+  ros__parameters:
+    joints:
+      - arm_joint
+      - fingr_joint
+"""
+
+
+def test_controllers_of_joints_that_are_not_there_are_told_in_their_file(bench, spoil, tmp_path):
+    plugin = (
+        "  <gazebo>\n",
+        '  <gazebo><plugin name="c" filename="libgazebo_ros2_control.so">\n'
+        "<parameters>arm.yaml</parameters></plugin>\n",
+    )
+    text = spoil(plugin)
+    assert "no controller starts" in bench.find(text, "controllers-file")[0].message
+    (tmp_path / "arm.yaml").write_text(CONTROLLERS)
+    assert not bench.find(text, "controllers-file")
+    (finding,) = bench.find(text, "controller-joint-unknown")
+    assert finding.origin.file.endswith("arm.yaml")
+    assert finding.origin.line == 5
+    assert finding.instead == "finger_joint"
+    (tmp_path / "arm.yaml").write_text("arm: [")
+    assert bench.find(text, "controllers-file")[0].origin.file.endswith("arm.yaml")
+
+
+def test_a_lidar_of_a_gpu_sees_what_is_drawn(bench, spoil):
+    """From within a visual it looks out; a lidar of the physics ends at a collision's inside."""
+    around = HOUSING[1].replace("0.02 0.5 0.5", "0.3 0.3 0.3")
+    gpu = ('type="ray" name="lidar"', 'type="gpu_ray" name="lidar"')
+    assert not bench.find(spoil((HOUSING[0], around), gpu), "view-blocked")
+    collision = around.replace("visual", "collision")
+    assert not bench.find(spoil((HOUSING[0], collision), gpu), "view-blocked")
+    (finding,) = bench.find(spoil((HOUSING[0], collision)), "view-blocked")
+    assert "is inside the collision" in finding.message
+    assert "looks past" in finding.hint

@@ -34,7 +34,7 @@ def test_a_good_model_and_a_good_world_are_clean(bench):
 @pytest.mark.parametrize(
     ("rule", "text", "line"),
     [
-        ("reader", model(izz="9"), 3),
+        ("inertia-impossible", model(izz="9"), 3),
         ("inertia-unlike-geometry", model(i="100", izz="100"), 3),
         ("angle-degrees", model(yaw="90"), 2),
         ("file-missing", world("<include><uri>model://nothing_here</uri></include>\n"), 2),

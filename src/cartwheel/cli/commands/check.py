@@ -12,11 +12,12 @@ from cartwheel.cli.console import paint, say, table
 from cartwheel.description.check import RULES, Finding, PluginKnowledge, Report
 from cartwheel.description.check import check as check_description
 from cartwheel.description.model import PluginTag, Sensor
-from cartwheel.errors import Diagnostic, PluginError
+from cartwheel.errors import DescriptionError, Diagnostic, PluginError
 
 SCHEMA = 1
 _STYLES = {"error": ("red", "bold"), "warning": ("yellow", "bold"), "info": ("cyan",)}
 _WORDS = {"info": "note"}
+_LINES_SHOWN = 10
 _LOOK_AHEAD = 8
 """Lines of an element in which a caret's text is looked for."""
 
@@ -45,18 +46,23 @@ def check(
         json: Whether a program reads it.
         strict: Whether notes count as findings.
     """
-    report = check_description(
-        file,
-        arguments=values,
-        package_path=package_path,
-        known=PluginKnowledge(filenames=_filenames(), judge=_judge),
-        ignore=ignore,
-    )
+    try:
+        report = check_description(
+            file,
+            arguments=values,
+            package_path=package_path,
+            known=PluginKnowledge(filenames=_filenames(), judge=_judge),
+            ignore=ignore,
+        )
+    except DescriptionError as error:
+        if not json and (error.origin is None or not error.origin.line):
+            raise  # there is no line to show
+        report = _unread(file, error)
     if json:
         say(json_module.dumps(as_mapping(report), indent=2, ensure_ascii=False))
     else:
-        for finding in report.findings:
-            say(shown(finding))
+        for finding, others in _alike(report.findings):
+            say(shown(finding, others))
         say(_summary(report))
     if not report.complete:
         return 2
@@ -81,8 +87,42 @@ def as_mapping(report: Report) -> dict[str, Any]:
     }
 
 
-def shown(finding: Finding) -> str:
-    """A finding with the line it is about, a caret under it, and the text to write."""
+def _unread(file: str, error: DescriptionError) -> Report:
+    """What ends a check at once, as its one finding."""
+    finding = Finding(
+        rule="unreadable",
+        severity="error",
+        message=error.message,
+        origin=error.origin,
+        hint=error.hint or "",
+    )
+    return Report(file=file, name="", findings=(finding,), ignored=0, complete=False)
+
+
+def _alike(findings: Sequence[Finding]) -> list[tuple[Finding, list[Finding]]]:
+    """Each with those that say the very same of other lines, which are shown with it.
+
+    Only what has no text to write is gathered: a text belongs to its line.
+    """
+    groups: dict[tuple[object, ...], tuple[Finding, list[Finding]]] = {}
+    for finding in findings:
+        origin = finding.origin
+        same = (finding.rule, finding.message, finding.hint, origin and (origin.file, origin.stack))
+        key = (id(finding),) if finding.instead or finding.also else same
+        if key in groups:
+            groups[key][1].append(finding)
+        else:
+            groups[key] = (finding, [])
+    return list(groups.values())
+
+
+def shown(finding: Finding, others: Sequence[Finding] = ()) -> str:
+    """A finding with the line it is about, a caret under it, and the text to write.
+
+    Args:
+        finding: To be shown.
+        others: That say the same of other lines of the same file.
+    """
     styles = _STYLES[finding.severity]
     word = paint(f"{_WORDS.get(finding.severity, finding.severity)}:", *styles)
     place = paint(f"{finding.origin}: ", "bold") if finding.origin else ""
@@ -96,6 +136,10 @@ def shown(finding: Finding) -> str:
         names = [match[1] for each in finding.also if (match := re.search(r'"([^"]*)"', each))]
         more = ", ".join(dict.fromkeys(names[:6])) + (", …" if len(names) > 6 else "")
         lines.append(f"  and {len(finding.also)} more from this line: {more}")
+    if others:
+        numbers = [str(one.origin.line) for one in others if one.origin is not None]
+        more = ", …" if len(numbers) > _LINES_SHOWN else ""
+        lines.append(f"  and {len(others)} more, in line {', '.join(numbers[:_LINES_SHOWN])}{more}")
     if finding.origin is not None:
         lines += [paint(f"  in {frame}", "dim") for frame in finding.origin.stack]
     return "\n".join(lines) + "\n"

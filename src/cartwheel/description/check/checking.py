@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from cartwheel.description.check import (
+    control,
     drive,
     frames,
     gazebo,
@@ -18,6 +19,7 @@ from cartwheel.description.check import (
     meshes,
     nodes,
     plugins,
+    sensor_tags,
     sensors,
     stance,
     structure,
@@ -40,9 +42,11 @@ RULES: tuple[Rule, ...] = (
     *drive.RULES,
     *stance.RULES,
     *sensors.RULES,
+    *sensor_tags.RULES,
     *gazebo.RULES,
     *frames.RULES,
     *plugins.RULES,
+    *control.RULES,
     *meshes.RULES,
     *units.RULES,
     *tags.RULES,

@@ -6,21 +6,18 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from cartwheel.description import numbers
-from cartwheel.description.check import nodes
+from cartwheel.description.check import nodes, spelling
 from cartwheel.description.check.finding import Remark, rule
-from cartwheel.description.check.solids import bounds
-from cartwheel.description.check.subject import Drive, Robot, Subject
+from cartwheel.description.check.solids import Floats, bounds
+from cartwheel.description.check.subject import DRIVE_JOINT_TAGS, Drive, Robot, Subject
 from cartwheel.description.model import Element, Joint
-from cartwheel.errors import suggestion
 from cartwheel.geometry import rotate
 
 TOLERANCE = 0.02
 """Relative: what a tyre's flattening or a rounded number explains."""
-_JOINT_TAGS = (
-    "leftJoint", "left_joint", "rightJoint", "right_joint", "leftFrontJoint", "leftRearJoint",
-    "rightFrontJoint", "rightRearJoint",
-)  # fmt: skip
+_DIRECTIONS = 32
+WIDEST_SKID = 2.5
+"""Times the track: what skidding wheels are told to be apart so that odometry comes right."""
 _SEPARATION = ("wheelSeparation", "wheel_separation")
 _DIAMETER = ("wheelDiameter", "wheel_diameter")
 _RADIUS = ("wheel_radius",)
@@ -31,9 +28,9 @@ def drive_joint_unknown(subject: Subject) -> Iterator[Remark]:
     for robot, drive in _drives(subject):
         for element in drive.tag.element.children:
             name = element.text.strip()
-            if element.tag not in _JOINT_TAGS or name in robot.joints:
+            if element.tag not in DRIVE_JOINT_TAGS or name in robot.joints:
                 continue
-            near = numbers.likely(name, robot.joints, cutoff=0.6)
+            near = spelling.meant(name, robot.joints)
             yield Remark(
                 message=f'<{element.tag}> names "{name}", which is no joint: '
                 "the plugin does not drive",
@@ -41,7 +38,7 @@ def drive_joint_unknown(subject: Subject) -> Iterator[Remark]:
                 instead=nodes.written(element.tag, dict(element.attributes), near) if near else "",
                 place="element" if near else "",
                 mark=name,
-                hint="" if near else suggestion(name, robot.joints),
+                hint="" if near else spelling.nearest(name, robot.joints),
             )
 
 
@@ -78,6 +75,8 @@ def wheel_separation(subject: Subject) -> Iterator[Remark]:
         if stated is None or value is None:
             continue
         apart = _apart(robot, left, right)
+        if len(drive.left) > 1 and apart <= value <= WIDEST_SKID * apart:
+            continue
         if apart > 0 and abs(value - apart) > max(TOLERANCE * apart, 0.001):
             yield Remark(
                 message=f"<{stated.tag}> is {value:g} m, but the wheels are {apart:.4g} m apart: "
@@ -170,7 +169,7 @@ def wheel_axes(subject: Subject) -> Iterator[Remark]:
 
 
 def wheel_radius(robot: Robot, joint: Joint) -> float | None:
-    """How far a wheel's collision, or else its visual, reaches from its axis, m.
+    """Half the width of a wheel's collision, or else its visual, across its axis, m.
 
     What is fixed to the wheel is part of it: a tyre may be another link than the hub.
     """
@@ -187,9 +186,18 @@ def wheel_radius(robot: Robot, joint: Joint) -> float | None:
         ]
         if clouds:
             points = np.concatenate(clouds)
-            away = points - np.outer(points @ axis, axis)
-            return float(np.linalg.norm(away, axis=1).max())
+            # Half its width, not its reach: a wheel may be a millimetre off its axis.
+            sideways = _across(axis)
+            return float(np.ptp(points @ sideways.T, axis=0).max()) / 2
     return None
+
+
+def _across(axis: Floats) -> Floats:
+    """Directions all around an axis, shape (n, 3)."""
+    first = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
+    first /= np.linalg.norm(first)
+    angles = np.linspace(0.0, np.pi, _DIRECTIONS, endpoint=False)[:, None]
+    return np.asarray(np.cos(angles) * first + np.sin(angles) * np.cross(axis, first))
 
 
 def wheel_links(robot: Robot, joint: Joint) -> list[str]:

@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 
-from cartwheel.description import numbers
-from cartwheel.description.check import nodes
+from cartwheel.description.check import nodes, spelling
 from cartwheel.description.check.finding import Remark, rule
 from cartwheel.description.check.subject import Robot, Subject
 from cartwheel.description.model import Element, PluginTag, Sensor
-from cartwheel.errors import suggestion
 
 _BODIES = ("bodyName", "body_name")
 _FRAMES = ("robotBaseFrame", "robot_base_frame", "frameName", "frame_name")
 _OUTER = frozenset({"world", "map", "odom", "earth", ""})
 """Frames that are no links by their nature (REP 105)."""
+
+_TOPIC_TAG = re.compile(
+    r"(?i:topic(_?name)?$|^(robot)?_?namespace$|^camera_?name$|^service_?name$|^remapping$)"
+)
+_TOPIC = re.compile(r"[~/]{0,2}([A-Za-z_]\w*(/[A-Za-z_]\w*)*)?/*")
+"""Of both ROS, substitutions in braces apart; a slash at the end does no harm."""
 
 _TOPICS: dict[str, tuple[tuple[str, ...], ...]] = {
     # Of each plugin the tags, in both spellings, whose topics it publishes.
@@ -87,6 +92,33 @@ def topic_twice(subject: Subject) -> Iterator[Remark]:
                 )
 
 
+@rule("topic-invalid", "error", "a topic or namespace that ROS refuses")
+def topic_invalid(subject: Subject) -> Iterator[Remark]:
+    for _, tag, _sensor in _plugins(subject):
+        held = [*tag.element.children]
+        if (ros := tag.element.find("ros")) is not None:
+            held += ros.children
+        for element in held:
+            name = element.text.strip()
+            if not _TOPIC_TAG.search(element.tag) or not name or element.children:
+                continue
+            source, arrow, target = name.rpartition(":=")
+            if _TOPIC.fullmatch(target.strip()) and (not arrow or source.strip()):
+                continue
+            if "ros" not in tag.filename and not re.search(r"[\s@]", target.strip()):
+                continue  # Gazebo's own transport takes nearly anything
+            good = re.sub(r"[^\w/~]+", "_", target.strip())
+            good = re.sub(r"(^|/)(?=\d)", r"\1_", good)
+            yield Remark(
+                message=f'<{element.tag}> "{name}" is no name of a topic: such a name has '
+                "letters, digits, _ and /, and no part of it begins with a digit",
+                origin=element.origin,
+                instead=nodes.written(element.tag, {}, f"{source}{arrow}{good}"),
+                place="element",
+                mark=name,
+            )
+
+
 def short_name(tag: PluginTag) -> str:
     """``diff_drive`` of ``libgazebo_ros_diff_drive.so``."""
     stem = tag.filename.rsplit("/", 1)[-1].removeprefix("lib").removesuffix(".so")
@@ -110,14 +142,14 @@ def _resolved(tag: PluginTag, element: Element, kind: str) -> str:
 
 def _unknown(robot: Robot, element: Element, consequence: str) -> Remark:
     name = element.text.strip()
-    near = numbers.likely(name.lstrip("/"), robot.links, cutoff=0.6)
+    near = spelling.meant(name.lstrip("/"), robot.links)
     return Remark(
         message=f'<{element.tag}> "{name}" is no link: {consequence}',
         origin=element.origin,
         instead=nodes.written(element.tag, {}, near) if near else "",
         place="element" if near else "",
         mark=name,
-        hint="" if near else suggestion(name, robot.links),
+        hint="" if near else spelling.nearest(name, robot.links),
     )
 
 
@@ -134,4 +166,4 @@ def _plugins(subject: Subject) -> Iterator[tuple[Robot, PluginTag, Sensor | None
             yield robot, tag, sensor
 
 
-RULES = (body_unknown, frame_unknown, topic_twice)
+RULES = (body_unknown, frame_unknown, topic_twice, topic_invalid)

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from cartwheel.description import numbers
-from cartwheel.description.check import nodes
+from cartwheel.description.check import nodes, spelling
 from cartwheel.description.check.finding import Remark, rule
 from cartwheel.description.check.subject import Robot, Subject
 from cartwheel.description.model import Element, Sensor
@@ -26,7 +25,7 @@ def contact_collision_unknown(subject: Subject) -> Iterator[Remark]:
             continue
         known = {one for names in _gazebo_names(robot).values() for one in names}
         own = _gazebo_names(robot).get(sensor.link, [])
-        near = numbers.likely(name, known, cutoff=0.6) or (own[0] if own else None)
+        near = spelling.meant(name, known) or (own[0] if own else "")
         yield Remark(
             message=f'the contact sensor "{sensor.name}" watches the collision "{name}", '
             "which does not exist: it never reports anything",

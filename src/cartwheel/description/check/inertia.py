@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterator
 
 import numpy as np
@@ -29,12 +30,24 @@ _LIGHT = 0.01
 """Of the robot's mass: what weighs less is as good as none, and often stated so."""
 DENSEST = 30_000.0
 """kg/m³; osmium has 22 600."""
+_FOAM = 50.0
+"""kg/m³: what is lighter was not stated in grams."""
+_ROUNDED = 1e-9
+"""Relative: what is left of a 0 by rounding."""
+_OF_LINK = re.compile(r'link "([^"]*)"')
+_NEVERTHELESS = (
+    "Gazebo Classic computes with it nevertheless, new Gazebo refuses it; here the smaller "
+    "moments are raised."
+)
+_WITHOUT = "Gazebo Classic divides by it nevertheless; here it has that of its geometry."
 _KEYS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 
 
-@rule("inertia-impossible", "error", "an inertia that no body can have")
+@rule("inertia-impossible", "warning", "an inertia that no body can have")
 def inertia_impossible(subject: Subject) -> Iterator[Remark]:
     yield from (each for each in subject.failures if IMPOSSIBLE.search(each.message))
+    if not subject.is_urdf:
+        yield from _impossible_in_sdf(subject)
     held = _held(subject)
     for link, inertial in _inertials(subject):
         tensor = nodes.child(inertial, "inertia")
@@ -47,13 +60,35 @@ def inertia_impossible(subject: Subject) -> Iterator[Remark]:
         if wrong is None or (not any(moments) and name in held):
             continue
         place = tensor or inertial
+        negative = min(moments) < -_ROUNDED * max(moments)
+        # Of what is fixed to something heavier it is but a part of a sum.
+        part = _is_part(subject, name, max(moments))
         yield Remark(
-            # Of what is fixed to something heavier it is but a part of a sum.
-            severity="info" if _is_part(subject, name, max(moments)) else None,
+            severity="info" if part else "error" if negative else None,
             message=f'link "{name}": {wrong[0]}',
             origin=place.origin,
             instead=_inertia_text(_sketch(subject, name), mass),
             place="element" if tensor is not None else "inside",
+            hint="" if part or negative else _NEVERTHELESS if any(moments) else _WITHOUT,
+        )
+
+
+def _impossible_in_sdf(subject: Subject) -> Iterator[Remark]:
+    """What its reader told of inertias, with that of the geometry."""
+    links = {link.name: (robot, link) for robot in subject.robots for link in robot.links.values()}
+    for diagnostic in subject.read.diagnostics if subject.read is not None else ():
+        match = _OF_LINK.match(diagnostic.message)
+        if match is None or not IMPOSSIBLE.search(diagnostic.message):
+            continue
+        robot, link = links.get(match[1], (None, None))
+        like = _shape_inertia(robot, link) if robot is not None and link is not None else None
+        mass = link.inertial.mass if link is not None and link.inertial is not None else 1.0
+        yield Remark(
+            severity=diagnostic.severity,
+            message=diagnostic.message.partition("; here ")[0],
+            origin=diagnostic.origin,
+            instead=_inertia_text(like, mass, sdf=True),
+            hint=_NEVERTHELESS,
         )
 
 
@@ -188,19 +223,23 @@ def mass_grams(subject: Subject) -> Iterator[Remark]:
         box = bounds([solid.vertices for solid in robot.solids(link.name)])
         if box is None or inertial.mass < 1.0:
             continue
-        density = inertial.mass / max(float(np.prod(box[1] - box[0])), 1e-18)
+        volume = max(float(np.prod(box[1] - box[0])), 1e-18)
+        density = inertial.mass / volume
         if density < DENSEST:
             continue
+        in_grams = density / 1000 > _FOAM
         node = nodes.child(robot.node_at(inertial.origin), "mass")
         yield Remark(
             message=f'link "{link.name}" weighs {inertial.mass:g} kg in a box of '
             f"{' x '.join(f'{1000 * value:.3g}' for value in box[1] - box[0])} mm: "
             f"{density / 1000:.3g} kg to the litre, and no metal has more than 22.6",
             origin=node.origin if node is not None else inertial.origin,
-            instead=_mass_text(inertial.mass / 1000, sdf=node is None),
-            place="attribute" if node is not None else "",
+            instead=_mass_text(inertial.mass / 1000, sdf=node is None) if in_grams else "",
+            place="attribute" if node is not None and in_grams else "",
             mark="value",
-            hint="Is it stated in grams?",
+            hint="Is it stated in grams?"
+            if in_grams
+            else f"Of water it would weigh {1000 * volume:.3g} kg.",
         )
 
 

@@ -5,12 +5,17 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
+import numpy as np
+
 from cartwheel.description.check import nodes
 from cartwheel.description.check.finding import Remark, rule
-from cartwheel.description.check.subject import Subject
+from cartwheel.description.check.subject import Robot, Subject
 from cartwheel.description.node import Node
 
 _LIMITED = ("revolute", "prismatic")
+_GRAVITY = 9.8
+"""m/s²."""
+_LEAST_EFFORT = 10.0
 _DEGREES = frozenset(
     {30.0, 45.0, 60.0, 90.0, 120.0, 135.0, 150.0, 160.0, 170.0, 180.0, 270.0, 360.0}
 )
@@ -66,24 +71,56 @@ def limit_zero(subject: Subject) -> Iterator[Remark]:
 
 @rule("effort-zero", "warning", "a driven joint's effort or velocity limit is zero")
 def effort_zero(subject: Subject) -> Iterator[Remark]:
-    driven = {name for robot in subject.robots for name in robot.driven}
+    movers = {name: robot for robot in subject.robots for name in robot.driven}
     for joint, kind in _joints(subject):
         limit = nodes.child(joint, "limit")
-        if limit is None or kind in ("fixed", "floating"):
-            continue
         name = nodes.name_of(joint)
-        if name not in driven:
+        if limit is None or kind in ("fixed", "floating") or name not in movers:
             continue
-        for what, unit, usual in (("effort", "N m", "10"), ("velocity", "rad/s", "10")):
-            if nodes.number(limit.attributes.get(what)) == 0.0:
-                yield Remark(
-                    message=f'the joint "{name}" is driven, but its {what} limit is 0 {unit}: '
-                    + ("no force can move it" if what == "effort" else "it may not turn"),
-                    origin=limit.origin,
-                    instead=f'{what}="{usual}"',
-                    place="attribute",
-                    mark=what,
-                )
+        slides = kind == "prismatic"
+        if nodes.number(limit.attributes.get("effort")) == 0.0:
+            usual = _holding(movers[name], name, slides=slides)
+            yield Remark(
+                message=f'the joint "{name}" is driven, but its effort limit is 0 '
+                f"{'N' if slides else 'N m'}: in Gazebo no force can move it",
+                origin=limit.origin,
+                instead=f'effort="{nodes.short(usual)}"',
+                place="attribute",
+                mark="effort",
+                hint="Here 0 counts as no limit. The text bears twice the weight of what it moves; "
+                "write what its motor can do.",
+            )
+        if nodes.number(limit.attributes.get("velocity")) == 0.0:
+            yield Remark(
+                message=f'the joint "{name}" is driven, but its velocity limit is 0 '
+                f"{'m/s' if slides else 'rad/s'}: in Gazebo it may not move",
+                origin=limit.origin,
+                instead=f'velocity="{"1" if slides else "10"}"',
+                place="attribute",
+                mark="velocity",
+                hint="Write how fast its motor can be.",
+            )
+
+
+def _holding(robot: Robot, name: str, *, slides: bool) -> float:
+    """Twice what holds all that a joint carries, stretched out: N, or N m; at least 10."""
+    joint = robot.joints.get(name)
+    if joint is None or joint.child not in robot.links:
+        return _LEAST_EFFORT
+    here = np.array(robot.links[joint.child].pose.position)
+    load = 0.0
+    carried, waiting = set[str](), [joint.child]
+    while waiting:
+        link = robot.links.get(waiting.pop())
+        if link is None or link.name in carried:
+            continue
+        carried.add(link.name)
+        waiting += [one.child for one in robot.description.joints if one.parent == link.name]
+        if link.inertial is not None:
+            centre = (link.pose @ link.inertial.pose).position
+            arm = 1.0 if slides else float(np.linalg.norm(np.array(centre) - here))
+            load += link.inertial.mass * arm
+    return max(_LEAST_EFFORT, float(f"{2 * _GRAVITY * load:.1g}"))
 
 
 @rule("limit-incomplete", "error", "a <limit> lacks effort or velocity: ROS refuses the robot")

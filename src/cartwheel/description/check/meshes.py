@@ -4,52 +4,114 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from statistics import median
 
 import numpy as np
 
-from cartwheel.description.check import nodes
+from cartwheel.description.check import nodes, spelling
 from cartwheel.description.check.finding import Remark, rule
 from cartwheel.description.check.solids import Solid
 from cartwheel.description.check.subject import MISSING, Robot, Subject
 from cartwheel.description.model import Mesh
-from cartwheel.errors import DescriptionError
+from cartwheel.description.node import Node
+from cartwheel.errors import DescriptionError, Severity
 
 GIANT = 30.0
 """Times the size of all the rest of the robot."""
+GIANT_MESH = 6.0
+"""The same of a mesh: a scale is forgotten more easily than a length is mistaken."""
 DWARF = 300.0
 HUGE = 100.0
 """m: no link of a robot is as long; millimetres were meant."""
-_LEFT_OUT = re.compile(r"(.* is left out(?: and touches nothing)?)\.?(.*)", re.DOTALL)
+_LEFT_OUT = re.compile(
+    r"(.* is left out(?: and touches nothing)?|the material .*, as .* was not found)\.?(.*)",
+    re.DOTALL,
+)
+_DID_YOU_MEAN = re.compile(r'^Did you mean "([^"]*)"')
+_PACKAGE = re.compile(r"(?:package://|model://|\$\(find )([\w.-]+)")
+_WHY = re.compile(r'the (?:package|model) "[^"]*" was not found|^"[^"]*" is on the network')
+_CAUSE = re.compile(_WHY.pattern + r'|^the [a-z ]+ "[^"]*" does not exist')
+_SHOWN = 3
+
+
+@dataclass
+class _Absence:
+    """Something that is not there, with all that names it."""
+
+    cause: str
+    """Such as ``the package "arm_description" was not found``."""
+    first: Remark
+    places: list[str] = field(default_factory=list)
 
 
 @rule("file-missing", "error", "a mesh, texture, model or package is not there")
 def file_missing(subject: Subject) -> Iterator[Remark]:
+    found: dict[str, _Absence] = {}
+    for remark in _absent(subject):
+        cause = _cause(remark.message)
+        absence = found.setdefault(cause, _Absence(cause, remark))
+        if (place := str(remark.origin)) not in absence.places:
+            absence.places.append(place)
+    for absence in found.values():
+        first, more = absence.first, absence.places[1:]
+        if not more:
+            yield first
+            continue
+        shown = ", ".join(more[:_SHOWN]) + (", …" if len(more) > _SHOWN else "")
+        yield replace(
+            first,
+            message=f"{absence.cause}: {len(absence.places)} places need it",
+            hint=f"{first.hint.strip()} Also at {shown}.".strip(),
+        )
+
+
+def _absent(subject: Subject) -> Iterator[Remark]:
     yield from (each for each in subject.failures if MISSING.search(each.message))
     if not subject.is_urdf:
         yield from _left_out(subject, missing=True)
         return
-    told: set[tuple[str, str]] = set()
     for node in nodes.walk(subject.root):
         uri = nodes.text_of(node, "filename")
-        if node.tag not in ("mesh", "texture") or not uri or (uri, str(node.origin)) in told:
+        if node.tag not in ("mesh", "texture") or not uri:
             continue
         try:
             subject.packages.resolve(uri, node.origin, what=node.tag)
         except DescriptionError as error:
-            told.add((uri, str(node.origin)))
-            near = _near(error.hint or "")
-            name = Path(uri).name
+            meant = _meant(subject, uri, node, error.hint or "")
             yield Remark(
                 severity="error" if node.tag == "mesh" else "warning",
                 message=error.message,
                 origin=node.origin,
-                instead=f'filename="{uri.removesuffix(name)}{near}"' if near else "",
-                place="attribute" if near else "",
+                instead=f'filename="{meant}"' if meant else "",
+                place="attribute" if meant else "",
                 mark=uri,
                 hint=error.hint or "",
             )
+
+
+def _meant(subject: Subject, uri: str, node: Node, hint: str) -> str:
+    """The URI with the package or the file that was likely meant, where that is there."""
+    match = _DID_YOU_MEAN.search(hint)
+    if match is None:
+        return ""
+    package, name = _PACKAGE.match(uri), Path(uri).name
+    tries = [uri.removesuffix(name) + match[1]] if spelling.meant(name, [match[1]]) else []
+    if package is not None:
+        tries.append(uri[: package.start(1)] + match[1] + uri[package.end(1) :])
+    for each in tries:
+        try:
+            subject.packages.resolve(each, node.origin)
+        except DescriptionError:
+            continue
+        return each
+    return ""
+
+
+def _cause(message: str) -> str:
+    match = _CAUSE.search(message)
+    return match[0] if match is not None else message
 
 
 @rule("mesh-unreadable", "error", "a mesh file is damaged, empty, or of an unknown format")
@@ -75,7 +137,7 @@ def shape_size(subject: Subject) -> Iterator[Remark]:
         reach = _reach(robot)
         for solid in solids:
             others = second if largest[solid.link] == first else first
-            factor = _factor(solid.extent, usual, others, reach)
+            factor = _factor(solid, usual, others, reach)
             if factor is not None and (len(largest) > 2 or solid.extent > HUGE):
                 yield _remark(robot, solid, factor, usual)
 
@@ -84,11 +146,15 @@ def _left_out(subject: Subject, *, missing: bool) -> Iterator[Remark]:
     """What the readers left out for want of its file, or because the file cannot be used."""
     for diagnostic in subject.read.diagnostics if subject.read is not None else ():
         match = _LEFT_OUT.fullmatch(diagnostic.message)
-        if match is None or diagnostic.severity != "error":
+        if match is None or diagnostic.severity == "info":
             continue
-        if missing == bool(MISSING.search(diagnostic.message)):
+        why = _WHY.search(diagnostic.message)
+        if diagnostic.severity != "error" and why is None:
+            continue
+        if missing == bool(why or MISSING.search(diagnostic.message)):
             node = nodes.at(subject.root, diagnostic.origin) if diagnostic.origin else None
             yield Remark(
+                severity=_severity(diagnostic.message),
                 message=match[1],
                 origin=diagnostic.origin,
                 hint=match[2].strip(),
@@ -96,21 +162,31 @@ def _left_out(subject: Subject, *, missing: bool) -> Iterator[Remark]:
             )
 
 
-def _factor(extent: float, usual: float, others: float, reach: float) -> float | None:
+def _severity(message: str) -> Severity:
+    """An error where it can be nowhere; Gazebo fetches models by itself."""
+    if "is on the network" in message:
+        return "info"
+    return "warning" if 'the model "' in message else "error"
+
+
+def _factor(solid: Solid, usual: float, others: float, reach: float) -> float | None:
     """By what a shape should be scaled; None where it looks right.
 
     Args:
-        extent: Its size, m.
+        solid: The shape.
         usual: The median of all shapes.
         others: The largest of the other links.
         reach: How far the farthest link is from the robot's frame, m.
     """
+    extent, mesh = solid.extent, isinstance(solid.part.shape, Mesh)
+    giant = GIANT_MESH if mesh else GIANT
     if extent > HUGE:
         return 0.001
     # Two wheels that are giants both are none beside each other, but beside the rest.
-    if (extent > 2.0 and extent > GIANT * others) or (extent > 10.0 and extent > 100 * usual):
+    if (extent > 2.0 and extent > giant * others) or (extent > 10.0 and extent > 100 * usual):
         return 0.001
-    if extent < usual / DWARF and extent < 0.001 and usual > 0.01 and reach < 10:
+    # A tiny box or ball stands for nothing on purpose; a tiny mesh was scaled twice.
+    if mesh and extent < min(usual / DWARF, 0.001) and usual > 0.01 and reach < 10:
         return 1000.0
     return None
 
@@ -150,12 +226,6 @@ def _remark(robot: Robot, solid: Solid, factor: float, usual: float) -> Remark:
 def _scaled(text: str, factor: float) -> str:
     values = [nodes.number(word) for word in text.split()]
     return " ".join(nodes.short(value * factor) for value in values if value is not None)
-
-
-def _near(hint: str) -> str:
-    """The file that a hint says was likely meant."""
-    start, _, rest = hint.partition('Did you mean "')
-    return rest.partition('"')[0] if not start else ""
 
 
 RULES = (file_missing, mesh_unreadable, shape_size)

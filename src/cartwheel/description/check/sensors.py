@@ -28,22 +28,33 @@ def view_blocked(subject: Subject) -> Iterator[Remark]:
     for robot in subject.robots:
         for link, sensor in robot.sensors():
             for view in _views(sensor):
-                what = view.kind
-                share, culprit, distance = _blocked(robot, link.name, view)
-                if culprit is None or share < BLOCKED:
+                block = _blocked(robot, link.name, view)
+                if block.share < BLOCKED:
                     continue
-                part = "collision" if what == "lidar" else "visual"
+                part = "visual" if view.drawn else "collision"
                 yield Remark(
-                    message=f'{share:.0%} of what the {what} "{sensor.name}" looks at is the '
-                    f'{part} of link "{culprit}", {distance:.3g} m before it: it sees its own '
-                    "housing",
+                    message=f'the {view.kind} "{sensor.name}" is inside the {part} of link '
+                    f'"{block.link}": in Gazebo {block.share:.0%} of its rays end there, '
+                    f"{block.distance:.3g} m before it"
+                    if block.within
+                    else f'{block.share:.0%} of what the {view.kind} "{sensor.name}" looks at is '
+                    f'the {part} of link "{block.link}", {block.distance:.3g} m before it: it sees '
+                    "its own housing",
                     origin=sensor.origin,
-                    hint=f"Move the sensor out of it, by <pose> or the link's joint, or make the "
-                    f"near distance larger than {distance:.3g} m."
-                    if what != "lidar"
-                    else f"Move the sensor out of it, or make <min> larger than {distance:.3g} m.",
+                    hint=_way_out(view, block),
                     mark=f'name="{sensor.name}"',
                 )
+
+
+def _way_out(view: _View, block: _Block) -> str:
+    farther = f"{math.ceil(1000 * block.farthest + 1) / 1000:g}"
+    if view.kind == "camera":
+        return (
+            "Move the sensor out of it, by <pose> or the link's joint, or make the near distance "
+            f"larger than {farther} m."
+        )
+    past = " Cartwheel looks past what encloses a sensor." if block.within else ""
+    return f"Move the sensor out of it, or write <min>{farther}</min> in its <range>.{past}"
 
 
 @rule("rate-above-physics", "warning", "an update rate higher than the physics makes steps")
@@ -81,6 +92,21 @@ class _View:
     near: float
     far: float
     """m."""
+    drawn: bool
+    """Whether it sees visuals, which have one side, and not collisions."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Block:
+    share: float
+    """Of the rays that end at the robot itself."""
+    link: str = ""
+    """Where most of them end."""
+    distance: float = 0.0
+    farthest: float = 0.0
+    """m, of those that end there."""
+    within: bool = False
+    """Whether the sensor is inside of what they end at."""
 
 
 def _views(sensor: Sensor) -> Iterator[_View]:
@@ -92,6 +118,7 @@ def _views(sensor: Sensor) -> Iterator[_View]:
                 rays=_camera_rays(camera),
                 near=camera.near,
                 far=camera.far,
+                drawn=True,
             )
     elif sensor.type in LASERS:
         scan = sensor.element.find("ray") or sensor.element.find("lidar")
@@ -102,6 +129,7 @@ def _views(sensor: Sensor) -> Iterator[_View]:
                 rays=_scan_rays(scan),
                 near=_of(scan, "range/min", 0.0),
                 far=_of(scan, "range/max", 10.0),
+                drawn=sensor.type.startswith("gpu"),
             )
 
 
@@ -134,8 +162,7 @@ def _of(element: Element, path: str, default: float) -> float:
     return default if value is None else value
 
 
-def _blocked(robot: Robot, link: str, view: _View) -> tuple[float, str | None, float]:
-    """The share of the rays that end at the robot itself, at which link mostly, and how far."""
+def _blocked(robot: Robot, link: str, view: _View) -> _Block:
     frame = robot.links[link].pose @ view.pose
     directions = np.asarray(view.rays @ matrix_from_quat(frame.orientation).T, dtype=np.float64)
     origin = np.array(frame.position) + 0.0
@@ -143,25 +170,38 @@ def _blocked(robot: Robot, link: str, view: _View) -> tuple[float, str | None, f
     reach = min(view.far, max(2 * view.near, 0.3, 0.3 * robot.size))
     nearest = np.full(len(view.rays), np.inf)
     hit_by = np.full(len(view.rays), -1)
-    solids = _obstacles(robot, view.kind)
-    for index, (name, solid) in enumerate(solids):
-        placed = moved(solid.vertices, robot.links[name].pose)
-        if _beyond(placed, origin, reach):
+    placed: dict[int, Solid] = {}
+    for index, (name, solid) in enumerate(_obstacles(robot, view)):
+        vertices = moved(solid.vertices, robot.links[name].pose)
+        if _beyond(vertices, origin, reach):
             continue
-        world = Solid(part=solid.part, link=name, vertices=placed, faces=solid.faces)
+        placed[index] = Solid(part=solid.part, link=name, vertices=vertices, faces=solid.faces)
         # A surface nearer than the near plane is cut away; what lies behind it is seen.
         # Drawn surfaces have one side; the rays of the physics end at either.
         distances = first_hits(
-            origin, directions, world, beyond=view.near, front_only=view.kind == "camera"
+            origin,
+            directions,
+            placed[index],
+            beyond=view.near,
+            within=reach,
+            front_only=view.drawn,
         )
         closer = distances < nearest
         nearest[closer], hit_by[closer] = distances[closer], index
     seen = nearest < reach
     if not seen.any():
-        return 0.0, None, 0.0
+        return _Block(share=0.0)
     index = int(np.bincount(hit_by[seen]).argmax())
-    of_it = seen & (hit_by == index)
-    return float(seen.mean()), solids[index][0], float(np.median(nearest[of_it]))
+    solid, of_it = placed[index], seen & (hit_by == index)
+    # From within a ray meets the back of a surface, and no front on its way there.
+    front = first_hits(origin, directions[of_it], solid, front_only=True)
+    return _Block(
+        share=float(seen.mean()),
+        link=solid.link,
+        distance=float(np.median(nearest[of_it])),
+        farthest=float(nearest[seen].max()),
+        within=bool(np.mean(front > nearest[of_it] + 1e-9) > 0.5),
+    )
 
 
 def _beyond(points: Floats, origin: Floats, reach: float) -> bool:
@@ -170,9 +210,9 @@ def _beyond(points: Floats, origin: Floats, reach: float) -> bool:
     return float(np.linalg.norm(away)) > reach
 
 
-def _obstacles(robot: Robot, what: str) -> list[tuple[str, Solid]]:
-    # A camera sees visuals, a ray of the physics collisions.
-    kind = robot.collisions if what == "lidar" else robot.visuals
+def _obstacles(robot: Robot, view: _View) -> list[tuple[str, Solid]]:
+    # Cameras and the lidars of a GPU see what is drawn, a ray of the physics collisions.
+    kind = robot.visuals if view.drawn else robot.collisions
     return [(name, solid) for name, solids in kind.items() for solid in solids]
 
 

@@ -24,6 +24,8 @@ from cartwheel.description.model import (
 )
 from cartwheel.geometry import Pose, matrix_from_quat
 
+_ON_PLANE = 1e-6
+"""m: so far from a plane of rays is within it."""
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
@@ -122,6 +124,7 @@ def first_hits(
     solid: Solid,
     *,
     beyond: float = 0.0,
+    within: float = np.inf,
     front_only: bool = False,
 ) -> Floats:
     """How far each ray goes until it meets a triangle; inf where it meets none.
@@ -131,13 +134,14 @@ def first_hits(
         directions: (n, 3), of unit length.
         solid: What they may meet.
         beyond: Where they begin, m from the origin.
+        within: How far what is met may be; what is farther may be missed.
         front_only: Whether a triangle seen from behind is not there.
 
     Returns:
         (n,), m.
     """
     result = np.full(len(directions), np.inf)
-    corners = solid.vertices[solid.faces]
+    corners = _in_the_way(origin, directions, solid.vertices[solid.faces], within)
     # Chunks keep the table of rays and triangles within some ten megabytes.
     for start in range(0, len(corners), 4096):
         a, b, c = (corners[start : start + 4096, i] for i in range(3))
@@ -157,6 +161,22 @@ def first_hits(
         if distance.size:
             result = np.minimum(result, distance.min(axis=1))
     return result
+
+
+def _in_the_way(origin: Floats, directions: Floats, corners: Floats, within: float) -> Floats:
+    """The triangles that rays may meet, without those that are obviously elsewhere."""
+    low, high = corners.min(axis=1), corners.max(axis=1)
+    away = np.maximum(np.maximum(low - origin, origin - high), 0.0)
+    corners = corners[np.einsum("ij,ij->i", away, away) <= within * within]
+    axis = directions.mean(axis=0)
+    if (directions @ axis > 0).all():  # all of them look one way: what lies behind is not met
+        corners = corners[(((corners - origin) @ axis) > 0).any(axis=1)]
+    # Rays of one plane meet only what crosses it.
+    _, spread, axes = np.linalg.svd(directions, full_matrices=True)
+    if len(spread) < 3 or spread[2] < 1e-6:
+        side = (corners - origin) @ axes[2]
+        corners = corners[(side.min(axis=1) <= _ON_PLANE) & (side.max(axis=1) >= -_ON_PLANE)]
+    return corners
 
 
 def overlap(a: Floats, b: Floats, shrink: float) -> bool:

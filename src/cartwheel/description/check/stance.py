@@ -96,6 +96,7 @@ def base_no_collision(subject: Subject) -> Iterator[Remark]:
     for robot in subject.robots:
         if robot.description.static:
             continue
+        nowhere = not any(link.collisions for link in robot.links.values())
         for root, group in robot.rigid_groups.items():
             links = [robot.links[name] for name in group]
             if root in robot.inbound or any(link.collisions for link in links):
@@ -108,7 +109,9 @@ def base_no_collision(subject: Subject) -> Iterator[Remark]:
                 None,
             )
             yield Remark(
-                message=f'the body "{seen.name}" has visuals but no <collision>: '
+                message="none of the robot's links has a <collision>: it falls through the ground"
+                if nowhere
+                else f'the body "{seen.name}" has visuals but no <collision>: '
                 "it goes through all things",
                 origin=seen.origin,
                 instead=_collision_of(robot, seen) if node is not None else "",

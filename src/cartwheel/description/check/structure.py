@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from cartwheel.description import numbers
-from cartwheel.description.check import nodes
+from cartwheel.description.check import nodes, spelling
 from cartwheel.description.check.finding import Remark, rule
 from cartwheel.description.check.subject import Subject
 from cartwheel.description.node import Node
-from cartwheel.errors import suggestion
 
 WORLD = "world"
 
@@ -61,14 +59,14 @@ def joint_link_unknown(subject: Subject) -> Iterator[Remark]:
                     hint="Add it to the robot to fix it to the world.",
                 )
                 continue
-            near = numbers.likely(link, known, cutoff=0.6)
+            near = spelling.meant(link, known)
             yield Remark(
                 message=f'the {which} of the joint "{name}", "{link}", is no link',
                 origin=end.origin,
                 instead=f'link="{near}"' if near else "",
                 place="attribute" if near else "",
                 mark=f'link="{end.attributes.get("link", "")}"',
-                hint="" if near else suggestion(link, sorted(known)),
+                hint="" if near else spelling.nearest(link, known),
             )
 
 
@@ -147,14 +145,14 @@ def mimic_unknown(subject: Subject) -> Iterator[Remark]:
             continue
         leader = nodes.text_of(mimic, "joint")
         if leader not in joints:
-            near = numbers.likely(leader, set(joints) - {name}, cutoff=0.6)
+            near = spelling.meant(leader, set(joints) - {name})
             yield Remark(
                 message=f'the joint "{name}" mimics "{leader}", which is no joint',
                 origin=mimic.origin,
                 instead=f'joint="{near}"' if near else "",
                 place="attribute" if near else "",
                 mark=f'joint="{mimic.attributes.get("joint", "")}"',
-                hint="" if near else suggestion(leader, sorted(set(joints) - {name})),
+                hint="" if near else spelling.nearest(leader, set(joints) - {name}),
             )
         elif name in mimic_chain(joints, leader):
             yield Remark(
@@ -172,7 +170,7 @@ def reference_unknown(subject: Subject) -> Iterator[Remark]:
         reference = nodes.text_of(node, "reference")
         if not reference or reference in known:
             continue
-        near = numbers.likely(reference, known, cutoff=0.6)
+        near = spelling.meant(reference, known)
         yield Remark(
             message=f'<gazebo> refers to "{reference}", which is neither a link nor a joint: '
             "Gazebo drops all that is in it without a word",
@@ -180,7 +178,7 @@ def reference_unknown(subject: Subject) -> Iterator[Remark]:
             instead=f'reference="{near}"' if near else "",
             place="attribute" if near else "",
             mark=f'reference="{node.attributes["reference"]}"',
-            hint="" if near else suggestion(reference, sorted(known)),
+            hint="" if near else spelling.nearest(reference, known),
         )
 
 

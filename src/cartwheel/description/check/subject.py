@@ -44,6 +44,10 @@ GAZEBO_STEP = 0.001
 """s, where a world states none."""
 DRIVES = ("diff_drive", "diffdrive", "diff-drive")
 SKIDS = ("skid_steer", "skid-steer")
+DRIVE_JOINT_TAGS = (
+    "leftJoint", "left_joint", "rightJoint", "right_joint", "leftFrontJoint", "leftRearJoint",
+    "rightFrontJoint", "rightRearJoint",
+)  # fmt: skip
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -181,6 +185,12 @@ class Robot:
                 ]
                 found.append(Drive(tag=tag, left=sides[0], right=sides[1]))
         return tuple(found)
+
+    @cached_property
+    def joint_names(self) -> frozenset[str]:
+        """Of all joints, those that could not be read as well; scoped ones without scope too."""
+        names = {*self.joints, *map(nodes.name_of, nodes.children(self.root, "joint"))}
+        return frozenset(names | {name.rpartition("::")[2] for name in names})
 
     @cached_property
     def driven(self) -> frozenset[str]:

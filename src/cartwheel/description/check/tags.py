@@ -9,42 +9,58 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 
-from cartwheel.description.check import nodes
+from cartwheel.description.check import nodes, spelling, xacro_use
 from cartwheel.description.check.finding import Finder, Remark, Rule, rule
 from cartwheel.description.check.subject import IMPOSSIBLE, MISSING, Subject
+from cartwheel.description.node import Node
 from cartwheel.errors import Diagnostic
 
 _ELSEWHERE = re.compile(
-    r"has no <limit>|has no <inertial>|watches the collision|counts as a frame without mass"
-    r"|: the (visual|collision) is left out|is a point mass|^the texture .* does not exist"
-    r"|^the package .* was not found|; (visual|collision) \"[^\"]*\" is left out"
+    r"has no <limit>|has no <inertial>|have no <inertial>|watches the collision"
+    r"|counts as a frame without mass|is a point mass|all its mass lies in a point"
+    r"|^the texture .* does not exist|^the package .* was not found|principal moments"
+    r"|; (visual|collision) \"[^\"]*\" is left out|; it is left out|is on the network"
     r"|; a (visual|collision) of link \"[^\"]*\" is left out"
+    r"|, as the (model|package) .* was not found|none of its links has a <collision>"
 )
 """What other rules say with more detail."""
 
 _KINDS: tuple[tuple[str, str, str], ...] = (
     # A rule's name, what its diagnostics say, one line about it.
     ("material-unknown", r"is none of Gazebo's", "a material that Gazebo does not have"),
-    ("material-undefined", r"^the material .* (is not defined|was not found)",
+    ("material-undefined", r"^the material .* (is not defined|was not found|is not in its scripts)",
      "a material that nobody defines"),
     ("material-differs", r"is defined twice, differently", "a material defined in two ways"),
     ("argument-unknown", r"is not declared there|has no effect: the file is no xacro",
      "an argument given that the file does not have"),
     ("sensor-twice", r"two sensors of the name", "two sensors of a link have one name"),
-    ("tag-misplaced", r"in a <gazebo> without a reference|acts on a (link|joint), but"
-     r"|Classic does not load it", "a tag where it has no effect"),
+    ("tag-misplaced", r"Classic does not load it|it belongs to the model",
+     "a tag where it has no effect"),
     ("tag-repeated", r"^a further <", "a tag of which only the first counts"),
     ("tag-empty", r"> is empty: ", "an empty tag: the default counts"),
     ("not-simulated",
      r"has no effect here|^<plugin> in <visual>|(is|are) not (simulated|run|restored|applied)"
-     r"|nothing to preserve|needs no <axis>|is newer than|names the unknown model",
+     r"|nothing to preserve|needs no <axis>|is newer than|names the unknown model"
+     r"|is not needed: |is for other programs|is deprecated",
      "something that is read, but does nothing here"),
-    ("tag-ignored", r"is not understood and is ignored|has no effect: write",
+    ("tag-ignored", r"is not understood and is ignored|has no effect: |tag are ignored",
      "a tag or attribute that nobody reads, a misspelt one mostly"),
     ("value-ignored", r"is below 0: the default counts|is not within 0 and 1|has the size"
-     r"|is left out", "a value that cannot count"),
+     r"|is made \S+ mm thick|is left out", "a value that cannot count"),
     ("xacro-namespace", r"xmlns:xacro", "the declaration that ROS's own xacro wants is missing"),
 )  # fmt: skip
+_IN_ROBOT = re.compile(r"<([^>]*)> in <robot> is not understood")
+_OF_URDF = (
+    "inertial", "visual", "collision", "geometry", "origin", "mass", "inertia", "mesh", "parent",
+    "child", "axis", "limit", "dynamics", "mimic", "plugin", "color", "texture",
+    "hardwareInterface",
+)  # fmt: skip
+"""Tags that stand somewhere in a URDF, but not in its <robot>."""
+_QUOTED = re.compile(r'"([^"]*)"')
+_MISPLACED = re.compile(
+    r"acts on a (link|joint), but .*: it has no effect|has no effect in a <gazebo> without a "
+    r"reference: it needs"
+)
 _MEANT = re.compile(r"\.? Did you mean (?:<([^>]+)>|\"([^\"]+)\")\?")
 _REST = "reader"
 
@@ -74,6 +90,49 @@ def gazebo_ignores(subject: Subject) -> Iterator[Remark]:
                 )
 
 
+@rule("tag-misplaced", "warning", "a tag where it has no effect")
+def tag_misplaced(subject: Subject) -> Iterator[Remark]:
+    yield from told(subject, "tag-misplaced")
+    blocks: dict[tuple[int, str], list[tuple[Node, Diagnostic]]] = {}
+    for diagnostic in _diagnostics(subject):
+        match = _MISPLACED.search(diagnostic.message)
+        node = nodes.at(subject.root, diagnostic.origin) if match and diagnostic.origin else None
+        block = nodes.parent_of(subject.root, node) if node is not None else None
+        if match is not None and node is not None and block is not None:
+            blocks.setdefault((id(block), match[0]), []).append((node, diagnostic))
+    for (_, why), found in blocks.items():
+        first, diagnostic = found[0]
+        block = nodes.parent_of(subject.root, first) or first
+        names = ", ".join(dict.fromkeys(f"<{node.tag}>" for node, _ in found))
+        meant = _meant_by(subject, nodes.text_of(block, "reference"), why)
+        alone = len(found) == len(block.children)
+        if len(found) == 1:
+            said = diagnostic.message
+        else:
+            said = why.replace("it has no effect", "they have no effect").replace(": it needs", "")
+            said = f"{names} {said.replace('acts on', 'act on').replace('has no', 'have no')}"
+        yield Remark(
+            message=said.strip(),
+            origin=block.origin if meant and alone else first.origin,
+            instead=f'reference="{meant}"' if meant else "",
+            place="attribute" if meant and alone else "",
+            mark="reference" if meant and alone else "",
+            hint="" if meant else 'Write them into a <gazebo reference="…"> of their own.',
+        )
+
+
+def _meant_by(subject: Subject, reference: str, why: str) -> str:
+    """The link that a joint moves, or the joint that moves a link: the other of the two."""
+    on_link = why.startswith("acts on a link")
+    for joint in nodes.children(subject.root, "joint"):
+        child = nodes.text_of(nodes.child(joint, "child"), "link")
+        if on_link and nodes.name_of(joint) == reference:
+            return child
+        if not on_link and child == reference:
+            return nodes.name_of(joint)
+    return ""
+
+
 def told(subject: Subject, name: str) -> Iterator[Remark]:
     """What the readers told that belongs to a rule."""
     for diagnostic in _diagnostics(subject):
@@ -82,6 +141,8 @@ def told(subject: Subject, name: str) -> Iterator[Remark]:
 
 
 def _kind(message: str) -> str | None:
+    if _MISPLACED.search(message):
+        return None
     for name, pattern, _ in _KINDS:
         if re.search(pattern, message) and not _ELSEWHERE.search(message):
             return name
@@ -101,12 +162,30 @@ def _remark(subject: Subject, diagnostic: Diagnostic) -> Remark:
         match = None
     # An attribute too many is mostly a note of its author's; one that is misspelt is a fault.
     idle = _kind(message) == "not-simulated" or (
-        message.startswith("the attribute") and match is None
+        match is None and (message.startswith("the attribute") or _is_extension(message))
     )
+    if (
+        node is not None
+        and "in <robot> is not understood" in message
+        and node.tag in xacro_use.macro_names(subject)
+    ):
+        call = nodes.changed(node).replace(f"<{node.tag}", f"<xacro:{node.tag}", 1)
+        return Remark(
+            message=f"<{node.tag}> is not expanded, and does nothing: a macro is called by "
+            f"<xacro:{node.tag}>",
+            origin=node.origin,
+            instead=call if not node.children else f"<xacro:{node.tag}>",
+            place="element" if not node.children else "",
+        )
     if "is none of Gazebo's" in message and not message.startswith('the material "Gazebo/'):
         # A name such as PR2/Black is of a script that a robot brings along.
         idle, match = True, None
         message = message.partition(" Did you mean")[0]
+    if match is not None and match[2]:
+        name = _QUOTED.search(message)
+        if name is None or not spelling.meant(name[1], [match[2]]):
+            message = message[: match.start()] + message[match.end() :]
+            match = None
     near = ""
     if match is not None:
         near = match[1] or match[2]
@@ -128,12 +207,21 @@ def _remark(subject: Subject, diagnostic: Diagnostic) -> Remark:
     )
 
 
+def _is_extension(message: str) -> bool:
+    """Whether it is of a tag of <robot> that URDF has nowhere: it is for another program."""
+    found = _IN_ROBOT.match(message)
+    return found is not None and found[1] not in _OF_URDF
+
+
 def _finder(name: str) -> Finder:
     return lambda subject: told(subject, name)
 
 
 def _rules() -> Iterator[Rule]:
     for name, _, summary in _KINDS:
+        if name == "tag-misplaced":
+            yield tag_misplaced
+            continue
         yield rule(name, "info" if name == "not-simulated" else "warning", summary)(_finder(name))
     yield rule(_REST, "warning", "whatever else the readers told")(_finder(_REST))
 

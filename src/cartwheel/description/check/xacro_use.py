@@ -25,7 +25,7 @@ def argument_unused(subject: Subject) -> Iterator[Remark]:
     for tree in _trees(subject):
         for node in nodes.walk(tree):
             name = nodes.name_of(node)
-            if node.tag == "xacro:arg" and name and name not in used:
+            if node.tag == "xacro:arg" and _is_plain(name) and name not in used:
                 yield Remark(
                     message=f'the argument "{name}" is declared, but nothing uses it: '
                     f"{name}:=… changes nothing",
@@ -41,7 +41,7 @@ def property_unused(subject: Subject) -> Iterator[Remark]:
     for tree in _own_trees(subject):
         for node in nodes.walk(tree):
             name = nodes.name_of(node)
-            if node.tag == "xacro:property" and name and name not in used:
+            if node.tag == "xacro:property" and _is_plain(name) and name not in used:
                 yield Remark(
                     message=f'the property "{name}" is not used',
                     origin=node.origin,
@@ -64,6 +64,21 @@ def macro_unused(subject: Subject) -> Iterator[Remark]:
                     mark=f'name="{nodes.name_of(node)}"',
                     hint=f"Call it, as in <xacro:{name}{' …' if params else ''}/>, or remove it.",
                 )
+
+
+def macro_names(subject: Subject) -> set[str]:
+    """The macros that the description's files define."""
+    return {
+        nodes.name_of(node).removeprefix("xacro:")
+        for tree in _trees(subject)
+        for node in nodes.walk(tree)
+        if node.tag == "xacro:macro"
+    }
+
+
+def _is_plain(name: str) -> bool:
+    """Whether it is a name itself, not made of others."""
+    return bool(name) and "$" not in name
 
 
 def _trees(subject: Subject) -> list[Node]:

@@ -1,0 +1,225 @@
+"""What a sensor's tags say: types and tags that SDF knows, ranges that leave something to see."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from cartwheel.description.check import nodes, spelling
+from cartwheel.description.check.finding import Remark, rule
+from cartwheel.description.check.subject import Robot, Subject
+from cartwheel.description.model import Element, Sensor
+
+TYPES = (
+    "air_pressure", "air_speed", "altimeter", "boundingbox", "boundingbox_camera", "camera",
+    "contact", "custom", "depth", "depth_camera", "dvl", "force_torque", "gps", "gpu_lidar",
+    "gpu_ray", "imu", "lidar", "logical_camera", "magnetometer", "multicamera", "navsat", "ray",
+    "rfid", "rfidtag", "rgbd", "rgbd_camera", "segmentation", "segmentation_camera", "sonar",
+    "thermal", "thermal_camera", "triggered_camera", "wide_angle_camera", "wideanglecamera",
+    "wireless_receiver", "wireless_transmitter",
+)  # fmt: skip
+"""Of SDF 1.11 and before."""
+_TURN = 2 * math.pi + 0.01
+
+
+def _all(*tags: str, **more: Any) -> dict[str, Any]:
+    return {**dict.fromkeys(tags), **more}
+
+
+_NOISE = _all(
+    "type", "mean", "stddev", "bias_mean", "bias_stddev", "precision", "dynamic_bias_stddev",
+    "dynamic_bias_correlation_time", rate=None, accel=None,
+)  # fmt: skip
+_NOISY = {"noise": _NOISE}
+_AXES = _all(x=_NOISY, y=_NOISY, z=_NOISY)
+_CLIP = _all("near", "far")
+_ARC = _all("samples", "resolution", "min_angle", "max_angle")
+_RAY = _all(
+    "visibility_mask",
+    scan={"horizontal": _ARC, "vertical": _ARC},
+    range=_all("min", "max", "resolution"),
+    noise=_NOISE,
+)
+_CAMERA = _all(
+    "horizontal_fov", "pose", "visibility_mask", "optical_frame_id", "camera_info_topic",
+    "box_type", "segmentation_type", "trigger_topic", "triggered", "frame",
+    image=_all("width", "height", "format", "anti_aliasing"),
+    clip=_CLIP,
+    save=_all("path"),
+    depth_camera=_all("output", clip=_CLIP),
+    noise=_NOISE,
+    distortion=_all("k1", "k2", "k3", "p1", "p2", "center"),
+    lens=_all(
+        "type", "scale_to_hfov", "cutoff_angle", "env_texture_size",
+        custom_function=_all("c1", "c2", "c3", "f", "fun"),
+        intrinsics=_all("fx", "fy", "cx", "cy", "s"),
+        projection=_all("p_fx", "p_fy", "p_cx", "p_cy", "tx", "ty"),
+    ),
+)  # fmt: skip
+_SENSED = {"horizontal": _NOISY, "vertical": _NOISY}
+_SENSOR: dict[str, Any] = _all(
+    "always_on", "update_rate", "visualize", "pose", "topic", "enable_metrics", "plugin", "origin",
+    "frame", "frame_id", "gz_frame_id", "ignition_frame_id", "dvl", "rfid", "rfidtag",
+    "transceiver", "air_speed",
+    camera=_CAMERA,
+    ray=_RAY,
+    lidar=_RAY,
+    contact=_all("collision", "topic"),
+    imu=_all(
+        "topic", "enable_orientation",
+        noise=_NOISE,
+        angular_velocity=_AXES,
+        linear_acceleration=_AXES,
+        orientation_reference_frame=_all("localization", "custom_rpy", "grav_dir_x"),
+    ),
+    gps={"position_sensing": _SENSED, "velocity_sensing": _SENSED},
+    navsat={"position_sensing": _SENSED, "velocity_sensing": _SENSED},
+    magnetometer=_AXES,
+    altimeter={"vertical_position": _NOISY, "vertical_velocity": _NOISY},
+    air_pressure=_all("reference_altitude", pressure=_NOISY),
+    force_torque=_all("frame", "measure_direction", force=_AXES, torque=_AXES),
+    sonar=_all("geometry", "min", "max", "radius"),
+    logical_camera=_all("near", "far", "aspect_ratio", "horizontal_fov"),
+)  # fmt: skip
+"""The tags of SDF by the tags that hold them; None where all may stand in them."""
+
+
+@rule("sensor-type-unknown", "error", "a sensor of a type that Gazebo does not have")
+def sensor_type_unknown(subject: Subject) -> Iterator[Remark]:
+    for _, sensor in _sensors(subject):
+        if sensor.type in TYPES:
+            continue
+        near = spelling.meant(sensor.type, TYPES)
+        yield Remark(
+            message=f'the sensor "{sensor.name}" has the type "{sensor.type}", which Gazebo does '
+            "not have: it measures nothing",
+            origin=sensor.origin,
+            instead=f'type="{near}"' if near else "",
+            place="attribute" if near else "",
+            mark="type",
+            hint="" if near else spelling.nearest(sensor.type, TYPES),
+        )
+
+
+@rule("sensor-tag-unknown", "warning", "a sensor's tag that SDF does not have, a misspelt one")
+def sensor_tag_unknown(subject: Subject) -> Iterator[Remark]:
+    for _, sensor in _sensors(subject):
+        if sensor.type != "custom":
+            yield from _unknown_in(sensor.element, _SENSOR)
+
+
+@rule("sensor-range", "error", "a sensor's range or picture in which there is nothing to see")
+def sensor_range(subject: Subject) -> Iterator[Remark]:
+    for _, sensor in _sensors(subject):
+        for element in _below(sensor.element):
+            if element.tag in ("horizontal", "vertical"):
+                yield from _arc(element)
+            elif element.tag in ("range", "clip"):
+                yield from _span(element)
+            elif element.tag == "image":
+                yield from _counts(element, ("width", "height"), "a picture without pixels")
+
+
+def _arc(element: Element) -> Iterator[Remark]:
+    yield from _counts(element, ("samples",), "no ray is cast")
+    low, high = _value(element, "min_angle"), _value(element, "max_angle")
+    first = element.find("min_angle")
+    for tag, angle in (("min_angle", low), ("max_angle", high)):
+        found = element.find(tag)
+        if found is not None and angle is not None and abs(angle) > _TURN:
+            yield Remark(
+                severity="warning",
+                message=f"<{tag}> is {angle:g} rad, more than a turn: degrees for radians?",
+                origin=found.origin,
+                instead=nodes.written(tag, {}, nodes.short(math.radians(angle))),
+                place="element",
+                mark=found.text.strip(),
+            )
+            return
+    if first is not None and low is not None and high is not None and low > high:
+        yield Remark(
+            severity="info",
+            message=f"<min_angle> is {low:g} rad, above the <max_angle>, {high:g}: the scan runs "
+            "clockwise, which few programs expect",
+            origin=first.origin,
+            instead=nodes.written("min_angle", {}, nodes.short(high)),
+            place="element",
+            mark=first.text.strip(),
+            hint=f"And write <max_angle>{nodes.short(low)}</max_angle>.",
+        )
+
+
+def _span(element: Element) -> Iterator[Remark]:
+    near, far = ("min", "max") if element.tag == "range" else ("near", "far")
+    low, high = _value(element, near), _value(element, far)
+    first = element.find(near)
+    if first is None or low is None or high is None or low < high:
+        return
+    yield Remark(
+        message=f"<{near}> is {low:g} m, and <{far}> {high:g} m: nothing lies between",
+        origin=first.origin,
+        instead=nodes.written(near, {}, nodes.short(high if 0 <= high < low else 0.1)),
+        place="element",
+        mark=first.text.strip(),
+        hint=f"And write <{far}>{nodes.short(low)}</{far}>." if 0 <= high < low else "",
+    )
+
+
+def _counts(element: Element, tags: tuple[str, ...], consequence: str) -> Iterator[Remark]:
+    for tag in tags:
+        value, found = _value(element, tag), element.find(tag)
+        if found is not None and value is not None and value < 1:
+            yield Remark(
+                message=f"<{tag}> is {value:g}: {consequence}",
+                origin=found.origin,
+                instead=nodes.written(tag, {}, "640" if tag != "height" else "480"),
+                place="element",
+                mark=found.text.strip(),
+            )
+
+
+def _unknown_in(element: Element, known: Mapping[str, Any]) -> Iterator[Remark]:
+    for child in element.children:
+        if child.tag in known:
+            inner = known[child.tag]
+            if inner is not None:
+                yield from _unknown_in(child, inner)
+            continue
+        if ":" in child.tag:
+            continue  # of a namespace: for other programs
+        near = spelling.meant(child.tag, known)
+        yield Remark(
+            severity=None if near else "info",
+            message=f"<{child.tag}> in <{element.tag}> is no tag of SDF: Gazebo ignores it",
+            origin=child.origin,
+            instead=nodes.written(near, dict(child.attributes), child.text.strip())
+            if near and not child.children
+            else f"<{near}>"
+            if near
+            else "",
+            place="element" if near and not child.children else "",
+            mark=child.tag,
+            hint="" if near else f"<{element.tag}> has {', '.join(list(known)[:12])}.",
+        )
+
+
+def _below(element: Element) -> Iterator[Element]:
+    for child in element.children:
+        if child.tag != "plugin":
+            yield child
+            yield from _below(child)
+
+
+def _value(element: Element, tag: str) -> float | None:
+    found = element.find(tag)
+    return nodes.number(found.text) if found is not None else None
+
+
+def _sensors(subject: Subject) -> Iterator[tuple[Robot, Sensor]]:
+    for robot in subject.robots:
+        for _, sensor in robot.sensors():
+            yield robot, sensor
+
+
+RULES = (sensor_type_unknown, sensor_tag_unknown, sensor_range)

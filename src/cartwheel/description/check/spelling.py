@@ -1,0 +1,91 @@
+"""Which existing name a wrong one stands for: near enough to be written in its place."""
+
+from __future__ import annotations
+
+import difflib
+import re
+from collections.abc import Iterable
+
+_LETTERS_AN_ERROR = 6
+"""So many letters may hold one slip of the keyboard."""
+_MOST_ERRORS = 2
+_SHORTEST = 4
+"""Letters of a part that is enough to know the whole by."""
+_SHOWN = 4
+_LISTED = 12
+
+
+def meant(name: str, known: Iterable[str], *, parts: bool = True) -> str:
+    """The one name that was meant; empty where none or several could be.
+
+    A slip of the keyboard, another case or other separators, a prefix or suffix too many or too
+    few: all else is another name, which nobody should write instead.
+
+    Args:
+        name: As it is written.
+        known: Those that exist.
+        parts: Whether a prefix or suffix may be what is wrong.
+    """
+    names = sorted(set(known) - {""})
+    if not name or name in names:
+        return ""
+    plain = _plain(name)
+    alike = [each for each in names if _plain(each) == plain]
+    if alike:
+        return alike[0]
+    allowed = min(_MOST_ERRORS, max(1, len(plain) // _LETTERS_AN_ERROR))
+    # Another number is another name: joint_4 is no misspelt joint_3.
+    digits = re.findall(r"\d+", name)
+    slips = sorted(
+        (errors, each)
+        for each in names
+        if re.findall(r"\d+", each) == digits
+        and (errors := _errors(plain, _plain(each), allowed)) <= allowed
+    )
+    if slips and (len(slips) == 1 or slips[0][0] < slips[1][0]):
+        return slips[0][1]
+    held = [each for each in names if _is_part(name, each) or _is_part(each, name)]
+    return held[0] if parts and len(held) == 1 and not slips else ""
+
+
+def nearest(name: str, known: Iterable[str]) -> str:
+    """A sentence for where no name is surely meant: the nearest ones, or those that exist."""
+    names = sorted(set(known) - {""})
+    close = difflib.get_close_matches(name, names, n=_SHOWN, cutoff=0.5)
+    shown = ", ".join(close or names[:_LISTED])
+    if not names:
+        return "There are none."
+    if close:
+        return f"The nearest {'are' if len(close) > 1 else 'is'} {shown}."
+    return f"There are: {shown}{', …' if len(names) > _LISTED else ''}."
+
+
+def _plain(name: str) -> str:
+    return re.sub(r"[^0-9a-z]", "", name.lower())
+
+
+def _is_part(short: str, long: str) -> bool:
+    """Whether a name is the whole of another but for a prefix or a suffix."""
+    if len(short) < _SHORTEST:
+        return False
+    # A number at its end makes it another: caster_2 is not caster.
+    return bool(re.search(rf"(^|[_/:.]){re.escape(short)}($|[_/:.](?!\d+$))", long))
+
+
+def _errors(a: str, b: str, most: int) -> int:
+    """Letters that are wrong, missing, too many or swapped; more than `most` counts as one more."""
+    if abs(len(a) - len(b)) > most:
+        return most + 1
+    before: list[int] = []
+    last = list(range(len(b) + 1))
+    for i, letter in enumerate(a, 1):
+        row = [i]
+        for j, other in enumerate(b, 1):
+            cost = min(last[j] + 1, row[j - 1] + 1, last[j - 1] + (letter != other))
+            if i > 1 and j > 1 and letter == b[j - 2] and a[i - 2] == other:
+                cost = min(cost, before[j - 2] + 1)
+            row.append(cost)
+        if min(row) > most:
+            return most + 1
+        before, last = last, row
+    return last[-1]
