@@ -45,6 +45,34 @@ def test_each_wheel_turns_as_the_kinematics_say(drive, motion):
     assert found == pytest.approx(wheels(*motion), abs=0.05)
 
 
+def test_husarions_controller_of_the_same_name_has_its_own_parameters(make, tmp_path):
+    """Separations and factors in place of their sum; ``cmd_vel`` and ``odom``; half a second."""
+    settings = {
+        "type": "mecanum_drive_controller/MecanumDriveController",
+        **{f"{name}_wheel_name": f"{name}_joint" for name in NAMES},
+        "wheel_separation_x": BASE / 2,
+        "wheel_separation_x_multiplier": 2.0,
+        "wheel_separation_y": TRACK,
+        "wheel_radius": RADIUS * 2,
+        "wheel_radius_multiplier": 0.5,
+        "use_stamped_vel": True,
+        "position_feedback": False,
+        "open_loop": True,
+    }
+    made = Car(make, tmp_path, four_wheels(), "cmd_vel", **settings)
+    motion = (0.2, -0.1, 0.4)
+    made.go(0.3, *motion)
+    found = made.speeds(*(f"{name}_joint" for name in NAMES))
+    assert found == pytest.approx(wheels(*motion), abs=0.05)
+    made.go(1.0, y=0.3)
+    assert made.odometry("/base/odom").twist.twist.linear.y == pytest.approx(0.3, rel=0.05)
+    told = [each.message for each in made.world.diagnostics if "no effect" in each.message]
+    assert len(told) == 1
+    assert "open_loop" in told[0]
+    made.world.run(0.8)
+    assert made.odometry("/base/odom").twist.twist.linear.y == pytest.approx(0, abs=0.02)
+
+
 def test_it_goes_sideways_and_its_odometry_knows(drive):
     made = drive()
     x, y, _ = made.place

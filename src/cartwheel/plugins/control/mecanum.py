@@ -31,17 +31,21 @@ class MecanumDriveController(Controller):
 
     Where they grip along their rollers alone, friction takes the robot along: see `has_rollers`.
     Otherwise a servo pushes it, as for gz-sim-mecanum-drive-system, where these parameters are
-    known when the robot is spawned. ROS 1 listens to ``cmd_vel``, ROS 2 to ``reference``.
-    Source: mecanum_drive_controller.
+    known when the robot is spawned. ROS 1 listens to ``cmd_vel``, ROS 2 to ``reference``;
+    husarion's controller of the same name, which has parameters of its own, to ``cmd_vel``.
+    Source: mecanum_drive_controller; husarion_controllers.
     """
 
     types: ClassVar[tuple[str, ...]] = ("mecanum_drive_controller/MecanumDriveController",)
 
     def configure(self, settings: Settings) -> None:
         ros2 = self.rig.ros2
+        husarion = ros2 and settings.has("front_left_wheel_name")
         names = []
         for corner, plain in zip(_ROS2_CORNERS, _CORNERS, strict=True):
-            if ros2:
+            if husarion:
+                names.append(settings.text(f"{corner}_wheel_name"))
+            elif ros2:
                 names.append(settings.text(f"{corner}_wheel_command_joint_name"))
                 settings.ignore(f"{corner}_wheel_state_joint_name")
             else:
@@ -51,11 +55,12 @@ class MecanumDriveController(Controller):
         for name in names:
             check_axis(self, name, LEFT)
         description = self.part.description
-        radius = settings.optional_number("kinematics/wheels_radius" if ros2 else "wheel_radius")
+        nested = ros2 and not husarion
+        radius = settings.optional_number("kinematics/wheels_radius" if nested else "wheel_radius")
         self._radius = radius or wheel_radius(description, names[0]) or 0.0
         reach = (
             settings.optional_number("kinematics/sum_of_robot_center_projection_on_X_Y_axis")
-            if ros2
+            if nested
             else None
         )
         if not reach:
@@ -63,6 +68,9 @@ class MecanumDriveController(Controller):
             across = [joint_place(description, name)[1] for name in names]
             x = settings.number("wheel_separation_x", max(along) - min(along))
             y = settings.number("wheel_separation_y", max(across) - min(across))
+            if husarion:
+                x *= settings.number("wheel_separation_x_multiplier", 1.0)
+                y *= settings.number("wheel_separation_y_multiplier", 1.0)
             reach = (x + y) / 2
         self._reach = reach * settings.number("wheel_separation_multiplier", 1.0)
         self._radius *= settings.number("wheel_radius_multiplier", 1.0)
@@ -75,21 +83,27 @@ class MecanumDriveController(Controller):
         ]
         self._history = [(0.0, 0.0, 0.0), (0.0, 0.0, 0.0)]
         stamped = ros2 and settings.boolean("use_stamped_vel", True)
-        topic = "cmd_vel"
-        if ros2:
-            topic = "reference" if stamped else "reference_unstamped"
+        topic = "reference" if nested else "cmd_vel"
+        if ros2 and not stamped:
+            topic += "_unstamped"
         # In ROS 2 a command counts for ever where nothing else is stated.
-        limit = ("reference_timeout", 0.0) if ros2 else ("cmd_vel_timeout", 0.5)
+        limit = ("reference_timeout", 0.0) if nested else ("cmd_vel_timeout", 0.5)
         timeout = settings.number(*limit)
         self._command = TwistCommand(self, topic, timeout=timeout, stamped=stamped)
         self._odometry = WheelOdometry(
             self,
             settings,
-            topic="odometry" if ros2 else "odom",
-            tf_topic="tf_odometry" if ros2 else "/tf",
+            topic="odometry" if nested else "odom",
+            tf_topic="tf_odometry" if nested else "/tf",
             transform=settings.boolean("enable_odom_tf", True),
             prefix=frame_prefix(self, settings) if ros2 else "",
         )
+        if husarion:
+            # Wheels are read by their positions, and what they turned is told.
+            settings.ignore("position_feedback")
+            for name in ("open_loop", "publish_limited_velocity"):
+                if settings.boolean(name, False):
+                    self.warn(f'"{name}" has no effect')
         self._turned = [0.0] * 4
         if self.rig.push is None and not has_rollers(description):
             self.warn(
