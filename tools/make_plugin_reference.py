@@ -207,6 +207,8 @@ def _needed(item: dataclasses.Field[Any], kind: Any) -> str:
     """What stands in a tag that must be given."""
     if kind in (float, int):
         return "1"
+    if typing.get_origin(kind) is typing.Literal:
+        return str(typing.get_args(kind)[0])
     if "joint" in item.name:
         return "left_joint"
     return SENSOR if "sensor" in item.metadata["doc"] else "base_footprint"

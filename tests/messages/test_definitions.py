@@ -85,6 +85,7 @@ MESSAGES = {
     "kobuki_msgs/MotorPower": "8f77c0161e0f2021493136bb5f3f0e51",
     "kobuki_msgs/SensorState": "430a4bfd78449c8740bfef32b26613a6",
     "kobuki_msgs/WheelDropEvent": "e102837d89384d67669a0df86b63f33b",
+    "mav_msgs/Actuators": "25741daf38ed25442e3a66a855ee8d9c",
     "roscpp/Logger": "a6069a2ff40db7bd32143dd66e1f408e",
     "rosgraph_msgs/Log": "acffd30cd6b6de30f120938c17c593fb",
     "tf2_msgs/TFMessage": "94810edda583a504dfda3829e70d7eec",

@@ -7,6 +7,7 @@ way and left gravity out.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -71,6 +72,7 @@ class ImuBase(Plugin[Any]):
         self._Vector3 = message_class("geometry_msgs/msg/Vector3")
         self._Quaternion = message_class("geometry_msgs/msg/Quaternion")
         self._covariance = np.diag([noise**2] * 3).ravel()
+        self._orientation_covariance = self._covariance
         self._rate_covariance = self._accel_covariance = self._covariance
         self._orientation_covariance = self._covariance
         if not self._unit.has_orientation:
@@ -85,6 +87,12 @@ class ImuBase(Plugin[Any]):
         )
         self.part.schedule(rate, after=self._measure, active=lambda: self._publisher.wanted)
 
+    def _blurred(
+        self, rate: Sequence[float], acceleration: Sequence[float]
+    ) -> tuple[Sequence[float], Sequence[float]]:
+        """Both with the errors that a plugin has of its own."""
+        return rate, acceleration
+
     def _measure(self) -> None:
         orientation, rate, acceleration = self._unit.measure()
         if not self.with_gravity:
@@ -94,6 +102,7 @@ class ImuBase(Plugin[Any]):
             random = self.part.random(f"imu {self._publisher.topic}")
             rate = (rate + random.normal(0.0, self._noise, 3)).tolist()
             acceleration = (acceleration + random.normal(0.0, self._noise, 3)).tolist()
+        rate, acceleration = self._blurred(rate, acceleration)
         Imu, Vector3, Quaternion = self._Imu, self._Vector3, self._Quaternion
         self._publisher.publish(
             Imu(

@@ -154,15 +154,26 @@ class Part:
         return handle
 
     def servo(
-        self, joint: str, *, max_effort: float | None, origin: Origin | None = None
+        self,
+        joint: str,
+        *,
+        max_effort: float | None,
+        beyond: bool = False,
+        origin: Origin | None = None,
     ) -> ServoHandle:
         """A joint's drive that takes efforts, velocities or positions.
+
+        Args:
+            joint: Its name.
+            max_effort: N m or N; no more than the joint's own limit.
+            beyond: Whether it holds positions and velocities with more than that limit as well.
+            origin: Who asks for it.
 
         Raises:
             PluginError: Another plugin drives the joint by a law of its own.
         """
         self.joint(joint, origin=origin)
-        motor = Motor(joint=joint, mode="servo", max_effort=max_effort)
+        motor = Motor(joint=joint, mode="servo", max_effort=max_effort, beyond=beyond)
         if self._entry.motors.setdefault(joint, motor).mode != "servo":
             raise PluginError(f'joint "{joint}" is driven by two plugins', origin=origin)
         handle = ServoHandle(self.name, self._entry.motors[joint])

@@ -253,8 +253,9 @@ class BodyBuilder:
         name = scoped(entry.name, motor.joint, ROTOR)
         joint = entry.description.joint(motor.joint)
         limits = [] if motor.max_effort is None else [motor.max_effort]
-        if joint is not None and joint.axis.effort is not None and joint.axis.effort > 0:
-            limits.append(joint.axis.effort)
+        stated = None if joint is None or motor.beyond else joint.axis.effort
+        if stated is not None and stated > 0:
+            limits.append(stated)
         body = self._spec.worldbody.add_body(name=name)
         body.sleep = mujoco.mjtSleepPolicy.mjSLEEP_NEVER
         body.explicitinertial = True

@@ -45,6 +45,8 @@ class Motor:
     """A servo's law is set while it runs; see `ServoHandle`."""
     max_effort: float | None = None
     """N m or N; None is unlimited."""
+    beyond: bool = False
+    """Whether a position or velocity is held with that even beyond the joint's effort limit."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

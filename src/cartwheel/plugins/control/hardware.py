@@ -9,12 +9,15 @@ from typing import Any
 from cartwheel.description.model import Axis, Mimic, SoftLimits
 from cartwheel.errors import PluginError, UnknownNameError
 from cartwheel.plugins.base import Plugin
+from cartwheel.plugins.control.burden import burden
 from cartwheel.plugins.control.interfaces import JointInterfaces
 from cartwheel.plugins.control.pid import Gains, Pid
 from cartwheel.plugins.control.settings import Settings
 from cartwheel.simulation.handles import JointHandle, MotorHandle
 from cartwheel.simulation.servo import ServoHandle
 
+_MEANT = 0.25
+"""Of what the weight asks for at most: an effort limit of less stands for none."""
 _STRONGEST = 1e5
 """N m or N of a joint that states no effort limit."""
 
@@ -62,12 +65,14 @@ class JointHardware:
         self.state: JointHandle = part.joint(name, origin=origin)
         self.motor: MotorHandle | None = None
         self.servo: ServoHandle | None = None
-        strength = min(self.effort_limit, _STRONGEST)
         self.pids = {gains[0]: Pid(gains[1])} if gains is not None else {}
+        strength = self._strength(plugin)
         if interfaces.commands == ("velocity",) and not self.pids:
             self.motor = part.velocity_motor(name, max_effort=strength, origin=origin)
         elif interfaces.commands:
-            self.servo = part.servo(name, max_effort=strength, origin=origin)
+            self.servo = part.servo(
+                name, max_effort=strength, beyond=strength > self.effort_limit, origin=origin
+            )
         self.active: str = ""
         """The interface that is commanded."""
         self.command = 0.0
@@ -79,6 +84,22 @@ class JointHardware:
         if interfaces.mimic is not None and joint.mimic is None:
             leader, multiplier = interfaces.mimic
             part.mimic(name, Mimic(joint=leader, multiplier=multiplier), origin=origin)
+
+    def _strength(self, plugin: Plugin[Any]) -> float:
+        """N m or N with which a position or velocity is held, at most."""
+        limit, commands = self.effort_limit, self.interfaces.commands
+        if "position" in commands and "position" not in self.pids and limit < math.inf:
+            need = burden(plugin.part.description, self.name)
+            if limit < _MEANT * need:
+                held, unit = 2 * need, "N" if self.type == "prismatic" else "N m"
+                plugin.warn(
+                    f'joint "{self.name}": its effort limit of {limit:g} {unit} cannot bear what '
+                    f"the joint carries, which is up to {need:.3g} {unit}: as Gazebo's, a command "
+                    f"of its position is followed all the same, with up to {held:.3g} {unit}",
+                    at=self.interfaces.origin,
+                )
+                limit = held
+        return min(limit, _STRONGEST)
 
     def _take_limits(self, limits: Settings) -> None:
         """Source: joint_limits_interface, joint_limits_rosparam."""

@@ -1,0 +1,256 @@
+"""Propellers of multicopters: of rotors_simulator, of PX4 and of new Gazebo."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, ClassVar, Literal
+
+import numpy as np
+
+from cartwheel.errors import PluginError
+from cartwheel.geometry import rotate
+from cartwheel.messages import message_class
+from cartwheel.plugins.base import Plugin
+from cartwheel.plugins.gz_drive import gz_name
+from cartwheel.plugins.parameters import tag
+
+ACTUATORS = "mav_msgs/msg/Actuators"
+GZ_ACTUATORS = "actuator_msgs/msg/Actuators"
+_FLOAT = "std_msgs/msg/Float32"
+SLOWDOWN = 10.0
+"""By which joints turn slower than the propellers that they stand for, where none is stated."""
+_NO_MOMENT = (0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class _Motor:
+    joint: str = tag("jointName", doc="Of the propeller.")
+    link: str = tag("linkName", doc="Of the propeller; it pushes along its z axis.")
+    direction: Literal["cw", "ccw"] = tag("turningDirection", doc="Seen from above.")
+    kind: Literal["velocity", "position", "force"] = tag(
+        "motorType", default="velocity", doc="What it is told; only a velocity is supported."
+    )
+    motor_constant: float = tag(
+        "motorConstant", default=8.54858e-06, unit="N s²/rad²", doc="Thrust of a speed squared."
+    )
+    moment_constant: float = tag(
+        "momentConstant", default=0.016, unit="m", doc="Torque on what carries it, of its thrust."
+    )
+    up: float = tag("timeConstantUp", default=1 / 80, unit="s", doc="Of getting faster.")
+    down: float = tag("timeConstantDown", default=1 / 40, unit="s", doc="Of getting slower.")
+    drag: float = tag(
+        "rotorDragCoefficient", default=1e-4, unit="N s²/(m rad)", doc="Of moving across the axis."
+    )
+    rolling: float = tag(
+        "rollingMomentCoefficient", default=1e-6, unit="N s²/rad", doc="Torque of the same."
+    )
+    slowdown: float = tag(
+        "rotorVelocitySlowdownSim", default=SLOWDOWN, doc="The joint turns so much slower."
+    )
+
+
+class _MotorModel(Plugin[Any]):
+    """Turns a joint as it is told, pushes its link and twists what carries it."""
+
+    def _start(self, *, topic: str, kind: str, field: str, number: int, fastest: float) -> None:
+        config: _Motor = self.config
+        part, origin = self.part, self.tag.origin
+        self.check_above_zero(
+            timeConstantUp=config.up,
+            timeConstantDown=config.down,
+            rotorVelocitySlowdownSim=config.slowdown,
+            maxRotVelocity=fastest,
+        )
+        if number < 0:
+            raise PluginError("the number of a motor cannot be below 0", origin=origin)
+        joint = part.description.joint(config.joint)
+        self._joint = part.joint(config.joint, origin=origin)
+        assert joint is not None
+        self._axis = rotate(joint.pose.orientation, joint.axis.xyz)
+        self._link = part.link(config.link, origin=origin)
+        self._push = part.wrench(config.link)
+        self._twist = part.wrench(joint.parent, origin=origin)
+        self._sense = 1.0 if config.direction == "ccw" else -1.0
+        self._number, self._field, self._fastest = number, field, fastest
+        self.reset()
+        if config.kind != "velocity":
+            self.warn(f'<motorType> "{config.kind}" is not supported: the joint is left alone')
+            return
+        self._motor = part.velocity_motor(config.joint, max_effort=None)
+        self.subscribe(topic, kind, self._on_command)
+        part.schedule(0, before=self._turn)
+
+    def reset(self) -> None:
+        self._wanted = self._speed = 0.0
+        self._before_ns = self.part.time_ns
+        self._push.forget()
+        self._twist.forget()
+
+    def _on_command(self, message: Any) -> None:
+        speeds = getattr(message, self._field)
+        if self._number >= len(speeds):
+            self.warn(
+                f"a command of {len(speeds)} speeds has none of motor {self._number}: ignored"
+            )
+            return
+        speed = float(speeds[self._number])
+        if self.is_finite(speed):
+            self._wanted = min(speed, self._fastest)
+
+    def _thrust(self, speed: float) -> float:
+        """N along the link's z axis, of a turning about the joint's axis in rad/s."""
+        return self._sense * math.copysign(speed * speed, speed) * float(self.config.motor_constant)
+
+    def _left(self, _along: float) -> float:
+        """What is left of the thrust at a speed along the axis in m/s."""
+        return 1.0
+
+    def _rolling(self) -> float:
+        return float(self.config.rolling)
+
+    def _turn(self) -> None:
+        config: _Motor = self.config
+        part = self.part
+        part.locate()
+        speed = self._joint.velocity * config.slowdown
+        _, turned = self._link.place()
+        axis = np.array(rotate(turned, self._axis))
+        velocity = np.array(self._link.motion(local=False)[0])
+        along = float(velocity @ axis)
+        across = velocity - along * axis
+        thrust = self._thrust(speed)
+        up = np.array(rotate(turned, (0.0, 0.0, 1.0)))
+        drag = -abs(speed) * config.drag * across
+        roll = -abs(speed) * self._rolling() * across
+        twist = -self._sense * thrust * config.moment_constant * up + roll
+        self._push.apply((self._left(along) * thrust * up + drag).tolist(), _NO_MOMENT)
+        self._twist.apply(_NO_MOMENT, twist.tolist())
+        now = part.time_ns
+        seconds, self._before_ns = (now - self._before_ns) * 1e-9, now
+        constant = config.up if self._wanted > self._speed else config.down
+        self._speed += (self._wanted - self._speed) * -math.expm1(-seconds / constant)
+        self._motor.command(self._sense * self._speed / config.slowdown)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class RotorsMotorParameters(_Motor):
+    number: int = tag("motorNumber", default=0, doc="Its place among the speeds of a command.")
+    topic: str = tag("commandSubTopic", default="command/motor_speed", doc="Speeds, rad/s.")
+    speed_topic: str = tag("motorSpeedPubTopic", default="motor_speed", doc="The joint's, rad/s.")
+    position_topic: str = tag("motorPositionPubTopic", default="", doc="The joint's angle, rad.")
+    fastest: float = tag("maxRotVelocity", default=838.0, unit="rad/s", doc="It goes no faster.")
+
+
+class RotorsMotorModel(_MotorModel):
+    """Turns a propeller, with a thrust of its speed squared, drag and rolling moment.
+
+    Its air is at rest. Source: rotors_gazebo_plugins, gazebo_motor_model.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ("librotors_gazebo_motor_model.so",)
+    parameters: ClassVar[type] = RotorsMotorParameters
+
+    def configure(self) -> None:
+        config: RotorsMotorParameters = self.config
+        self._start(
+            topic=config.topic, kind=ACTUATORS, field="angular_velocities",
+            number=config.number, fastest=config.fastest,
+        )  # fmt: skip
+        self._Float32 = message_class(_FLOAT)
+        # The motor's number ends it, which is no name in ROS 2.
+        self._told = [
+            (self.advertise(gz_name(self, f"{self.namespace}/{topic}", ""), _FLOAT), what)
+            for topic, what in (
+                (config.speed_topic, "velocity"),
+                (config.position_topic, "position"),
+            )
+            if topic
+        ]
+        self.part.schedule(
+            0, after=self._tell, active=lambda: any(each.wanted for each, _ in self._told)
+        )
+
+    def _tell(self) -> None:
+        for publisher, what in self._told:
+            if publisher.wanted:
+                publisher.publish(self._Float32(getattr(self._joint, what)))
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Px4MotorParameters(_Motor):
+    number: int = tag("motorNumber", default=0, doc="Its place among the speeds of a command.")
+    topic: str = tag(
+        "commandSubTopic",
+        default="/gazebo/command/motor_speed",
+        doc="Speeds, rad/s; under the model's name.",
+    )
+    fastest: float = tag("maxRotVelocity", default=838.0, unit="rad/s", doc="It goes no faster.")
+    airspeed: float = tag(
+        "maxRelativeAirspeed",
+        default=25.0,
+        unit="m/s",
+        doc="Along the axis, at which nothing is left of the thrust.",
+    )
+    reversible: bool = tag("reversible", default=False, doc="Whether it can push down.")
+
+
+class Px4MotorModel(_MotorModel):
+    """Turns a propeller as PX4's models have them, whose thrust fades with the speed of its flight.
+
+    Where PX4 speaks a protocol of its own, commands are mav_msgs/Actuators here. Source:
+    PX4-SITL_gazebo-classic, gazebo_motor_model.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ("libgazebo_motor_model.so",)
+    parameters: ClassVar[type] = Px4MotorParameters
+
+    def configure(self) -> None:
+        config: Px4MotorParameters = self.config
+        self.check_above_zero(maxRelativeAirspeed=config.airspeed)
+        self._start(
+            topic=gz_name(self, f"{self.part.name}/{config.topic.strip('/')}", ""),
+            kind=ACTUATORS, field="angular_velocities",
+            number=config.number, fastest=config.fastest,
+        )  # fmt: skip
+
+    def _thrust(self, speed: float) -> float:
+        config: Px4MotorParameters = self.config
+        force = math.copysign(speed * speed, speed) * config.motor_constant
+        return force if config.reversible else abs(force)
+
+    def _left(self, along: float) -> float:
+        return min(max(1 - abs(along) / float(self.config.airspeed), 0.0), 1.0)
+
+    def _rolling(self) -> float:
+        return self._sense * float(self.config.rolling)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class GzMotorParameters(_Motor):
+    number: int = tag(
+        "actuator_number", "motorNumber", doc="Its place among the speeds of a command."
+    )
+    topic: str = tag(
+        "commandSubTopic", default="", doc="Speeds, rad/s; under <robotNamespace>, or the model."
+    )
+    fastest: float = tag("maxRotVelocity", default=838.0, unit="rad/s", doc="It goes no faster.")
+
+
+class GzMotorModel(_MotorModel):
+    """Turns a propeller, with a thrust of its speed squared, drag and rolling moment.
+
+    Source: gz-sim, MulticopterMotorModel.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ("gz-sim-multicopter-motor-model-system",)
+    parameters: ClassVar[type] = GzMotorParameters
+
+    def configure(self) -> None:
+        config: GzMotorParameters = self.config
+        over = self.namespace or self.part.name
+        self._start(
+            topic=gz_name(self, f"{over}/{config.topic.strip()}".rstrip("/"), ""),
+            kind=GZ_ACTUATORS, field="velocity",
+            number=config.number, fastest=config.fastest,
+        )  # fmt: skip
