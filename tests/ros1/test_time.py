@@ -11,7 +11,7 @@ import pytest
 from tests.ros1.desk import Desk, open_desk
 
 LISTENER = """
-import sys, rospy, tf2_ros
+import sys, time, rospy, tf2_ros
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import CameraInfo, Imu, JointState
 
@@ -19,25 +19,32 @@ rospy.init_node("listener", anonymous=True)
 buffer = tf2_ros.Buffer()
 transforms = tf2_ros.TransformListener(buffer)
 rospy.sleep(1.0)
-heard, late, back = {}, {}, {}
+heard, late, back, hearers = {}, {}, {}, []
 last = {}
 
 def hear(name, stamp, frames):
     heard[name] = heard.get(name, 0) + 1
     back[name] = back.get(name, 0) + (stamp <= last.get(name, rospy.Time(0)))
     last[name] = stamp
-    for frame in frames:
-        # What a message filter waits for: the frame at the message's own time, soon.
-        if not buffer.can_transform("odom", frame, stamp, rospy.Duration(0.3)):
-            late[name] = late.get(name, 0) + 1
+    # What a message filter waits for: the frames at the message's own time.
+    late[name] = late.get(name, 0) + 1
+    if all(buffer.can_transform("odom", frame, stamp, rospy.Duration(100)) for frame in frames):
+        late[name] -= 1
 
 def listen(name, kind, frames):
-    rospy.Subscriber(name, kind, lambda m: hear(name, m.header.stamp, frames), queue_size=1000)
+    hearers.append(
+        rospy.Subscriber(name, kind, lambda m: hear(name, m.header.stamp, frames), queue_size=1000)
+    )
 
 listen("/odom", Odometry, ["base_link", "wheel_left_link"])
 listen("/imu/data", Imu, ["base_link"])
 listen("/rosbots/camera1/camera_info", CameraInfo, ["camera"])
 rospy.sleep(float(sys.argv[1]))
+for hearer in hearers:
+    hearer.unregister()
+began = time.monotonic()
+while any(late.values()) and time.monotonic() - began < 60:
+    time.sleep(0.05)
 print("heard", heard)
 print("late", late)
 print("back", back)
