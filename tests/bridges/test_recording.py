@@ -425,7 +425,7 @@ def test_a_backlog_counts_bytes(tmp_path: Path) -> None:
         assert 0 < len(items) <= 3
         taken += len(items)
         backlog.done(items)
-    thread.join(10.0)
+    thread.join(120)
     assert put == [10]
 
 

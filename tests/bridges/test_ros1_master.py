@@ -181,7 +181,7 @@ def test_a_remote_master_that_does_not_answer_is_an_error(
     began = time.monotonic()
     with pytest.raises(CartwheelError, match=r"no ROS master: http://192\.0\.2\.1:11311"):
         bridge.start()
-    assert time.monotonic() - began < 20
+    assert time.monotonic() - began < 100
     bridge.close()
 
 

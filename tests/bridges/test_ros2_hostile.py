@@ -53,7 +53,7 @@ def memory() -> int:
 def settle(bridged: Ros2Bridged) -> None:
     """Waits until the bridge has taken what was sent, and still answers."""
     for _ in range(3):
-        bridged.bridge._loop.call(lambda: None).result(30)
+        bridged.bridge._loop.call(lambda: None).result(120)
 
 
 def announcement(prefix: bytes, port: int) -> bytes:
@@ -106,7 +106,7 @@ def test_participants_without_number_are_bounded(
     assert [each for each in bridged.reports if "other participants" in each.message]
     # Those that were made up do not leave by themselves.
     for prefix in list(participant._remotes):
-        bridged.bridge._loop.call(lambda prefix=prefix: participant._lose(prefix)).result(10)
+        bridged.bridge._loop.call(lambda prefix=prefix: participant._lose(prefix)).result(120)
 
 
 def test_fragments_of_giants_take_no_memory(bridged: Ros2Bridged, sender: socket.socket) -> None:
@@ -129,7 +129,7 @@ def test_fragments_of_giants_take_no_memory(bridged: Ros2Bridged, sender: socket
     settle(bridged)
     # Eight samples of 20 MiB may be under way from one writer.
     assert memory() - before < 300 << 20
-    bridged.bridge._loop.call(lambda: participant._lose(prefix)).result(10)
+    bridged.bridge._loop.call(lambda: participant._lose(prefix)).result(120)
 
 
 def test_a_heartbeat_of_astronomical_numbers_costs_nothing(
@@ -157,7 +157,7 @@ def test_a_heartbeat_of_astronomical_numbers_costs_nothing(
         )
         sender.send(wire.message(prefix, gap))
     settle(bridged)
-    bridged.bridge._loop.call(lambda: participant._lose(prefix)).result(10)
+    bridged.bridge._loop.call(lambda: participant._lose(prefix)).result(120)
 
 
 @pytest.mark.skipif(bool(REASON), reason=REASON)

@@ -66,7 +66,7 @@ def test_the_robot_is_described_and_its_links_placed(start: Start, peer: Peer) -
     assert not frames("/tf") & frames("/tf_static")
     wait_for(lambda: len(peer.received("/clock")) > 10, "the clock")
     process.send_signal(signal.SIGINT)
-    out, errors = process.communicate(timeout=30)
+    out, errors = process.communicate(timeout=120)
     assert process.returncode == 0, errors
     assert f"/gazebo on DDS domain {DOMAIN + 4}, seen by this computer" in out
     assert "Traceback" not in errors
@@ -108,7 +108,7 @@ def test_a_recorded_robot_is_described_once(start: Start, peer: Peer, tmp_path: 
     before = len(peer.received("/clock"))
     wait_for(lambda: len(peer.received("/clock")) > before + 50, "half a second more")
     process.send_signal(signal.SIGINT)
-    _, errors = process.communicate(timeout=30)
+    _, errors = process.communicate(timeout=120)
     assert process.returncode == 0, errors
     ours = [head for _, head in peer.received("/robot_description") if b'"rosbots"' in head]
     assert len(ours) == 1
@@ -133,7 +133,7 @@ def test_two_simulations_live_in_one_domain(start: Start, peer: Peer) -> None:
 
 def test_a_middleware_that_is_none_is_told(start: Start) -> None:
     process = start("--rmw", "tin_cans", "--for", "1")
-    _, errors = process.communicate(timeout=30)
+    _, errors = process.communicate(timeout=120)
     assert process.returncode == 2
     assert "tin_cans" in errors
     assert "dds or zenoh" in errors

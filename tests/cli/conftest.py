@@ -25,7 +25,7 @@ class Program:
     folder: Path
 
     def __call__(
-        self, *arguments: str | Path, stdin: str = "", timeout: float = 60, status: int | None = 0
+        self, *arguments: str | Path, stdin: str = "", timeout: float = 200, status: int | None = 0
     ) -> subprocess.CompletedProcess[str]:
         """Runs a command to its end and expects its status."""
         done = subprocess.run(
@@ -105,7 +105,7 @@ def ends() -> Callable[[subprocess.Popen[str], int], float]:
     def send(process: subprocess.Popen[str], number: int) -> float:
         start = time.monotonic()
         process.send_signal(number)
-        process.wait(timeout=20)
+        process.wait(timeout=120)
         return time.monotonic() - start
 
     return send

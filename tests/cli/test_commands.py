@@ -55,7 +55,7 @@ def test_echo(cart):
 def test_echo_ends_with_ctrl_c_and_with_its_reader(cart, ends):
     process = cart.start("topic", "echo", "/clock")
     assert process.stdout.readline() == "clock: \n"
-    assert ends(process, signal.SIGINT) < 10
+    assert ends(process, signal.SIGINT) < 100
     assert process.returncode == 0
     assert process.stderr.read() == ""
     done = subprocess.run(
@@ -64,7 +64,7 @@ def test_echo_ends_with_ctrl_c_and_with_its_reader(cart, ends):
         capture_output=True,
         text=True,
         env=cart.environment,
-        timeout=20,
+        timeout=120,
         check=False,
     )
     assert done.stdout.startswith("clock: \n")
@@ -105,7 +105,7 @@ def test_pub_at_a_rate(cart):
     start = time.monotonic()
     command = ("topic", "pub", CART_TOPIC, "geometry_msgs/Twist", "{}", "-r", "50", "-n", "30")
     done = cart(*command)
-    assert 29 / 50 < time.monotonic() - start < 20
+    assert 29 / 50 < time.monotonic() - start < 120
     assert "at 50 Hz" in done.stderr
 
 
@@ -183,7 +183,7 @@ def test_teleop_over_a_pipe(cart):
     while position(cart)["x"] < 0.05:
         assert time.monotonic() < deadline
     process.stdin.close()
-    assert process.wait(10) == 0
+    assert process.wait(120) == 0
     # It stops what it has set in motion.
     deadline = time.monotonic() + 120
     while speed(cart) > 0.01:
@@ -211,7 +211,7 @@ def test_teleop_at_a_terminal_leaves_it_as_it_was(cart, end):
         process.send_signal(signal.SIGTERM)
     else:
         os.write(leader, end)
-    assert process.wait(10) == 0
+    assert process.wait(120) == 0
     assert termios.tcgetattr(follower) == before
     os.close(leader)
     os.close(follower)

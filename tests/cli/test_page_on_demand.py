@@ -35,7 +35,7 @@ def test_the_page_comes_up_when_it_is_asked_for_and_once(headless):
     with ControlClient(entry) as client:
         url = client.request("page")["url"]
         assert client.request("page")["url"] == url
-    with urllib.request.urlopen(url, timeout=30) as page:
+    with urllib.request.urlopen(url, timeout=120) as page:
         assert page.status == 200
     assert running()[0].url == url
 
@@ -51,18 +51,18 @@ def test_a_taken_port_is_left_to_whoever_has_it(headless):
         with ControlClient(running()[0]) as client:
             url = client.request("page")["url"]
     assert int(url.rsplit(":", 1)[1]) != 8080
-    with urllib.request.urlopen(url, timeout=30) as page:
+    with urllib.request.urlopen(url, timeout=120) as page:
         assert page.status == 200
 
 
 def test_the_client_tells_the_address_where_there_is_no_display(program, headless):
     client = program.start("gzclient")
     url = url_of(client)
-    with urllib.request.urlopen(url, timeout=30) as page:
+    with urllib.request.urlopen(url, timeout=120) as page:
         assert page.status == 200
     assert client.poll() is None
     headless.send_signal(signal.SIGINT)
-    assert client.wait(timeout=20) == 0
+    assert client.wait(timeout=120) == 0
 
 
 def test_the_client_opens_the_browser_where_there_is_a_display(program, headless):
@@ -85,7 +85,7 @@ def test_the_client_ends_by_a_signal_and_the_simulation_goes_on(program, headles
     client = program.start("gzclient")
     url_of(client)
     client.send_signal(signal.SIGINT)
-    assert client.wait(timeout=20) == 0
+    assert client.wait(timeout=120) == 0
     assert headless.poll() is None
     assert client.stderr.read() == ""
 
@@ -98,7 +98,7 @@ def test_a_client_that_is_early_waits(program):
     simulation = program.start("run", "--headless")
     assert url_of(client)
     client.send_signal(signal.SIGTERM)
-    assert client.wait(timeout=20) == 0
+    assert client.wait(timeout=120) == 0
     simulation.kill()
 
 

@@ -10,7 +10,7 @@ import time
 
 import pytest
 
-AT_ONCE = 10.0
+AT_ONCE = 100.0
 """s that ending may take on a busy machine; what would go on goes on for longer."""
 
 
@@ -90,7 +90,7 @@ def test_a_run_that_is_held_ends_at_once(program, ends):
 
 
 def test_a_bounded_run_that_is_ended_has_failed(program, ends):
-    process = program.start("run", "--headless", "--for", "100")
+    process = program.start("run", "--headless", "--for", "1000")
     program.wait_until_up(process)
     assert ends(process, signal.SIGINT) < AT_ONCE
     assert process.returncode == 130
@@ -192,7 +192,7 @@ def test_a_terminal_gets_colours_and_something_to_try(program):
     process = program.start(
         "run", "--headless", "--for", "0.2", stdin=follower, stdout=follower, stderr=follower
     )
-    process.wait(timeout=20)
+    process.wait(timeout=120)
     os.close(follower)
     text = os.read(leader, 100_000).decode()
     os.close(leader)

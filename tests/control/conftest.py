@@ -60,7 +60,7 @@ def session() -> Iterator[Session]:
     thread.start()
     yield made
     made.simulation.post(made.simulation.stop)
-    thread.join(5)
+    thread.join(120)
     assert not thread.is_alive()
     made.close()
 

@@ -17,7 +17,7 @@ from cartwheel.errors import ControlError
 def connect(server):
     sock = socket.socket(socket.AF_UNIX)
     sock.connect(str(server.entry.path))
-    sock.settimeout(5)
+    sock.settimeout(60)
     return sock
 
 

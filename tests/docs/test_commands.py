@@ -55,7 +55,7 @@ class Reader:
         if self._running is not None:
             self._running.send_signal(signal.SIGINT)
             try:
-                self._running.communicate(timeout=20)
+                self._running.communicate(timeout=120)
             except subprocess.TimeoutExpired:
                 self._running.kill()
                 raise
@@ -115,7 +115,7 @@ class Reader:
             if "http://" in line:
                 break
         viewer.send_signal(signal.SIGINT)
-        viewer.communicate(timeout=20)
+        viewer.communicate(timeout=120)
         assert "http://" in seen, f"{command}\n{seen}"
 
     def _teleop(self, command: Command) -> None:

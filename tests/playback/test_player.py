@@ -168,23 +168,23 @@ def test_pause_step_end_and_loop(drives: Callable[[str], Drive]) -> None:
     thread = threading.Thread(target=player.run)
     thread.start()
     try:
-        player.call(player.pause).result(10)
-        begin = player.call(lambda: player.time_ns).result(10)
-        player.call(lambda: player.step(3)).result(10)
-        assert player.call(lambda: player.time_ns).result(10) == begin + 3 * player.step_ns
-        player.call(lambda: player.set_speed(None)).result(10)
-        player.call(player.resume).result(10)
+        player.call(player.pause).result(120)
+        begin = player.call(lambda: player.time_ns).result(120)
+        player.call(lambda: player.step(3)).result(120)
+        assert player.call(lambda: player.time_ns).result(120) == begin + 3 * player.step_ns
+        player.call(lambda: player.set_speed(None)).result(120)
+        player.call(player.resume).result(120)
         deadline = time.monotonic() + 120
         while player.run_state is not RunState.PAUSED:
             assert time.monotonic() < deadline
             time.sleep(0.01)
         assert player.time_ns == player.end_ns
-        player.call(lambda: player.set_speed(1.0)).result(10)
-        player.call(player.resume).result(10)
-        assert player.call(lambda: player.time_ns).result(10) < player.end_ns
+        player.call(lambda: player.set_speed(1.0)).result(120)
+        player.call(player.resume).result(120)
+        assert player.call(lambda: player.time_ns).result(120) < player.end_ns
     finally:
         player.post(player.stop)
-        thread.join(10)
+        thread.join(120)
     assert not thread.is_alive()
 
 
@@ -239,7 +239,7 @@ def test_clients_reach_it(drives: Callable[[str], Drive], tmp_path: Path) -> Non
         assert "cannot be deleted" in command("delete", "rosbots")
     finally:
         process.terminate()
-        process.wait(10)
+        process.wait(120)
     assert process.returncode == 0
 
 

@@ -100,4 +100,4 @@ def end(process: subprocess.Popen[str]) -> None:
     """As roslaunch ends it."""
     time.sleep(0.2)
     process.send_signal(signal.SIGINT)
-    process.communicate(timeout=30)
+    process.communicate(timeout=120)

@@ -37,7 +37,7 @@ def said(ros):
 def test_it_comes_up_shows_itself_and_leaves_nothing(ros, launch):
     process = launch()
     found = ros.until(lambda: re.search(r"the page is at +\S*?(http://[\d.:]+)", said(ros)))
-    with urllib.request.urlopen(found[1], timeout=30) as page:
+    with urllib.request.urlopen(found[1], timeout=120) as page:
         assert page.status == 200
     assert len(ros.left()) >= 4  # roslaunch, the master, the server and the client
     process.send_signal(signal.SIGINT)

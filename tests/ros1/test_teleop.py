@@ -145,7 +145,7 @@ def test_a_rate_repeats_and_a_timeout_stops(ros):
     # One at the key and, until the timeout, one each twentieth of a second; a busy machine
     # may leave some out.
     assert 2 <= moving <= 12
-    assert time.monotonic() - began < 30
+    assert time.monotonic() - began < 100
 
 
 def test_letters_of_a_pipe_are_keys(ros):

@@ -249,12 +249,12 @@ def test_other_threads_post_and_call(make, rosbots):
     _, thread = pacing(world)
     thread.start()
     try:
-        owner = simulation.call(threading.get_ident).result(10)
+        owner = simulation.call(threading.get_ident).result(120)
         assert owner == thread.ident
         box = make.box("box", (1, 1, 1), pose=Pose((5, 0, 0.5)))
-        assert simulation.call(lambda: world.session.spawn(box)).result(10) == "box"
+        assert simulation.call(lambda: world.session.spawn(box)).result(120) == "box"
         with pytest.raises(WorldError, match="stands in the world already"):
-            simulation.call(lambda: world.session.spawn(box)).result(10)
+            simulation.call(lambda: world.session.spawn(box)).result(120)
         # Eight threads publish at once; the last word is the stop.
         publishers = [
             threading.Thread(
@@ -265,10 +265,10 @@ def test_other_threads_post_and_call(make, rosbots):
         for publisher in publishers:
             publisher.start()
         for publisher in publishers:
-            publisher.join(10)
+            publisher.join(120)
     finally:
         simulation.post(simulation.stop)
-        thread.join(10)
+        thread.join(120)
     assert not thread.is_alive()
     assert simulation.run_state is RunState.STOPPED
 

@@ -80,7 +80,7 @@ class Arena:
 
     def ask(self, function):
         """Runs a function on the simulation's thread."""
-        return self.simulation.call(function).result(10)
+        return self.simulation.call(function).result(120)
 
     def pose(self, name=CART):
         return self.ask(lambda: self.simulation.pose(name))
@@ -113,7 +113,7 @@ class Arena:
     def close(self):
         self.viewer.close()
         self.ask(self.simulation.stop)
-        self._thread.join(10)
+        self._thread.join(120)
 
 
 @pytest.fixture(scope="session")

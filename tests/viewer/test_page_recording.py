@@ -34,12 +34,12 @@ class Cinema:
         self._thread.start()
 
     def ask(self, function):
-        return self.player.call(function).result(10)
+        return self.player.call(function).result(120)
 
     def close(self):
         self.viewer.close()
         self.player.post(self.player.stop)
-        self._thread.join(10)
+        self._thread.join(120)
 
     @property
     def shown(self):
