@@ -67,3 +67,36 @@ def test_a_velocity_limit_that_controllers_heed_is_none_without_effect() -> None
             world.spawn(load_text(text, file="r.urdf"))
             found = [d for d in world.diagnostics if "velocity limit" in d.message]
         assert len(found) == told, more
+
+
+LOOP = """<sdf version="1.7"><model name="loop"><link name="a"/><link name="b"/><link name="c"/>
+  <joint name="ab" type="revolute"><parent>a</parent><child>b</child><axis/></joint>
+  <joint name="ac" type="revolute"><parent>a</parent><child>c</child><axis/></joint>
+  <joint name="bc" type="{}"><parent>b</parent><child>c</child>
+    <axis>{}</axis></joint></model></sdf>"""
+
+
+@pytest.mark.parametrize(
+    ("kind", "axis", "said"),
+    [
+        ("revolute", "", None),
+        ("fixed", "", None),
+        ("revolute", "<dynamics><damping>1</damping></dynamics>", "turns freely"),
+        ("prismatic", "", "a prismatic joint that closes a loop of joints holds one point alone"),
+    ],
+)
+def test_what_a_joint_that_closes_a_loop_does_not_do_is_told(kind, axis, said) -> None:
+    with cw.World("empty") as world:
+        world.spawn(load_text(LOOP.format(kind, axis), file="l.sdf"))
+        told = [str(d) for d in world.diagnostics if "closes a loop" in d.message]
+    assert [each.startswith("l.sdf:4: info: ") for each in told] == [True] * (said is not None)
+    assert said is None or said in told[0]
+
+
+@pytest.mark.parametrize(("coefficient", "told"), [(0.5, 0), (1.0, 0), (1.5, 2)])
+def test_a_restitution_above_1_is_told(coefficient, told) -> None:
+    bounce = f"""<collision><surface><bounce><threshold>0.1</threshold><restitution_coefficient>
+      {coefficient}</restitution_coefficient></bounce></surface></collision>"""
+    said = [each for each in notes(bounce) if "restitution" in each]
+    assert len(said) == bool(told)
+    assert all("(2 times): an impact gains no energy" in each for each in said)

@@ -409,6 +409,13 @@ class Joint:
         """Whether it has one degree of freedom, to be driven and told of: no ball, no screw."""
         return self.type in ("revolute", "continuous", "prismatic")
 
+    @property
+    def resists(self) -> bool:
+        """Whether its first axis has limits, damping, friction or a spring."""
+        axis = self.axis
+        limited = axis.lower is not None or axis.upper is not None
+        return limited or any((axis.damping, axis.friction, axis.spring_stiffness))
+
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class RobotDescription:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from cartwheel.description.meshes import standing_parts
-from cartwheel.description.model import Mesh, RobotDescription
+from cartwheel.description.model import Joint, Mesh, RobotDescription
 from cartwheel.errors import Diagnostic, Origin
 from cartwheel.world import contact
 
@@ -18,6 +18,8 @@ _SURFACE = {
     "surface_radius": "the patch that touches does not grow with depth: state a patch_radius",
     "collide_without_contact": "it touches nothing, and a contact sensor does not see it",
 }
+_HELD = ("fixed", "revolute", "continuous", "ball")
+"""Types of joints that hold what they should where they close a loop."""
 _CONTROL = ("ros_control", "ros2_control")
 """Parts of the names of plugins that run controllers."""
 
@@ -51,6 +53,13 @@ def unused(description: RobotDescription) -> Iterator[Diagnostic]:
                 note("a restitution above 1", collision.origin, "an impact gains no energy")
         if link.linear_damping or link.angular_damping:
             note("velocity decay", link.origin, "the air does not brake")
+    for joint in _closing(description):
+        if joint.type not in _HELD:
+            why = f"a {joint.type} joint that closes a loop of joints holds one point alone"
+            note("the axis of a joint", joint.origin, why)
+        elif joint.type != "fixed" and joint.resists:
+            why = "a joint that closes a loop of joints turns freely"
+            note("a joint's limits, damping, friction or spring", joint.origin, why)
     heeded = _controlled(description)
     for joint in description.joints:
         if joint.axis.velocity is not None and joint.drivable and joint.name not in heeded:
@@ -62,6 +71,15 @@ def unused(description: RobotDescription) -> Iterator[Diagnostic]:
         yield Diagnostic(
             severity="info", message=f"{what} has no effect{times}: {why}", origin=origin
         )
+
+
+def _closing(description: RobotDescription) -> Iterator[Joint]:
+    """Joints whose child hangs on another one already."""
+    held: set[str] = set()
+    for joint in () if description.static else description.joints:
+        if joint.child in held:
+            yield joint
+        held.add(joint.child)
 
 
 def _controlled(description: RobotDescription) -> set[str]:

@@ -55,6 +55,12 @@ ROBOT = """<?xml version="1.0"?>
       <mass value="0.5"/>
       <inertia ixx="0.000867" iyy="0.0016" izz="0.000867"/>
     </inertial>
+    <visual>
+      <origin rpy="1.5707963 0 0"/>
+      <geometry>
+        <cylinder radius="0.08" length="0.04"/>
+      </geometry>
+    </visual>
     <collision>
       <origin rpy="1.5707963 0 0"/>
       <geometry>

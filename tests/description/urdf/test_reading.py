@@ -107,7 +107,10 @@ def test_a_joint_with_all_its_parts():
         xyz=(0, 0, 1), lower=-1, upper=2, effort=3, velocity=4, damping=0.5, friction=0.6
     )
     assert robot.link("b").pose == Pose.from_xyz_rpy((1, 0, 0), (0, 0, 1))
-    assert not robot.diagnostics
+    (told,) = robot.diagnostics
+    assert told.message == (
+        "<calibration> in <joint> has no effect: it is for the encoder of a real joint"
+    )
 
 
 @pytest.mark.parametrize(

@@ -55,7 +55,7 @@ def join_models(
         elif joint.type not in _BETWEEN:
             _leave_out(each, f"a {each.attributes['type']} joint cannot hold two models", ctx)
         else:
-            if joint.type != "fixed" and _resists(joint):
+            if joint.type != "fixed" and joint.resists:
                 ctx.tell(
                     "warning",
                     f'joint "{joint.name}" holds two models together, but turns freely: its '
@@ -91,12 +91,6 @@ def _owner(scoped: str, models: dict[str, RobotDescription]) -> tuple[RobotDescr
         if link != scoped and model.link(link) is not None:
             return model, link
     return None, WORLD
-
-
-def _resists(joint: Joint) -> bool:
-    axis = joint.axis
-    limited = axis.lower is not None or axis.upper is not None
-    return limited or any((axis.damping, axis.friction, axis.spring_stiffness))
 
 
 def _leave_out(node: Node, why: str, ctx: Context) -> None:

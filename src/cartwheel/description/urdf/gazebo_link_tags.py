@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -14,6 +15,7 @@ from cartwheel.description.sdf.sensors import read_sensor
 from cartwheel.description.sdf.surface import not_negative, read_surface
 from cartwheel.description.urdf.link import UrdfContext
 from cartwheel.description.xml import Node
+from cartwheel.errors import Diagnostic, Origin
 
 LINK_TAGS = (
     "material", "mu", "mu1", "mu2", "fdir1", "kp", "kd", "maxVel", "minDepth", "maxContacts",
@@ -43,6 +45,10 @@ _SURFACE = {
 }
 
 
+_TOUCHED = (*_SURFACE, "fdir1", "maxContacts", "collision")
+_SEEN = ("material", "visual")
+
+
 @dataclass(slots=True)
 class LinkTags:
     """What all tags of one link say together; a later tag overrides an earlier one."""
@@ -57,6 +63,8 @@ class LinkTags:
     laser_retro: float | None = None
     sensors: list[Sensor] = field(default_factory=list)
     lights: list[Light] = field(default_factory=list)
+    places: dict[str, Origin] = field(default_factory=dict)
+    """Where each tag stands first."""
 
     def apply(self, link: Link) -> Link:
         """The link with all of it."""
@@ -79,6 +87,21 @@ class LinkTags:
             **self.link,
         )
 
+    def idle(self, link: Link) -> Iterator[Diagnostic]:
+        """What there is nothing on the link for."""
+        for what, parts, acting in (
+            ("collision", link.collisions, _TOUCHED),
+            ("visual", link.visuals, _SEEN),
+        ):
+            stated = [tag for tag in acting if tag in self.places]
+            if stated and not parts:
+                yield Diagnostic(
+                    severity="info",
+                    message=f'link "{link.name}" has no {what}, on which <'
+                    f"{'>, <'.join(stated)}> would act",
+                    origin=self.places[stated[0]],
+                )
+
     def _seen(self, visual: Visual) -> Visual:
         fields = dict(self.visual)
         if self.laser_retro is not None:
@@ -100,6 +123,8 @@ def read_link_tags(node: Node, link: str, tags: LinkTags, ctx: UrdfContext) -> N
         tags: What the tags before it said.
         ctx: Finds textures, and takes the diagnostics.
     """
+    for child in node.children:
+        tags.places.setdefault(child.tag, child.origin)
     sdf = Context(ctx.packages, (1, 9), ctx.diagnostics)
     for tag, name in _SURFACE.items():
         value = not_negative(node.child(tag), sdf)

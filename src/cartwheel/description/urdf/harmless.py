@@ -23,6 +23,7 @@ HARMLESS: dict[tuple[str, str], str] = {
     ("geometry", "material"): "a material stands beside the geometry",
     ("inertial", "@name"): _NOBODY,
     ("joint", "anchor"): _OLD,
+    ("joint", "calibration"): "it is for the encoder of a real joint",
     ("joint", "insert_point"): _OLD,
     ("joint", "joint_properties"): _OLD,
     ("joint", "verbose"): _OLD,

@@ -44,16 +44,17 @@ def read_joint(node: Node, links: Collection[str], ctx: UrdfContext) -> tuple[Jo
             f'joint "{name}": the link "world" stands still and cannot be a child',
             "Swap parent and child.",
         )
-    safety, calibration = node.child("safety_controller"), node.child("calibration")
-    if calibration is not None:
-        calibration.mark()  # for an encoder's own use
+    safety = node.child("safety_controller")
     mimic = node.child("mimic")
     limits = node.child("limit")
     axis = Axis() if kind in _WITHOUT_AXIS else _axis(node, limits, name, kind, ctx)
-    for unused in ("axis", "limit", "dynamics"):
+    for unused in ("axis", "limit", "dynamics") if kind in _WITHOUT_AXIS else ():
         part = node.child(unused)
-        if part is not None and kind in _WITHOUT_AXIS:
-            part.mark()
+        if part is None:
+            continue
+        part.mark()
+        if unused != "axis":  # which URDF allows
+            ctx.tell("info", f'joint "{name}" is {kind}: its <{unused}> has no effect', part.origin)
     joint = Joint(
         name=name,
         type=kind,
@@ -113,6 +114,13 @@ def _axis(node: Node, limits: Node | None, name: str, kind: JointType, ctx: Urdf
             node.origin,
         )
     if kind not in ("revolute", "prismatic"):
+        if lower or upper:
+            assert limits is not None
+            ctx.tell(
+                "info",
+                f'joint "{name}" is {kind}: its lower and upper limit have no effect',
+                limits.origin,
+            )
         lower = upper = None
     dynamics = node.child("dynamics")
     damping = _not_negative(dynamics, "damping", name)

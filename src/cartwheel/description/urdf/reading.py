@@ -139,6 +139,8 @@ def distinct(diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
 
 def _complete(part: ReadLink, tree: Tree, pose: Pose, tags: GazeboTags, ctx: UrdfContext) -> Link:
     link = replace(part.link, pose=pose, inertial=_judged(part, tree, ctx))
+    if (stated := tags.links.get(link.name)) is not None:
+        ctx.diagnostics.extend(stated.idle(link))
     return tags.apply_to_link(link)
 
 

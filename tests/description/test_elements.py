@@ -1,4 +1,4 @@
-"""Every element of SDF acts or is told of: without it, what is read is not the same."""
+"""Every element acts or is told of: without it, what is read is not the same."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -8,6 +8,7 @@ from PIL import Image
 
 from cartwheel.description.packages import Packages
 from cartwheel.description.sdf import read_sdf
+from cartwheel.description.urdf import read_urdf
 from cartwheel.description.xml import Node, parse
 from cartwheel.errors import DescriptionError
 
@@ -267,8 +268,80 @@ MODEL = """
 </model>
 """
 
-# Stands for itself, or is of the window.
-WITHOUT_WORD = {("physics", "@type"), ("state", "@world_name"), ("angle", "@axis")}
+ROBOT = """
+<material name="grey"><color rgba="0.5 0.5 0.5 1"/></material>
+<link name="shown"><visual><geometry><sphere radius="1"/></geometry><material name="grey"/></visual>
+</link>
+<joint name="s" type="fixed"><parent link="base"/><child link="shown"/></joint>
+<link name="base">
+  <inertial><origin xyz="0 0 0.1" rpy="0.1 0 0"/><mass value="2"/>
+    <inertia ixx="1" iyy="1.1" izz="1.2" ixy="0.01" ixz="0.02" iyz="0.03"/></inertial>
+  <visual name="vis"><origin xyz="0 0 1" rpy="1 0 0"/><geometry><box size="1 2 3"/></geometry>
+    <material name="grey"/></visual>
+  <visual><geometry><cylinder radius="2" length="3"/></geometry><material name="red">
+    <color rgba="1 0 0 1"/></material></visual>
+  <collision name="col"><origin xyz="0 0 1" rpy="1 0 0"/><geometry><sphere radius="1"/></geometry>
+  </collision>
+  <collision><geometry><capsule radius="2" length="3"/></geometry></collision>
+</link>
+<link name="arm"><visual><geometry><sphere radius="1"/></geometry></visual>
+  <inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial></link>
+<link name="tip"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial></link>
+<link name="cam"/><link name="end"/>
+<joint name="j" type="revolute"><origin xyz="0 0 1" rpy="0 1 0"/><parent link="base"/>
+  <child link="arm"/><axis xyz="0 1 0"/><limit lower="-1" upper="2" effort="5" velocity="2"/>
+  <dynamics damping="0.1" friction="0.2"/><mimic joint="k" multiplier="2" offset="0.1"/>
+  <safety_controller soft_lower_limit="-0.5" soft_upper_limit="0.5" k_position="10"
+    k_velocity="5"/>
+  <calibration rising="0.1"/></joint>
+<joint name="k" type="continuous"><parent link="arm"/><child link="tip"/><axis xyz="0 1 0"/>
+  <limit upper="1" effort="3" velocity="1"/></joint>
+<joint name="f" type="fixed"><parent link="tip"/><child link="cam"/><limit effort="2"/>
+  <dynamics damping="1"/></joint>
+<joint name="g" type="fixed"><parent link="tip"/><child link="end"/></joint>
+<transmission name="t"><type>x</type><joint name="j"/></transmission>
+<gazebo>
+  <static>true</static><self_collide>true</self_collide>
+  <gripper name="g"/><allow_auto_disable>true</allow_auto_disable><pose>0 0 1 0 0 0</pose>
+  <plugin name="p" filename="x.so"><a/></plugin>
+  <sensor name="s0" type="imu"/><light name="l0" type="point"/><mu1>3</mu1><strange>1</strange>
+</gazebo>
+<gazebo reference="base">
+  <mu1>0.3</mu1><mu2>0.4</mu2><fdir1>1 0 0</fdir1><kp>1000</kp>
+  <kd>10</kd><maxVel>0.2</maxVel><minDepth>0.003</minDepth><laserRetro>3</laserRetro>
+  <selfCollide>false</selfCollide><turnGravityOff>true</turnGravityOff>
+  <dampingFactor>0.1</dampingFactor><canonicalBody>true</canonicalBody>
+  <visual><cast_shadows>false</cast_shadows><transparency>0.3</transparency></visual>
+  <collision><max_contacts>6</max_contacts><surface><bounce><restitution_coefficient>0.3
+    </restitution_coefficient></bounce><contact><ode><soft_cfm>3</soft_cfm></ode></contact>
+    </surface><pose>1 0 0 0 0 0</pose></collision>
+  <sensor name="s" type="imu"><pose>0 0 1 0 0 0</pose><update_rate>3</update_rate></sensor>
+  <light name="l" type="point"><pose>0 0 1 0 0 0</pose></light>
+  <projector name="pr"><fov>1</fov></projector>
+  <plugin name="x" filename="y"/><stopCfm>3</stopCfm><kinematic>true</kinematic>
+  <enable_wind>true</enable_wind><must_be_base_link>true</must_be_base_link>
+  <inertial><mass>4</mass></inertial><battery name="b"/>
+</gazebo>
+<gazebo reference="arm"><material>Gazebo/Blue</material><maxContacts>5</maxContacts>
+  <gravity>false</gravity>
+  <self_collide>true</self_collide><velocity_decay><linear>0.2</linear></velocity_decay></gazebo>
+<gazebo reference="j">
+  <stopCfm>0.1</stopCfm><stopErp>0.2</stopErp><springReference>0.3</springReference>
+  <springStiffness>0.4</springStiffness><fudgeFactor>0.5</fudgeFactor>
+  <provideFeedback>true</provideFeedback><implicitSpringDamper>true</implicitSpringDamper>
+  <preserveFixedJoint>true</preserveFixedJoint><sensor name="ft" type="force_torque"/>
+  <mu1>2</mu1><physics><ode><limit><cfm>3</cfm></limit></ode></physics><damping>3</damping>
+</gazebo>
+<gazebo reference="k"><cfmDamping>true</cfmDamping></gazebo>
+<gazebo reference="f"><disableFixedJointLumping>true</disableFixedJointLumping></gazebo>
+<gazebo reference="g"><preserveFixedJoint>true</preserveFixedJoint></gazebo>
+<gazebo reference="nowhere"><mu1>3</mu1></gazebo>
+"""
+
+WITHOUT_WORD = {
+    # Stands for itself, or is said by something else as well.
+    ("physics", "@type"), ("state", "@world_name"), ("angle", "@axis"),
+}  # fmt: skip
 
 
 def described(text: str, file: Path, place: tuple[int, ...] = (), attribute: str | None = None):
@@ -285,7 +358,8 @@ def described(text: str, file: Path, place: tuple[int, ...] = (), attribute: str
             owner.children[place[-1]] = Node(
                 child.tag, mutable, child.origin, child.children, child.text
             )
-    found = read_sdf(root, Packages(file, environment={}))
+    packages = Packages(file, environment={})
+    found = read_urdf(root, packages) if root.tag == "robot" else read_sdf(root, packages)
     return replace(found, diagnostics=()), found.diagnostics
 
 
@@ -295,16 +369,25 @@ def at(node: Node, place: tuple[int, ...]) -> Node:
     return node
 
 
-@pytest.mark.parametrize("inside", [WORLD, STATE, MODEL], ids=["world", "state", "model"])
-def test_every_element_acts_or_is_told_of(tmp_path, inside):
+DOCUMENTS = {
+    "world": f'<sdf version="1.11"><world name="w">{WORLD}</world></sdf>',
+    "state": f'<sdf version="1.11"><world name="w">{STATE}</world></sdf>',
+    "model": f'<sdf version="1.11">{MODEL}</sdf>',
+    "robot": f'<robot name="r">{ROBOT}</robot>',
+}
+
+
+@pytest.mark.parametrize("text", DOCUMENTS.values(), ids=DOCUMENTS)
+def test_every_element_acts_or_is_told_of(tmp_path, text):
     (tmp_path / "cube.stl").write_text(MESH)
     Image.linear_gradient("L").resize((5, 5)).save(tmp_path / "map.png")
     file = tmp_path / "w.sdf"
-    world = inside if inside is MODEL else f'<world name="w">{inside}</world>'
-    text = f'<sdf version="1.11">{world}</sdf>'
     whole = described(text, file)
     silent = []
-    left: list[tuple[int, ...]] = [(0, i) for i in range(len(parse(text, "").children[0].children))]
+    top = () if text.startswith("<robot") else (0,)
+    left: list[tuple[int, ...]] = [
+        (*top, index) for index in range(len(at(parse(text, ""), top).children))
+    ]
     assert len(left) > 3
     while left:
         place = left.pop()
