@@ -119,3 +119,35 @@ def test_interfaces_of_transmissions_by_either_name_and_reductions_mean_nothing(
     # Gazebo's hardware knows no motors: a command is the joint's own.
     assert made.position("a_joint") == pytest.approx(0.4, abs=1e-3)
     assert made.warnings == []
+
+
+DIFFERENTIAL = """<transmission name="wrist"><type>transmission_interface/DifferentialTransmission
+  </type><actuator name="m1"/><actuator name="m2"/>
+  <joint name="a_joint"><hardwareInterface>PositionJointInterface</hardwareInterface></joint>
+  <joint name="b_joint"><hardwareInterface>PositionJointInterface</hardwareInterface></joint>
+  </transmission>"""
+
+
+def wrist(bench, plugin):
+    made = bench(
+        robot(two_beams(axis="0 0 1") + DIFFERENTIAL, plugin), {"c": group("a_joint", "b_joint")}
+    )
+    made.publish("/c/command", "std_msgs/msg/Float64MultiArray", data=[0.3, -0.4])
+    made.world.run(1.0)
+    return made
+
+
+def test_another_hardware_drives_all_joints_of_a_transmission(bench):
+    own = ROS1.replace("</plugin>", "<robotSimType>my_hardware/MyHWSim</robotSimType></plugin>")
+    made = wrist(bench, own)
+    assert made.position("a_joint") == pytest.approx(0.3, abs=1e-3)
+    assert made.position("b_joint") == pytest.approx(-0.4, abs=1e-3)
+
+
+def test_the_default_hardware_drives_none_of_several(bench):
+    made = wrist(bench, ROS1)
+    assert any("has 2 joints: only one with one joint acts" in each for each in made.warnings)
+    assert any(
+        'joint "a_joint" is none that controllers have: no <transmission> names it' in each
+        for each in made.warnings
+    )

@@ -281,6 +281,8 @@ class Hardware:
         gains: Mapping[str, tuple[str, Gains]],
         limits: Settings | None = None,
     ) -> None:
+        self._description = plugin.part.description
+        self._tags = "no <ros2_control>" if limits is None else "no <transmission>"
         self._joints = {
             each.name: JointHardware(
                 plugin,
@@ -307,10 +309,17 @@ class Hardware:
 
         Raises:
             UnknownNameError: There is none of that name.
-            PluginError: It has no such interface.
+            PluginError: It has no such interface, or no tag gives it to controllers.
         """
         if interface is not None and f"{name}/{interface}" in self.references:
             return self.references[f"{name}/{interface}"]
+        stated = self._description.joint(name)
+        if name not in self._joints and stated is not None:
+            raise PluginError(
+                f'joint "{name}" is none that controllers have: {self._tags} names it as one that '
+                "moves",
+                origin=stated.origin,
+            )
         if name not in self._joints:
             raise UnknownNameError(
                 "joint of a controller",

@@ -56,12 +56,17 @@ class SensorInterfaces:
 
 
 def transmissions(
-    description: RobotDescription,
+    description: RobotDescription, *, several: bool = False
 ) -> tuple[list[JointInterfaces], list[Diagnostic]]:
     """The joints that transmissions drive, as ros_control's robot simulation takes them.
 
     Only what they say of the joint counts; reductions are between motor and joint, where
     nothing is simulated. Source: transmission_interface, gazebo_ros_control.
+
+    Args:
+        description: The robot.
+        several: Whether a transmission may have several joints, such as a wrist's differential;
+            the default simulation takes none.
     """
     found: dict[str, JointInterfaces] = {}
     notes: list[Diagnostic] = []
@@ -83,35 +88,36 @@ def transmissions(
                 )
             )
             continue
-        if len(joints) != 1:
+        if not joints or (len(joints) > 1 and not several):
             warn(element, f"{label} has {len(joints)} joints: only one with one joint acts")
             continue
-        name = joints[0].attribute("name") or ""
-        written = list(joints[0].find_all("hardwareInterface"))
-        if not written:
-            written = [
-                interface
-                for actuator in element.find_all("actuator")
-                for interface in actuator.find_all("hardwareInterface")
-            ]
-        commands: list[str] = []
-        for interface in written:
-            short = interface.text.strip().rpartition("/")[2]
-            if short in _HARDWARE:
-                commands.append(_HARDWARE[short])
-            elif short not in _STATES_ONLY:
-                warn(interface, f'{label}: there is no hardware interface "{interface.text}"')
-        if not written:
-            warn(element, f"{label} names no <hardwareInterface>, so nothing drives its joint")
-        if not _movable(description, name):
-            warn(element, f'{label}: "{name}" is no joint that moves')
-            continue
-        before = found[name].commands if name in found else ()
-        found[name] = JointInterfaces(
-            name=name,
-            commands=tuple(dict.fromkeys((*before, *commands))),
-            origin=element.origin,
-        )
+        for joint in joints:
+            name = joint.attribute("name") or ""
+            written = list(joint.find_all("hardwareInterface"))
+            if not written:
+                written = [
+                    interface
+                    for actuator in element.find_all("actuator")
+                    for interface in actuator.find_all("hardwareInterface")
+                ]
+            commands: list[str] = []
+            for interface in written:
+                short = interface.text.strip().rpartition("/")[2]
+                if short in _HARDWARE:
+                    commands.append(_HARDWARE[short])
+                elif short not in _STATES_ONLY:
+                    warn(interface, f'{label}: there is no hardware interface "{interface.text}"')
+            if not written:
+                warn(element, f"{label} names no <hardwareInterface>, so nothing drives its joint")
+            if not _movable(description, name):
+                warn(element, f'{label}: "{name}" is no joint that moves')
+                continue
+            before = found[name].commands if name in found else ()
+            found[name] = JointInterfaces(
+                name=name,
+                commands=tuple(dict.fromkeys((*before, *commands))),
+                origin=element.origin,
+            )
     return list(found.values()), notes
 
 

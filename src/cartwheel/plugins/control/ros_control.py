@@ -59,7 +59,8 @@ class RosControl(ControlPlugin):
         part = self.part
         if config.period < 0:
             raise PluginError("<controlPeriod> cannot be below 0", origin=self.tag.origin)
-        if config.sim_type.rpartition("::")[2] not in _PLAIN:
+        plain = config.sim_type.rpartition("::")[2] in _PLAIN
+        if not plain:
             self.warn(
                 f'<robotSimType> "{config.sim_type}" is not simulated: joints are driven as by '
                 "DefaultRobotHWSim"
@@ -70,7 +71,7 @@ class RosControl(ControlPlugin):
             for path in ControllerFiles.of(self.graph).take()
         ]
         entries = [entry for path, content in contents for entry in self._load(path, content)]
-        joints, notes = transmissions(part.description)
+        joints, notes = transmissions(part.description, several=not plain)
         for note in notes:
             part.report(note)
         if not joints:
