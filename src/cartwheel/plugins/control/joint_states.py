@@ -2,21 +2,30 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any, ClassVar
 
 import numpy as np
 
+from cartwheel.graph import Publisher
 from cartwheel.messages import header, message_class
+from cartwheel.messages.store import TWIN
 from cartwheel.plugins.control.controller import Controller, Rhythm
+from cartwheel.plugins.control.hardware import JointHardware
+from cartwheel.plugins.control.interfaces import COMMANDS
 from cartwheel.plugins.control.settings import Settings
+
+_DYNAMIC = f"control_msgs{TWIN}/msg/DynamicJointState"
 
 
 class JointStateController(Controller):
     """Publishes the state of all joints of the hardware.
 
     ROS 1: on ``joint_states`` of the namespace, at ``publish_rate``, with ``extra_joints``
-    that are told as they are written. ROS 2: at the manager's rate; ``use_local_topics`` puts
-    it below the controller. Source: joint_state_controller, joint_state_broadcaster.
+    that are told as they are written. ROS 2: at the manager's rate, and on ``dynamic_joint_states``
+    each joint's interfaces by name; ``use_local_topics`` puts both below the controller.
+    ``joints`` and ``interfaces`` choose some. Source: joint_state_controller,
+    joint_state_broadcaster.
     """
 
     types: ClassVar[tuple[str, ...]] = (
@@ -29,31 +38,51 @@ class JointStateController(Controller):
         self._rate = 0.0 if rig.ros2 else settings.number("publish_rate")
         if self._rate < 0 or (not rig.ros2 and self._rate == 0):
             raise settings.error(f'"publish_rate" {self._rate:g} must be above 0')
-        wanted = settings.texts("joints", []) if rig.ros2 else []
         names = sorted(rig.hardware.names) if not rig.ros2 else rig.hardware.names
-        if wanted:
-            settings.texts("interfaces", [])
-            names = wanted
+        self._sources = {kind: kind for kind in COMMANDS}
+        self._chosen: list[str] = []
+        self._frame = ""
+        if rig.ros2:
+            names = self._choose(settings, names)
         self._joints = [rig.hardware.joint(name) for name in names]
         local = rig.ros2 and settings.boolean("use_local_topics", False)
-        settings.ignore(
-            "map_interface_to_joint_state", "use_urdf_to_filter", "interfaces", "frame_id"
-        )
         self._extra: list[tuple[str, float, float, float]] = []
         if rig.ros2:
             extra = settings.texts("extra_joints", [])
             self._extra = [(name, 0.0, 0.0, 0.0) for name in extra if name not in names]
         else:
             self._extra = self._read_extra(settings.raw("extra_joints") or [], names)
-        topic = "joint_states"
-        if not local:
-            topic = f"/{rig.namespace.strip('/')}/joint_states"
+        space = "" if local else f"/{rig.namespace.strip('/')}/"
         self._publisher = self.advertise(
-            topic, "sensor_msgs/msg/JointState", rate=self._rate or None
+            f"{space}joint_states", "sensor_msgs/msg/JointState", rate=self._rate or None
         )
+        self._dynamic: Publisher | None = None
+        if rig.ros2 and settings.boolean("publish_dynamic_joint_states", True):
+            self._dynamic = self.advertise(f"{space}dynamic_joint_states", _DYNAMIC)
         self._names = [*names, *(each[0] for each in self._extra)]
         self._rhythm = Rhythm(self._rate)
         self._JointState = message_class("sensor_msgs/msg/JointState")
+
+    def _choose(self, settings: Settings, names: list[str]) -> list[str]:
+        """ROS 2's parameters: which joints are told, and of which interfaces; the joints."""
+        # One of them alone chooses nothing, and is told as what has no effect.
+        if {"joints", "interfaces"} <= set(settings.names()):
+            joints, interfaces = settings.texts("joints"), settings.texts("interfaces")
+            if joints and interfaces:
+                names, self._chosen = joints, interfaces
+        for kind in COMMANDS:
+            source = settings.text(f"map_interface_to_joint_state/{kind}", kind)
+            if kind in self._chosen:
+                source = kind
+            if source not in COMMANDS:
+                self.warn(f'no joint has an interface "{source}": its {kind} is told as nan')
+            self._sources[kind] = source
+            if self._chosen and source not in self._chosen:
+                self._sources[kind] = ""
+        self._frame = settings.text("frame_id", "base_link")
+        # Every joint is one of the URDF's.
+        settings.ignore("use_urdf_to_filter")
+        return names
 
     def _read_extra(self, entries: Any, known: list[str]) -> list[tuple[str, float, float, float]]:
         if not isinstance(entries, list):
@@ -76,23 +105,65 @@ class JointStateController(Controller):
         return found
 
     def state_interfaces(self) -> list[str]:
-        return [
-            f"{joint.name}/{kind}" for joint in self._joints for kind in joint.interfaces.states
-        ]
+        return [f"{joint.name}/{kind}" for joint in self._joints for kind in self._kinds(joint)]
+
+    def _kinds(self, joint: JointHardware) -> list[str]:
+        """The interfaces of a joint that are told."""
+        return self._chosen or list(joint.interfaces.states)
 
     def start(self, time_ns: int) -> None:
         self._rhythm.start(time_ns)
 
     def update(self, time_ns: int, seconds: float) -> None:  # noqa: ARG002
-        if not self._rhythm.due(time_ns) or not self._publisher.wanted:
+        if not self._rhythm.due(time_ns):
             return
-        joints, extra = self._joints, self._extra
-        self._publisher.publish(
-            self._JointState(
-                header=header(time_ns, ""),
-                name=self._names,
-                position=np.array([*(j.position for j in joints), *(e[1] for e in extra)]),
-                velocity=np.array([*(j.velocity for j in joints), *(e[2] for e in extra)]),
-                effort=np.array([*(j.effort for j in joints), *(e[3] for e in extra)]),
+        head = header(time_ns, self._frame)
+        if self._publisher.wanted:
+            position, velocity, effort = (
+                np.array(
+                    [
+                        *(_value(joint, self._sources[kind]) for joint in self._joints),
+                        *(each[number] for each in self._extra),
+                    ]
+                )
+                for number, kind in enumerate(COMMANDS, start=1)
             )
+            self._publisher.publish(
+                self._JointState(
+                    header=head,
+                    name=self._names,
+                    position=position,
+                    velocity=velocity,
+                    effort=effort,
+                )
+            )
+        if self._dynamic is not None and self._dynamic.wanted:
+            self._dynamic.publish(self._interfaces_as_message(head))
+
+    def _interfaces_as_message(self, head: Any) -> Any:
+        told = [
+            (kinds := self._kinds(joint), [_value(joint, kind) for kind in kinds])
+            for joint in self._joints
+        ]
+        told += [(list(COMMANDS), list(values)) for _, *values in self._extra]
+        InterfaceValue = message_class(f"control_msgs{TWIN}/msg/InterfaceValue")
+        return message_class(_DYNAMIC)(
+            header=head,
+            joint_names=self._names,
+            interface_values=[
+                InterfaceValue(interface_names=kinds, values=np.array(values))
+                for kinds, values in told
+            ],
         )
+
+
+def _value(joint: JointHardware, kind: str) -> float:
+    """Of an interface for its state; nan where there is none of that name."""
+    match kind:
+        case "position":
+            return joint.position
+        case "velocity":
+            return joint.velocity
+        case "effort":
+            return joint.effort
+    return math.nan

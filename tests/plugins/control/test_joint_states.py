@@ -1,0 +1,86 @@
+"""Joint states as ROS 2's broadcaster tells them."""
+
+import math
+
+import pytest
+import yaml
+from tests.plugins.control.arms import (
+    beam,
+    robot,
+    ros2_joint,
+    ros2_parameters,
+    ros2_plugin,
+    ros2_system,
+)
+
+TYPE = "joint_state_broadcaster/JointStateBroadcaster"
+UPRIGHT = "0 0 1"
+
+
+@pytest.fixture
+def told(bench, tmp_path):
+    """What a broadcaster of two joints tells in the end, the first of them at 0.4 rad."""
+
+    def make(topic, **settings):
+        file = tmp_path / "own.yaml"
+        group = {"type": "position_controllers/JointGroupPositionController", "joints": ["a_joint"]}
+        file.write_text(yaml.safe_dump(ros2_parameters(states={"type": TYPE, **settings}, c=group)))
+        body = beam("a", "world", axis=UPRIGHT) + beam("b", "world", axis=UPRIGHT, origin="0 1 1")
+        system = ros2_system(
+            ros2_joint("a_joint", extra='<state_interface name="effort"/>'), ros2_joint("b_joint")
+        )
+        made = bench(robot(body + system, ros2_plugin(file)))
+        made.publish("/c/commands", "std_msgs/msg/Float64MultiArray", data=[0.4])
+        box = made.box(topic)
+        made.world.run(1.0)
+        return box.drain()[-1], made
+
+    return make
+
+
+def test_all_interfaces_are_told_by_name(told):
+    message, made = told("/dynamic_joint_states", extra_joints=["wheel"])
+    assert message.joint_names == ["a_joint", "b_joint", "wheel"]
+    first, second, extra = message.interface_values
+    assert first.interface_names == ["position", "velocity", "effort"]
+    assert list(first.values) == pytest.approx([0.4, 0.0, 0.0], abs=0.01)
+    assert second.interface_names == ["position", "velocity"]
+    assert list(extra.values) == [0.0, 0.0, 0.0]
+    assert message.header.frame_id == "base_link"
+    assert made.warnings == []
+
+
+def test_joints_and_interfaces_are_chosen_together(told):
+    message, made = told("/joint_states", joints=["a_joint"], interfaces=["position"])
+    assert message.name == ["a_joint"]
+    assert list(message.position) == pytest.approx([0.4], abs=1e-3)
+    assert [math.isnan(each) for each in (*message.velocity, *message.effort)] == [True, True]
+    assert made.warnings == []
+
+
+def test_joints_alone_choose_nothing(told):
+    message, made = told("/joint_states", joints=["a_joint"])
+    assert message.name == ["a_joint", "b_joint"]
+    assert any("without effect: joints" in each for each in made.warnings)
+
+
+def test_topics_may_be_below_the_broadcaster(told):
+    message, _ = told("/states/joint_states", use_local_topics=True, frame_id="torso")
+    assert message.header.frame_id == "torso"
+    message, _ = told("/states/dynamic_joint_states", use_local_topics=True)
+    assert message.joint_names == ["a_joint", "b_joint"]
+
+
+def test_a_field_may_be_another_interface(told):
+    message, made = told(
+        "/joint_states",
+        map_interface_to_joint_state={"velocity": "position", "effort": "current"},
+    )
+    assert list(message.velocity) == list(message.position)
+    assert all(math.isnan(each) for each in message.effort)
+    assert any('no joint has an interface "current"' in each for each in made.warnings)
+
+
+def test_the_interfaces_need_not_be_told(told):
+    _, made = told("/joint_states", publish_dynamic_joint_states=False)
+    assert "/dynamic_joint_states" not in {each.name for each in made.world.graph.topics()}
