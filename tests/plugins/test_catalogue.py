@@ -59,6 +59,11 @@ def test_a_library_of_one_version_of_new_gazebo_is_known(filename):
     assert plugin_named(filename) is plugin_named("gz-sim-diff-drive-system")
 
 
+@pytest.mark.parametrize("maker", ["hsrb", "baxter", "hwi_switch"])
+def test_what_a_maker_derived_from_ros_control_is_taken_for_that(maker):
+    assert plugin_named(f"lib{maker}_gazebo_ros_control.so") is plugin_named("gazebo_ros_control")
+
+
 def test_a_name_of_none_is_none():
     assert plugin_named("libmarvellous.so") is None
     assert plugin_serving("nose") is None

@@ -17,7 +17,7 @@ from cartwheel.description.check.solids import bounds, solid_of
 from cartwheel.description.model import RobotDescription
 from cartwheel.errors import CartwheelError
 from cartwheel.geometry import Pose
-from cartwheel.plugins.catalogue import plugin_named, short_name
+from cartwheel.plugins.catalogue import ROS_CONTROL, plugin_named, short_name
 from cartwheel.plugins.control.files import ControllerFiles
 from cartwheel.plugins.control.suggestion import files_for
 from cartwheel.plugins.gz_sensor import SYSTEMS
@@ -100,7 +100,8 @@ def _described(verdict: Verdict, robot: RobotDescription) -> Verdict:
 
 def _controllers(robot: RobotDescription) -> list[Path]:
     """The files beside a robot of ros_control, which in ROS a launch file names."""
-    if not any(short_name(tag.filename) == "gazebo_ros_control" for tag in robot.plugins):
+    plugin = plugin_named(ROS_CONTROL)
+    if not any(plugin_named(tag.filename) is plugin for tag in robot.plugins):
         return []
     joints = [joint.name for joint in robot.joints if joint.type != "fixed"]
     return files_for(Path(robot.origin.file), joints)

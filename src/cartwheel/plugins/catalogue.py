@@ -14,6 +14,7 @@ from collections.abc import Iterator
 
 from cartwheel.plugins.base import Plugin
 
+ROS_CONTROL = "gazebo_ros_control"
 _FILES = {
     "gazebo_ros_diff_drive": "diff_drive",
     "gazebo_ros_skid_steer_drive": "skid_steer",
@@ -104,7 +105,7 @@ _FILES = {
     "gz-sim-detachable-joint-system": "detachable_joint",
     "gazebo_ros_harness": "harness",
     "HarnessPlugin": "harness",
-    "gazebo_ros_control": "control.ros_control",
+    ROS_CONTROL: "control.ros_control",
     "gazebo_ros2_control": "control.ros2_control",
     "gz_ros2_control-system": "control.ros2_control",
     "ign_ros2_control-system": "control.ros2_control",
@@ -145,6 +146,9 @@ def plugin_named(filename: str) -> type[Plugin[object]] | None:
     for plugin in _third():
         if name in _names(plugin):
             return plugin
+    if name not in _FILES and name.endswith(f"_{ROS_CONTROL}"):
+        # Makers derive theirs from it: Baxter, HSR, Schunk.
+        name = ROS_CONTROL
     ours = _within(_FILES[name]) if name in _FILES else ()
     return next((plugin for plugin in ours if name in _names(plugin)), None)
 

@@ -117,3 +117,12 @@ def test_reloading_the_libraries_unloads_everything(arm):
     assert not arm.call(name, force_kill=False).ok
     assert arm.call(name, force_kill=True).ok
     assert states(arm) == {}
+
+
+def test_a_plugin_that_a_maker_derived_runs_controllers_and_is_told(bench):
+    derived = ROS1.replace("libgazebo", "libmaker_gazebo")
+    made = bench(robot(beam("beam", "world") + transmission("beam_joint", "Position"), derived))
+    made.world.graph.parameters.set("/one", ONE)
+    made.world.graph.post = lambda function: function()
+    assert load(made, "one")
+    assert any("is taken for libgazebo_ros_control.so" in d.message for d in made.world.diagnostics)

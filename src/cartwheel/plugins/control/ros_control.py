@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
 from cartwheel.errors import PluginError
+from cartwheel.plugins.catalogue import ROS_CONTROL, short_name
 from cartwheel.plugins.control.controller import Rig
 from cartwheel.plugins.control.files import (
     ControllerEntry,
@@ -64,6 +65,11 @@ class RosControl(ControlPlugin):
             self.warn(
                 f'<robotSimType> "{config.sim_type}" is not simulated: joints are driven as by '
                 "DefaultRobotHWSim"
+            )
+        if short_name(self.tag.filename) != ROS_CONTROL:
+            self.warn(
+                f'"{self.tag.filename}" is taken for lib{ROS_CONTROL}.so, as its name says: '
+                "what it does beyond that is missing here"
             )
         self.namespace = self.namespace.strip("/")
         contents = [
