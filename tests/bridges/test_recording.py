@@ -24,7 +24,7 @@ from mcap_ros2.decoder import DecoderFactory
 from rosbags.highlevel import AnyReader
 
 import cartwheel as cw
-from cartwheel.bridges.recording import Recorder
+from cartwheel.bridges.recording import Recorder, writing
 from cartwheel.bridges.recording.backlog import Backlog, Item
 from cartwheel.bridges.recording.formats import encoding_for
 from cartwheel.bridges.recording.patterns import Patterns
@@ -457,7 +457,7 @@ def test_a_kill_leaves_all_but_the_last_second(name: str, tmp_path: Path) -> Non
     try:
         deadline = time.monotonic() + 120
         file = path / "drive_0.mcap" if name == "drive" else path
-        while not file.exists() or file.stat().st_size < 200_000:
+        while not _holds_much(file):
             assert time.monotonic() < deadline and process.poll() is None
             time.sleep(0.01)
         # What is kept is what was there a second ago.
@@ -468,6 +468,21 @@ def test_a_kill_leaves_all_but_the_last_second(name: str, tmp_path: Path) -> Non
     times = [t for t, _ in _read_broken(name, path)["/clock"]]
     assert len(times) > 100
     assert times == [max(i * 10_000_000, int(name == "drive.bag")) for i in range(len(times))]
+
+
+def _holds_much(file: Path) -> bool:
+    """Whether a file that is being written would keep more than a second if that ended now."""
+    if file.suffix != ".db3" or not file.exists():
+        return file.exists() and file.stat().st_size > 200_000
+    # Its empty tables are as large as that.
+    base = sqlite3.connect(f"file:{file}?mode=ro", uri=True)
+    try:
+        (count,) = base.execute("SELECT COUNT(*) FROM messages").fetchone()
+    except sqlite3.OperationalError:
+        return False  # it is being written, or has no tables yet
+    finally:
+        base.close()
+    return bool(count > 2000)
 
 
 def _read_broken(name: str, path: Path) -> Found:
@@ -663,3 +678,46 @@ def test_an_error_in_the_block_is_not_lost(tmp_path: Path) -> None:
             world.run(0.1)
             raise ZeroDivisionError
         assert len(read_with_mcap(tmp_path / "a.mcap")["/clock"]) == 10
+
+
+@pytest.mark.parametrize("name", ["a.mcap", "a.bag", "a.db3", "a"])
+def test_of_two_that_begin_at_once_one_records(
+    tmp_path: Path, name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # The second one looks before the first has begun.
+    monkeypatch.setattr(writing, "check_writable", lambda *_, **__: None)
+    path = tmp_path / name
+    with cw.World("empty") as world, cw.World("empty") as other:
+        with world.record(path, topics=["/clock"]):
+            world.run(0.1)
+            with pytest.raises(RecordingError, match="exists"), other.record(path):
+                pytest.fail("it began")
+            world.run(0.1)
+        assert len(read_with_rosbags(path)["/clock"]) == 20
+
+
+@pytest.mark.parametrize("name", ["a.mcap", "a.bag", "a"])
+def test_what_is_being_recorded_is_not_replaced(tmp_path: Path, name: str) -> None:
+    path = tmp_path / name
+    with cw.World("empty") as world, cw.World("empty") as other:
+        with world.record(path, topics=["/clock"]):
+            world.run(0.1)
+            refused = other.record(path, overwrite=True)
+            with pytest.raises(RecordingError, match="is being recorded"), refused:
+                pytest.fail("it began")
+            world.run(0.1)
+        assert len(read_with_rosbags(path)["/clock"]) == 20
+        with other.record(path, topics=["/clock"], overwrite=True):
+            other.run(0.1)
+        assert len(read_with_rosbags(path)["/clock"]) == 10
+
+
+def test_a_link_is_replaced_and_not_what_it_points_to(tmp_path: Path) -> None:
+    precious = tmp_path / "precious.mcap"
+    precious.write_bytes(b"as it was")
+    path = tmp_path / "a.mcap"
+    path.symlink_to(precious)
+    with cw.World("empty") as world, world.record(path, topics=["/clock"], overwrite=True):
+        world.run(0.1)
+    assert precious.read_bytes() == b"as it was"
+    assert len(read_with_rosbags(path)["/clock"]) == 10

@@ -37,7 +37,7 @@ class Db3Writer:
     """Writes one SQLite file; what was flushed survives a crash of the process.
 
     Args:
-        path: Made anew.
+        path: Made anew; nothing may be there.
         notes: Kept among its metadata.
         pack: Makes the bytes of a message.
 
@@ -55,10 +55,9 @@ class Db3Writer:
         self._span: tuple[int, int] | None = None
         self._open_size = 0
         """Bytes of messages that a rollback would take."""
-        for old in (path, path.with_name(f"{path.name}-journal")):
-            old.unlink(missing_ok=True)
         # Says itself why it cannot be made, which SQLite does not.
-        path.touch()
+        path.touch(exist_ok=False)
+        path.with_name(f"{path.name}-journal").unlink(missing_ok=True)
         self._base = sqlite3.connect(path, check_same_thread=False, isolation_level=None)
         # The operating system keeps what it was given; only power failures need more.
         self._run("PRAGMA synchronous=OFF")

@@ -101,6 +101,7 @@ def _metadata(path: Path) -> dict[str, Any]:
     try:
         read = yaml.safe_load(file.read_text(errors="replace"))
     except yaml.YAMLError as error:
-        raise RecordingError(f'"{file}" is no YAML: {error}') from error
+        what = " ".join(str(error).split())
+        raise RecordingError(f'"{file}" is no YAML: {what}') from error
     about = read.get("rosbag2_bagfile_information") if isinstance(read, dict) else None
     return about if isinstance(about, dict) else {}

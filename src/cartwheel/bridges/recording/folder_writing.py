@@ -26,7 +26,6 @@ class FolderWriter:
 
     def __init__(self, path: Path, *, notes: Mapping[str, str], pack: Pack) -> None:
         self.path = path
-        path.unlink(missing_ok=True)
         path.mkdir()
         self._notes = notes
         self._file = path / f"{path.name}_0.mcap"

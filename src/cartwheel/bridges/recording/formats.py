@@ -59,13 +59,18 @@ def check_writable(path: Path, *, overwrite: bool) -> None:
         raise RecordingError(f'there is no folder "{folder}"', hint=f"mkdir -p {folder}")
     if path.exists() or path.is_symlink():
         if not overwrite:
-            raise RecordingError(f'"{path}" exists', hint="--overwrite replaces it.")
+            raise exists(path)
         if path.is_dir() and not _is_bag2(path):
             raise RecordingError(f'"{path}" is a folder and no recording: it is not replaced')
         if path.is_dir() and form_of(path) != "folder":
             raise RecordingError(f'"{path}" is a folder: it is not replaced by a file')
     if not os.access(folder, os.W_OK | os.X_OK):
         raise RecordingError(f'the folder "{folder}" takes no file: it is not writable')
+
+
+def exists(path: Path) -> RecordingError:
+    """That something is there already, as an error."""
+    return RecordingError(f'"{path}" exists', hint="--overwrite replaces it.")
 
 
 def reason_of(error: OSError) -> str:

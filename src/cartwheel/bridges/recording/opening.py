@@ -40,6 +40,8 @@ def _opened(path: Path, begin: bytes) -> Recording:
         from cartwheel.bridges.recording.db3_reading import Db3Recording
 
         return Db3Recording(path)
+    if not begin:
+        raise RecordingError(f'"{path}" is no recording: it is empty')
     packed = path.suffix == ".zstd"
     hint = "It is compressed as a whole: unzstd it first." if packed else None
     raise RecordingError(

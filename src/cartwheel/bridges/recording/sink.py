@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import fcntl
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
@@ -10,15 +11,20 @@ from pathlib import Path
 class Sink:
     """Bytes to a file without a buffer: what was written is the operating system's.
 
+    The file is locked as long as it is open, so that others can see that it is being written.
+
     Args:
-        path: Made anew.
+        path: Made anew; nothing may be there.
 
     Raises:
         OSError: It cannot be.
     """
 
     def __init__(self, path: Path) -> None:
-        self._file = path.open("wb", buffering=0)
+        self._file = path.open("xb", buffering=0)
+        # Not on every network's file system: then nobody sees it.
+        with suppress(OSError):
+            fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         self.position = 0
         """Where the next bytes go."""
 
@@ -72,3 +78,15 @@ class Sink:
     def close(self) -> None:
         """Closes the file."""
         self._file.close()
+
+
+def is_being_written(path: Path) -> bool:
+    """Whether a `Sink` has that file open, in whichever process."""
+    try:
+        with path.open("rb") as file:
+            fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return True
+    except OSError:
+        return False
+    return False

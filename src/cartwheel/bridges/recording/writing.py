@@ -7,7 +7,14 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, Protocol
 
-from cartwheel.bridges.recording.formats import Encoding, check_writable, form_of, reason_of
+from cartwheel.bridges.recording.formats import (
+    Encoding,
+    check_writable,
+    exists,
+    form_of,
+    reason_of,
+)
+from cartwheel.bridges.recording.sink import is_being_written
 from cartwheel.errors import RecordingError
 
 
@@ -78,11 +85,32 @@ def open_writer(
     """
     check_writable(path, overwrite=overwrite)
     try:
-        if path.is_dir():
-            shutil.rmtree(path)
+        if overwrite:
+            _remove(path)
         return _opened(path, encoding, notes, pack)
+    except FileExistsError as error:
+        # Somebody else began to write it just now.
+        raise exists(path) from error
     except OSError as error:
         raise RecordingError(f'"{path}" cannot be written: {reason_of(error)}') from error
+
+
+def _remove(path: Path) -> None:
+    """Takes away what is to be replaced.
+
+    Raises:
+        RecordingError: It is still being recorded.
+        OSError: It stays.
+    """
+    folder = path.is_dir() and not path.is_symlink()
+    # A .db3 is SQLite's, which has locks of its own and forbids us to open it.
+    written = [one for one in (path.iterdir() if folder else (path,)) if one.suffix != ".db3"]
+    if any(one.is_file() and is_being_written(one) for one in written):
+        raise RecordingError(f'"{path}" is being recorded: it is not replaced')
+    if folder:
+        shutil.rmtree(path)
+    else:
+        path.unlink(missing_ok=True)
 
 
 def _opened(
