@@ -18,6 +18,8 @@ WITH_ADVICE = {
         ('<parent link="arm"/>', '<parent link="arn"/>')], 'link="arn"', 'link="arm"'),
     "child unknown": ("joint-link-unknown", [
         ('<child link="finger"/>', '<child link="fingr"/>')], 'link="fingr"', 'link="finger"'),
+    "joint type": ("joint-type-unknown", [('name="finger_joint" type="prismatic"',
+        'name="finger_joint" type="prismatik"')], "prismatik", 'type="prismatic"'),
     "loose link": ("several-roots", [('<link name="eye"/>', '<link name="eye"/>\n<link name="loose"/>')],
         '"loose"', '<child link="loose"/>'),
     "mimic": ("mimic-unknown", [('mimic joint="arm_joint"', 'mimic joint="arm_jiont"')],
@@ -121,7 +123,7 @@ WITH_ADVICE = {
         "1/odom", "<odometryTopic>_1/odom</odometryTopic>"),
     "sensor's type": ("sensor-type-unknown", [('type="camera"', 'type="camrea"')], 'type="camrea"',
         'type="camera"'),
-    "sensor's tag": ("sensor-tag-unknown", [("<min_angle>-1</min_angle>",
+    "sensor's tag": ("tag-ignored", [("<min_angle>-1</min_angle>",
         "<min_anlge>-1</min_anlge>")], "min_anlge", "<min_angle>-1</min_angle>"),
     "no rays": ("sensor-range", [("<horizontal>", "<horizontal>\n<samples>0</samples>")],
         "<samples>", "<samples>640</samples>"),
@@ -529,3 +531,23 @@ def test_a_lidar_of_a_gpu_sees_what_is_drawn(bench, spoil):
     (finding,) = bench.find(spoil((HOUSING[0], collision)), "view-blocked")
     assert "is inside the collision" in finding.message
     assert "looks past" in finding.hint
+
+
+@pytest.mark.parametrize(
+    ("changes", "rule"),
+    [
+        ([('<child link="finger"/>', '<child link="fingr"/>')], "joint-link-unknown"),
+        ([('name="arm_joint" type="revolute"', 'name="arm_joint" type="revolut"')],
+         "joint-type-unknown"),
+        ([("<horizontal_fov>", "<horizonatl_fov>")], "tag-ignored"),
+        ([('name="left_wheel_joint" type="continuous"', 'name="left_wheel_joint" type="revolute"'),
+          ('<limit effort="5" velocity="20"/>',
+           '<limit lower="0" upper="0" effort="5" velocity="20"/>')], "drive-joint-fixed"),
+    ],
+)  # fmt: skip
+def test_one_fault_is_one_finding(bench, spoil, changes, rule):
+    eye = ("<camera>", "<camera>\n<horizontal_fov>1</horizontal_fov>")
+    text = spoil(eye, *changes).replace("1</horizontal_fov>", "1</horizonatl_fov>")
+    if "horizonatl_fov>1" not in text:
+        text = text.replace("</horizonatl_fov>", "</horizontal_fov>")
+    assert [finding.rule for finding in bench.report(text).findings] == [rule]

@@ -54,8 +54,11 @@ def limit_reversed(subject: Subject) -> Iterator[Remark]:
 
 @rule("limit-zero", "warning", "a joint's range is zero: it cannot move")
 def limit_zero(subject: Subject) -> Iterator[Remark]:
+    drives = [drive for robot in subject.robots for drive in robot.drives]
+    wheels = {name for drive in drives for name in drive.joints}
     for joint, limit, lower, upper in _ranges(subject):
-        if lower == upper:
+        # Of a driven wheel it is said that its joint must be continuous.
+        if lower == upper and nodes.name_of(joint) not in wheels:
             stated = "lower" in limit.attributes or "upper" in limit.attributes
             yield Remark(
                 message=f'the joint "{nodes.name_of(joint)}" cannot move: both limits are '

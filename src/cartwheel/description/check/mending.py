@@ -7,9 +7,9 @@ from __future__ import annotations
 
 import math
 
-from cartwheel.description.check import nodes
+from cartwheel.description.check import nodes, spelling
 from cartwheel.description.check.inertia import moments_of
-from cartwheel.description.check.structure import ends, inbound, main_root, mimic_chain
+from cartwheel.description.check.structure import JOINT_TYPES, ends, inbound, main_root, mimic_chain
 from cartwheel.description.inertia import impossibility
 from cartwheel.description.node import Node
 
@@ -49,6 +49,9 @@ def _drop_second(root: Node, tag: str) -> None:
 
 def _mend_joints(root: Node, links: set[str]) -> None:
     for joint in nodes.children(root, "joint"):
+        kind = joint.attributes.get("type", "fixed").strip()
+        if kind not in JOINT_TYPES:
+            joint.attributes["type"] = spelling.meant(kind, JOINT_TYPES) or "fixed"
         parent, child = ends(joint)
         if child not in links or child in {parent, "world"}:
             root.drop(joint)

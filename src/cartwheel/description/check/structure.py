@@ -10,6 +10,7 @@ from cartwheel.description.check.subject import Subject
 from cartwheel.description.node import Node
 
 WORLD = "world"
+JOINT_TYPES = ("revolute", "continuous", "prismatic", "fixed", "floating", "planar")
 
 
 @rule("name-twice", "error", "two links, or two joints, have one name")
@@ -70,6 +71,24 @@ def joint_link_unknown(subject: Subject) -> Iterator[Remark]:
             )
 
 
+@rule("joint-type-unknown", "error", "a joint of a type that URDF does not have")
+def joint_type_unknown(subject: Subject) -> Iterator[Remark]:
+    for joint in _parts(subject, "joint"):
+        kind = joint.attributes.get("type")
+        if kind is None or kind.strip() in JOINT_TYPES:
+            continue
+        near = spelling.meant(kind, JOINT_TYPES)
+        yield Remark(
+            message=f'the joint "{nodes.name_of(joint)}" has the type "{kind}", which is none: '
+            "ROS refuses the whole robot",
+            origin=joint.origin,
+            instead=f'type="{near}"' if near else "",
+            place="attribute" if near else "",
+            mark="type",
+            hint="" if near else spelling.nearest(kind, JOINT_TYPES),
+        )
+
+
 @rule("two-parents", "error", "a link is the child of two joints")
 def two_parents(subject: Subject) -> Iterator[Remark]:
     holders: dict[str, Node] = {}
@@ -121,9 +140,14 @@ def several_roots(subject: Subject) -> Iterator[Remark]:
     holders = inbound(_parts(subject, "joint"), link_names(subject), all_of_them=True)
     roots = [node for node in links if nodes.name_of(node) not in holders]
     first = main_root(roots, _parts(subject, "joint"))
+    known = link_names(subject)
+    # The child of a joint that misspells it is told there.
+    misspelt = {spelling.meant(ends(joint)[1], known) for joint in _parts(subject, "joint")}
     for node in roots:
         name = nodes.name_of(node)
         if node is first or first is None or not name or name == nodes.name_of(first):
+            continue
+        if name in misspelt:
             continue
         root = nodes.name_of(first)
         yield Remark(
@@ -246,6 +270,7 @@ def _parts(subject: Subject, tag: str) -> list[Node]:
 RULES = (
     name_twice,
     joint_link_unknown,
+    joint_type_unknown,
     two_parents,
     links_in_a_ring,
     several_roots,

@@ -1,10 +1,9 @@
-"""What a sensor's tags say: types and tags that SDF knows, ranges that leave something to see."""
+"""What a sensor's tags say: types that SDF knows, ranges that leave something to see."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
-from typing import Any
+from collections.abc import Iterator
 
 from cartwheel.description.check import nodes, spelling
 from cartwheel.description.check.finding import Remark, rule
@@ -23,68 +22,6 @@ TYPES = (
 _TURN = 2 * math.pi + 0.01
 
 
-def _all(*tags: str, **more: Any) -> dict[str, Any]:
-    return {**dict.fromkeys(tags), **more}
-
-
-_NOISE = _all(
-    "type", "mean", "stddev", "bias_mean", "bias_stddev", "precision", "dynamic_bias_stddev",
-    "dynamic_bias_correlation_time", rate=None, accel=None,
-)  # fmt: skip
-_NOISY = {"noise": _NOISE}
-_AXES = _all(x=_NOISY, y=_NOISY, z=_NOISY)
-_CLIP = _all("near", "far")
-_ARC = _all("samples", "resolution", "min_angle", "max_angle")
-_RAY = _all(
-    "visibility_mask",
-    scan={"horizontal": _ARC, "vertical": _ARC},
-    range=_all("min", "max", "resolution"),
-    noise=_NOISE,
-)
-_CAMERA = _all(
-    "horizontal_fov", "pose", "visibility_mask", "optical_frame_id", "camera_info_topic",
-    "box_type", "segmentation_type", "trigger_topic", "triggered", "frame",
-    image=_all("width", "height", "format", "anti_aliasing"),
-    clip=_CLIP,
-    save=_all("path"),
-    depth_camera=_all("output", clip=_CLIP),
-    noise=_NOISE,
-    distortion=_all("k1", "k2", "k3", "p1", "p2", "center"),
-    lens=_all(
-        "type", "scale_to_hfov", "cutoff_angle", "env_texture_size",
-        custom_function=_all("c1", "c2", "c3", "f", "fun"),
-        intrinsics=_all("fx", "fy", "cx", "cy", "s"),
-        projection=_all("p_fx", "p_fy", "p_cx", "p_cy", "tx", "ty"),
-    ),
-)  # fmt: skip
-_SENSED = {"horizontal": _NOISY, "vertical": _NOISY}
-_SENSOR: dict[str, Any] = _all(
-    "always_on", "update_rate", "visualize", "pose", "topic", "enable_metrics", "plugin", "origin",
-    "frame", "frame_id", "gz_frame_id", "ignition_frame_id", "dvl", "rfid", "rfidtag",
-    "transceiver", "air_speed",
-    camera=_CAMERA,
-    ray=_RAY,
-    lidar=_RAY,
-    contact=_all("collision", "topic"),
-    imu=_all(
-        "topic", "enable_orientation",
-        noise=_NOISE,
-        angular_velocity=_AXES,
-        linear_acceleration=_AXES,
-        orientation_reference_frame=_all("localization", "custom_rpy", "grav_dir_x"),
-    ),
-    gps={"position_sensing": _SENSED, "velocity_sensing": _SENSED},
-    navsat={"position_sensing": _SENSED, "velocity_sensing": _SENSED},
-    magnetometer=_AXES,
-    altimeter={"vertical_position": _NOISY, "vertical_velocity": _NOISY},
-    air_pressure=_all("reference_altitude", pressure=_NOISY),
-    force_torque=_all("frame", "measure_direction", force=_AXES, torque=_AXES),
-    sonar=_all("geometry", "min", "max", "radius"),
-    logical_camera=_all("near", "far", "aspect_ratio", "horizontal_fov"),
-)  # fmt: skip
-"""The tags of SDF by the tags that hold them; None where all may stand in them."""
-
-
 @rule("sensor-type-unknown", "error", "a sensor of a type that Gazebo does not have")
 def sensor_type_unknown(subject: Subject) -> Iterator[Remark]:
     for _, sensor in _sensors(subject):
@@ -100,13 +37,6 @@ def sensor_type_unknown(subject: Subject) -> Iterator[Remark]:
             mark="type",
             hint="" if near else spelling.nearest(sensor.type, TYPES),
         )
-
-
-@rule("sensor-tag-unknown", "warning", "a sensor's tag that SDF does not have, a misspelt one")
-def sensor_tag_unknown(subject: Subject) -> Iterator[Remark]:
-    for _, sensor in _sensors(subject):
-        if sensor.type != "custom":
-            yield from _unknown_in(sensor.element, _SENSOR)
 
 
 @rule("sensor-range", "error", "a sensor's range or picture in which there is nothing to see")
@@ -179,31 +109,6 @@ def _counts(element: Element, tags: tuple[str, ...], consequence: str) -> Iterat
             )
 
 
-def _unknown_in(element: Element, known: Mapping[str, Any]) -> Iterator[Remark]:
-    for child in element.children:
-        if child.tag in known:
-            inner = known[child.tag]
-            if inner is not None:
-                yield from _unknown_in(child, inner)
-            continue
-        if ":" in child.tag:
-            continue  # of a namespace: for other programs
-        near = spelling.meant(child.tag, known)
-        yield Remark(
-            severity=None if near else "info",
-            message=f"<{child.tag}> in <{element.tag}> is no tag of SDF: Gazebo ignores it",
-            origin=child.origin,
-            instead=nodes.written(near, dict(child.attributes), child.text.strip())
-            if near and not child.children
-            else f"<{near}>"
-            if near
-            else "",
-            place="element" if near and not child.children else "",
-            mark=child.tag,
-            hint="" if near else f"<{element.tag}> has {', '.join(list(known)[:12])}.",
-        )
-
-
 def _below(element: Element) -> Iterator[Element]:
     for child in element.children:
         if child.tag != "plugin":
@@ -222,4 +127,4 @@ def _sensors(subject: Subject) -> Iterator[tuple[Robot, Sensor]]:
             yield robot, sensor
 
 
-RULES = (sensor_type_unknown, sensor_tag_unknown, sensor_range)
+RULES = (sensor_type_unknown, sensor_range)
