@@ -48,10 +48,14 @@ def _drop_second(root: Node, tag: str) -> None:
 
 
 def _mend_joints(root: Node, links: set[str]) -> None:
-    for joint in nodes.children(root, "joint"):
+    for index, joint in enumerate(root.children):
         kind = joint.attributes.get("type", "fixed").strip()
-        if kind not in JOINT_TYPES:
-            joint.attributes["type"] = spelling.meant(kind, JOINT_TYPES) or "fixed"
+        if joint.tag == "joint" and kind not in JOINT_TYPES:
+            meant = {"type": spelling.meant(kind, JOINT_TYPES) or "fixed"}
+            root.children[index] = Node(
+                "joint", {**joint.attributes, **meant}, joint.origin, joint.children, joint.text
+            )
+    for joint in nodes.children(root, "joint"):
         parent, child = ends(joint)
         if child not in links or child in {parent, "world"}:
             root.drop(joint)
