@@ -5,6 +5,7 @@ import math
 import mujoco
 import numpy as np
 import pytest
+from PIL import Image
 
 from cartwheel.geometry import Pose, quat_from_rpy
 from cartwheel.simulation.rays import RayHandle
@@ -12,6 +13,14 @@ from cartwheel.simulation.rays import RayHandle
 COLLISIONS = np.array([0, 0, 0, 0, 1, 0], dtype=np.uint8)
 EYE = """<model name="eye"><static>true</static><pose>{x} {y} 0.7 0 0 0</pose><link name="link"/>
   </model>"""
+
+
+@pytest.fixture(autouse=True, params=["all shapes at once", "the nearest shapes first"])
+def way(request, monkeypatch):
+    """How the rays of a bundle are cast; which one is taken depends on their number."""
+    sorts = request.param == "the nearest shapes first"
+    monkeypatch.setattr("cartwheel.simulation.rays._WORTH_SORTING", 0 if sorts else math.inf)
+    monkeypatch.setattr("cartwheel.simulation.rays._FIRST_SHAPES", 2)
 
 
 def handle(world, directions, *, maximum=50.0, minimum=0.0):
@@ -88,6 +97,37 @@ def test_a_bundle_reads_what_single_rays_read(make, seed):
     assert read == pytest.approx(expected, abs=1e-9)
 
 
+def test_terrain_and_meshes_are_read_as_single_rays_read_them(make, tmp_path):
+    random = np.random.default_rng(5)
+    heights = random.integers(0, 255, (17, 17)).astype(np.uint8)
+    Image.fromarray(heights).save(tmp_path / "terrain.png")
+    corners = random.uniform(-1, 1, (12, 3))
+    (tmp_path / "spikes.obj").write_text(
+        "".join(f"v {x} {y} {z}\n" for x, y, z in corners)
+        + "".join(f"f {i} {i + 1} {i + 2}\n" for i in range(1, 11))
+    )
+    terrain = f"""<heightmap><uri>file://{tmp_path}/terrain.png</uri><size>9 7 1.5</size>
+      <pos>0.5 1 -1.2</pos></heightmap>"""
+    spikes = f"<mesh><uri>file://{tmp_path}/spikes.obj</uri></mesh>"
+    models = [
+        f"""<model name="m{index}"><static>true</static><pose>{pose}</pose><link name="link">
+        <collision name="c"><geometry>{shape}</geometry></collision></link></model>"""
+        for index, (shape, pose) in enumerate(
+            [
+                (terrain, "0 0 0 0 0 0.4"),
+                (spikes, "3 1 1 0.3 0.2 0.1"),
+                (spikes, "-2 -2 1 1 -0.5 2"),
+            ]
+        )
+    ]
+    world = make.world(*map(make.sdf, models), make.sdf(EYE.format(x=0, y=0)), ground=None)
+    rays = around(15, 80)
+    read, _ = handle(world, rays).cast()
+    expected = single(world, (0, 0, 0.7), rays, 50.0)
+    assert 400 < np.isfinite(expected).sum() < 1100
+    assert read == pytest.approx(expected, abs=1e-9)
+
+
 def test_every_shape_of_a_turned_link_is_seen(make):
     """Turned a quarter, what its link has at x = 3 m stands at y = 3 m."""
     gate = make.sdf(
@@ -131,8 +171,9 @@ def test_a_long_wall_is_seen_up_to_its_edge(make):
 def test_a_cast_leaves_the_model_as_it_was(make):
     world = make.world(*clutter(make, np.random.default_rng(1), 10), make.sdf(EYE.format(x=0, y=0)))
     model = world.session.simulation.model
-    before = model.geom_group.copy(), model.body_bvhadr.copy()
+    fields = (model.geom_group, model.body_bvhadr, model.body_geomnum)
+    before = [field.copy() for field in fields]
     assert (before[1] >= 0).any()
+    assert (before[2] > 1).any()
     handle(world, around(3, 50), minimum=0.5).cast()
-    assert np.array_equal(model.geom_group, before[0])
-    assert np.array_equal(model.body_bvhadr, before[1])
+    assert all(np.array_equal(*pair) for pair in zip(fields, before, strict=True))
