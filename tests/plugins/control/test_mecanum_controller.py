@@ -45,6 +45,19 @@ def test_each_wheel_turns_as_the_kinematics_say(drive, motion):
     assert found == pytest.approx(wheels(*motion), abs=0.05)
 
 
+def test_wheels_and_the_motion_that_is_wanted_are_told(drive):
+    made = drive()
+    box = made.world.mailbox("/base/controller_state", size=1000)
+    made.go(0.5, 0.2, -0.1, 0.4)
+    state = box.drain()[-1]
+    wanted = state.reference_velocity
+    assert (wanted.linear.x, wanted.linear.y, wanted.angular.z) == (0.2, -0.1, 0.4)
+    corners = ("front_left", "front_right", "back_left", "back_right")
+    found = [getattr(state, f"{corner}_wheel_velocity") for corner in corners]
+    assert found == pytest.approx(wheels(0.2, -0.1, 0.4), abs=0.05)
+    assert state.header.frame_id == "odom"
+
+
 def test_husarions_controller_of_the_same_name_has_its_own_parameters(make, tmp_path):
     """Separations and factors in place of their sum; ``cmd_vel`` and ``odom``; half a second."""
     settings = {

@@ -45,6 +45,31 @@ def test_both_front_wheels_point_about_one_centre_and_rear_ones_differ(ackermann
     assert made.speeds("rear_left_joint", "rear_right_joint") == pytest.approx(rims, rel=0.01)
 
 
+def test_wheels_and_commands_are_told_in_the_order_of_the_lists(ackermann):
+    made = ackermann()
+    box = made.world.mailbox("/base/controller_state", size=1000)
+    made.go(1.0, x=SPEED, turn=TURN)
+    state = box.drain()[-1]
+    right, left = (math.atan(BASE / (CIRCLE + side * TRACK / 2)) for side in (1, -1))
+    assert list(state.steering_angle_command) == pytest.approx([right, left])
+    assert list(state.steer_positions) == pytest.approx([right, left], abs=1e-3)
+    rims = [TURN * (CIRCLE + side * TRACK / 2) / RADIUS for side in (1, -1)]
+    assert list(state.linear_velocity_command) == pytest.approx(rims)
+    assert list(state.traction_wheels_velocity) == pytest.approx(rims, rel=0.01)
+    assert len(state.traction_wheels_position) == 0
+
+
+def test_positions_of_wheels_are_told_where_the_odometry_is_of_them(ackermann):
+    made = ackermann(position_feedback=True)
+    box = made.world.mailbox("/base/controller_state", size=1000)
+    made.go(0.5, x=SPEED)
+    state = box.drain()[-1]
+    assert len(state.traction_wheels_velocity) == 0
+    right = made.joint("rear_right_joint")
+    # A step of control earlier.
+    assert state.traction_wheels_position[0] == pytest.approx(right, abs=SPEED / RADIUS * 0.011)
+
+
 def test_it_drives_that_circle_and_tells_so(ackermann):
     made = ackermann()
     # Into the curve; the circle counts from there.

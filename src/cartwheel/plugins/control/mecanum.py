@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from cartwheel.geometry import Vec3
+from cartwheel.messages import header, zero
+from cartwheel.messages.store import TWIN
 from cartwheel.plugins.control.controller import Controller
 from cartwheel.plugins.control.limiter import Limiter
 from cartwheel.plugins.control.settings import Settings
@@ -22,6 +24,7 @@ from cartwheel.plugins.rollers import has_rollers
 
 _CORNERS = ("front_left", "front_right", "back_left", "back_right")
 _ROS2_CORNERS = ("front_left", "front_right", "rear_left", "rear_right")
+_STATE = f"control_msgs{TWIN}/msg/MecanumDriveControllerState"
 _SIDEWAYS = (-1.0, 1.0, 1.0, -1.0)
 _AROUND = (-1.0, 1.0, -1.0, 1.0)
 
@@ -90,14 +93,17 @@ class MecanumDriveController(Controller):
         limit = ("reference_timeout", 0.0) if nested else ("cmd_vel_timeout", 0.5)
         timeout = settings.number(*limit)
         self._command = TwistCommand(self, topic, timeout=timeout, stamped=stamped)
+        prefix = frame_prefix(self, settings) if ros2 else ""
         self._odometry = WheelOdometry(
             self,
             settings,
             topic="odometry" if nested else "odom",
             tf_topic="tf_odometry" if nested else "/tf",
             transform=settings.boolean("enable_odom_tf", True),
-            prefix=frame_prefix(self, settings) if ros2 else "",
+            prefix=prefix,
         )
+        self._frame = prefix + settings.text("odom_frame_id", "odom")
+        self._state = self.advertise("controller_state", _STATE) if nested else None
         if husarion:
             # Wheels are read by their positions, and what they turned is told.
             settings.ignore("position_feedback")
@@ -133,6 +139,17 @@ class MecanumDriveController(Controller):
         if self.rig.push is not None:
             forward, sideways, turn = command
             self.rig.push.command((forward, sideways, None), (None, None, turn))
+        if self._state is not None and self._state.wanted:
+            self._state.publish(self._state_message(time_ns, command))
+
+    def _state_message(self, time_ns: int, command: Vec3) -> Any:
+        message = zero(_STATE)
+        message.header = header(time_ns, self._frame)
+        for corner, wheel in zip(_CORNERS, self._wheels, strict=True):
+            setattr(message, f"{corner}_wheel_velocity", wheel.velocity)
+        told = message.reference_velocity
+        told.linear.x, told.linear.y, told.angular.z = command
+        return message
 
     def _limited(self, wanted: tuple[float, float, float], seconds: float) -> Vec3:
         before, last = self._history

@@ -4,8 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import ClassVar
+from typing import Any, ClassVar
 
+import numpy as np
+
+from cartwheel.messages import header, zero
+from cartwheel.messages.store import TWIN
 from cartwheel.plugins.control.controller import Controller
 from cartwheel.plugins.control.hardware import JointHardware
 from cartwheel.plugins.control.limiter import Limiter
@@ -19,6 +23,8 @@ from cartwheel.plugins.control.wheels import (
     joint_place,
     wheel_radius,
 )
+
+_STATE = f"control_msgs{TWIN}/msg/SteeringControllerStatus"
 
 
 class SingleSteering(Controller):
@@ -120,6 +126,9 @@ class SteeringController(Controller):
                 raise settings.error(f"{len(names)} wheels of an axle: there must be one or two")
         self._traction = self._axle(traction, "velocity")
         self._steering = self._axle(steering, "position")
+        # What is told of them is in the order of the lists.
+        self._listed = [[self.claims[name] for name in names] for names in (traction, steering)]
+        self._state = self.advertise("controller_state", _STATE)
         for joint in self._steering:
             check_axis(self, joint.joint, UP)
         for joint in self._traction:
@@ -173,6 +182,22 @@ class SteeringController(Controller):
             speed = abs(turn) * self._base / self._radius
         self._steer(angle)
         self._drive(speed, angle)
+        if self._state.wanted:
+            self._state.publish(self._state_message(time_ns))
+
+    def _state_message(self, time_ns: int) -> Any:
+        """Wheels by their positions or velocities, whichever the odometry is of."""
+        traction, steering = self._listed
+        message = zero(_STATE)
+        message.header = header(time_ns, "")
+        if self._by_position:
+            message.traction_wheels_position = np.array([each.position for each in traction])
+        else:
+            message.traction_wheels_velocity = np.array([each.velocity for each in traction])
+        message.steer_positions = np.array([each.position for each in steering])
+        message.linear_velocity_command = np.array([each.command for each in traction])
+        message.steering_angle_command = np.array([each.command for each in steering])
+        return message
 
     def stop(self, time_ns: int) -> None:  # noqa: ARG002
         for joint in self._traction:
