@@ -83,8 +83,13 @@ def test_physics_scene_and_the_rest():
 def test_gravity_stood_in_the_physics_before():
     found = world("<physics type='ode'><gravity>0 0 -3</gravity></physics>", "1.4")
     assert found.gravity == (0, 0, -3)
-    oldest = "<physics type='ode'><ode><solver><dt>0.005</dt></solver></ode></physics>"
-    assert world(oldest, "1.3").physics.max_step_size == 0.005
+    oldest = """<physics type='ode'><ode><solver><type>quick</type><dt>0.005</dt></solver>
+      <constraints/></ode></physics>"""
+    found = world(oldest, "1.3")
+    assert found.physics.max_step_size == 0.005
+    (told,) = found.diagnostics
+    assert (told.severity, told.origin.line) == ("info", 3)
+    assert told.message == "of <ode> in <physics> only <dt> has an effect"
 
 
 def test_lights():

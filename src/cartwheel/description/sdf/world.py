@@ -190,6 +190,9 @@ def _physics(node: Node, ctx: Context) -> Physics:
     step = node.child("max_step_size")
     if step is None and ctx.version < (1, 4):
         step = node.find("ode/solver/dt")
+        if step is not None:
+            ode = node.require_child("ode").mark()
+            ctx.tell("info", "of <ode> in <physics> only <dt> has an effect", ode.origin)
     if step is not None and step.number() <= 0:
         raise step.fail(f"the step must be above 0, but is {step.text}")
     rate = node.child("real_time_update_rate") or node.child("update_rate")
