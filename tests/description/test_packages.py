@@ -128,6 +128,17 @@ def test_relative_paths_begin_at_the_file_that_names_them(tmp_path):
     assert packages(file).resolve("wheel.stl", origin) == part
 
 
+@pytest.mark.parametrize("uri", ["file://Media/sea.dae", "Media/sea.dae"])
+def test_relative_paths_may_begin_at_the_package_of_the_file_that_names_them(tmp_path, uri):
+    """As where the package exports its folder as a gazebo_media_path."""
+    file = robot(package(tmp_path / "a"))
+    sea = package(tmp_path / "b") / "Media" / "sea.dae"
+    sea.parent.mkdir()
+    sea.touch()
+    origin = Origin(file=str(tmp_path / "b" / "models" / "sea" / "model.sdf"), line=1)
+    assert packages(file).resolve(uri, origin) == sea
+
+
 @pytest.mark.parametrize(
     ("uri", "part"),
     [

@@ -185,8 +185,11 @@ class Packages:
         folders = [self.folder]
         if origin is not None and not origin.file.startswith("<"):
             folders.insert(0, Path(origin.file).absolute().parent)
+        # A package puts itself on GAZEBO_RESOURCE_PATH where it exports a gazebo_media_path.
+        above = [root for root in map(_package_above, folders) if root is not None]
         for variable in _RESOURCES:
             folders += self._paths(variable)
+        folders += above
         yield from dict.fromkeys(folder / given for folder in (*folders, *self.package_path))
 
     def _search(self, name: str) -> Path | None:
@@ -275,6 +278,12 @@ class Packages:
         if name not in self._found:
             self._found[name] = self._search(name)
         return self._found[name]
+
+
+def _package_above(folder: Path) -> Path | None:
+    """The package that a folder belongs to."""
+    near = [folder, *folder.parents][:MAX_LEVELS_UP]
+    return next((each for each in near if _is_file(each / "package.xml")), None)
 
 
 def _package_in(root: Path, name: str) -> Path | None:
