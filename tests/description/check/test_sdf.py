@@ -92,3 +92,47 @@ def test_what_is_shipped_is_clean(path):
         assert "no links" in error.message or "macros" in (error.hint or "")
         return
     assert report.findings == ()
+
+
+WHEELS = """<sdf version="1.6"><model name="m">
+<link name="base"><inertial><mass>6</mass></inertial></link>
+{wheels}
+<plugin name="d" filename="libgazebo_ros_diff_drive.so">
+<left_joint>left</left_joint><right_joint>right</right_joint>
+<wheel_separation>{separation}</wheel_separation></plugin>
+</model></sdf>"""
+
+
+def wheel(name, y):
+    """One whose link's frame is that of the model, as many models of SDF have it."""
+    return (
+        f'<link name="{name}_wheel"><inertial><pose>0 {y} 0 0 0 0</pose></inertial></link>'
+        f'<joint name="{name}" type="revolute"><pose>0 {y} 0 -1.5707963 0 0</pose>'
+        f"<parent>base</parent><child>{name}_wheel</child><axis><xyz>0 0 1</xyz></axis></joint>"
+    )
+
+
+def test_wheels_are_apart_as_their_joints_are(bench):
+    wheels = wheel("left", 0.15) + wheel("right", -0.15)
+    good = WHEELS.format(wheels=wheels, separation=0.3)
+    assert not bench.find(good, "wheel-separation", "x.sdf")
+    (finding,) = bench.find(
+        WHEELS.format(wheels=wheels, separation=0.6), "wheel-separation", "x.sdf"
+    )
+    assert finding.instead == "<wheel_separation>0.3</wheel_separation>"
+
+
+def test_a_joint_that_cannot_be_read_is_no_missing_one(bench):
+    wheels = wheel("left", 0.15) + wheel("right", -0.15).replace("revolute", "revolut")
+    text = WHEELS.format(wheels=wheels, separation=0.3).replace("left_joint>", "joint_name>")
+    text = text.replace("right_joint>", "joint_name>").replace("diff_drive", "p3d")
+    assert not bench.find(text, "plugin-joint-unknown", "x.sdf")
+    assert "revolut" in bench.find(text, "unreadable", "x.sdf")[0].message
+
+
+def test_a_model_of_a_world_that_cannot_be_read_is_told_as_such(bench):
+    text = world(
+        '<model name="a"><link name="b"><inertial><mass>-1</mass></inertial></link></model>\n'
+    )
+    found = [finding.rule for finding in bench.report(text, "x.sdf").findings]
+    assert found == ["unreadable"]

@@ -41,7 +41,7 @@ def plugin_joint_unknown(subject: Subject) -> Iterator[Remark]:
                     continue
                 words = re.split(r"[\s,]+", element.text.strip())
                 for name in words:
-                    if not name or _VALUES.fullmatch(name) or _is_known(name, robot):
+                    if not name or _VALUES.fullmatch(name) or _is_known(name, robot, subject):
                         continue
                     near = spelling.meant(name, robot.joint_names)
                     text = " ".join(element.text.split()).replace(name, near or name)
@@ -62,13 +62,13 @@ def plugin_joint_unknown(subject: Subject) -> Iterator[Remark]:
 @rule("transmission-joint-unknown", "error", "a transmission is of a joint that does not exist")
 def transmission_joint_unknown(subject: Subject) -> Iterator[Remark]:
     for robot, joint in _driven_by(subject, "transmission"):
-        yield from _joint_named(robot, joint, "the transmission has no joint to move")
+        yield from _joint_named(subject, robot, joint, "the transmission has no joint to move")
 
 
 @rule("ros2-control-joint-unknown", "warning", "<ros2_control> has a joint that does not exist")
 def ros2_control_joint_unknown(subject: Subject) -> Iterator[Remark]:
     for robot, joint in _driven_by(subject, "ros2_control"):
-        yield from _joint_named(robot, joint, "Gazebo passes over it")
+        yield from _joint_named(subject, robot, joint, "Gazebo passes over it")
 
 
 @rule("interface-unknown", "warning", "a joint's interface is misspelt")
@@ -122,7 +122,7 @@ def controller_joint_unknown(subject: Subject) -> Iterator[Remark]:
             for key, value in _named_in(root)
             if re.fullmatch(r"[^$/]+", value.value) and not _VALUES.fullmatch(value.value)
         ]
-        missing = [one for one in named if not _is_known(one[1].value.strip(), robot)]
+        missing = [one for one in named if not _is_known(one[1].value.strip(), robot, subject)]
         if len(missing) > 1 and len(missing) == len(named):
             yield Remark(
                 severity="warning",
@@ -149,9 +149,11 @@ def _is_simulated(subject: Subject, tag: PluginTag, sensor: Sensor | None) -> bo
     return subject.plugins is None or subject.plugins.judge(tag, sensor) is not None
 
 
-def _joint_named(robot: Robot, joint: Element, consequence: str) -> Iterator[Remark]:
+def _joint_named(
+    subject: Subject, robot: Robot, joint: Element, consequence: str
+) -> Iterator[Remark]:
     name = (joint.attribute("name") or "").strip()
-    if not name or _is_known(name, robot):
+    if not name or _is_known(name, robot, subject):
         return
     near = spelling.meant(name, robot.joint_names)
     yield Remark(
@@ -228,8 +230,10 @@ def _named_in(root: Any) -> Iterator[tuple[str, Any]]:
             waiting.append(value)
 
 
-def _is_known(name: str, robot: Robot) -> bool:
-    return name in robot.joint_names or name.rpartition("::")[2] in robot.joint_names
+def _is_known(name: str, robot: Robot, subject: Subject) -> bool:
+    if name in robot.joint_names or name.rpartition("::")[2] in robot.joint_names:
+        return True
+    return not subject.is_urdf and name.rpartition("::")[2] in subject.joints_written
 
 
 RULES = (

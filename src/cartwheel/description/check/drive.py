@@ -11,7 +11,7 @@ from cartwheel.description.check.finding import Remark, rule
 from cartwheel.description.check.solids import Floats, bounds
 from cartwheel.description.check.subject import DRIVE_JOINT_TAGS, Drive, Robot, Subject
 from cartwheel.description.model import Element, Joint
-from cartwheel.geometry import rotate
+from cartwheel.geometry import Pose, rotate
 
 TOLERANCE = 0.02
 """Relative: what a tyre's flattening or a rounded number explains."""
@@ -117,7 +117,7 @@ def wheel_diameter(subject: Subject) -> Iterator[Remark]:
 @rule("wheels-swapped", "warning", "a drive's left wheel stands on the right")
 def wheels_swapped(subject: Subject) -> Iterator[Remark]:
     for robot, drive, left, right in _pairs(subject):
-        poses = [robot.links[joint.child].pose for joint in (left, right)]
+        poses = [_place(robot, joint) for joint in (left, right)]
         element = _parameter(drive, ("leftJoint", "left_joint"))
         across = poses[0].y - poses[1].y
         # With the wheels beside each other x is forward, else nobody can tell the sides.
@@ -137,7 +137,7 @@ def wheels_swapped(subject: Subject) -> Iterator[Remark]:
 @rule("wheel-axes", "warning", "driven wheels turn backwards, or against each other")
 def wheel_axes(subject: Subject) -> Iterator[Remark]:
     for robot, _, left, right in _pairs(subject):
-        poses = [robot.links[joint.child].pose for joint in (left, right)]
+        poses = [_place(robot, joint) for joint in (left, right)]
         across = np.array(poses[0].position) - np.array(poses[1].position)
         wide = float(np.linalg.norm(across))
         if wide < 1e-6 or abs(across[2]) > 0.2 * wide:
@@ -145,7 +145,7 @@ def wheel_axes(subject: Subject) -> Iterator[Remark]:
         senses = [
             float(
                 np.dot(
-                    rotate((pose @ joint.pose).orientation, joint.axis.xyz),
+                    rotate(pose.orientation, joint.axis.xyz),
                     (across / wide) * (1 if across[1] >= 0 else -1),
                 )
             )
@@ -222,8 +222,13 @@ def lowest(robot: Robot, *links: str) -> float | None:
 
 
 def _apart(robot: Robot, left: Joint, right: Joint) -> float:
-    """Between the two wheels' frames, across the robot, m."""
-    return abs(robot.links[left.child].pose.y - robot.links[right.child].pose.y)
+    """Between the two wheels' axes, across the robot, m."""
+    return abs(_place(robot, left).y - _place(robot, right).y)
+
+
+def _place(robot: Robot, joint: Joint) -> Pose:
+    """Of a joint in the model's frame: a link of SDF may have its frame elsewhere."""
+    return robot.links[joint.child].pose @ joint.pose
 
 
 def _parameter(drive: Drive, names: tuple[str, ...]) -> Element | None:

@@ -29,6 +29,7 @@ _LEFT_OUT = re.compile(
     r"(.* is left out(?: and touches nothing)?|the material .*, as .* was not found)\.?(.*)",
     re.DOTALL,
 )
+_OF_A_FILE = re.compile(r"\bmesh\b|heightmap|texture|polyline|names no model|the folder of")
 _DID_YOU_MEAN = re.compile(r'^Did you mean "([^"]*)"')
 _PACKAGE = re.compile(r"(?:package://|model://|\$\(find )([\w.-]+)")
 _WHY = re.compile(r'the (?:package|model) "[^"]*" was not found|^"[^"]*" is on the network')
@@ -70,7 +71,7 @@ def file_missing(subject: Subject) -> Iterator[Remark]:
 def _absent(subject: Subject) -> Iterator[Remark]:
     yield from (each for each in subject.failures if MISSING.search(each.message))
     if not subject.is_urdf:
-        yield from _left_out(subject, missing=True)
+        yield from left_out(subject, missing=True)
         return
     for node in nodes.walk(subject.root):
         uri = nodes.text_of(node, "filename")
@@ -116,7 +117,12 @@ def _cause(message: str) -> str:
 
 @rule("mesh-unreadable", "error", "a mesh file is damaged, empty, or of an unknown format")
 def mesh_unreadable(subject: Subject) -> Iterator[Remark]:
-    yield from _left_out(subject, missing=False)
+    yield from (each for each in left_out(subject) if _OF_A_FILE.search(each.message))
+
+
+def left_out_otherwise(subject: Subject) -> Iterator[Remark]:
+    """What is left out, though all its files are there: something in it cannot be read."""
+    yield from (each for each in left_out(subject) if not _OF_A_FILE.search(each.message))
 
 
 @rule("shape-size", "warning", "a shape is a giant or a dwarf beside the rest of the robot")
@@ -142,7 +148,7 @@ def shape_size(subject: Subject) -> Iterator[Remark]:
                 yield _remark(robot, solid, factor, usual)
 
 
-def _left_out(subject: Subject, *, missing: bool) -> Iterator[Remark]:
+def left_out(subject: Subject, *, missing: bool = False) -> Iterator[Remark]:
     """What the readers left out for want of its file, or because the file cannot be used."""
     for diagnostic in subject.read.diagnostics if subject.read is not None else ():
         match = _LEFT_OUT.fullmatch(diagnostic.message)

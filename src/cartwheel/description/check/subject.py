@@ -257,6 +257,11 @@ class Subject:
         """Whether it is a URDF, or a xacro of one."""
         return self.root.tag == "robot"
 
+    @cached_property
+    def joints_written(self) -> frozenset[str]:
+        """The names of all joints in the file, of those that could not be read as well."""
+        return frozenset(nodes.name_of(n) for n in nodes.walk(self.root) if n.tag == "joint")
+
     @property
     def step(self) -> float:
         """s of the physics, as Gazebo would take it."""

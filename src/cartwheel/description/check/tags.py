@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 
-from cartwheel.description.check import nodes, spelling, xacro_use
+from cartwheel.description.check import meshes, nodes, spelling, xacro_use
 from cartwheel.description.check.finding import Finder, Remark, Rule, rule
 from cartwheel.description.check.subject import IMPOSSIBLE, MISSING, Subject
 from cartwheel.description.node import Node
@@ -231,6 +231,7 @@ def unreadable(subject: Subject) -> Iterable[Remark]:
     for failure in subject.failures:
         if not MISSING.search(failure.message) and not IMPOSSIBLE.search(failure.message):
             yield failure
+    yield from meshes.left_out_otherwise(subject)
 
 
 RULES = (unreadable, gazebo_ignores, *_rules())
