@@ -118,6 +118,11 @@ def test_a_plugin_that_is_none_takes_nothing_from_a_sensor_of_new_gazebo(make, k
     ]
 
 
+def test_physics_that_a_model_names_is_there_anyway(make):
+    world = make.world(make.sdf(lidar(tags="", plugin=SYSTEM.replace("sensors", "physics"))))
+    assert not [d for d in world.session.diagnostics if "plugin" in d.message]
+
+
 @pytest.mark.parametrize("system", [SYSTEM, SYSTEM.replace("gz-sim", "libignition-gazebo")])
 def test_a_system_of_the_model_makes_its_sensors_publish(make, system):
     world = make.world(make.sdf(lidar(kind="ray", tags="", plugin=system)))

@@ -20,7 +20,7 @@ from cartwheel.geometry import Pose
 from cartwheel.plugins.catalogue import ROS_CONTROL, plugin_named, short_name
 from cartwheel.plugins.control.files import ControllerFiles
 from cartwheel.plugins.control.suggestion import files_for
-from cartwheel.plugins.gz_sensor import SYSTEMS
+from cartwheel.plugins.world_plugins import BUILT_IN
 
 STANDING = 10.0
 """s that a robot is left alone."""
@@ -85,7 +85,7 @@ def _described(verdict: Verdict, robot: RobotDescription) -> Verdict:
         *(tag for link in robot.links for one in link.sensors for tag in one.plugins),
     ]
     names = list(dict.fromkeys(short_name(tag.filename) for tag in tags))
-    known = {name for name in names if plugin_named(name) or name in SYSTEMS}
+    known = {name for name in names if plugin_named(name) or name in BUILT_IN}
     return replace(
         verdict,
         name=robot.name,

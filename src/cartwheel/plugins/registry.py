@@ -10,8 +10,9 @@ from cartwheel.errors import CartwheelError, Diagnostic, StaticModelError, likel
 from cartwheel.graph import Graph
 from cartwheel.plugins.base import Plugin
 from cartwheel.plugins.catalogue import plugin_named, plugin_names, plugin_serving, short_name
-from cartwheel.plugins.gz_sensor import SYSTEMS, own_tag, publishes
+from cartwheel.plugins.gz_sensor import own_tag, publishes
 from cartwheel.plugins.parameters import tags_of
+from cartwheel.plugins.world_plugins import BUILT_IN
 from cartwheel.simulation import Part
 from cartwheel.simulation.resident import Behaviour
 
@@ -35,7 +36,7 @@ def attach(part: Part, graph: Graph) -> list[Behaviour]:
         for tag, sensor in pairs:
             plugin = plugin_named(tag.filename)
             new = short_name(tag.filename).startswith("gz-sim-")
-            if plugin is None and short_name(tag.filename) in SYSTEMS:
+            if plugin is None and short_name(tag.filename) in BUILT_IN:
                 continue
             if plugin is None:
                 _report_unknown(part, tag)

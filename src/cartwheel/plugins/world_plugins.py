@@ -9,7 +9,7 @@ from cartwheel.plugins.gz_sensor import SYSTEMS
 from cartwheel.simulation import Part
 from cartwheel.simulation.resident import Behaviour
 
-_BUILT_IN = {
+BUILT_IN = {
     *SYSTEMS,
     "gz-sim-physics-system",
     "gz-sim-user-commands-system",
@@ -22,7 +22,7 @@ _BUILT_IN = {
     "gazebo_ros_api_plugin",
     "gazebo_ros_paths_plugin",
 }
-"""Physics, spawning, time and sensors need no plugin here."""
+"""Physics, spawning, time and sensors need no plugin here, wherever one is named."""
 
 
 def attach_world(part: Part, graph: Graph) -> list[Behaviour]:
@@ -37,7 +37,7 @@ def attach_world(part: Part, graph: Graph) -> list[Behaviour]:
     made: list[Behaviour] = []
     for tag in part.world.plugins:
         name = short_name(tag.filename)
-        if name in _BUILT_IN:
+        if name in BUILT_IN:
             continue
         plugin = plugin_named(tag.filename)
         severity: Severity = "warning"
