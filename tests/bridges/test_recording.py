@@ -721,3 +721,29 @@ def test_a_link_is_replaced_and_not_what_it_points_to(tmp_path: Path) -> None:
         world.run(0.1)
     assert precious.read_bytes() == b"as it was"
     assert len(read_with_rosbags(path)["/clock"]) == 10
+
+
+def test_a_run_is_recorded_in_several_forms_at_once(tmp_path: Path) -> None:
+    names = ("a b.mcap", "a.bag", "a.db3", "a")
+    words = [word for name in names for word in ("--record", name)]
+    subprocess.run(
+        [PROGRAM, "run", "--headless", "--speed", "max", "--for", "1", *words,
+         "--record-topics", "/clock /odom"],
+        cwd=tmp_path, check=True, stdout=subprocess.DEVNULL, timeout=300,
+    )  # fmt: skip
+    for name in names:
+        found = read_with_rosbags(tmp_path / name)
+        assert {topic: len(messages) for topic, messages in found.items()} == {
+            "/clock": 100,
+            "/odom": 100,
+        }
+
+
+def test_one_file_for_two_recordings_is_refused(tmp_path: Path) -> None:
+    done = subprocess.run(
+        [PROGRAM, "run", "--headless", "--record", "a.mcap", "--record", "./a.mcap"],
+        cwd=tmp_path, capture_output=True, text=True, timeout=300, check=False,
+    )  # fmt: skip
+    assert done.returncode == 2
+    assert done.stderr.startswith('error: --record names "a.mcap" twice')
+    assert not list(tmp_path.iterdir())

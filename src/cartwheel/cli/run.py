@@ -69,8 +69,12 @@ def run(
         str, typer.Option("--rmw", metavar="dds|zenoh", help="Which middleware ROS 2 uses.")
     ] = "dds",
     record: Annotated[
-        Path | None,
-        typer.Option("--record", metavar="FILE", help="Record: .mcap, .bag, .db3 or a folder."),
+        list[Path] | None,
+        typer.Option(
+            "--record",
+            metavar="FILE",
+            help="Record: .mcap, .bag, .db3 or a folder. May be given again.",
+        ),
     ] = None,
     record_topics: Annotated[
         list[str] | None,
@@ -134,7 +138,7 @@ def run(
             ros2_node=ros2_node if ros2 else None,
             rmw=arguments.rmw(rmw),
             ros1_arguments=tuple(ros1_arguments),
-            record=record,
+            record=tuple(record or ()),
             record_topics=tuple(word for text in record_topics or () for word in text.split()),
             record_encoding=record_encoding,
             overwrite=overwrite,

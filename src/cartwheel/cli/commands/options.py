@@ -41,8 +41,8 @@ class Options:
     ros2_node: str | None = None
     """Name of the ROS 2 node; None is to be none."""
     rmw: Literal["dds", "zenoh"] = "dds"
-    record: Path | None = None
-    """File or folder to record to."""
+    record: tuple[Path, ...] = ()
+    """Files or folders to record to."""
     record_topics: tuple[str, ...] = ()
     """Patterns; all topics where there are none."""
     record_encoding: str | None = None

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import threading
 from collections.abc import Iterator
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from cartwheel.cli import interrupts
@@ -25,9 +26,14 @@ def check_recording(options: Options) -> None:
     """
     from cartwheel.bridges.recording.formats import check_writable, encoding_for
 
-    assert options.record is not None
-    encoding_for(options.record, _encoding(options))
-    check_writable(options.record, overwrite=options.overwrite)
+    found: set[Path] = set()
+    for path in options.record:
+        encoding_for(path, _encoding(options))
+        check_writable(path, overwrite=options.overwrite)
+        place = path.absolute()
+        if place in found:
+            raise RecordingError(f'--record names "{path}" twice')
+        found.add(place)
 
 
 @contextlib.contextmanager
@@ -40,17 +46,22 @@ def recorded(session: Session, options: Options, report: Report) -> Iterator[Non
         report: Tells the user.
 
     Raises:
-        RecordingError: It cannot be written, or broke off.
+        RecordingError: One cannot be written, or broke off.
     """
-    if options.record is None:
+    with contextlib.ExitStack() as stack:
+        for path in options.record:
+            stack.enter_context(_recorded_to(path, session, options, report))
         yield
-        return
+
+
+@contextlib.contextmanager
+def _recorded_to(path: Path, session: Session, options: Options, report: Report) -> Iterator[None]:
     from cartwheel.bridges.recording import Recorder
 
     simulation = session.simulation
     recorder = Recorder(
         session.graph,
-        options.record,
+        path,
         time_ns=lambda: simulation.time_ns,
         topics=options.record_topics,
         encoding=_encoding(options),
@@ -64,7 +75,7 @@ def recorded(session: Session, options: Options, report: Report) -> Iterator[Non
     # than Ctrl-C allows.
     with interrupts.finally_do(ending.finish):
         recorder.start()
-        report.recording(options.record)
+        report.recording(path)
         try:
             yield
         finally:

@@ -37,7 +37,7 @@ def simulate(options: Options) -> None:
     """
     if options.seconds is not None and not 0 < options.seconds < 1e9:
         raise CartwheelError(f"--for {options.seconds:g} is no time to run")
-    if options.record is not None:
+    if options.record:
         check_recording(options)
     if options.foxglove_port is not None:
         from cartwheel.bridges.foxglove.bridge import require
@@ -151,7 +151,7 @@ def _shown_by_foxglove(session: Session, options: Options, report: Report) -> It
 @contextlib.contextmanager
 def _described(session: Session, options: Options) -> Iterator[RobotDescriptions | None]:
     """Publishes what the robots are, where somebody shows them elsewhere."""
-    if options.record is None and options.foxglove_port is None and options.ros2_node is None:
+    if not options.record and options.foxglove_port is None and options.ros2_node is None:
         yield None
         return
     from cartwheel.plugins.robot_descriptions import RobotDescriptions
