@@ -6,6 +6,7 @@ import contextlib
 import math
 import zlib
 from collections.abc import Callable, Collection, Iterator, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -143,12 +144,18 @@ class Part:
     ) -> MotorHandle:
         """A servo that holds a joint's velocity with at most `max_effort` N m or N.
 
-        Two that ask for the same joint share the motor of the first.
+        Two that ask for the same joint share the motor of the first. Where a servo has it
+        already, it is that of both; see `ServoHandle`.
         """
         self.joint(joint, origin=origin)
-        motor = self._entry.motors.setdefault(
-            joint, Motor(joint=joint, mode="velocity", max_effort=max_effort)
-        )
+        motor = self._entry.motors.get(joint)
+        if motor is None:
+            motor = Motor(joint=joint, mode="velocity", max_effort=max_effort)
+            self._entry.motors[joint] = motor
+        elif motor.mode == "servo":
+            motor = self._share(motor, max_effort, origin)
+        else:
+            self._warn(f'joint "{joint}" is turned by two plugins: the last command counts', origin)
         handle = MotorHandle(self.name, motor)
         self.handles.append(handle)
         return handle
@@ -169,17 +176,35 @@ class Part:
             beyond: Whether it holds positions and velocities with more than that limit as well.
             origin: Who asks for it.
 
-        Raises:
-            PluginError: Another plugin drives the joint by a law of its own.
+        Where a drive turns the joint already, its motor is that of both; see `ServoHandle`.
         """
         self.joint(joint, origin=origin)
-        motor = Motor(joint=joint, mode="servo", max_effort=max_effort, beyond=beyond)
-        if self._entry.motors.setdefault(joint, motor).mode != "servo":
-            raise PluginError(f'joint "{joint}" is driven by two plugins', origin=origin)
-        handle = ServoHandle(self.name, self._entry.motors[joint])
+        made = Motor(joint=joint, mode="servo", max_effort=max_effort, beyond=beyond)
+        motor = self._entry.motors.setdefault(joint, made)
+        drives = motor.mode == "velocity"
+        handle = ServoHandle(self.name, motor)
         self.handles.append(handle)
+        if drives:
+            self._share(motor, motor.max_effort, origin)
         self.schedule(0, before=handle.follow, active=lambda: handle.follows)
         return handle
+
+    def _share(self, motor: Motor, max_effort: float | None, origin: Origin | None) -> Motor:
+        """Makes a joint's motor that of a drive, of its strength, and of a servo."""
+        shared = replace(motor, mode="servo", max_effort=max_effort)
+        self._entry.motors[motor.joint] = shared
+        for handle in self.handles:
+            if isinstance(handle, ServoHandle) and handle.motor.joint == motor.joint:
+                handle.shared = True
+        self._warn(
+            f'joint "{motor.joint}" is turned by a drive and by another plugin: '
+            "the efforts of the one add to the motor of the other",
+            origin,
+        )
+        return shared
+
+    def _warn(self, message: str, origin: Origin | None) -> None:
+        self.report(Diagnostic(severity="warning", message=message, origin=origin))
 
     def mimic(self, joint: str, mimic: Mimic, *, origin: Origin | None = None) -> None:
         """Makes a joint follow another one.

@@ -23,7 +23,13 @@ class ServoHandle:
 
     Velocities and positions are held by dry friction with a rotor, as by a `MotorHandle`: exact
     below the limit, whatever the joint bears.
+
+    A drive may turn the same joint, as in Gazebo, where each joint has one motor and takes efforts
+    beside it: then the motor is the drive's as long as no velocity or position is commanded here.
     """
+
+    shared = False
+    """Whether a drive turns the joint as well."""
 
     def __init__(self, model: str, motor: Motor) -> None:
         self.model_name = model
@@ -125,5 +131,9 @@ class ServoHandle:
         self._ctrl[self.id] = effort
         self._bias[2] = -damping
         holds = self.mode in ("velocity", "position")
-        self._grip[self._tendon] = min(self._strength, self._limit) if holds else 0.0
-        self._qvel[self._rotor] = self._turning
+        if holds:
+            self._grip[self._tendon] = min(self._strength, self._limit)
+        else:
+            self._grip[self._tendon] = self._strength if self.shared else 0.0
+        if holds or not self.shared:
+            self._qvel[self._rotor] = self._turning

@@ -151,3 +151,29 @@ def test_the_default_hardware_drives_none_of_several(bench):
         'joint "a_joint" is none that controllers have: no <transmission> names it' in each
         for each in made.warnings
     )
+
+
+@pytest.mark.parametrize("order", [1, -1], ids=["controllers first", "drive first"])
+@pytest.mark.parametrize(
+    ("interface", "told"),
+    [("Effort", "is turned by a drive and by another"), ("Velocity", "is turned by two plugins")],
+)
+def test_a_drive_and_controllers_may_name_one_joint(bench, order, interface, told):
+    """As Gazebo has it: a motor that holds its speed, and whatever effort is given beside it."""
+    motor = """<plugin name="drive" filename="librotors_gazebo_motor_model.so">
+      <robotNamespace>/</robotNamespace><jointName>beam_joint</jointName><linkName>beam</linkName>
+      <turningDirection>ccw</turningDirection><motorConstant>0</motorConstant>
+      <rotorDragCoefficient>0</rotorDragCoefficient><motorNumber>0</motorNumber>
+      <rotorVelocitySlowdownSim>1</rotorVelocitySlowdownSim></plugin>"""
+    base = """<link name="base"/><joint name="bolt" type="fixed"><parent link="world"/>
+      <child link="base"/></joint>"""
+    upright = base + beam("beam", "base", axis="0 0 1", kind="continuous")
+    plugins = "".join((ROS1, motor)[::order])
+    made = bench(robot(upright + transmission("beam_joint", interface), plugins))
+    assert [each for each in made.warnings if told in each]
+    if interface == "Effort":
+        made.publish("/command/motor_speed", "mav_msgs/msg/Actuators", angular_velocities=[3.0])
+        made.world.run(1.0)
+        before = made.position("beam_joint")
+        made.world.run(0.5)
+        assert made.position("beam_joint") - before == pytest.approx(1.5, rel=0.01)
