@@ -171,3 +171,24 @@ def test_what_is_opaque_hides_a_transparent_thing_and_the_sky(make):
 def test_what_glows_is_seen_in_the_dark(make, material):
     (image,) = views(make, thing("<box><size>1 1 1</size></box>", material), "behind")
     assert image[32, 32] == pytest.approx((255, 0, 0), abs=3)
+
+
+def test_the_sky_is_whole_around_something_transparent(make):
+    """Up to the picture's edges, with a far plane that is near."""
+    pane = thing(
+        "<box><size>0.1 0.2 0.2</size></box>", BLACK.format(""), "<transparency>0.5</transparency>"
+    )
+    look = sensor(pose=f"-{FAR} 0 0 0 0 0", width=40, height=64, fov=0.3, far=1.5 * FAR)
+    world = make.world(make.sdf(pane), make.sdf(look), ground=None)
+    image = pixels_of(take(world, "/cam/image_raw"))
+    assert set(image[0].ravel()) == set(image[:, 0].ravel()) == set(image[:, -1].ravel()) == {SKY}
+    assert image[32, 20] == pytest.approx(SKY / 2, abs=2)
+
+
+def test_white_glass_before_a_white_sky_is_white(make):
+    white = """<material><diffuse>1 1 1 1</diffuse><emissive>1 1 1 1</emissive></material>
+      <transparency>0.37</transparency>"""
+    glass = make.sdf(thing("<box><size>1 1 1</size></box>", white))
+    sky = (1.0, 1.0, 1.0, 1.0)
+    world = make.world(glass, make.sdf(eye("behind")), ground=None, background=sky)
+    assert pixels_of(take(world, "/behind/image_raw")).min() >= 253

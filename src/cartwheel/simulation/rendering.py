@@ -11,7 +11,6 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from cartwheel.description.model import CameraIntrinsics
 from cartwheel.errors import SimulationError
 from cartwheel.simulation.handles import CameraHandle
 from cartwheel.world.visuals import HIDDEN_GROUP, VISUAL_GROUP
@@ -99,28 +98,45 @@ class Renderer:
         self._camera.fixedcamid = camera.id
         pixels = np.empty((lens.height, lens.width, 3), dtype=np.uint8)
         buffer = np.empty((lens.height, lens.width), dtype=np.float32)
-        self._show(data, lens)
+        self._show(data, camera)
         self._shoot(pixels, buffer)
         # The background, where nothing was drawn.
         empty = buffer == 0
         if self._opaque is None:
             pixels.reshape(-1).view(_PIXEL)[empty.ravel()] = self._background.view(_PIXEL)[0]
         else:
-            share = self._transmitted(data, lens)[empty].astype(np.uint16)
-            pixels[empty] += (share * self._background // _FULL).astype(np.uint8)
+            share = self._transmitted(data, camera)[empty].astype(np.uint16)
+            seen = pixels[empty] + share * self._background // _FULL
+            pixels[empty] = np.minimum(seen, _FULL)
         return pixels, buffer
 
-    def _show(self, data: Any, lens: CameraIntrinsics) -> None:
-        """Puts what is visible of the model into the scene, before the lens."""
-        mujoco.mjv_updateScene(
-            self._model,
-            data,
-            self._option,
-            self._perturb,
-            self._camera,
-            mujoco.mjtCatBit.mjCAT_ALL.value,
-            self._scene,
-        )
+    def _show(self, data: Any, camera: CameraHandle, hidden: Any = None) -> None:
+        """Puts what is in view of the model into the scene, before the lens.
+
+        The engine draws what is behind the camera as well, so it is not told of that.
+
+        Args:
+            data: Of the bound model.
+            camera: Whose view it is.
+            hidden: Geoms to leave out, shape (ngeom,).
+        """
+        lens, groups = camera.intrinsics, self._model.geom_group
+        saved = groups.copy()
+        try:
+            groups[_out_of_view(self._model, data, camera)] = HIDDEN_GROUP
+            if hidden is not None:
+                groups[hidden] = HIDDEN_GROUP
+            mujoco.mjv_updateScene(
+                self._model,
+                data,
+                self._option,
+                self._perturb,
+                self._camera,
+                mujoco.mjtCatBit.mjCAT_ALL.value,
+                self._scene,
+            )
+        finally:
+            groups[:] = saved
         # Clip planes are each camera's own; MuJoCo has one pair for all. The frustum's
         # other numbers are given at the near plane.
         half = lens.near * math.tan(lens.horizontal_fov / 2) * lens.height / lens.width
@@ -135,24 +151,18 @@ class Renderer:
         mujoco.mjr_render(viewport, self._scene, self._context)
         mujoco.mjr_readPixels(pixels, buffer, viewport, self._context)
 
-    def _transmitted(self, data: Any, lens: CameraIntrinsics) -> Image:
+    def _transmitted(self, data: Any, camera: CameraHandle) -> Image:
         """How much of the background shows through what is transparent, of 255.
 
         What is transparent leaves no depth, and the engine draws it before black. Here it is drawn
         black and alone, before a white wall.
         """
-        groups = self._model.geom_group
-        saved = groups.copy()
-        try:
-            groups[self._opaque] = HIDDEN_GROUP
-            self._show(data, lens)
-        finally:
-            groups[:] = saved
-        scene = self._scene
+        self._show(data, camera, hidden=self._opaque)
+        scene, lens = self._scene, camera.intrinsics
         for index in range(scene.ngeom):
             scene.geoms[index].rgba[:3] = 0.0
             scene.geoms[index].emission = 0.0
-        view = scene.camera[0]
+        axes = data.cam_xmat[camera.id]
         away = _WALL * lens.far
         wide = lens.far * math.tan(lens.horizontal_fov / 2)
         wall = scene.geoms[scene.ngeom]
@@ -160,8 +170,8 @@ class Renderer:
             wall,
             mujoco.mjtGeom.mjGEOM_BOX,
             np.array([wide, wide * lens.height / lens.width, (1 - _WALL) / 2 * away]),
-            view.pos + away * view.forward,
-            np.stack([np.cross(view.forward, view.up), view.up, -view.forward], axis=1).ravel(),
+            data.cam_xpos[camera.id] - away * axes.reshape(3, 3)[:, 2],
+            axes,
             np.ones(4, dtype=np.float32),
         )
         wall.emission = 1.0
@@ -207,6 +217,21 @@ def _background(model: Any) -> Any:
             start = model.tex_adr[index]
             return np.ascontiguousarray(model.tex_data[start : start + 3])
     return np.zeros(3, dtype=np.uint8)
+
+
+def _out_of_view(model: Any, data: Any, camera: CameraHandle) -> Any:
+    """Which geoms lie wholly outside what the camera sees, by their spheres, shape (ngeom,)."""
+    lens = camera.intrinsics
+    radius = model.geom_rbound
+    axes = data.cam_xmat[camera.id].reshape(3, 3)
+    right, up, back = ((data.geom_xpos - data.cam_xpos[camera.id]) @ axes).T
+    wide = math.tan(lens.horizontal_fov / 2)
+    high = wide * lens.height / lens.width
+    out = (-back + radius < lens.near) | (-back - radius > lens.far)
+    out |= np.abs(right) + wide * back > radius * math.hypot(1.0, wide)
+    out |= np.abs(up) + high * back > radius * math.hypot(1.0, high)
+    # An endless plane has no sphere.
+    return out & (radius > 0)
 
 
 def _opaque(model: Any) -> Any:
