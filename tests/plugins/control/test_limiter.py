@@ -1,5 +1,7 @@
 """Limits of a drive's commands."""
 
+import math
+
 import pytest
 
 from cartwheel.errors import PluginError
@@ -24,6 +26,16 @@ def test_velocity_and_acceleration():
 def test_a_limit_that_is_switched_off_does_nothing():
     values = {"has_velocity_limits": False, "max_velocity": 1.0}
     assert Limiter.read(Settings(values, "c")).limit(5.0, 0.0, 0.0, 0.1) == 5.0
+
+
+def test_what_ros2_leaves_open_is_no_limit():
+    """Its files write .NAN for it; the limit of a pair that is stated counts for both."""
+    names = ("max_jerk", "min_jerk", "max_deceleration", "min_velocity")
+    values = {"max_velocity": 1.0, "max_acceleration": 2.0, **dict.fromkeys(names, math.nan)}
+    limiter = Limiter.read(Settings(values, "c"))
+    assert limiter.limit(5.0, 0.0, 0.0, 0.1) == pytest.approx(0.2)
+    assert limiter.limit(0.0, 0.5, 0.5, 0.1) == pytest.approx(0.3)
+    assert limiter.limit(-5.0, -0.95, -0.95, 0.1) == -1.0
 
 
 def test_jerk_limits_how_the_acceleration_grows():

@@ -28,11 +28,10 @@ class Limiter:
         """
         acceleration = _pair(settings, "acceleration")
         deceleration = acceleration
-        if settings.has("max_deceleration") and acceleration is not None:
-            low = settings.number("max_deceleration")
-            high = settings.optional_number("max_deceleration_reverse")
-            if not math.isinf(low):
-                deceleration = (-abs(low), abs(low if high is None or math.isnan(high) else high))
+        low = settings.optional_number("max_deceleration")
+        high = settings.optional_number("max_deceleration_reverse")
+        if low is not None and acceleration is not None and not math.isinf(low):
+            deceleration = (-abs(low), abs(low if high is None else high))
         settings.ignore("max_acceleration_reverse", "max_deceleration_reverse", "max_deceleration")
         return cls(
             velocity=_pair(settings, "velocity"),

@@ -70,8 +70,11 @@ class Settings:
         return float(value)
 
     def optional_number(self, name: str) -> float | None:
-        """A number, or None where there is none."""
-        return self.number(name) if self.has(name) else None
+        """A number, or None where there is none, or a nan, by which ROS 2 leaves it open."""
+        value = self._find(name)
+        if value is _MISSING or (isinstance(value, float) and math.isnan(value)):
+            return None
+        return self.number(name)
 
     def integer(self, name: str, default: int = _MISSING) -> int:
         """A whole number."""
