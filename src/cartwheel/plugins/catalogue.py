@@ -45,6 +45,7 @@ _FILES = {
     "rotors_gazebo_multirotor_base_plugin": "rotors",
     "rotors_gazebo_imu_plugin": "rotors",
     "rotors_gazebo_odometry_plugin": "rotors_odometry",
+    "warthog_suspension_plugin": "warthog_suspension",
     "gazebo_ros_camera": "camera",
     "gazebo_ros_multicamera": "camera",
     "gazebo_ros_depth_camera": "depth_camera",

@@ -1,0 +1,43 @@
+"""``libwarthog_suspension_plugin.so``: what bears the sides of Clearpath's Warthog."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from cartwheel.errors import PluginError
+from cartwheel.plugins.base import Plugin
+from cartwheel.plugins.parameters import tag
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class WarthogSuspensionParameters:
+    stiffness: float = tag("suspension_k", unit="N m/rad", doc="Towards 0, of each of the two.")
+    damping: float = tag("suspension_b", unit="N m s/rad", doc="Of each of the two.")
+    left: str = tag("left_joint", default="left_diff_unit_joint", doc="Joint of that side.")
+    right: str = tag("right_joint", default="right_diff_unit_joint", doc="Joint of that side.")
+
+
+class WarthogSuspension(Plugin[WarthogSuspensionParameters]):
+    """Springs and dampers at the joints of both sides.
+
+    Source: warthog_gazebo, warthog_suspension_plugin, which knows no other joints.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ("libwarthog_suspension_plugin.so",)
+    parameters: ClassVar[type] = WarthogSuspensionParameters
+
+    def configure(self) -> None:
+        config, part, origin = self.config, self.part, self.tag.origin
+        if min(config.stiffness, config.damping) < 0:
+            raise PluginError("a spring or damper cannot be below 0", origin=origin)
+        self._sides = [
+            (part.joint(name, origin=origin), part.servo(name, max_effort=None, origin=origin))
+            for name in (config.left, config.right)
+        ]
+        part.schedule(0, before=self._bear)
+
+    def _bear(self) -> None:
+        for joint, servo in self._sides:
+            effort = -self.config.stiffness * joint.position
+            servo.command_effort(effort, damping=self.config.damping)
