@@ -6,6 +6,7 @@ import math
 import numpy as np
 import pytest
 
+from cartwheel.description import load_text
 from cartwheel.geometry import Pose, quat_from_rpy
 from cartwheel.world.build import DEFAULT_STEP
 
@@ -156,6 +157,35 @@ def test_joint_limit_holds(make):
     assert world.session.simulation.data.joint("pendulum::pivot").qvel[0] == pytest.approx(
         0.0, abs=1e-6
     )
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.5])
+def test_equal_limits_lock_a_joint(make, angle):
+    """As soft as a stop: a milliradian at this load."""
+    limit = f"<limit><lower>{angle}</lower><upper>{angle}</upper></limit>"
+    world = make.world(make.sdf(pendulum(1.0, limit=limit)), ground=None)
+    set_joint(world, "pendulum::pivot", angle)
+    world.run(2.0)
+    assert world.model("pendulum").joint("pivot") == pytest.approx(angle, abs=2e-3)
+
+
+def test_what_follows_another_joint_is_not_locked_by_equal_limits(make):
+    world = make.world(
+        load_text(
+            """<robot name="r"><link name="world"/><link name="a">{i}</link>
+            <link name="b">{i}</link>
+            <joint name="lead" type="revolute"><parent link="world"/><child link="a"/>
+              <limit lower="-1" upper="1" effort="9" velocity="9"/></joint>
+            <joint name="follow" type="revolute"><parent link="world"/><child link="b"/>
+              <limit effort="9" velocity="9"/><mimic joint="lead"/></joint></robot>""".format(
+                i='<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial>'
+            )
+        ),
+        ground=None,
+    )
+    world.session.simulation.set_joint_positions("r", {"lead": 0.7})
+    world.run(1.0)
+    assert world.model("r").joint("follow") == pytest.approx(0.7, abs=1e-3)
 
 
 @pytest.mark.parametrize(

@@ -361,6 +361,11 @@ class Axis:
     spring_stiffness: float = 0.0
     spring_reference: float = 0.0
 
+    @property
+    def locks(self) -> bool:
+        """Whether its limits leave no way between them."""
+        return self.lower is not None and self.lower == self.upper
+
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Mimic:

@@ -154,7 +154,7 @@ class States:
             if joint is not None and joint.type in ("revolute", "prismatic"):
                 lower = -np.inf if joint.axis.lower is None else joint.axis.lower
                 upper = np.inf if joint.axis.upper is None else joint.axis.upper
-                bounded = min(max(value, lower), upper) if lower < upper else value
+                bounded = min(max(value, lower), upper)
                 if bounded != value:
                     notes.append(f'joint "{own}" stops at its limit of {bounded:g}')
                     value = float(bounded)

@@ -18,6 +18,8 @@ _COUPLING_REFERENCE = (0.01, 1.0)
 """solref of threads and gears: as stiff as the default step allows."""
 _COUPLING_IMPEDANCE = (0.9999, 0.9999, 0.001, 0.5, 2.0)
 """solimp: a nut under load slips by nothing that could be seen."""
+_LOCKED = 1e-6
+"""rad or m to each side that are left to a joint whose limits are equal."""
 _LOOP_ARM = 0.1
 """m between the two points at which a closing hinge holds."""
 
@@ -35,6 +37,9 @@ def add_joint(spec: mujoco.MjSpec, entry: ModelEntry, body: Any, joint: Joint) -
     match joint.type:
         case "revolute" | "continuous" | "prismatic":
             made = _add_axis(body, name, joint, joint.axis)
+            if joint.axis.locks and entry.mimics.get(joint.name, joint.mimic) is not None:
+                # What follows another goes where that one does.
+                made.limited = mujoco.mjtLimited.mjLIMITED_FALSE
             made.type = _KIND.mjJNT_SLIDE if joint.type == "prismatic" else _KIND.mjJNT_HINGE
         case "ball":
             made = body.add_joint(name=name, type=_KIND.mjJNT_BALL, pos=pos)
@@ -174,9 +179,10 @@ def _add_axis(body: Any, name: str, joint: Joint, axis: Axis) -> Any:
     if joint.type != "continuous" and (axis.lower is not None or axis.upper is not None):
         lower = -1e10 if axis.lower is None else axis.lower
         upper = 1e10 if axis.upper is None else axis.upper
-        if lower < upper:
-            made.limited = mujoco.mjtLimited.mjLIMITED_TRUE
-            made.range = [lower, upper]
+        # The engine wants a range; equal limits lock a joint, as in ODE.
+        slack = _LOCKED if axis.locks else 0.0
+        made.limited = mujoco.mjtLimited.mjLIMITED_TRUE
+        made.range = [lower - slack, upper + slack]
     if axis.effort is not None and axis.effort > 0:
         made.actfrclimited = mujoco.mjtLimited.mjLIMITED_TRUE
         made.actfrcrange = [-axis.effort, axis.effort]
