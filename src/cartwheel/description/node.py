@@ -284,9 +284,11 @@ def unread(
     known = harmless or {}
     for note in node.notes:
         yield Diagnostic(severity="warning", message=note, origin=node.origin)
-    for name in node.attributes:
+    for name, value in node.attributes.items():
         if name in node._asked_attributes or name.startswith("xmlns"):
             continue
+        if not value.strip():
+            continue  # Gazebo saves its worlds with <pose frame=''>: it says nothing
         if ":" in name:
             yield _foreign(name, node.origin)
             continue

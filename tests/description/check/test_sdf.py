@@ -136,3 +136,41 @@ def test_a_model_of_a_world_that_cannot_be_read_is_told_as_such(bench):
     )
     found = [finding.rule for finding in bench.report(text, "x.sdf").findings]
     assert found == ["unreadable"]
+
+
+def turning(lower, upper):
+    limit = f"<limit><lower>{lower}</lower><upper>{upper}</upper></limit>"
+    return model(
+        '<link name="arm"/><joint name="j" type="revolute"><parent>box</parent><child>arm</child>\n'
+        f"<axis><xyz>0 0 1</xyz>\n{limit}</axis></joint>"
+    )
+
+
+def test_limits_of_joints(bench):
+    (zero,) = bench.find(turning(0, 0), "limit-zero", "x.sdf")
+    assert zero.severity == "info", "models from before fixed joints mean one by it"
+    (degrees,) = bench.find(turning(-90, 90), "limit-degrees", "x.sdf")
+    assert degrees.instead == "<limit><lower>-1.5708</lower><upper>1.5708</upper></limit>"
+    assert zero.origin.line == degrees.origin.line
+    good = {one.rule for one in bench.report(turning(-1, 1), "x.sdf").findings}
+    assert not good & {"limit-zero", "limit-degrees"}
+
+
+def test_a_misspelt_uri_is_told_with_the_one_that_was_meant(bench, tmp_path):
+    (tmp_path / "crate").mkdir()
+    (tmp_path / "crate" / "model.config").write_text("<model><sdf>model.sdf</sdf></model>")
+    (tmp_path / "crate" / "model.sdf").write_text(model())
+    text = world("<include>\n<uri>model://craet</uri></include>\n")
+    (finding,) = bench.find(text, "file-missing", "x.sdf")
+    assert finding.instead == "<uri>model://crate</uri>"
+    assert finding.place == "element"
+    assert finding.origin.line == text[: text.index("<uri>")].count("\n") + 1
+
+
+def test_an_empty_attribute_says_nothing(bench):
+    """Gazebo writes one into each pose of a state that it saves."""
+    state = (
+        '<state world_name="w"><model name="m"><pose frame="{}">0 0 0 0 0 0</pose></model></state>'
+    )
+    assert bench.report(world(state.format("")), "x.sdf").findings == ()
+    assert bench.find(world(state.format("box")), "tag-ignored", "x.sdf")

@@ -56,6 +56,7 @@ def limit_reversed(subject: Subject) -> Iterator[Remark]:
 def limit_zero(subject: Subject) -> Iterator[Remark]:
     drives = [drive for robot in subject.robots for drive in robot.drives]
     wheels = {name for drive in drives for name in drive.joints}
+    yield from _zero_in_sdf(subject, wheels)
     for joint, limit, lower, upper in _ranges(subject):
         # Of a driven wheel it is said that its joint must be continuous.
         if lower == upper and nodes.name_of(joint) not in wheels:
@@ -175,6 +176,7 @@ def axis_not_unit(subject: Subject) -> Iterator[Remark]:
 
 @rule("limit-degrees", "warning", "a joint's limit seems to be in degrees")
 def limit_degrees(subject: Subject) -> Iterator[Remark]:
+    yield from _degrees_in_sdf(subject)
     for joint, kind in _joints(subject):
         limit = nodes.child(joint, "limit")
         if limit is None or kind != "revolute":
@@ -194,6 +196,46 @@ def limit_degrees(subject: Subject) -> Iterator[Remark]:
                 place="element",
                 mark="lower" if values["lower"] else "upper",
             )
+
+
+def _zero_in_sdf(subject: Subject, wheels: set[str]) -> Iterator[Remark]:
+    for joint, axis, lower, upper in _ranges_in_sdf(subject):
+        if lower == upper and joint not in wheels:
+            yield Remark(
+                # Models from before SDF 1.5, which had no fixed joints, mean one by it.
+                severity="info",
+                message=f'the joint "{joint}" cannot move: both limits are {lower:g}',
+                origin=axis.origin,
+                hint='Where it shall not move, write type="fixed" in its <joint>.',
+            )
+
+
+def _degrees_in_sdf(subject: Subject) -> Iterator[Remark]:
+    for joint, axis, lower, upper in _ranges_in_sdf(subject):
+        stated = [abs(value) for value in (lower, upper) if value]
+        if stated and all(value in _DEGREES for value in stated):
+            limit = {"lower": math.radians(lower), "upper": math.radians(upper)}
+            inner = "".join(f"<{tag}>{nodes.short(value)}</{tag}>" for tag, value in limit.items())
+            yield Remark(
+                message=f'the limits of the joint "{joint}" are radians, and {max(stated):g} rad '
+                f"are {max(stated) / 2 / math.pi:.3g} turns: degrees were meant?",
+                origin=axis.origin,
+                instead=nodes.written("limit", {}, inner),
+            )
+
+
+def _ranges_in_sdf(subject: Subject) -> Iterator[tuple[str, Node, float, float]]:
+    """The name, the limit, its lower and its upper value of joints that turn in SDF."""
+    if subject.is_urdf:
+        return
+    for joint in nodes.walk(subject.root):
+        if joint.tag != "joint" or nodes.text_of(joint, "type") != "revolute":
+            continue
+        limit = nodes.child(nodes.child(joint, "axis"), "limit")
+        texts = [nodes.child(limit, tag) for tag in ("lower", "upper")]
+        lower, upper = (nodes.number(one.text) if one is not None else None for one in texts)
+        if limit is not None and lower is not None and upper is not None:
+            yield nodes.name_of(joint), limit, lower, upper
 
 
 def _turns(joint: Node) -> bool:

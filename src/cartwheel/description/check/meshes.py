@@ -103,7 +103,7 @@ def _meant(subject: Subject, uri: str, node: Node, hint: str) -> str:
         tries.append(uri[: package.start(1)] + match[1] + uri[package.end(1) :])
     for each in tries:
         try:
-            subject.packages.resolve(each, node.origin)
+            subject.packages.resolve(each, node.origin, folder=True)
         except DescriptionError:
             continue
         return each
@@ -159,11 +159,16 @@ def left_out(subject: Subject, *, missing: bool = False) -> Iterator[Remark]:
             continue
         if missing == bool(why or MISSING.search(diagnostic.message)):
             node = nodes.at(subject.root, diagnostic.origin) if diagnostic.origin else None
+            uri = nodes.child(node, "uri") or (node if node and node.tag == "uri" else None)
+            hint = match[2].strip()
+            meant = _meant(subject, uri.text.strip(), uri, hint) if uri is not None else ""
             yield Remark(
                 severity=_severity(diagnostic.message),
                 message=match[1],
-                origin=diagnostic.origin,
-                hint=match[2].strip(),
+                origin=uri.origin if uri is not None and meant else diagnostic.origin,
+                instead=nodes.written("uri", {}, meant) if meant else "",
+                place="element" if meant else "",
+                hint=hint,
                 mark=nodes.text_of(node, "filename") if node is not None else "",
             )
 

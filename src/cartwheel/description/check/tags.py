@@ -43,7 +43,8 @@ _KINDS: tuple[tuple[str, str, str], ...] = (
      r"|nothing to preserve|needs no <axis>|is newer than|names the unknown model"
      r"|is not needed: |is for other programs|is deprecated",
      "something that is read, but does nothing here"),
-    ("tag-ignored", r"is not understood and is ignored|has no effect: |tag are ignored",
+    ("tag-ignored", r"is not understood and is ignored|has no effect: |tag are ignored"
+     r"|has no effect$|, on which .* would act",
      "a tag or attribute that nobody reads, a misspelt one mostly"),
     ("value-ignored", r"is below 0: the default counts|is not within 0 and 1|has the size"
      r"|is made \S+ mm thick|is left out", "a value that cannot count"),
