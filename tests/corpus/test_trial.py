@@ -169,3 +169,13 @@ def test_a_topic_that_states_a_rate_and_is_silent_is_named():
     with World() as world:
         world.graph.advertise("/never", "std_msgs/msg/Float64", rate=10.0)
         assert _listened(world) == (2, ("/never",))
+
+
+def test_a_model_named_as_the_ground_is_tried_beside_it(tmp_path):
+    path = tmp_path / "model.sdf"
+    path.write_text("""<sdf version="1.6"><model name="ground_plane"><static>true</static>
+      <link name="link"><collision name="c"><geometry><box><size>1 1 0.1</size></box></geometry>
+      </collision></link></model></sdf>""")
+    verdict = try_robot(path, standing=1.0)
+    assert verdict.good
+    assert verdict.stand.state == "fixed"

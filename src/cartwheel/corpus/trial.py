@@ -61,8 +61,10 @@ def try_robot(
             controllers = _controllers(robot)
         with World() as world:
             pose = _place(robot)
+            # A ground_plane stands there already.
+            name = f"{robot.name}_tried" if robot.name in world.models else robot.name
             model = world.spawn(
-                robot, x=pose.x, y=pose.y, z=pose.z, roll=pose.rpy[0], pitch=pose.rpy[1],
+                robot, name=name, x=pose.x, y=pose.y, z=pose.z, roll=pose.rpy[0], pitch=pose.rpy[1],
                 yaw=pose.rpy[2], controllers=controllers,
             )  # fmt: skip
             verdict = replace(
