@@ -176,7 +176,7 @@ def test_others_are_served_meanwhile(bridged: Ros2Bridged, sender: socket.socket
 
 def test_variables_that_make_no_sense_are_told_of() -> None:
     assert domain_id({"ROS_DOMAIN_ID": "17"}) == 17
-    for wrong in ("-1", "x", "233"):
+    for wrong in ("-1", "x", "233", "²"):
         with pytest.raises(CartwheelError, match="ROS_DOMAIN_ID"):
             domain_id({"ROS_DOMAIN_ID": wrong})
     with pytest.raises(CartwheelError, match="DISCOVERY_RANGE"):

@@ -77,7 +77,7 @@ def domain_id(environment: Mapping[str, str] = os.environ) -> int:
         CartwheelError: It is no domain.
     """
     given = environment.get("ROS_DOMAIN_ID", "").strip() or "0"
-    if not given.isdigit() or int(given) > _LAST_DOMAIN:
+    if not given.isdecimal() or int(given) > _LAST_DOMAIN:
         raise CartwheelError(
             f'ROS_DOMAIN_ID is "{given}"', hint=f"It is a number from 0 to {_LAST_DOMAIN}."
         )
