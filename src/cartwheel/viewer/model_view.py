@@ -29,6 +29,7 @@ from cartwheel.viewer.shapes import (
     surfaces_of_visual,
     triangles_of,
 )
+from cartwheel.viewer.skins import PicturedSkin, Skin, glb_of
 
 COLLISION: Rgba = (0.96, 0.55, 0.15, 0.45)
 INERTIA: Rgba = (0.55, 0.30, 0.75, 0.30)
@@ -73,9 +74,9 @@ class ModelView:
         """m, of its largest extent: for things drawn in proportion."""
         self._frames = [self._frame(link) for link in description.links]
         self._shown = np.full((len(self._frames), 7), np.nan)
-        self._layers: dict[str, list[tuple[Any, float]]] = {}
-        self._grounds: list[Any] = []
-        self._solids: list[Any] = []
+        self._layers: dict[str, list[tuple[Skin, float]]] = {}
+        self._grounds: list[Skin] = []
+        self._solids: list[Skin] = []
         self._clickable = True
 
     def path(self, link: str) -> str:
@@ -119,11 +120,11 @@ class ModelView:
         if self._clicked is None or clickable == self._clickable:
             return
         self._clickable = clickable
-        for handle in self._solids:
+        for skin in self._solids:
             if clickable:
-                handle.on_click(self._clicked)
+                skin.on_click(self._clicked)
             else:
-                handle.remove_click_callback(self._clicked)
+                skin.remove_click_callback(self._clicked)
 
     def remove(self) -> None:
         """Takes everything out of the scene."""
@@ -135,7 +136,7 @@ class ModelView:
         self,
         name: str,
         wanted: bool,
-        make: Callable[[Link], list[tuple[Any, float]]],
+        make: Callable[[Link], list[tuple[Skin, float]]],
         opacity: float,
         wireframe: bool,
     ) -> None:
@@ -143,19 +144,14 @@ class ModelView:
             return
         if name not in self._layers:
             self._layers[name] = [node for link in self.description.links for node in make(link)]
-        for handle, own in self._layers[name]:
-            if handle.visible != wanted:
-                handle.visible = wanted
+        for skin, own in self._layers[name]:
+            skin.show(wanted)
             if name in ("names", "inertia"):
                 continue
-            value = own if handle in self._grounds else own * opacity
-            shown = None if value >= 1.0 else value
-            if handle.opacity != shown:
-                handle.opacity = shown
-            if handle.wireframe != wireframe:
-                handle.wireframe = wireframe
+            value = own if skin in self._grounds else own * opacity
+            skin.draw(None if value >= 1.0 else value, wireframe)
 
-    def _visuals(self, link: Link) -> list[tuple[Any, float]]:
+    def _visuals(self, link: Link) -> list[tuple[Skin, float]]:
         # A plane that is the ground receives shadows and takes no clicks: it is everywhere.
         ground = [v for v in link.visuals if isinstance(v.shape, Plane)]
         solid = [v for v in link.visuals if not isinstance(v.shape, Plane)]
@@ -171,7 +167,7 @@ class ModelView:
                 nodes.append(self._mesh(link, f"{kind}_{i}", surface, ground=kind == "ground"))
         return nodes
 
-    def _collisions(self, link: Link) -> list[tuple[Any, float]]:
+    def _collisions(self, link: Link) -> list[tuple[Skin, float]]:
         surfaces: list[Surface] = []
         for collision in link.collisions:
             if isinstance(collision.shape, Plane):
@@ -182,7 +178,7 @@ class ModelView:
                 self._problem(error)
         return [self._mesh(link, "collision", surface) for surface in merge(surfaces)]
 
-    def _inertias(self, link: Link) -> list[tuple[Any, float]]:
+    def _inertias(self, link: Link) -> list[tuple[Skin, float]]:
         if link.inertial is None or self.description.static:
             return []
         pose, size = inertia_box(link.inertial)
@@ -205,41 +201,53 @@ class ModelView:
             position=link.inertial.pose.position,
             cast_shadow=False,
         )
-        return [(box, 1.0), (ball, 1.0)]
+        return [(Skin(box), 1.0), (Skin(ball), 1.0)]
 
-    def _names(self, link: Link) -> list[tuple[Any, float]]:
+    def _names(self, link: Link) -> list[tuple[Skin, float]]:
         if self.description.static:
             return []
         label = self._scene.add_label(
             f"{self.path(link.name)}/name", link.name, font_screen_scale=0.75
         )
-        return [(label, 1.0)]
+        return [(Skin(label), 1.0)]
 
     def _mesh(
         self, link: Link, name: str, surface: Surface, *, ground: bool = False
-    ) -> tuple[Any, float]:
+    ) -> tuple[Skin, float]:
         alpha = surface.rgba[3]
-        handle = self._scene.add_mesh_simple(
-            f"{self.path(link.name)}/{name}",
-            surface.vertices,
-            surface.faces,
-            color=_rgb(_lighten(surface.rgba) if ground else surface.rgba),
-            opacity=None if alpha >= 1.0 else alpha,
-            side="double" if alpha < 1.0 else "front",
-            cast_shadow=not ground and alpha >= 1.0,
+        node = f"{self.path(link.name)}/{name}"
+        common: dict[str, Any] = {
+            "cast_shadow": not ground and alpha >= 1.0,
             # On a large plane the browser's cascades of shadows differ in darkness; a fixed one
             # has no seams.
-            receive_shadow=0.28 if ground else True,
+            "receive_shadow": 0.28 if ground else True,
             # Just below the height that it collides at, and below the grid that lies there.
-            position=(0.0, 0.0, -0.004 if ground else 0.0),
-        )
+            "position": (0.0, 0.0, -0.004 if ground else 0.0),
+        }
+
+        def plain(node: str) -> Any:
+            return self._scene.add_mesh_simple(
+                node,
+                surface.vertices,
+                surface.faces,
+                color=_rgb(_lighten(surface.rgba) if ground else surface.rgba),
+                opacity=None if alpha >= 1.0 else alpha,
+                side="double" if alpha < 1.0 else "front",
+                **common,
+            )
+
+        if surface.picture is None:
+            skin = Skin(plain(node))
+        else:
+            pictured = self._scene.add_glb(node, glb_of(surface), **common)
+            skin = PicturedSkin(pictured, lambda: plain(f"{node}_plain"))
         if ground:
-            self._grounds.append(handle)
+            self._grounds.append(skin)
         elif self._clicked is not None:
-            self._solids.append(handle)
+            self._solids.append(skin)
             if self._clickable:
-                handle.on_click(self._clicked)
-        return handle, alpha
+                skin.on_click(self._clicked)
+        return skin, alpha
 
     def _frame(self, link: Link) -> Any:
         length = min(0.4, max(0.04, 0.18 * self.size))

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import io
 import math
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Hashable, Iterable
+from dataclasses import dataclass, replace
 from functools import lru_cache
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,7 +32,9 @@ from cartwheel.description.model import (
     Sphere,
     Visual,
 )
+from cartwheel.description.paint import Paint, paint_of
 from cartwheel.description.terrain import heights_of
+from cartwheel.description.wrapping import scaled, wrapped
 from cartwheel.geometry import Pose, matrix_from_quat, quat_between
 
 Floats = NDArray[np.float32]
@@ -43,6 +47,18 @@ _AROUND = 32
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class Picture:
+    """An image on a surface."""
+
+    image: Path | bytes
+    """A file, or a file's contents."""
+    uv: Floats
+    """Of each vertex, from the image's lower left corner, shape (n, 2)."""
+    tint: Rgba
+    """What its colours are multiplied by."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Surface:
     """Triangles of one colour; vertices are shared where the surface is to look smooth."""
 
@@ -51,6 +67,8 @@ class Surface:
     faces: Ints
     """Shape (m, 3), counter-clockwise from outside."""
     rgba: Rgba
+    picture: Picture | None = None
+    """What lies on it; `rgba` is its mean then."""
 
 
 def surfaces_of_visual(visual: Visual) -> list[Surface]:
@@ -59,15 +77,14 @@ def surfaces_of_visual(visual: Visual) -> list[Surface]:
     Raises:
         MeshError: Its file cannot be used.
     """
-    surfaces = _coloured(visual.shape, visual.material)
     opacity = 1.0 - visual.transparency
     return [
-        Surface(
-            place(visual.pose, surface.vertices),
-            surface.faces,
-            (*surface.rgba[:3], surface.rgba[3] * opacity),
+        replace(
+            surface,
+            vertices=place(visual.pose, surface.vertices),
+            rgba=(*surface.rgba[:3], surface.rgba[3] * opacity),
         )
-        for surface in surfaces
+        for surface in _coloured(visual.shape, visual.material)
     ]
 
 
@@ -84,22 +101,27 @@ def surfaces_of_collision(collision: Collision, rgba: Rgba) -> list[Surface]:
 
 
 def merge(surfaces: Iterable[Surface]) -> list[Surface]:
-    """One surface for each colour: the browser draws few large meshes faster than many small."""
-    by_colour: dict[tuple[int, ...], list[Surface]] = {}
+    """One surface for each colour and image: few large meshes are drawn faster than many small."""
+    by_look: dict[Hashable, list[Surface]] = {}
     for surface in surfaces:
-        key = tuple(round(255 * channel) for channel in surface.rgba)
-        by_colour.setdefault(key, []).append(surface)
+        picture = surface.picture
+        image = None if picture is None else (picture.image, picture.tint)
+        colour = tuple(round(255 * channel) for channel in surface.rgba)
+        by_look.setdefault((colour, image), []).append(surface)
     merged = []
-    for group in by_colour.values():
+    for group in by_look.values():
         offsets = np.cumsum([0, *(len(surface.vertices) for surface in group)])
         faces = [
             surface.faces + offset for surface, offset in zip(group, offsets[:-1], strict=True)
         ]
+        first = group[0].picture
+        uv = [surface.picture.uv for surface in group if surface.picture is not None]
         merged.append(
             Surface(
                 np.concatenate([surface.vertices for surface in group]).astype(np.float32),
                 np.concatenate(faces).astype(np.int32),
                 group[0].rgba,
+                None if first is None else replace(first, uv=np.concatenate(uv)),
             )
         )
     return merged
@@ -123,30 +145,49 @@ def place(pose: Pose, vertices: Floats) -> Floats:
 
 
 def _coloured(shape: Shape, material: Material) -> list[Surface]:
-    if not isinstance(shape, Mesh):
-        vertices, faces = triangles_of(shape)
-        return [Surface(vertices, faces, material.diffuse or DEFAULT)]
-    surfaces = []
-    for part in load_mesh(shape):
-        # The mean of the picture: from afar the same, and one mesh for all that share it.
-        own = _mean_colour(part.texture) if part.texture is not None else None
-        colour = material.colour_of(own or part.rgba)
-        surfaces.append(Surface(part.vertices, part.faces, colour or DEFAULT))
-    return surfaces
+    if isinstance(shape, Mesh):
+        return [
+            _painted(part.vertices, part.faces, paint_of(material, part), part.uv, material)
+            for part in load_mesh(shape)
+        ]
+    paint = paint_of(material)
+    surface = wrapped(shape) if paint.image is not None else None
+    if surface is not None:
+        vertices, faces = surface.vertices.astype(np.float32), surface.faces.astype(np.int32)
+        return [_painted(vertices, faces, paint, surface.uv, material)]
+    return [_painted(*triangles_of(shape), paint, None, material)]
+
+
+def _painted(vertices: Floats, faces: Ints, paint: Paint, uv: Any, material: Material) -> Surface:
+    if paint.image is None or paint.colour is None:
+        return Surface(vertices, faces, paint.colour or DEFAULT)
+    mean = _mean_colour(paint.image)
+    if mean is None:
+        return Surface(vertices, faces, paint.colour)
+    red, green, blue, alpha = (a * b for a, b in zip(mean, paint.colour, strict=True))
+    picture = None
+    if uv is not None:
+        laid = scaled(uv, material.texture_scale).astype(np.float32)
+        picture = Picture(paint.image, laid, paint.colour)
+    return Surface(vertices, faces, (red, green, blue, alpha), picture)
 
 
 @lru_cache(maxsize=128)
-def _mean_colour(texture: object) -> Rgba | None:
+def _mean_colour(image: Path | bytes) -> Rgba | None:
     from PIL import Image
 
-    source = io.BytesIO(texture) if isinstance(texture, bytes) else texture
     try:
-        with Image.open(source) as image:  # type: ignore[arg-type]
-            mean = np.asarray(image.convert("RGBA").resize((16, 16))).reshape(-1, 4).mean(axis=0)
+        with Image.open(opened(image)) as read:
+            mean = np.asarray(read.convert("RGBA").resize((16, 16))).reshape(-1, 4).mean(axis=0)
     except OSError:
         return None
     red, green, blue, alpha = (float(channel) / 255 for channel in mean)
     return (red, green, blue, alpha)
+
+
+def opened(image: Path | bytes) -> Path | io.BytesIO:
+    """What Pillow reads an image from."""
+    return io.BytesIO(image) if isinstance(image, bytes) else image
 
 
 @lru_cache(maxsize=256)

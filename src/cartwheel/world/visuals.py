@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 from typing import Any
 
 import mujoco
-import numpy as np
 
 from cartwheel.description import meshes
 from cartwheel.description.model import Material, Mesh, Rgba, Visual
-from cartwheel.geometry import Array
+from cartwheel.description.paint import Paint, paint_of
+from cartwheel.description.wrapping import scaled, wrapped
 from cartwheel.world.shapes import Assets, place, pose_arguments
-from cartwheel.world.wrapping import wrapped
 
 VISUAL_GROUP = 1
 HIDDEN_GROUP = 5
@@ -21,7 +19,6 @@ HIDDEN_GROUP = 5
 _LIT = 0.65
 """Of a colour what is seen where no lamp shines: the scene's ambient light and the camera's."""
 _GREY: Rgba = (0.7, 0.7, 0.7, 1.0)
-_WHITE: Rgba = (1.0, 1.0, 1.0, 1.0)
 
 
 def add_visual(body: Any, visual: Visual, assets: Assets, *, moves: bool) -> None:
@@ -38,60 +35,49 @@ def add_visual(body: Any, visual: Visual, assets: Assets, *, moves: bool) -> Non
     scale = material.texture_scale
     if isinstance(shape, Mesh):
         for index, part in enumerate(meshes.load_mesh(shape)):
-            own = material.diffuse is None or material.yields_to_mesh
-            image = material.texture or (part.texture if own else None)
-            colour = material.colour_of(part.rgba) or _GREY
-            uv = None
-            if image is not None and part.uv is not None:
-                uv = _scaled(part.uv, scale)
-                # An image in the mesh's own file comes with its colour, one of ours with ours.
-                told = None if material.yields_to_mesh else material.diffuse
-                colour = told or _WHITE
-            else:
-                image = None
+            paint = paint_of(material, part)
+            laid = paint.image is not None and part.uv is not None
             mesh = assets.mesh(
-                ("visual", shape, index, scale if image is not None else None),
+                ("visual", shape, index, scale if laid else None),
                 part.vertices,
                 part.faces,
-                uv=uv,
+                uv=scaled(part.uv, scale) if laid else None,
             )
             body.add_geom(
                 type=mujoco.mjtGeom.mjGEOM_MESH,
                 meshname=mesh,
-                **_look(material, image, colour, opacity, assets),
+                **_look(material, paint, opacity, assets),
                 **common,
                 **pose_arguments(visual.pose),
             )
         return
     arguments, pose = place(shape, visual.pose, visual.origin, assets, moves=moves)
-    image = material.texture
-    colour = material.diffuse or (_GREY if image is None else _WHITE)
-    surface = wrapped(shape) if image is not None else None
+    paint = paint_of(material)
+    surface = wrapped(shape) if paint.image is not None else None
     if surface is not None:
         name = assets.mesh(
             ("wrapped", shape, scale),
             surface.vertices,
             surface.faces,
-            uv=_scaled(surface.uv, scale),
+            uv=scaled(surface.uv, scale),
         )
         arguments = {"type": mujoco.mjtGeom.mjGEOM_MESH, "meshname": name}
     body.add_geom(
         **arguments,
-        **_look(material, image, colour, opacity, assets),
+        **_look(material, paint, opacity, assets),
         **common,
         **pose_arguments(pose),
     )
 
 
-def _look(
-    material: Material, image: Path | bytes | None, colour: Rgba, opacity: float, assets: Assets
-) -> dict[str, Any]:
+def _look(material: Material, paint: Paint, opacity: float, assets: Assets) -> dict[str, Any]:
     """A geom's colour and material.
 
     The engine's light of its own is a factor on the colour. Light and colour are those that add
     up to what the material's two colours do. What is transparent the engine draws twice, so it is
     given the opacity of which two layers make the one that is meant.
     """
+    colour = paint.colour or _GREY
     emission = max(material.emissive[:3])
     if emission > 0:
         red, green, blue = (
@@ -101,12 +87,6 @@ def _look(
         colour = (red, green, blue, colour[3])
     layer = 1.0 - math.sqrt(1.0 - colour[3] * opacity)
     look: dict[str, Any] = {"rgba": [*colour[:3], layer]}
-    if image is not None or emission > 0:
-        look["material"] = assets.material(image, emission)
+    if paint.image is not None or emission > 0:
+        look["material"] = assets.material(paint.image, emission)
     return look
-
-
-def _scaled(uv: Any, scale: tuple[float, float]) -> Array:
-    """Coordinates of an image that covers only a part of the surface, and is repeated."""
-    scaled: Array = (np.asarray(uv) - 0.5) / scale + 0.5
-    return scaled

@@ -57,6 +57,12 @@ def wrapped(shape: Shape) -> Wrapped | None:
     return None
 
 
+def scaled(uv: Any, scale: tuple[float, float]) -> Array:
+    """Coordinates of an image that covers only a part of the surface, and is repeated."""
+    found: Array = (np.asarray(uv) - 0.5) / scale + 0.5
+    return found
+
+
 def _quads(corners: Array) -> Wrapped:
     """Each with a whole image; shape (n, 4, 3), from the upper left corner clockwise."""
     count = len(corners)
