@@ -27,8 +27,9 @@ from cartwheel.description.check import (
     units,
     xacro_use,
 )
-from cartwheel.description.check.finding import Finding, Remark, Rule
+from cartwheel.description.check.finding import Finding, Remark
 from cartwheel.description.check.mending import mend
+from cartwheel.description.check.rule import Rule
 from cartwheel.description.check.subject import PluginKnowledge, Robot, Subject
 from cartwheel.description.loading import Opened, open_description, understand
 from cartwheel.description.model import RobotDescription, WorldDescription

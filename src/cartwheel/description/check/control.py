@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from cartwheel.description.check import nodes, spelling
-from cartwheel.description.check.finding import Remark, rule
+from cartwheel.description.check.finding import Remark
+from cartwheel.description.check.rule import rule
 from cartwheel.description.check.subject import DRIVE_JOINT_TAGS, Robot, Subject
 from cartwheel.description.model import Element, PluginTag, Sensor
 from cartwheel.errors import DescriptionError, Origin

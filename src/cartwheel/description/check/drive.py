@@ -7,7 +7,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from cartwheel.description.check import nodes, spelling
-from cartwheel.description.check.finding import Remark, rule
+from cartwheel.description.check.finding import Remark
+from cartwheel.description.check.rule import rule
 from cartwheel.description.check.solids import Floats, bounds
 from cartwheel.description.check.subject import DRIVE_JOINT_TAGS, Drive, Robot, Subject
 from cartwheel.description.model import Element, Joint

@@ -1,15 +1,11 @@
-"""What a check finds, and the rules that find it."""
+"""What a check finds."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 from cartwheel.errors import Diagnostic, Origin, Severity
-
-if TYPE_CHECKING:
-    from cartwheel.description.check.subject import Subject
 
 Place = Literal["", "element", "attribute", "inside", "after"]
 """Where a finding's text goes.
@@ -48,41 +44,3 @@ class Finding(Diagnostic):
     """The likely fix as a sentence, where no text says it."""
     also: tuple[str, ...] = ()
     """Further messages of the same kind, which the same line of a macro makes."""
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Rule:
-    """One thing that is looked for."""
-
-    name: str
-    severity: Severity
-    summary: str
-    find: Callable[[Subject], Iterable[Remark]]
-
-    def apply(self, subject: Subject) -> list[Finding]:
-        """What it finds."""
-        return [
-            Finding(
-                rule=self.name,
-                severity=remark.severity or self.severity,
-                message=remark.message,
-                origin=remark.origin,
-                instead=remark.instead,
-                place=remark.place,
-                mark=remark.mark,
-                hint=remark.hint,
-            )
-            for remark in self.find(subject)
-        ]
-
-
-def rule(name: str, severity: Severity, summary: str) -> Callable[[Finder], Rule]:
-    """Makes a rule of the function that finds it."""
-
-    def make(find: Finder) -> Rule:
-        return Rule(name=name, severity=severity, summary=summary, find=find)
-
-    return make
-
-
-Finder = Callable[["Subject"], Iterable[Remark]]

@@ -6,7 +6,8 @@ import re
 from collections.abc import Iterator
 
 from cartwheel.description.check import nodes, spelling
-from cartwheel.description.check.finding import Remark, rule
+from cartwheel.description.check.finding import Remark
+from cartwheel.description.check.rule import rule
 from cartwheel.description.check.subject import Robot, Subject
 from cartwheel.description.model import Element, PluginTag, Sensor
 

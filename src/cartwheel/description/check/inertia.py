@@ -9,7 +9,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from cartwheel.description.check import nodes
-from cartwheel.description.check.finding import Remark, rule
+from cartwheel.description.check.finding import Remark
+from cartwheel.description.check.rule import rule
 from cartwheel.description.check.solids import as_collision, bounds
 from cartwheel.description.check.structure import ends, inbound, link_names
 from cartwheel.description.check.subject import IMPOSSIBLE, Robot, Subject

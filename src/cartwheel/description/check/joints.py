@@ -8,7 +8,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from cartwheel.description.check import nodes
-from cartwheel.description.check.finding import Remark, rule
+from cartwheel.description.check.finding import Remark
+from cartwheel.description.check.rule import rule
 from cartwheel.description.check.subject import Robot, Subject
 from cartwheel.description.node import Node
 

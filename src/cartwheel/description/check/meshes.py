@@ -11,7 +11,8 @@ from statistics import median
 import numpy as np
 
 from cartwheel.description.check import nodes, spelling
-from cartwheel.description.check.finding import Remark, rule
+from cartwheel.description.check.finding import Remark
+from cartwheel.description.check.rule import rule
 from cartwheel.description.check.solids import Solid
 from cartwheel.description.check.subject import MISSING, Robot, Subject
 from cartwheel.description.model import Mesh

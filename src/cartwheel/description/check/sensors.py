@@ -10,7 +10,8 @@ from typing import Literal
 import numpy as np
 
 from cartwheel.description.check import nodes
-from cartwheel.description.check.finding import Remark, rule
+from cartwheel.description.check.finding import Remark
+from cartwheel.description.check.rule import rule
 from cartwheel.description.check.solids import Floats, Solid, first_hits, moved
 from cartwheel.description.check.subject import Robot, Subject
 from cartwheel.description.model import CameraIntrinsics, Element, Sensor

@@ -9,7 +9,8 @@ import numpy as np
 
 from cartwheel.description.check import nodes
 from cartwheel.description.check.drive import lowest, wheel_joints, wheel_links, wheel_radius
-from cartwheel.description.check.finding import Remark, rule
+from cartwheel.description.check.finding import Remark
+from cartwheel.description.check.rule import rule
 from cartwheel.description.check.solids import Floats, hull, overlap
 from cartwheel.description.check.subject import Robot, Subject
 from cartwheel.description.model import Link, Mesh

@@ -10,7 +10,8 @@ import re
 from collections.abc import Iterable, Iterator
 
 from cartwheel.description.check import meshes, nodes, spelling, xacro_use
-from cartwheel.description.check.finding import Finder, Remark, Rule, rule
+from cartwheel.description.check.finding import Remark
+from cartwheel.description.check.rule import Finder, Rule, rule
 from cartwheel.description.check.subject import IMPOSSIBLE, MISSING, Subject
 from cartwheel.description.node import Node
 from cartwheel.errors import Diagnostic

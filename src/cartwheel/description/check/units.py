@@ -6,7 +6,8 @@ import math
 from collections.abc import Iterator
 
 from cartwheel.description.check import nodes
-from cartwheel.description.check.finding import Remark, rule
+from cartwheel.description.check.finding import Remark
+from cartwheel.description.check.rule import rule
 from cartwheel.description.check.subject import Subject
 from cartwheel.description.node import Node
 

@@ -8,7 +8,8 @@ from pathlib import Path
 
 from cartwheel.description import xml
 from cartwheel.description.check import nodes
-from cartwheel.description.check.finding import Remark, rule
+from cartwheel.description.check.finding import Remark
+from cartwheel.description.check.rule import rule
 from cartwheel.description.check.subject import Subject
 from cartwheel.description.node import Node
 from cartwheel.errors import DescriptionError

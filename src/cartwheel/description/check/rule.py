@@ -1,0 +1,47 @@
+"""The rules that find what breaks or misleads."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+
+from cartwheel.description.check.finding import Finding, Remark
+from cartwheel.description.check.subject import Subject
+from cartwheel.errors import Severity
+
+Finder = Callable[[Subject], Iterable[Remark]]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Rule:
+    """One thing that is looked for."""
+
+    name: str
+    severity: Severity
+    summary: str
+    find: Finder
+
+    def apply(self, subject: Subject) -> list[Finding]:
+        """What it finds."""
+        return [
+            Finding(
+                rule=self.name,
+                severity=remark.severity or self.severity,
+                message=remark.message,
+                origin=remark.origin,
+                instead=remark.instead,
+                place=remark.place,
+                mark=remark.mark,
+                hint=remark.hint,
+            )
+            for remark in self.find(subject)
+        ]
+
+
+def rule(name: str, severity: Severity, summary: str) -> Callable[[Finder], Rule]:
+    """Makes a rule of the function that finds it."""
+
+    def make(find: Finder) -> Rule:
+        return Rule(name=name, severity=severity, summary=summary, find=find)
+
+    return make
