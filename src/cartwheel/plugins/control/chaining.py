@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable
 from dataclasses import replace
-from typing import Any
 
-from cartwheel.plugins.control.files import ControllerEntry
 from cartwheel.plugins.control.hardware import JointHardware
 
 
@@ -53,31 +51,3 @@ def owners(claims: Iterable[JointHardware]) -> list[str]:
     """The controllers that claims of another controller lead to."""
     found = (each.owner for each in claims if isinstance(each, Reference))
     return list(dict.fromkeys(found))
-
-
-def in_order(entries: Sequence[ControllerEntry]) -> list[ControllerEntry]:
-    """Controllers of a file so that each comes after those whose references it names."""
-    names = {entry.name: entry for entry in entries}
-    done: dict[str, ControllerEntry] = {}
-
-    def take(entry: ControllerEntry, above: tuple[str, ...]) -> None:
-        if entry.name in done or entry.name in above:
-            return
-        for other in _named(entry.values, names):
-            take(names[other], (*above, entry.name))
-        done[entry.name] = entry
-
-    for entry in entries:
-        take(entry, ())
-    return list(done.values())
-
-
-def _named(values: Any, names: Mapping[str, Any]) -> list[str]:
-    """Of some controllers those that begin a text of the parameters, before a slash."""
-    if isinstance(values, str):
-        return [first] if (first := values.partition("/")[0]) in names and "/" in values else []
-    if isinstance(values, Mapping):
-        values = values.values()
-    elif not isinstance(values, list):
-        return []
-    return [name for value in values for name in _named(value, names)]

@@ -8,11 +8,11 @@ from typing import Any
 from cartwheel.description.model import Sensor
 from cartwheel.errors import CartwheelError
 from cartwheel.plugins.base import Plugin
-from cartwheel.plugins.control.chaining import in_order
 from cartwheel.plugins.control.controller import Rig, SensedLink
 from cartwheel.plugins.control.files import ControllerEntry, ControllerFiles
 from cartwheel.plugins.control.manager import ControllerManager
 from cartwheel.plugins.control.mecanum import MecanumDriveController
+from cartwheel.plugins.control.ordering import in_order
 from cartwheel.plugins.ft_sensor import JointLoad
 from cartwheel.plugins.inertial_unit import InertialUnit
 from cartwheel.plugins.rollers import has_rollers
