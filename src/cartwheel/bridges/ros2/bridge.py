@@ -43,7 +43,7 @@ _MOST_CALLS = 32
 """At a time."""
 _TOLD = 500
 """Different warnings; they name nodes, of which any number may come."""
-_CLOSING = 2.0
+_CLOSING = 10.0
 
 Report = Callable[[Diagnostic], None]
 
