@@ -238,3 +238,17 @@ def test_who_comes_late_gets_what_stays(session: Any) -> None:
     wait_for(lambda: found, "the static transforms")
     assert "base_link" in {one.child_frame_id for one in found[-1].transforms}
     subscriber.undeclare()
+
+
+def test_nothing_of_it_runs_on_after_its_end(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A thread that wants to call us while the interpreter goes down aborts the process."""
+    monkeypatch.setenv("ROS_DOMAIN_ID", "8")
+    monkeypatch.setattr(ours, "PORT", free_port())
+    monkeypatch.setattr(ours, "_ENDING", 9.0)
+    made = Ros2Bridged(prepare=prepared, rmw="zenoh")
+    try:
+        callers = list(made.bridge.middleware._callers)
+    finally:
+        made.close()
+    assert callers
+    assert not any(thread.is_alive() for thread in callers)

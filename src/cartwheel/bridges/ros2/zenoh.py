@@ -12,8 +12,9 @@ import json
 import os
 import socket
 import struct
+import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any
 
 from cartwheel.bridges.loop import Loop
@@ -25,6 +26,8 @@ from cartwheel.messages.ros2_types import Ros2Service, Ros2Type
 PORT = 7447
 """Where a Zenoh router is looked for, and opened where there is none."""
 _INSTALL = "pip install 'cartwheel[ros2]'"
+_ENDING = 1.0
+"""s that threads which are ending are waited for."""
 _NOTICE = 0.5
 """s that a router may take to answer."""
 
@@ -64,6 +67,8 @@ class Zenoh:
         self._zid = ""
         self._entities = itertools.count(1)
         self._kept: list[Any] = []
+        self._callers: list[threading.Thread] = []
+        """Zenoh's, one for each function of ours that it calls."""
         self._others: dict[str, str] = {}
         """Topics that others publish, by their tokens."""
         self.on_others: Callable[[], None] = lambda: None
@@ -88,17 +93,31 @@ class Zenoh:
         self._zid = str(self._session.zid())
         node = f"@ros2_lv/{self._domain}/{self._zid}/0/0/NN/%/{self._mangled_node}"
         self._kept.append(self._session.liveliness().declare_token(node))
-        self._kept.append(
-            self._session.liveliness().declare_subscriber(
-                f"@ros2_lv/{self._domain}/**", self._seen, history=True
+        with self.calling():
+            self._kept.append(
+                self._session.liveliness().declare_subscriber(
+                    f"@ros2_lv/{self._domain}/**", self._seen, history=True
+                )
             )
-        )
 
     def close(self) -> None:
         """Leaves."""
         if self._session is not None:
             with contextlib.suppress(self._zenoh.ZError):
                 self._session.close()
+        # They end by themselves now. One that is still there when the interpreter goes would
+        # abort the process.
+        deadline = time.monotonic() + _ENDING
+        for thread in self._callers:
+            thread.join(max(0.0, deadline - time.monotonic()))
+
+    @contextlib.contextmanager
+    def calling(self) -> Iterator[None]:
+        """Around what has Zenoh call a function of ours: it starts a thread that does."""
+        before = set(threading.enumerate())
+        yield
+        begun = [thread for thread in threading.enumerate() if thread not in before]
+        self._callers = [each for each in self._callers if each.is_alive()] + begun
 
     def publish(
         self, topic: str, type_: Ros2Type, profile: Profile, on_readers: Callable[[bool], None]
@@ -117,18 +136,19 @@ class Zenoh:
 
         token, _ = self.token("MS", topic, type_.dds, type_.hash, profile)
         key = self.key(topic, type_.dds, type_.hash)
-        if profile.transient_local:
-            subscriber: Any = self._zenoh.ext.declare_advanced_subscriber(
-                self._session,
-                key,
-                taken,
-                allowed_origin=self._zenoh.Locality.REMOTE,
-                history=self._zenoh.ext.HistoryConfig(detect_late_publishers=True),
-            )
-        else:
-            subscriber = self._session.declare_subscriber(
-                key, taken, allowed_origin=self._zenoh.Locality.REMOTE
-            )
+        with self.calling():
+            if profile.transient_local:
+                subscriber: Any = self._zenoh.ext.declare_advanced_subscriber(
+                    self._session,
+                    key,
+                    taken,
+                    allowed_origin=self._zenoh.Locality.REMOTE,
+                    history=self._zenoh.ext.HistoryConfig(detect_late_publishers=True),
+                )
+            else:
+                subscriber = self._session.declare_subscriber(
+                    key, taken, allowed_origin=self._zenoh.Locality.REMOTE
+                )
         return _Declared(token, subscriber)
 
     def serve(
@@ -280,7 +300,8 @@ class _Outlet:
             there = bool(status.matching)
             self._loop.post(lambda: None if self._closed else on_readers(there))
 
-        self._listener = self._publisher.declare_matching_listener(matched)
+        with zenoh.calling():
+            self._listener = self._publisher.declare_matching_listener(matched)
         if self._publisher.matching_status.matching:
             on_readers(True)
 
@@ -307,9 +328,10 @@ class _Service:
         self._zenoh = zenoh
         self._answer = answer
         self._token, _ = zenoh.token("SS", name, type_.dds, type_.hash, Profile())
-        self._queryable = zenoh._session.declare_queryable(
-            zenoh.key(name, type_.dds, type_.hash), self._asked, complete=True
-        )
+        with zenoh.calling():
+            self._queryable = zenoh._session.declare_queryable(
+                zenoh.key(name, type_.dds, type_.hash), self._asked, complete=True
+            )
 
     def close(self) -> None:
         self._queryable.undeclare()
