@@ -156,14 +156,13 @@ def _joint_named(
     name = (joint.attribute("name") or "").strip()
     if not name or _is_known(name, robot, subject):
         return
-    near = spelling.meant(name, robot.joint_names)
-    yield Remark(
+    yield spelling.misspelt(
+        name,
+        robot.joint_names,
+        attribute="name",
         message=f'there is no joint "{name}": {consequence}',
         origin=joint.origin,
-        instead=f'name="{near}"' if near else "",
-        place="attribute" if near else "",
         mark=f'name="{joint.attribute("name")}"',
-        hint="" if near else spelling.nearest(name, robot.joint_names),
     )
 
 

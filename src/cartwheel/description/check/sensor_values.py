@@ -28,15 +28,14 @@ def sensor_type_unknown(subject: Subject) -> Iterator[Remark]:
     for _, sensor in _sensors(subject):
         if sensor.type in TYPES:
             continue
-        near = spelling.meant(sensor.type, TYPES)
-        yield Remark(
+        yield spelling.misspelt(
+            sensor.type,
+            TYPES,
+            attribute="type",
             message=f'the sensor "{sensor.name}" has the type "{sensor.type}", which Gazebo does '
             "not have: it measures nothing",
             origin=sensor.origin,
-            instead=f'type="{near}"' if near else "",
-            place="attribute" if near else "",
             mark="type",
-            hint="" if near else spelling.nearest(sensor.type, TYPES),
         )
 
 

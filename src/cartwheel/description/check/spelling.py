@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import difflib
 import re
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
+
+from cartwheel.description.check.finding import Remark
+from cartwheel.errors import Origin
 
 _LETTERS_AN_ERROR = 6
 """So many letters may hold one slip of the keyboard."""
@@ -58,6 +61,36 @@ def nearest(name: str, known: Iterable[str]) -> str:
     if close:
         return f"The nearest {'are' if len(close) > 1 else 'is'} {shown}."
     return f"There are: {shown}{', …' if len(names) > _LISTED else ''}."
+
+
+def misspelt(
+    name: str,
+    known: Collection[str],
+    *,
+    attribute: str,
+    message: str,
+    origin: Origin | None,
+    mark: str,
+) -> Remark:
+    """What to say of an attribute that names nothing: the name that was meant, or the nearest.
+
+    Args:
+        name: As it is written.
+        known: Those that exist.
+        attribute: In which it stands.
+        message: What is wrong.
+        origin: Where.
+        mark: What of the line it is about.
+    """
+    near = meant(name, known)
+    return Remark(
+        message=message,
+        origin=origin,
+        instead=f'{attribute}="{near}"' if near else "",
+        place="attribute" if near else "",
+        mark=mark,
+        hint="" if near else nearest(name, known),
+    )
 
 
 def _plain(name: str) -> str:

@@ -61,14 +61,13 @@ def joint_link_unknown(subject: Subject) -> Iterator[Remark]:
                     hint="Add it to the robot to fix it to the world.",
                 )
                 continue
-            near = spelling.meant(link, known)
-            yield Remark(
+            yield spelling.misspelt(
+                link,
+                known,
+                attribute="link",
                 message=f'the {which} of the joint "{name}", "{link}", is no link',
                 origin=end.origin,
-                instead=f'link="{near}"' if near else "",
-                place="attribute" if near else "",
                 mark=f'link="{end.attributes.get("link", "")}"',
-                hint="" if near else spelling.nearest(link, known),
             )
 
 
@@ -78,15 +77,14 @@ def joint_type_unknown(subject: Subject) -> Iterator[Remark]:
         kind = joint.attributes.get("type")
         if kind is None or kind.strip() in JOINT_TYPES:
             continue
-        near = spelling.meant(kind, JOINT_TYPES)
-        yield Remark(
+        yield spelling.misspelt(
+            kind,
+            JOINT_TYPES,
+            attribute="type",
             message=f'the joint "{nodes.name_of(joint)}" has the type "{kind}", which is none: '
             "ROS refuses the whole robot",
             origin=joint.origin,
-            instead=f'type="{near}"' if near else "",
-            place="attribute" if near else "",
             mark="type",
-            hint="" if near else spelling.nearest(kind, JOINT_TYPES),
         )
 
 
@@ -170,14 +168,13 @@ def mimic_unknown(subject: Subject) -> Iterator[Remark]:
             continue
         leader = nodes.text_of(mimic, "joint")
         if leader not in joints:
-            near = spelling.meant(leader, set(joints) - {name})
-            yield Remark(
+            yield spelling.misspelt(
+                leader,
+                set(joints) - {name},
+                attribute="joint",
                 message=f'the joint "{name}" mimics "{leader}", which is no joint',
                 origin=mimic.origin,
-                instead=f'joint="{near}"' if near else "",
-                place="attribute" if near else "",
                 mark=f'joint="{mimic.attributes.get("joint", "")}"',
-                hint="" if near else spelling.nearest(leader, set(joints) - {name}),
             )
         elif name in mimic_chain(joints, leader):
             yield Remark(
@@ -195,15 +192,14 @@ def reference_unknown(subject: Subject) -> Iterator[Remark]:
         reference = nodes.text_of(node, "reference")
         if not reference or reference in known:
             continue
-        near = spelling.meant(reference, known)
-        yield Remark(
+        yield spelling.misspelt(
+            reference,
+            known,
+            attribute="reference",
             message=f'<gazebo> refers to "{reference}", which is neither a link nor a joint: '
             "Gazebo drops all that is in it without a word",
             origin=node.origin,
-            instead=f'reference="{near}"' if near else "",
-            place="attribute" if near else "",
             mark=f'reference="{node.attributes["reference"]}"',
-            hint="" if near else spelling.nearest(reference, known),
         )
 
 
