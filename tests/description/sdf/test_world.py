@@ -154,6 +154,42 @@ def test_an_included_file_has_its_own_version_and_relative_files(tmp_path):
     assert found.origin.file.endswith("w.world")
 
 
+HEAVY = """<inertial><mass value="2"/>
+  <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>"""
+URDF = f"""<robot name="post"><link name="foot">{HEAVY}</link><link name="head">{HEAVY}</link>
+  <joint name="neck" type="revolute"><parent link="foot"/><child link="head"/>
+    <origin xyz="0 0 1"/><axis xyz="0 1 0"/><limit lower="-1" upper="1" effort="9" velocity="9"/>
+  </joint>
+  <ros2_control name="h" type="system"><joint name="neck"/></ros2_control>
+  <gazebo><plugin name="p" filename="lib.so"><file>{{}}</file></plugin></gazebo></robot>"""
+
+
+def test_a_urdf_is_included_as_gazebo_converts_it(tmp_path):
+    place = tmp_path / "models" / "post"
+    place.mkdir(parents=True)
+    (place / "model.config").write_text("<model><name>post</name><sdf>post.urdf</sdf></model>")
+    (place / "post.urdf").write_text(URDF.format("$(eval 1 + 1) of $(find post)"))
+    (place / "package.xml").write_text("<package><name>post</name></package>")
+    found = world(
+        """<include><uri>model://post</uri><name>mine</name><pose>1 2 3 0 0 0</pose></include>
+        <model name="cart"><link name="bed"/>
+          <include><uri>model://post</uri><pose>0 0 5 0 0 0</pose></include>
+          <joint name="bolt" type="fixed"><parent>bed</parent><child>post::foot</child></joint>
+        </model>""",
+        folder=tmp_path,
+    )
+    mine, cart = found.models
+    assert (mine.name, mine.pose.position, mine.canonical_link) == ("mine", (1, 2, 3), "foot")
+    assert mine.link("head").pose.position == (0, 0, 1)
+    assert mine.joint("neck").axis.upper == 1
+    assert mine.plugins[0].element.find("file").text == f"2 of {place}"
+    assert [each.attribute("name") for each in mine.ros2_control] == ["h"]
+    assert '<robot name="post">' in mine.text
+    assert cart.link("post::head").pose.position == (0, 0, 6)
+    assert cart.joint("post::neck").child == "post::head"
+    assert found.diagnostics == ()
+
+
 def test_a_model_includes_and_merges_others(tmp_path):
     save_model(
         tmp_path,

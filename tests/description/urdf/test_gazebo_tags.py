@@ -100,6 +100,13 @@ def test_material_overrides_the_colour():
     assert not material.yields_to_mesh
 
 
+def test_a_material_that_cannot_be_read_costs_no_more_than_itself():
+    robot = load(on("base", "<material><diffuse>'1 0 0 1'</diffuse></material>"))
+    assert robot.link("base").visuals[0].material.diffuse == (0.5, 0.5, 0.5, 1)
+    (told,) = robot.diagnostics
+    assert str(told).endswith("""diffuse "'1" is not a number: the <material> is left out""")
+
+
 def test_unknown_material_keeps_the_colour_and_is_told():
     robot = load(on("base", "<material>Gazebo/Bleu</material>"))
     assert robot.link("base").visuals[0].material.diffuse == (0.5, 0.5, 0.5, 1)

@@ -72,6 +72,22 @@ def test_a_wildcard_holds_the_manager_and_what_all_share(spawn):
     assert warnings(world) == []
 
 
+def test_a_file_that_is_missing_costs_what_it_would_start(tmp_path):
+    file = tmp_path / "there.yaml"
+    file.write_text(
+        f"controller_manager: {{ros__parameters: {{group: {{type: {GROUP}}}}}}}\n"
+        "group: {ros__parameters: {joints: [beam_joint]}}"
+    )
+    body = beam("beam", "world") + system(ros2_joint("beam_joint"))
+    urdf = tmp_path / "arm.urdf"
+    urdf.write_text(robot(body, ros2_plugin(tmp_path / "gone.yaml", file)))
+    with cw.World("empty") as world:
+        world.spawn(urdf)
+        (told,) = (each for each in world.diagnostics if each.severity == "error")
+        assert told.message.endswith('gone.yaml": there is no such file: nothing of it is started')
+        assert started(world) == ["group"]
+
+
 @pytest.mark.parametrize("key", ["/robot1/controller_manager", "/**/controller_manager"])
 def test_names_with_a_namespace(spawn, key):
     text = f"""

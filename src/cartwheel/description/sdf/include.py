@@ -19,7 +19,7 @@ class Included:
     """The included element and what its includer says of it."""
 
     node: Node
-    """A ``<model>`` or ``<light>``."""
+    """A ``<model>``, a ``<light>``, or the ``<robot>`` of a URDF."""
     root: Node
     """Of the included file."""
     ctx: Context
@@ -51,25 +51,14 @@ def open_include(node: Node, ctx: Context) -> Included:
     if path in ctx.including or len(ctx.including) >= MAX_INCLUDES:
         raise node.fail(f'"{uri.text}" includes itself')
     root = read_file(path)
-    if root.tag == "robot":
-        raise node.fail(
-            f'"{uri.text}" is a URDF, which SDF cannot include', "Spawn it into the world instead."
-        )
-    if root.tag not in ("sdf", "gazebo"):
+    if root.tag not in ("sdf", "gazebo", "robot"):
         raise root.fail(f"expected <sdf>, but the file begins with <{root.tag}>")
-    inner = Context(ctx.packages, read_version(root), ctx.diagnostics, (*ctx.including, path))
-    chosen = root.child("model") or root.child("light")
-    if chosen is None:
-        if (actor := root.child("actor")) is not None:
-            actor.mark()
-            raise NotThereError(
-                f'"{uri.text}" is an actor, which is not simulated', origin=node.origin
-            )
-        raise root.fail("there is neither a <model> nor a <light> to include")
+    version = ctx.version if root.tag == "robot" else read_version(root)
+    inner = Context(ctx.packages, version, ctx.diagnostics, (*ctx.including, path))
     name = node.child("name")
     static = node.child("static")
     return Included(
-        node=chosen,
+        node=root if root.tag == "robot" else _chosen(root, uri),
         root=root,
         ctx=inner,
         origin=node.origin,
@@ -80,6 +69,17 @@ def open_include(node: Node, ctx: Context) -> Included:
         plugins=tuple(read_plugins(node)),
         merge=node.boolean_of("merge", False),
     )
+
+
+def _chosen(root: Node, uri: Node) -> Node:
+    """What an SDF file holds for others."""
+    chosen = root.child("model") or root.child("light")
+    if chosen is not None:
+        return chosen
+    if (actor := root.child("actor")) is not None:
+        actor.mark()
+        raise NotThereError(f'"{uri.text}" is an actor, which is not simulated', origin=uri.origin)
+    raise root.fail("there is neither a <model> nor a <light> to include")
 
 
 def _file(uri: Node, ctx: Context) -> Path:

@@ -54,6 +54,10 @@ class Model:
     origin: Origin
     merge: bool = False
     nested: list[Model] = field(default_factory=list)
+    transmissions: tuple[Element, ...] = ()
+    """Of a URDF, as what follows."""
+    ros2_control: tuple[Element, ...] = ()
+    text: str = ""
 
     def describe(self, pose: Pose, ctx: Context, text: str = "") -> RobotDescription:
         """The model as one robot, placed in the world.
@@ -78,7 +82,9 @@ class Model:
             self_collide=self.self_collide,
             pose=pose,
             canonical_link=self.frames.link_of("", self.origin) if self.links else "",
-            text=text,
+            transmissions=self.transmissions,
+            ros2_control=self.ros2_control,
+            text=text or self.text,
             origin=self.origin,
         )
 
@@ -115,6 +121,11 @@ def name_apart(models: Iterable[Model], ctx: Context) -> None:
 
 def read_included(included: Included) -> Model:
     """The model that an ``<include>`` brings in, and what its file holds that nobody reads."""
+    if included.node.tag == "robot":
+        # Imported here: it makes models of this module.
+        from cartwheel.description.sdf.robot import read_robot
+
+        return read_robot(included)
     model = read_model(included.node, included.ctx, included)
     included.ctx.diagnostics.extend(unread(included.root, HARMLESS))
     return model

@@ -15,7 +15,7 @@ from cartwheel.description.sdf.sensors import read_sensor
 from cartwheel.description.sdf.surface import not_negative, read_surface
 from cartwheel.description.urdf.link import UrdfContext
 from cartwheel.description.xml import Node
-from cartwheel.errors import Diagnostic, Origin
+from cartwheel.errors import DescriptionError, Diagnostic, Origin
 
 LINK_TAGS = (
     "material", "mu", "mu1", "mu2", "fdir1", "kp", "kd", "maxVel", "minDepth", "maxContacts",
@@ -192,9 +192,15 @@ def _read_motion(node: Node, tags: LinkTags) -> None:
 
 
 def _material(node: Node, sdf: Context, ctx: UrdfContext) -> Material | None:
-    if node.children:
+    if not node.children:
+        return _known(Material(name=node.text), node, ctx)
+    try:
         return _known(read_material(node, sdf), node, ctx)
-    return _known(Material(name=node.text), node, ctx)
+    except DescriptionError as error:
+        # Gazebo takes a name there and nothing else: a slip in the rest hurts nobody.
+        node.mark()
+        ctx.tell("warning", f"{error.message}: the <material> is left out", error.origin)
+        return None
 
 
 def _known(material: Material, node: Node, ctx: UrdfContext) -> Material | None:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, ClassVar
 
 from cartwheel.description.model import Element
-from cartwheel.errors import PluginError
+from cartwheel.errors import Diagnostic, PluginError
 from cartwheel.plugins.control.components import HardwareComponents
 from cartwheel.plugins.control.controller import Rig
 from cartwheel.plugins.control.files import (
@@ -78,7 +78,8 @@ class Ros2Control(ControlPlugin):
         part = self.part
         self.namespace = self.namespace.strip("/")
         own = ControllerFiles.of(self.graph).take()
-        paths = [*(self._path(text) for text in config.files), *own]
+        named = [self._path(text) for text in config.files]
+        paths = [*(path for path in named if path is not None), *own]
         contents = [read_ros2(path, part.description) for path in paths]
         found = ros2_file(contents, self.namespace, config.manager)
         source = ", ".join(str(path) for path in paths)
@@ -127,14 +128,17 @@ class Ros2Control(ControlPlugin):
             components=HardwareComponents(simulated_systems(part.description), joints, sensors),
         )
 
-    def _path(self, text: str) -> Path:
+    def _path(self, text: str) -> Path | None:
+        """The file that a tag names; one that is not there costs what it would start."""
         text = text.strip()
         path = Path(text)
         origin = self.tag.origin
         if not path.is_absolute():
             path = Path(origin.file).parent / path
         if not path.is_file():
-            raise PluginError(f'<parameters> "{text}": there is no such file', origin=origin)
+            message = f'<parameters> "{text}": there is no such file: nothing of it is started'
+            self.part.report(Diagnostic(severity="error", message=message, origin=origin))
+            return None
         return path
 
     def _check_system(self, system: Element) -> None:

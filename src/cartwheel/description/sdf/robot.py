@@ -1,0 +1,58 @@
+"""A URDF that an ``<include>`` names: Gazebo converts it, and it is a model like any other."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from cartwheel.description.sdf.context import read_pose, reference_of
+from cartwheel.description.sdf.frames import Frames
+from cartwheel.description.sdf.include import Included
+from cartwheel.description.sdf.model import Model
+from cartwheel.description.urdf import read_urdf
+from cartwheel.description.xml import needs_xacro, read_bytes
+from cartwheel.description.xml_text import write_xml
+from cartwheel.geometry import Pose
+
+
+def read_robot(included: Included) -> Model:
+    """The model that a URDF describes, with what its includer changes.
+
+    Raises:
+        DescriptionError: whatever makes it unusable, with its place.
+    """
+    root, ctx = included.root, included.ctx
+    if needs_xacro(root):
+        # Imported here, as `loading` does: it takes its time.
+        from cartwheel.description.xacro import expand
+
+        file = root.origin.file
+        expansion = expand(read_bytes(Path(file)), file, ctx.packages, {})
+        ctx.diagnostics.extend(expansion.diagnostics)
+        root = expansion.root
+    robot = read_urdf(root, ctx.packages)
+    ctx.diagnostics.extend(robot.diagnostics)
+    name = included.name or robot.name
+    frames = Frames("model", name)
+    frames.default_link = robot.canonical_link
+    for link in robot.links:
+        frames.add("link", link.name, link.pose, origin=link.origin)
+    for joint in robot.joints:
+        if frames.kind_of(joint.name) is None:  # a URDF's joint may have a link's name
+            frames.add("joint", joint.name, Pose(), attached_to=joint.child, origin=joint.origin)
+    return Model(
+        name=name,
+        frames=frames,
+        links=list(robot.links),
+        joints=list(robot.joints),
+        plugins=[*robot.plugins, *included.plugins],
+        static=robot.static if included.static is None else included.static,
+        self_collide=robot.self_collide,
+        pose=read_pose(included.pose)
+        @ frames.pose(included.placement_frame, included.origin).inverse(),
+        relative_to=reference_of(included.pose),
+        origin=included.origin,
+        merge=included.merge,
+        transmissions=robot.transmissions,
+        ros2_control=robot.ros2_control,
+        text=write_xml(root),
+    )
