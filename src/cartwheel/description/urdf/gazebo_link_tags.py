@@ -199,7 +199,8 @@ def _material(node: Node, sdf: Context, ctx: UrdfContext) -> Material | None:
     except DescriptionError as error:
         # Gazebo takes a name there and nothing else: a slip in the rest hurts nobody.
         node.mark()
-        ctx.tell("warning", f"{error.message}: the <material> is left out", error.origin)
+        at = error.origin or node.origin
+        ctx.tell("warning", f"{error.message}: the <material> is left out", at)
         return None
 
 

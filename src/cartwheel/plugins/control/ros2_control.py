@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, ClassVar
 
 from cartwheel.description.model import Element
-from cartwheel.errors import Diagnostic, PluginError
+from cartwheel.errors import Diagnostic
 from cartwheel.plugins.control.components import HardwareComponents
 from cartwheel.plugins.control.controller import Rig
 from cartwheel.plugins.control.files import (
