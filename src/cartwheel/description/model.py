@@ -482,6 +482,8 @@ class WorldDescription:
     lights: tuple[Light, ...] = ()
     joints: tuple[Joint, ...] = ()
     """Between links of different models, by ``model::link``."""
+    places: tuple[tuple[str, Pose], ...] = ()
+    """The world's own ``<frame>`` by name: those that no model carries along."""
     gravity: Vec3 = (0.0, 0.0, -9.8)
     magnetic_field: Vec3 = (6e-06, 2.3e-05, -4.2e-05)
     """T, east-north-up, Gazebo's default."""

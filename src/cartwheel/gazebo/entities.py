@@ -157,6 +157,13 @@ class Entities:
         link = self.link_motion(model, description.canonical_link)
         return link.carried(description.canonical_pose.inverse())
 
+    def model_acceleration(self, name: str) -> tuple[Vec3, Vec3]:
+        """m/s² and rad/s² of a model's frame in the world's axes, as of the last forward pass."""
+        description = self.model(name)
+        handle = LinkHandle(name, description.canonical_link)
+        handle.bind(self._simulation.model, self._simulation.data)
+        return handle.acceleration(description.canonical_pose.inverse().position)
+
 
 def _spelled_alike(name: str, every: Iterable[tuple[str, Link | Joint]]) -> list[str]:
     """Scoped names where a scoped one was asked for; else the parts' own."""

@@ -111,11 +111,27 @@ class LinkHandle:
         Args:
             offset: Where it sits in the link, m.
         """
+        return self._acceleration(offset)[0]
+
+    def acceleration(self, offset: Sequence[float] = (0.0, 0.0, 0.0)) -> tuple[Vec3, Vec3]:
+        """How a point of the link gains speed and turning: m/s² and rad/s², in the world's axes.
+
+        Args:
+            offset: Of the point in the link, m.
+        """
+        proper, angular = self._acceleration(offset)
+        turn: Array = self._data.xmat[self.id].reshape(3, 3)
+        ax, ay, az = (turn @ proper + self._model.opt.gravity).tolist()
+        wx, wy, wz = (turn @ angular).tolist()
+        return (ax, ay, az), (wx, wy, wz)
+
+    def _acceleration(self, offset: Sequence[float]) -> tuple[Array, Array]:
+        """`proper_acceleration`, and that of the turning in rad/s², link axes."""
         if not self.moves:
             # The engine works out nothing for what cannot move: it bears its weight.
             turn: Array = self._data.xmat[self.id].reshape(3, 3)
             weight: Array = -turn.T @ self._model.opt.gravity
-            return weight
+            return weight, np.zeros(3)
         six = np.zeros(6)
         # Fills the accelerations of all bodies, which stepping alone does not need.
         mujoco.mj_rnePostConstraint(self._model, self._data)
@@ -127,7 +143,7 @@ class LinkHandle:
             acceleration = (
                 acceleration + np.cross(six[:3], arm) + np.cross(rate, np.cross(rate, arm))
             )
-        return acceleration
+        return acceleration, six[:3]
 
     def reaction(self, point: Sequence[float] = (0.0, 0.0, 0.0)) -> tuple[Array, Array]:
         """What the link exerts on its parent through their joint: force in N, torque in N m.

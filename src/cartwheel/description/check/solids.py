@@ -205,6 +205,27 @@ def overlap(a: Floats, b: Floats, shrink: float) -> bool:
     return False
 
 
+def distance(a: Floats, b: Floats) -> float:
+    """How far the convex hulls of two point clouds are from each other, m; 0 where they overlap.
+
+    Args:
+        a: (n, 3), m.
+        b: (m, 3), m.
+    """
+    simplex = (a[0] - b[0])[None, :]
+    point, length = simplex[0], float(np.linalg.norm(simplex[0]))
+    for _ in range(60):
+        if length < 1e-9:
+            return 0.0
+        direction = point / length
+        nearest = a[np.argmin(a @ direction)] - b[np.argmax(b @ direction)]
+        if length - float(nearest @ direction) < 1e-9:
+            break
+        point, simplex = _nearest_point(np.vstack([simplex, nearest]))
+        length = float(np.linalg.norm(point))
+    return length
+
+
 def _parted(a: Floats, b: Floats, simplex: Floats, shrink: float) -> bool:
     """Whether one of the obvious directions separates two clouds but for less than `shrink`."""
     normals = [np.eye(3)]

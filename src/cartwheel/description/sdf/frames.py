@@ -120,6 +120,17 @@ class Frames:
                 return name
             name = frame.attached_to
 
+    def stays(self, name: str) -> bool:
+        """Whether a frame of a world is attached to nothing but the world."""
+        seen: set[str] = set()
+        while name not in ("", WORLD, self.name):
+            frame = self._frames.get(name)
+            if frame is None or frame.kind != "frame" or name in seen:
+                return False
+            seen.add(name)
+            name = frame.attached_to
+        return True
+
     def has(self, name: str) -> bool:
         """Whether a name may be asked for; ``nested::__model__`` is a nested model's frame."""
         outer, inner = self._split(name)

@@ -30,7 +30,7 @@ from cartwheel.description.sdf.state import apply_state
 from cartwheel.description.sdf.world_joints import join_models
 from cartwheel.description.xml import Node, to_element, unread
 from cartwheel.errors import DescriptionError
-from cartwheel.geometry import Vec3
+from cartwheel.geometry import Pose, Vec3
 
 _NOT_SIMULATED = ("actor", "population", "road")
 
@@ -92,6 +92,7 @@ def read_world(node: Node, ctx: Context) -> WorldDescription:
         models=tuple(placed),
         lights=tuple(lights),
         joints=joints,
+        places=tuple(_places(node, frames, ctx)),
         gravity=_gravity(node, physics, default.gravity),
         magnetic_field=field.vec3() if field is not None else default.magnetic_field,
         ambient=_scene_colour(scene, "ambient", default.ambient),
@@ -151,6 +152,18 @@ def _tolerant(ctx: Context, name: str, node: Node | None = None) -> Iterator[Non
             return  # all that it is was told to be left out
         told = error.message if f'"{name}"' in error.message else f'model "{name}": {error.message}'
         ctx.tell("error" if lacking else "warning", f"{told}; it is left out", error.origin)
+
+
+def _places(node: Node, frames: Frames, ctx: Context) -> Iterator[tuple[str, Pose]]:
+    """The frames that stay where they are; one whose pose cannot be told is told of."""
+    for each in node.all("frame"):
+        name = require_name(each)
+        if not frames.stays(name):
+            continue
+        try:
+            yield name, frames.pose(name, each.origin)
+        except DescriptionError as error:
+            ctx.tell("warning", f'frame "{name}" is nowhere: {error.message}', error.origin)
 
 
 def _light(node: Node, included: Included | None, frames: Frames) -> Light:

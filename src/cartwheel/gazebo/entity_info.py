@@ -1,0 +1,124 @@
+"""What entities are, for simulation_interfaces, and which of them a request is about."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+from cartwheel.description.model import RobotDescription
+from cartwheel.errors import Origin
+from cartwheel.gazebo.bounds import Rooms
+from cartwheel.gazebo.entities import Entities
+from cartwheel.gazebo.results import FAILED, PACKAGE, Handler, Refusal
+from cartwheel.messages import zero
+from cartwheel.simulation import Simulation
+
+OBJECT, ROBOT, HUMAN, DYNAMIC_OBJECT, STATIC_OBJECT = 0, 1, 2, 4, 5
+"""Of EntityCategory.msg."""
+_CATEGORIES = (OBJECT, ROBOT, HUMAN, DYNAMIC_OBJECT, STATIC_OBJECT)
+_ALL = 1
+"""A filter of tags that wants all of them, not any."""
+
+
+class EntityInfos:
+    """Knows what each model is, until somebody says otherwise.
+
+    What plugins, sensors or controllers belong to is a robot; what cannot move is a static object.
+
+    Args:
+        simulation: Whose models.
+        entities: Finds them.
+    """
+
+    def __init__(self, simulation: Simulation, entities: Entities) -> None:
+        self._simulation = simulation
+        self._entities = entities
+        self._rooms = Rooms(entities)
+        self._said: dict[str, tuple[Origin, Any]] = {}
+
+    def offers(self) -> list[tuple[str, str, Handler, bool]]:
+        """The services: name, type, handler, and whether it runs on a thread of its own."""
+        return [
+            ("get_entity_info", "GetEntityInfo", self._get, False),
+            ("set_entity_info", "SetEntityInfo", self._set, False),
+            ("get_entity_bounds", "GetEntityBounds", self._get_bounds, False),
+            ("get_entities", "GetEntities", self._list, False),
+        ]
+
+    def forget(self) -> None:
+        """Takes back all that was said."""
+        self._said.clear()
+
+    def info(self, name: str) -> Any:
+        """``EntityInfo`` of a model.
+
+        Raises:
+            UnknownNameError: There is no such model.
+        """
+        description = self._entities.model(name)
+        origin, said = self._said.get(name, (None, None))
+        # Another model may have taken the name since.
+        if said is not None and origin is description.origin:
+            return said
+        made = zero(f"{PACKAGE}/msg/EntityInfo")
+        made.category.category = self._category(name, description)
+        made.description = f"{description.name} of {description.origin.file}"
+        return made
+
+    def filtered(self, filters: Any) -> list[str]:
+        """Names of the models that meet all of some ``EntityFilters``.
+
+        Raises:
+            Refusal: The filters make no sense.
+        """
+        try:
+            pattern = re.compile(filters.filter)
+        except re.error as error:
+            raise Refusal(FAILED, f'"{filters.filter}" is no regular expression: {error}') from None
+        wanted = {each.category for each in filters.categories}
+        if wanted - set(_CATEGORIES):
+            raise Refusal(FAILED, f"there is no category {min(wanted - set(_CATEGORIES))}")
+        self._simulation.refresh()
+        within = self._rooms.within(filters.bounds)
+        return [
+            placed.name
+            for placed in self._entities.placed
+            if (not filters.filter or pattern.fullmatch(placed.name))
+            and (not wanted or self.info(placed.name).category.category in wanted)
+            and has_tags(self.info(placed.name).tags, filters.tags)
+            and within(placed.name)
+        ]
+
+    def _category(self, name: str, description: RobotDescription) -> int:
+        moves = self._simulation.moves(name)
+        jointed = any(joint.type != "fixed" for joint in description.joints)
+        if description.static or not (moves or jointed):
+            return STATIC_OBJECT
+        acts = description.plugins or description.transmissions or description.ros2_control
+        senses = any(link.sensors for link in description.links)
+        return ROBOT if acts or senses else OBJECT
+
+    def _get(self, request: Any, response: Any) -> None:
+        response.info = self.info(request.entity)
+
+    def _set(self, request: Any, _: Any) -> None:
+        description = self._entities.model(request.entity)
+        if request.info.category.category not in _CATEGORIES:
+            raise Refusal(FAILED, f"there is no category {request.info.category.category}")
+        self._said[request.entity] = description.origin, request.info
+
+    def _get_bounds(self, request: Any, response: Any) -> None:
+        self._simulation.refresh()
+        response.bounds = self._rooms.message(request.entity)
+
+    def _list(self, request: Any, response: Any) -> None:
+        response.entities = self.filtered(request.filters)
+
+
+def has_tags(tags: list[str], asked: Any) -> bool:
+    """Whether tags meet a ``TagsFilter``."""
+    wanted = set(asked.tags)
+    if not wanted:
+        return True
+    found = wanted & set(tags)
+    return found == wanted if asked.filter_mode == _ALL else bool(found)

@@ -1,0 +1,144 @@
+"""What can be spawned and loaded, and which places the world names, for simulation_interfaces."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
+from typing import Any, Literal
+from urllib.parse import unquote
+
+from cartwheel.description import xml
+from cartwheel.description.packages import Packages
+from cartwheel.description.shipped import SUFFIXES, find_description, shipped_descriptions
+from cartwheel.errors import DescriptionError
+from cartwheel.gazebo.entity_info import has_tags
+from cartwheel.gazebo.requests import pose_message
+from cartwheel.gazebo.results import FAILED, NOT_FOUND, PACKAGE, UNSUPPORTED, Handler, Refusal
+from cartwheel.messages import zero
+from cartwheel.simulation import Simulation
+
+Kind = Literal["model", "world"]
+
+
+class Resources:
+    """Lists models and worlds: those that are shipped, and those in the folders of models.
+
+    Args:
+        simulation: Whose world.
+        package_path: Where models are looked for first.
+    """
+
+    def __init__(self, simulation: Simulation, package_path: Sequence[Path]) -> None:
+        self._simulation = simulation
+        self._package_path = tuple(package_path)
+
+    def offers(self) -> list[tuple[str, str, Handler, bool]]:
+        """The services: name, type, handler, and whether it runs on a thread of its own."""
+        return [
+            ("get_spawnables", "GetSpawnables", self._spawnables, True),
+            ("get_named_poses", "GetNamedPoses", self._places, False),
+            ("get_named_pose_bounds", "GetNamedPoseBounds", self._place_bounds, False),
+            ("get_available_worlds", "GetAvailableWorlds", self._worlds, True),
+            ("get_current_world", "GetCurrentWorld", self._world, False),
+            ("load_world", "LoadWorld", self._load, False),
+            ("unload_world", "UnloadWorld", self._load, False),
+        ]
+
+    def _spawnables(self, request: Any, response: Any) -> None:
+        unknown, given = _folders(request.sources)
+        folders = Packages(None, self._package_path).model_folders()
+        for path, name in _described("model", (*folders, *given)):
+            spawnable = zero(f"{PACKAGE}/msg/Spawnable")
+            spawnable.entity_resource.uri = path.as_uri()
+            spawnable.description = name
+            response.spawnables.append(spawnable)
+        if unknown:
+            response.result.error_message = f"no such folder: {', '.join(unknown)}"
+
+    def _worlds(self, request: Any, response: Any) -> None:
+        unknown, given = _folders(request.additional_sources)
+        if unknown and not request.continue_on_error:
+            raise Refusal(FAILED, f"no such folder: {', '.join(unknown)}")
+        if has_tags([], request.filter):
+            response.worlds = [
+                _world(name, uri=path.as_uri()) for path, name in _described("world", given)
+            ]
+
+    def _world(self, _: Any, response: Any) -> None:
+        world = self._simulation.world
+        file = Path(world.origin.file)
+        response.world = _world(world.name, uri=file.absolute().as_uri() if file.is_file() else "")
+
+    def _places(self, request: Any, response: Any) -> None:
+        for name, where in self._simulation.world.places:
+            place = zero(f"{PACKAGE}/msg/NamedPose")
+            place.name, place.pose = name, pose_message(where)
+            if has_tags([], request.tags):
+                response.poses.append(place)
+
+    def _place_bounds(self, request: Any, _: Any) -> None:
+        if request.name not in dict(self._simulation.world.places):
+            raise Refusal(NOT_FOUND, f'the world has no place "{request.name}"')
+        raise Refusal(UNSUPPORTED, "places have no bounds")
+
+    def _load(self, _: Any, __: Any) -> None:
+        raise Refusal(UNSUPPORTED, "the world stays what it is: start another simulation")
+
+
+def _world(name: str, *, uri: str) -> Any:
+    """``WorldResource``."""
+    made = zero(f"{PACKAGE}/msg/WorldResource")
+    made.name, made.world_resource.uri = name, uri
+    return made
+
+
+def _folders(sources: Iterable[str]) -> tuple[list[str], list[Path]]:
+    """Those of the sources that are no folders, and the folders."""
+    unknown, found = [], []
+    for source in sources:
+        folder = Path(unquote(source.removeprefix("file://"))).expanduser()
+        if "\0" not in source and folder.is_dir():
+            found.append(folder)
+        else:
+            unknown.append(f'"{source}"')
+    return unknown, found
+
+
+def _described(kind: Kind, folders: Iterable[Path]) -> Iterator[tuple[Path, str]]:
+    """The models or worlds that are shipped or lie in folders: their files and names."""
+    files = list(shipped_descriptions())
+    for folder in folders:
+        files += _files(folder)
+    for path in dict.fromkeys(each.absolute() for each in files):
+        found = _kind_and_name(path)
+        if found is not None and found[0] == kind:
+            yield path, found[1]
+
+
+def _files(folder: Path) -> Iterator[Path]:
+    """The descriptions in a folder, and those of the models that have folders in it."""
+    try:
+        entries = sorted(folder.iterdir())
+    except OSError:
+        return
+    for path in entries:
+        if path.is_file() and path.name.endswith(SUFFIXES):
+            yield path
+        elif any((path / name).is_file() for name in ("model.config", "model.sdf")):
+            with contextlib.suppress(DescriptionError):
+                yield find_description(path)
+
+
+def _kind_and_name(path: Path) -> tuple[Kind, str] | None:
+    """What a file describes; None for what cannot be read, or is a part of others."""
+    try:
+        root = xml.read_file(path)
+    except DescriptionError:
+        return None
+    if root.tag == "robot":
+        return ("model", root.attributes["name"]) if "name" in root.attributes else None
+    for child in root.children:
+        if child.tag in ("model", "world"):
+            return ("model" if child.tag == "model" else "world"), child.attributes.get("name", "")
+    return None
