@@ -117,3 +117,15 @@ def test_what_makes_no_sense_is_refused(make, plugin, message):
     with pytest.raises(PluginError, match=message) as caught:
         world.session.spawn(make.sdf(arm(plugin)))
     assert caught.value.origin is not None
+
+
+@pytest.mark.parametrize("kind", ["joint-position-controller", "joint-trajectory-controller"])
+def test_a_joint_goes_where_it_is_put_by_hand(make, kind):
+    name = "position_{}_gain" if "trajectory" in kind else "{}_gain"
+    gains = "".join(f"<{name.format(g)}>{v}</{name.format(g)}>" for g, v in (("p", 100), ("d", 20)))
+    world = make.world(make.sdf(arm(controller(kind, gains))), ground=None)
+    (taker,) = world.graph.joint_inputs.all()
+    assert (taker.model, taker.joints) == ("arm", ("turn",))
+    taker.put({"turn": 0.5}, 1.0)
+    world.run(3.0)
+    assert float(world.session.simulation.data.qpos[0]) == pytest.approx(0.5, abs=0.02)

@@ -9,7 +9,7 @@ from cartwheel.description.model import Axis, Joint, Link, RobotDescription
 from cartwheel.errors import ControlError, Origin
 from cartwheel.geometry import Pose
 from cartwheel.viewer import DescriptionViewer
-from cartwheel.viewer.description_viewer import limits_of
+from cartwheel.viewer.panels.joints import limits_of
 
 from .conftest import eventually
 

@@ -11,9 +11,7 @@ from cartwheel.api import Model, World
 from cartwheel.corpus.verdict import Drive, Reach, Stand
 from cartwheel.description.model import Joint, RobotDescription
 from cartwheel.geometry import Pose, rotate
-from cartwheel.graph import TopicInfo
-from cartwheel.plugins.control.controller import Controller
-from cartwheel.plugins.control.files import ControllerFiles
+from cartwheel.graph import JointInput, TopicInfo
 from cartwheel.simulation.clock import NANOSECONDS
 
 VELOCITY, TURN = 0.2, 0.4
@@ -81,29 +79,26 @@ def drives(world: World, model: Model) -> Iterator[Drive]:
 
 
 def reaches(world: World, model: Model, description: RobotDescription) -> list[Reach]:
-    """Commands all controllers of positions at once, and tells where their joints came."""
+    """Commands all that take positions at once, and tells where their joints came."""
     world.reset()
     world.run(1.0)
     joints = {joint.name: joint for joint in description.joints}
-    told: list[tuple[Controller, Joint, float]] = []
-    for controller in ControllerFiles.of(world.graph).started:
-        if controller.chained:
-            continue
-        names = [claim.joint for claim in controller.claims.values()]
-        targets = {name: _target(joints[name], model.joint(name)) for name in names}
-        if targets and _command(world, controller, targets):
-            told += [(controller, joints[name], value) for name, value in targets.items()]
+    told: list[tuple[JointInput, Joint, float]] = []
+    for taker in world.graph.joint_inputs.all():
+        targets = {name: _target(joints[name], model.joint(name)) for name in taker.joints}
+        taker.put(targets, _TRAJECTORY)
+        told += [(taker, joints[name], value) for name, value in targets.items()]
     if told:
         world.run(_REACHING)
     return [
         Reach(
-            controller=controller.name,
+            controller=taker.owner,
             joint=joint.name,
             target=target,
             reached=model.joint(joint.name),
             angular=joint.type != "prismatic",
         )
-        for controller, joint, target in told
+        for taker, joint, target in told
     ]
 
 
@@ -132,31 +127,6 @@ def _drive_on(world: World, topic: TopicInfo, command: tuple[float, float], seco
             said = {"header": {"stamp": {"sec": now, "nanosec": rest}}, "twist": twist}
         world.publish(topic.name, said)
         world.run(1.0 / _RATE)
-
-
-def _command(world: World, controller: Controller, targets: dict[str, float]) -> bool:
-    """Tells a controller of positions where to take its joints; False for any other."""
-    kind = controller.type.rpartition("/")[2]
-    positions = set(controller.interfaces.values()) == {"position"}
-    values = list(targets.values())
-    if kind.endswith("JointTrajectoryController"):
-        point = {
-            "positions": values,
-            "velocities": [0.0] * len(values),
-            "time_from_start": {"sec": int(_TRAJECTORY), "nanosec": 0},
-        }
-        topic = "joint_trajectory" if controller.rig.ros2 else "command"
-        world.publish(controller.resolve(topic), {"joint_names": list(targets), "points": [point]})
-    elif kind == "JointPositionController":
-        world.publish(controller.resolve("command"), {"data": values[0]})
-    elif kind == "JointGroupPositionController" or (
-        positions and kind == "ForwardCommandController"
-    ):
-        topic = "commands" if controller.rig.ros2 else "command"
-        world.publish(controller.resolve(topic), {"data": values})
-    else:
-        return False
-    return True
 
 
 def _target(joint: Joint, position: float) -> float:

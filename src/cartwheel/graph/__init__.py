@@ -11,6 +11,7 @@ from cartwheel.graph.graph import (
     Subscription,
     TopicInfo,
 )
+from cartwheel.graph.joint_inputs import JointInput, JointInputs
 from cartwheel.graph.mailbox import Mailbox
 from cartwheel.graph.names import resolve_frame, resolve_name
 from cartwheel.graph.parameters import Parameters, ParameterServer
@@ -25,6 +26,8 @@ __all__ = [
     "Goal",
     "GoalState",
     "Graph",
+    "JointInput",
+    "JointInputs",
     "Mailbox",
     "ParameterServer",
     "Parameters",

@@ -15,6 +15,7 @@ from typing import Any, Literal
 from cartwheel.calls import Post, answered
 from cartwheel.errors import GraphError, UnknownNameError
 from cartwheel.graph.action import Action
+from cartwheel.graph.joint_inputs import JointInputs
 from cartwheel.graph.mailbox import Mailbox
 from cartwheel.graph.names import resolve_name
 from cartwheel.graph.parameters import Parameters
@@ -159,12 +160,14 @@ class Graph:
         self._services: dict[str, Service] = {}
         self._actions: dict[str, Action] = {}
         self.parameters = Parameters()
+        self.joint_inputs = JointInputs(self._inputs_changed)
         self.cdr = CdrCache()
         """Packs messages for all wires, each once."""
         self.static_transforms: Any = None
         """See `StaticTransforms`, which puts itself here."""
         self.changed: int = 0
-        """Counts every change of who publishes and subscribes, for those who mirror the graph."""
+        """Counts every change of who publishes, subscribes or takes positions, for those who
+        mirror the graph."""
         self.on_change: list[Callable[[], None]] = []
         """Called after each such change, on any thread, the graph locked: must return at once."""
 
@@ -394,6 +397,10 @@ class Graph:
         with self._lock:
             topic.subscriptions = tuple(s for s in topic.subscriptions if s is not subscription)
             self._changed(topic)
+
+    def _inputs_changed(self) -> None:
+        with self._lock:
+            self._tell_change()
 
     def _tell_change(self) -> None:
         self.changed += 1

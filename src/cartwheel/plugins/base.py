@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import contextlib
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, ClassVar, Generic, Protocol, TypeVar
 
 from cartwheel.description.model import PluginTag, Sensor
 from cartwheel.errors import CartwheelError, Diagnostic, GraphError, Origin, PluginError
 from cartwheel.graph import (
     Graph,
+    JointInput,
     Publisher,
     Qos,
     ReconfigureParameter,
@@ -166,6 +167,17 @@ class Plugin(Generic[C]):
             return False
         self._open.callback(self.graph.withdraw, service)
         return True
+
+    def take_positions(
+        self, joints: Sequence[str], put: Callable[[Mapping[str, float], float], None]
+    ) -> None:
+        """Takes positions for joints by hand too, while the plugin lives; see `JointInput`."""
+        inputs = self.graph.joint_inputs
+        made = JointInput(
+            model=self.part.name, owner=self.tag.name or self.node, joints=tuple(joints), put=put
+        )
+        inputs.add(made)
+        self._open.callback(inputs.remove, made)
 
     def reconfigure(
         self,

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar, Protocol
 
 from cartwheel.errors import PluginError
+from cartwheel.messages import message_class
 from cartwheel.plugins.base import Plugin
 from cartwheel.plugins.gz_drive import gz_name
 from cartwheel.plugins.parameters import tag
+
+_FLOAT = "std_msgs/msg/Float64"
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -108,7 +112,8 @@ class _JointController(Plugin[Any]):
         topic = topic or f"/model/{part.name}/joint/{names[0]}/{self._default_topic()}"
         # Gazebo puts the axis there, /0/cmd_pos, which is no name in ROS.
         topic = re.sub(r"/\d+(?=/)", "", topic)
-        self.subscribe(gz_name(self, topic, ""), "std_msgs/msg/Float64", self._on_command)
+        self._topic = gz_name(self, topic, "")
+        self.subscribe(self._topic, _FLOAT, self._on_command)
         self.reset()
         part.schedule(0, before=self._follow)
 
@@ -143,6 +148,16 @@ class JointPositionController(_JointController):
 
     filenames: ClassVar[tuple[str, ...]] = ("gz-sim-joint-position-controller-system",)
     parameters: ClassVar[type] = JointPositionParameters
+
+    def configure(self) -> None:
+        super().configure()
+        # What moves alike is told once.
+        self.take_positions([self._joints[0][0].name], self._put)
+
+    def _put(self, wanted: Mapping[str, float], seconds: float) -> None:  # noqa: ARG002
+        (value,) = wanted.values()
+        message = message_class(_FLOAT)(data=float(value))
+        self.graph.publish(self.resolve(self._topic), _FLOAT, message)
 
     def _default_topic(self) -> str:
         if self.config.index:

@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
+import numpy as np
+
 from cartwheel.errors import PluginError
-from cartwheel.messages import message_class
+from cartwheel.messages import header, message_class, zero
 from cartwheel.plugins.base import Plugin
 from cartwheel.plugins.gz_drive import gz_name
 from cartwheel.plugins.gz_joint_controller import GzPid
 from cartwheel.plugins.parameters import tag
 from cartwheel.simulation.clock import NANOSECONDS
 
+_TRAJECTORY = "trajectory_msgs/msg/JointTrajectory"
 _KINDS = ("position", "velocity")
 
 
@@ -110,7 +114,8 @@ class GzJointTrajectory(Plugin[JointTrajectoryParameters]):
             for index, name in enumerate(names)
         }
         topic = gz_name(self, config.topic, "joint_trajectory")
-        self.subscribe(topic, "trajectory_msgs/msg/JointTrajectory", self._on_trajectory)
+        self.subscribe(topic, _TRAJECTORY, self._on_trajectory)
+        self.take_positions(names, lambda wanted, _: self._put(topic, wanted))
         self._Float = message_class("std_msgs/msg/Float32")
         self._progress = self.advertise(f"{topic}_progress", "std_msgs/msg/Float32")
         self.reset()
@@ -169,6 +174,14 @@ class GzJointTrajectory(Plugin[JointTrajectoryParameters]):
             self._start_ns = stamp.sec * NANOSECONDS + stamp.nanosec
         if self._points:
             self._aim()
+
+    def _put(self, topic: str, wanted: Mapping[str, float]) -> None:
+        point = zero("trajectory_msgs/msg/JointTrajectoryPoint")
+        point.positions = np.array(list(wanted.values()))
+        message = message_class(_TRAJECTORY)(
+            header=header(0, ""), joint_names=list(wanted), points=[point]
+        )
+        self.graph.publish(self.resolve(topic), _TRAJECTORY, message)
 
     def _aim(self) -> None:
         """Takes the present point for the target."""

@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-import math
 import threading
 from typing import Any
 
 import numpy as np
 
 from cartwheel.description.kinematics import link_poses
-from cartwheel.description.model import Joint, RobotDescription
+from cartwheel.description.model import RobotDescription
 from cartwheel.geometry import Pose, to_wxyz
 from cartwheel.viewer.display import Display
 from cartwheel.viewer.model_view import ModelView, footprint
 from cartwheel.viewer.page import Page
 from cartwheel.viewer.panels.base import escape, facts, rows_html
+from cartwheel.viewer.panels.joints import add_slider
 from cartwheel.viewer.panels.notes import notes_html
 from cartwheel.viewer.panels.view import LABELS
 from cartwheel.viewer.scene_view import add_grid, set_stage
@@ -115,15 +115,7 @@ class DescriptionViewer:
             gui.add_html('<div class="cw cw-dim">No joint moves.</div>')
             return
         for joint in moving:
-            low, high = limits_of(joint)
-            slider = gui.add_slider(
-                joint.name,
-                min=low,
-                max=high,
-                step=(high - low) / 400,
-                initial_value=min(high, max(low, 0.0)),
-                hint=f"{joint.type}, {'m' if joint.type == 'prismatic' else 'rad'}",
-            )
+            slider = add_slider(gui, joint, 0.0)
             slider.on_update(page.do(self._move))
             self._sliders[joint.name] = slider
         gui.add_button("Zero", icon=page.viser.Icon.REFRESH).on_click(page.do(self._zero))
@@ -147,11 +139,3 @@ class DescriptionViewer:
                 np.array([pose.position for pose in placed]),
                 np.array([to_wxyz(pose.orientation) for pose in placed]),
             )
-
-
-def limits_of(joint: Joint) -> tuple[float, float]:
-    """The range of a joint's slider, rad or m: its limits, else one turn or a metre."""
-    reach = 1.0 if joint.type == "prismatic" else math.pi
-    low = -reach if joint.axis.lower is None else joint.axis.lower
-    high = reach if joint.axis.upper is None else joint.axis.upper
-    return (low, high) if high > low else (low - reach, low + reach)

@@ -16,6 +16,7 @@ from cartwheel.viewer.panels.clock import ClockPanel
 from cartwheel.viewer.panels.drive import DrivePanel
 from cartwheel.viewer.panels.imu import ImuPanel
 from cartwheel.viewer.panels.insert import InsertPanel
+from cartwheel.viewer.panels.joints import JointsPanel
 from cartwheel.viewer.panels.notes import NotesPanel
 from cartwheel.viewer.panels.topics import TopicsPanel
 from cartwheel.viewer.panels.view import ViewPanel
@@ -113,4 +114,7 @@ class Desk:
             self.stage.scene.selected = world.select
         with left.add_tab("Insert", icons.PLUS):
             insert = InsertPanel(self.stage)
-        return [world, insert]
+        tab = left.add_tab("Joints", icons.ADJUSTMENTS)
+        with tab:
+            joints = JointsPanel(self.stage, tab)
+        return [world, insert, joints]

@@ -9,7 +9,8 @@ from typing import Any, ClassVar, Protocol
 
 from cartwheel.description.model import Sensor
 from cartwheel.errors import CartwheelError, Diagnostic, Origin
-from cartwheel.graph import Graph, Publisher, Qos, Service, resolve_name
+from cartwheel.graph import Graph, JointInput, Publisher, Qos, Service, resolve_name
+from cartwheel.messages import message_class
 from cartwheel.plugins.base import Plugin
 from cartwheel.plugins.control.chaining import Reference
 from cartwheel.plugins.control.hardware import Hardware, JointHardware
@@ -107,6 +108,7 @@ class Controller:
         self.references: list[Reference] = []
         """What other controllers may command of it."""
         self._open: list[Closable | Service] = []
+        self._input: JointInput | None = None
         try:
             self.configure(settings)
         except CartwheelError:
@@ -129,11 +131,14 @@ class Controller:
         early, self._early = self._early, []
         for call in early:
             call()
+        if self._input is not None and not self.chained:
+            self.graph.joint_inputs.add(self._input)
 
     def end(self, time_ns: int) -> None:
         """Stops it."""
         self.started = False
         self._early.clear()
+        self._leave_joints()
         self.stop(time_ns)
 
     def start(self, time_ns: int) -> None:
@@ -161,6 +166,7 @@ class Controller:
 
     def close(self) -> None:
         """It is unloaded: takes everything off the graph."""
+        self._leave_joints()
         for item in self._open:
             if isinstance(item, Service):
                 self.rig.plugin.graph.withdraw(item)
@@ -250,6 +256,23 @@ class Controller:
                 self.resolve(topic), heard, type_name=type_name, node=self.node
             )
         )
+
+    def take_positions(self, put: Callable[[Mapping[str, float], float], None]) -> None:
+        """Takes positions for its joints by hand too while it runs; see `JointInput`."""
+        self._input = JointInput(
+            model=self.part.name,
+            owner=self.name,
+            joints=tuple(claim.joint for claim in self.claims.values()),
+            put=put,
+        )
+
+    def hear(self, topic: str, type_name: str, **fields: object) -> None:
+        """Says to itself on one of its topics what another node could have said."""
+        self.graph.publish(self.resolve(topic), type_name, message_class(type_name)(**fields))
+
+    def _leave_joints(self) -> None:
+        if self._input is not None:
+            self.graph.joint_inputs.remove(self._input)
 
     def keep(self, closable: Closable) -> None:
         """Closes it with the controller."""

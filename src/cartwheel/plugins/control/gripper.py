@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import Any, ClassVar
 
 import numpy as np
@@ -56,6 +57,7 @@ class GripperActionController(Controller):
             on_goal=self._on_goal,
             on_cancel=self._on_cancel,
         )
+        self.take_positions(lambda wanted, _: self._put(wanted))
 
     def start(self, time_ns: int) -> None:
         self._finish("abort")
@@ -119,6 +121,11 @@ class GripperActionController(Controller):
         self._limit = effort if effort > 0 else self._effort
         self._moved_ns = self.part.time_ns
         goal.accept()
+
+    def _put(self, wanted: Mapping[str, float]) -> None:
+        self._finish("abort" if self.rig.ros2 else "cancel")
+        self._target, self._place = wanted[self._joint.joint], self._joint.position
+        self._speed, self._limit = math.inf, self._effort
 
     def _on_cancel(self, goal: Goal) -> None:
         if goal is self._active:

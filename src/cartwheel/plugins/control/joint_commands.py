@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import Any, ClassVar
 
-from cartwheel.messages import header, message_class
+import numpy as np
+
+from cartwheel.messages import header, message_class, zero
 from cartwheel.plugins.control.controller import Controller
 from cartwheel.plugins.control.hardware import JointHardware
 from cartwheel.plugins.control.pid import Gains, Pid
 from cartwheel.plugins.control.settings import Settings
+
+_FLOAT = "std_msgs/msg/Float64"
 
 
 class JointCommand(Controller):
@@ -28,7 +33,9 @@ class JointCommand(Controller):
         interface = self.type.partition("_")[0]
         self._joint = self.claim(settings.text("joint"), interface)
         self._command = 0.0
-        self.subscribe("command", "std_msgs/msg/Float64", self._on_command)
+        self.subscribe("command", _FLOAT, self._on_command)
+        if interface == "position":
+            self.take_positions(lambda wanted, _: _put(self, wanted))
 
     def start(self, time_ns: int) -> None:  # noqa: ARG002
         self._command = self._joint.command
@@ -61,7 +68,9 @@ class JointPid(Controller):
         settings.ignore("pid")
         self._pid = Pid(self._gains)
         self._command = 0.0
-        self.subscribe("command", "std_msgs/msg/Float64", self._on_command)
+        self.subscribe("command", _FLOAT, self._on_command)
+        if self._follows == "position":
+            self.take_positions(lambda wanted, _: _put(self, wanted))
         self._publisher = self.advertise("state", "control_msgs/msg/JointControllerState")
         self._count = 0
         self._State = message_class("control_msgs/msg/JointControllerState")
@@ -158,6 +167,8 @@ class JointGroup(Controller):
         self._commands: list[float] | None = None
         topic = "commands" if self.rig.ros2 else "command"
         self.subscribe(topic, "std_msgs/msg/Float64MultiArray", self._on_commands)
+        if interface == "position" or self._pids:
+            self.take_positions(lambda wanted, _: self._put(topic, wanted))
 
     def start(self, time_ns: int) -> None:  # noqa: ARG002
         self._commands = [joint.position for joint in self._joints] if self._pids else None
@@ -180,9 +191,20 @@ class JointGroup(Controller):
             )
             joint.set_effort(law.effort, damping=law.damping)
 
+    def _put(self, topic: str, wanted: Mapping[str, float]) -> None:
+        values = np.array([wanted[joint.joint] for joint in self._joints])
+        layout = zero("std_msgs/msg/MultiArrayLayout")
+        self.hear(topic, "std_msgs/msg/Float64MultiArray", layout=layout, data=values)
+
     def _on_commands(self, message: Any) -> None:
         values = [float(value) for value in message.data]
         if len(values) != len(self._joints):
             self.warn(f"a command has {len(values)} values for {len(self._joints)} joints")
         elif all(math.isfinite(value) for value in values):
             self._commands = values
+
+
+def _put(controller: Controller, wanted: Mapping[str, float]) -> None:
+    """Sends the one joint there by its command."""
+    (value,) = wanted.values()
+    controller.hear("command", _FLOAT, data=float(value))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, ClassVar
 
 import numpy as np
@@ -26,7 +26,9 @@ from cartwheel.plugins.control.trajectory_reading import (
     TrajectoryReader,
 )
 from cartwheel.plugins.control.trajectory_tolerances import Tolerances
+from cartwheel.simulation.clock import NANOSECONDS
 
+_TRAJECTORY = "trajectory_msgs/msg/JointTrajectory"
 _SETTLING_NS = 300_000_000
 """What a joint that stops gets to stand still, before a goal counts as missed."""
 
@@ -84,7 +86,10 @@ class JointTrajectoryController(Controller):
             "set_last_command_interface_value_as_state_on_activation",
         )  # fmt: skip
         topic = "joint_trajectory" if ros2 else "command"
-        self.subscribe(topic, "trajectory_msgs/msg/JointTrajectory", self._on_trajectory)
+        self.subscribe(topic, _TRAJECTORY, self._on_trajectory)
+        self.take_positions(
+            lambda wanted, seconds: self.hear(topic, _TRAJECTORY, **self._way(wanted, seconds))
+        )
         self._action = ActionServer(
             self,
             "follow_joint_trajectory",
@@ -196,6 +201,15 @@ class JointTrajectoryController(Controller):
         """Stands where it is."""
         self._next = None
         self._following = Trajectory.hold(time_ns, [joint.position for joint in self._joints])
+
+    def _way(self, wanted: Mapping[str, float], seconds: float) -> dict[str, object]:
+        """The fields of a trajectory that ends at positions, at rest."""
+        values = np.array([wanted[joint.joint] for joint in self._joints])
+        whole, rest = divmod(round(seconds * NANOSECONDS), NANOSECONDS)
+        point = zero("trajectory_msgs/msg/JointTrajectoryPoint")
+        point.positions, point.velocities = values, np.zeros(len(values))
+        point.time_from_start.sec, point.time_from_start.nanosec = whole, rest
+        return {"header": header(0, ""), "joint_names": list(self._names), "points": [point]}
 
     # -- trajectories that come in
 
