@@ -40,6 +40,12 @@ PROPERTIES = {
     "set_link_properties": "gazebo_msgs/srv/SetLinkProperties",
     "set_light_properties": "gazebo_msgs_ros2/srv/SetLightProperties",
 }
+CONTROLS = {
+    "create": "ros_gz_interfaces/srv/SpawnEntity",
+    "remove": "ros_gz_interfaces/srv/DeleteEntity",
+    "set_pose": "ros_gz_interfaces/srv/SetEntityPose",
+    "control": "ros_gz_interfaces/srv/ControlWorld",
+}
 WORLD = """<sdf version="1.6"><world name="w">
   <plugin name="state" filename="libgazebo_ros_state.so">
     <ros><namespace>/states</namespace></ros></plugin>
@@ -76,7 +82,9 @@ def below(prefix: str, names: dict[str, str]) -> dict[str, str]:
 def test_all_is_offered_without_plugins(make):
     api = ros2(make.world())
     assert offered(api) == (
-        below("", ALWAYS) | below("", STATES) | below("/gazebo", STATES) | below("", PROPERTIES)
+        below("", ALWAYS | STATES | PROPERTIES)
+        | below("/gazebo", STATES)
+        | below("/world/test", CONTROLS)
     )
     topics = {info.name: info.type for info in api.world.graph.topics()}
     assert topics.items() >= {

@@ -24,6 +24,7 @@ from cartwheel.gazebo.requests import (
 from cartwheel.gazebo.simulation_interfaces import SimulationInterfaces
 from cartwheel.gazebo.spawning import Spawning
 from cartwheel.gazebo.state import States, StateTopics
+from cartwheel.gazebo.world_services import WorldServices
 from cartwheel.graph import Service
 from cartwheel.messages import header, message_class
 from cartwheel.plugins.catalogue import short_name
@@ -33,7 +34,7 @@ NODE = "gazebo"
 
 
 class Ros2Api:
-    """Offers what Gazebo offers in ROS 2, and simulation_interfaces.
+    """Offers what Gazebo and new Gazebo offer in ROS 2, and simulation_interfaces.
 
     A request that cannot be met is answered with ``success`` false and, where the response has
     room for it, the reason; it never changes anything by half. What Gazebo has from plugins of the
@@ -55,6 +56,7 @@ class Ros2Api:
         self._states = States(session.simulation, self._entities)
         self._properties = Properties(session.simulation, self._entities)
         self._pushes = Pushes(session.simulation, self._entities, self._tell)
+        self._world = WorldServices(session.simulation, self._entities, self._spawning, self._tell)
         self._interfaces = SimulationInterfaces(
             session, self._entities, self._spawning, self._states, package_path
         )
@@ -131,6 +133,7 @@ class Ros2Api:
             Offer("/delete_entity", f"{package}/DeleteEntity", self._delete),
             Offer("/get_model_list", f"{package}/GetModelList", self._list_models),
             *states,
+            *self._world.offers(),
         ]
 
     def _namespaces(self, plugin: str) -> list[str]:

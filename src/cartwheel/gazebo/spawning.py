@@ -42,7 +42,7 @@ class Spawning:
         self._session = session
         self._simulation = session.simulation
         self._entities = entities
-        self._package_path = tuple(package_path)
+        self.package_path = tuple(package_path)
 
     def offers(self) -> list[Offer]:
         """The services."""
@@ -74,8 +74,7 @@ class Spawning:
         name = name.strip()
         found = self.read(name, text)
         if isinstance(found, Light):
-            light = found
-            self.on_owner(lambda: self._add_light(light, name, where, reference_frame))
+            self.add_light(found, name, where, reference_frame)
         else:
             self.spawn(
                 found,
@@ -141,17 +140,22 @@ class Spawning:
 
         return self.on_owner(spawn)
 
-    def _add_light(self, light: Light, name: str, where: Pose, reference: str) -> None:
-        wanted = name or light.name
-        world = self._simulation.world
-        if any(other.name == wanted for other in world.lights):
-            raise WorldError(
-                f'Failure - light "{wanted}" already exists', hint="Delete that light first."
-            )
-        self._simulation.refresh()
-        placed = self._entities.frame(reference).pose @ where @ light.pose
-        added = dataclasses.replace(light, name=wanted, pose=placed)
-        self._simulation.change_world(dataclasses.replace(world, lights=(*world.lights, added)))
+    def add_light(self, light: Light, name: str, where: Pose, reference: str) -> None:
+        """Puts a light into the world; from any thread. For the rest see `spawn`."""
+
+        def add() -> None:
+            wanted = name or light.name
+            world = self._simulation.world
+            if any(other.name == wanted for other in world.lights):
+                raise WorldError(
+                    f'Failure - light "{wanted}" already exists', hint="Delete that light first."
+                )
+            self._simulation.refresh()
+            placed = self._entities.frame(reference).pose @ where @ light.pose
+            added = dataclasses.replace(light, name=wanted, pose=placed)
+            self._simulation.change_world(dataclasses.replace(world, lights=(*world.lights, added)))
+
+        self.on_owner(add)
 
     def read(self, name: str, text: str) -> RobotDescription | Light:
         """What a text describes.
@@ -166,7 +170,7 @@ class Spawning:
             # SDF knows lights in worlds and links; the lines stay what they are.
             text = f'{alone[1]}<world name="of the light">{alone[2]}</world>{alone[3]}'
         found = load_text(
-            text, file=f"<model_xml of {name or 'the model'}>", package_path=self._package_path
+            text, file=f"<model_xml of {name or 'the model'}>", package_path=self.package_path
         )
         if isinstance(found, WorldDescription) and alone is not None and len(found.lights) == 1:
             return found.lights[0]

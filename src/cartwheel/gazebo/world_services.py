@@ -1,0 +1,128 @@
+"""New Gazebo's services of a world as ros_gz_bridge brings them to ROS 2: ``/world/<name>/…``."""
+
+from __future__ import annotations
+
+import dataclasses
+import re
+from typing import Any
+
+from cartwheel.description import load_robot
+from cartwheel.description.model import Light, RobotDescription
+from cartwheel.errors import GraphError
+from cartwheel.gazebo.entities import Entities
+from cartwheel.gazebo.requests import Answer, Offer, Teller, pose
+from cartwheel.gazebo.spawning import Spawning
+from cartwheel.geometry import Pose
+from cartwheel.messages.times import nanoseconds
+from cartwheel.simulation import Simulation
+
+_PACKAGE = "ros_gz_interfaces/srv"
+_ANY, _LIGHT, _MODEL = range(3)
+"""Of Entity.msg."""
+_NO_PART_OF_A_NAME = re.compile(r"[^A-Za-z0-9_]|\A(?=[0-9])")
+
+
+class WorldServices:
+    """create, remove, set_pose and control of the world.
+
+    Their answers say nothing but success, so what else there is to say is told to the user.
+    Source: gz-sim, UserCommands and SimulationRunner; ros_gz_bridge for the types.
+
+    Args:
+        simulation: To act on.
+        entities: Finds models.
+        spawning: Puts models into the world.
+        tell: Takes what no answer tells.
+    """
+
+    def __init__(
+        self, simulation: Simulation, entities: Entities, spawning: Spawning, tell: Teller
+    ) -> None:
+        self._simulation = simulation
+        self._entities = entities
+        self._spawning = spawning
+        self._tell = tell
+
+    def offers(self) -> list[Offer]:
+        """The services, below the world's name as far as ROS takes it."""
+        world = f"/world/{_NO_PART_OF_A_NAME.sub('_', self._simulation.world.name)}"
+        return [
+            Offer(f"{world}/create", f"{_PACKAGE}/SpawnEntity", self._create, threaded=True),
+            Offer(f"{world}/remove", f"{_PACKAGE}/DeleteEntity", self._remove),
+            Offer(f"{world}/set_pose", f"{_PACKAGE}/SetEntityPose", self._set_pose),
+            Offer(f"{world}/control", f"{_PACKAGE}/ControlWorld", self._control),
+        ]
+
+    def _create(self, request: Any) -> Answer:
+        asked = request.entity_factory
+        name, where = asked.name.strip(), pose(asked.pose, "pose")
+        # The request's pose stands in the place of the description's own.
+        found = dataclasses.replace(self._wanted(asked, name), pose=Pose())
+        if isinstance(found, Light):
+            self._spawning.add_light(found, name, where, asked.relative_to)
+        else:
+            self._spawning.spawn(
+                found,
+                name=name,
+                where=where,
+                reference_frame=asked.relative_to,
+                namespace="",
+                rename=asked.allow_renaming,
+            )
+        return Answer()
+
+    def _wanted(self, asked: Any, name: str) -> RobotDescription | Light:
+        """What a request describes, in the one of three ways that it uses."""
+        ways = [way for way in ("sdf", "sdf_filename", "clone_name") if getattr(asked, way)]
+        if len(ways) != 1:
+            raise GraphError("one of sdf, sdf_filename and clone_name says what to create")
+        if asked.sdf:
+            return self._spawning.read(name, asked.sdf)
+        if asked.sdf_filename:
+            return load_robot(asked.sdf_filename, package_path=self._spawning.package_path)
+        return self._spawning.on_owner(lambda: self._entities.model(asked.clone_name))
+
+    def _remove(self, request: Any) -> Answer:
+        name, kind = request.entity.name, request.entity.type
+        lights = [light.name for light in self._simulation.world.lights]
+        if kind == _LIGHT or (kind == _ANY and name in lights):
+            self._spawning.remove_light(name)
+        else:
+            self._require_model(kind, "removed")
+            self._simulation.delete(name)
+        return Answer()
+
+    def _set_pose(self, request: Any) -> Answer:
+        name, simulation = request.entity.name, self._simulation
+        self._require_model(request.entity.type, "moved")
+        self._entities.model(name)
+        simulation.refresh()
+        motion = self._entities.model_motion(name)
+        where = pose(request.pose, "pose")
+        simulation.set_state(name, where, linear=motion.linear, angular=motion.angular)
+        return Answer()
+
+    @staticmethod
+    def _require_model(kind: int, done: str) -> None:
+        if kind not in (_ANY, _MODEL):
+            raise GraphError(f"an entity of type {kind} cannot be {done}: models can")
+
+    def _control(self, request: Any) -> Answer:
+        asked, simulation = request.world_control, self._simulation
+        if asked.reset.time_only:
+            raise GraphError("time alone cannot be reset")
+        if asked.seed:
+            self._tell("control: the seed is that of the start; another has no effect")
+        if asked.pause:
+            simulation.pause()
+        else:
+            simulation.resume()
+        if asked.reset.all or asked.reset.model_only:
+            simulation.reset(keep_time=not asked.reset.all)
+        steps = asked.multi_step or int(asked.step)
+        left = nanoseconds(asked.run_to_sim_time) - simulation.time_ns
+        if left > 0:
+            simulation.step(-(-left // simulation.step_ns))
+        elif steps and asked.pause:
+            simulation.step(steps)
+        return Answer()
