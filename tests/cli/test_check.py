@@ -169,3 +169,12 @@ def test_parameters_are_held_against_the_plugins(checked):
 
 def test_the_shipped_robot_has_nothing_to_note(program):
     assert "nothing found" in program("check", "rosbots.xacro", "--strict").stdout
+
+
+def test_a_file_of_controllers_that_is_named_is_checked_too(checked, tmp_path):
+    path = tmp_path / "bar.yaml"
+    path.write_text("swing:\n  type: position_controllers/JointPositionControler\n  joint: hinge\n")
+    found = json.loads(checked(GOOD, "--json", "--controllers", path, status=1))["findings"]
+    (kind,) = (each for each in found if each["rule"] == "controller-type-unknown")
+    assert (kind["file"], kind["line"], kind["place"]) == (str(path), 2, "line")
+    assert kind["instead"] == "type: position_controllers/JointPositionController"

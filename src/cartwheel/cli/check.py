@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -31,6 +32,14 @@ def check(
         bool, typer.Option("--list", help="List the rules, and check nothing.")
     ] = False,
     package_path: arguments.PackagePath = None,
+    controllers: Annotated[
+        list[Path] | None,
+        typer.Option(
+            "--controllers",
+            metavar="FILE",
+            help="YAML of ros_control or ros2_control, checked too; may be repeated.",
+        ),
+    ] = None,
 ) -> None:
     """Tell what breaks or misleads in a description, where, and what to write instead.
 
@@ -50,6 +59,7 @@ def check(
         ignore=ignore or [],
         json=json,
         strict=strict,
+        controllers=controllers or [],
     )
     if status:
         raise typer.Exit(status)

@@ -217,6 +217,7 @@ _KNOWN = {
     },
     "libgazebo_ros_imu.so": {"bodyName", "body_name", "topicName"},
     "libgazebo_ros_p3d.so": {"bodyName", "topicName"},
+    "libgazebo_ros_control.so": {"robotSimType"},
     "libgazebo_ros_bumper.so": {"bumperTopicName", "frameName"},
 }  # fmt: skip
 
@@ -238,7 +239,18 @@ def judge(tag: PluginTag, _sensor: Sensor | None) -> Iterable[Diagnostic] | None
     ]
 
 
-KNOWLEDGE = PluginKnowledge(filenames=tuple(_KNOWN), judge=judge)
+KNOWLEDGE = PluginKnowledge(
+    filenames=tuple(_KNOWN),
+    judge=judge,
+    controller_types=(
+        "diff_drive_controller/DiffDriveController",
+        "effort_controllers/JointPositionController",
+        "joint_state_controller/JointStateController",
+        "joint_trajectory_controller/JointTrajectoryController",
+        "position_controllers/JointPositionController",
+    ),
+    controller_files=lambda robot, _joints: sorted(robot.parent.glob("config/*.yaml")),
+)
 
 
 @dataclass
@@ -253,9 +265,11 @@ class Bench:
         path.write_text(text)
         return check(path, known=KNOWLEDGE, **options)
 
-    def find(self, text: str, rule: str, name: str = "robot.urdf") -> list[Finding]:
+    def find(
+        self, text: str, rule: str, name: str = "robot.urdf", **options: object
+    ) -> list[Finding]:
         """What a rule finds in a text."""
-        return [f for f in self.report(text, name).findings if f.rule == rule]
+        return [f for f in self.report(text, name, **options).findings if f.rule == rule]
 
 
 @pytest.fixture
@@ -297,6 +311,8 @@ def take() -> Callable[[str, Finding], str]:
 def take_advice(text: str, finding: Finding) -> str:
     assert finding.origin is not None
     assert finding.instead
+    if finding.place == "line" or finding.origin.file.endswith(".yaml"):
+        return _take_in_yaml(text, finding)
     start = sum(len(line) + 1 for line in text.split("\n")[: finding.origin.line - 1])
     head = re.compile(r"<([\w:]+)((?:\s+[\w:]+=\"[^\"]*\")*)\s*(/?)>").search(text, start)
     assert head is not None
@@ -316,3 +332,16 @@ def take_advice(text: str, finding: Finding) -> str:
     name = new.partition("=")[0]
     attributes = re.sub(rf'\s+{name}="[^"]*"', "", attributes)
     return text[: head.start()] + f"<{tag} {new}{attributes}{'/' * alone}>" + text[head.end() :]
+
+
+def _take_in_yaml(text: str, finding: Finding) -> str:
+    assert finding.origin is not None
+    lines = text.split("\n")
+    number = finding.origin.line - 1
+    indent = " " * (len(lines[number]) - len(lines[number].lstrip()))
+    if finding.place == "line":
+        lines[number] = indent + finding.instead
+    else:
+        assert finding.place == "after"
+        lines.insert(number + 1, indent + finding.instead)
+    return "\n".join(lines)

@@ -516,7 +516,7 @@ def test_controllers_of_joints_that_are_not_there_are_told_in_their_file(bench, 
     (finding,) = bench.find(text, "controller-joint-unknown")
     assert finding.origin.file.endswith("arm.yaml")
     assert finding.origin.line == 5
-    assert finding.instead == "finger_joint"
+    assert (finding.instead, finding.place) == ("- finger_joint", "line")
     (tmp_path / "arm.yaml").write_text("arm: [")
     assert bench.find(text, "controllers-file")[0].origin.file.endswith("arm.yaml")
 

@@ -35,6 +35,7 @@ def check(
     ignore: Sequence[str],
     json: bool,
     strict: bool,
+    controllers: Sequence[Path] = (),
 ) -> int:
     """Prints what is found; returns the status: 1 for findings, 2 where much could not be read.
 
@@ -45,14 +46,16 @@ def check(
         ignore: Rules to leave out.
         json: Whether a program reads it.
         strict: Whether notes count as findings.
+        controllers: Files of controllers, in place of those that lie near the robot.
     """
     try:
         report = check_description(
             file,
             arguments=values,
             package_path=package_path,
-            known=PluginKnowledge(filenames=_filenames(), judge=_judge),
+            known=knowledge(),
             ignore=ignore,
+            controller_files=controllers,
         )
     except DescriptionError as error:
         if not json and (error.origin is None or not error.origin.line):
@@ -68,6 +71,19 @@ def check(
         return 2
     counted = ("error", "warning", "info") if strict else ("error", "warning")
     return int(any(report.count(severity) for severity in counted))
+
+
+def knowledge() -> PluginKnowledge:
+    """What Cartwheel's own plugins and controllers know."""
+    from cartwheel.plugins.control.catalogue import controller_types
+    from cartwheel.plugins.control.suggestion import files_for
+
+    return PluginKnowledge(
+        filenames=_filenames(),
+        judge=_judge,
+        controller_types=tuple(sorted(controller_types())),
+        controller_files=files_for,
+    )
 
 
 def as_mapping(report: Report) -> dict[str, Any]:

@@ -11,6 +11,7 @@ import numpy as np
 
 from cartwheel.description.check import (
     control,
+    controllers,
     drive,
     frames,
     gazebo,
@@ -25,8 +26,10 @@ from cartwheel.description.check import (
     structure,
     tags,
     units,
+    wheel_sizes,
     xacro_use,
 )
+from cartwheel.description.check.control_search import control_files
 from cartwheel.description.check.finding import Finding, Remark
 from cartwheel.description.check.mending import mend
 from cartwheel.description.check.rule import Rule
@@ -41,6 +44,7 @@ RULES: tuple[Rule, ...] = (
     *joints.RULES,
     *inertia.RULES,
     *drive.RULES,
+    *wheel_sizes.RULES,
     *stance.RULES,
     *sensors.RULES,
     *sensor_values.RULES,
@@ -48,6 +52,7 @@ RULES: tuple[Rule, ...] = (
     *frames.RULES,
     *plugins.RULES,
     *control.RULES,
+    *controllers.RULES,
     *meshes.RULES,
     *units.RULES,
     *tags.RULES,
@@ -86,6 +91,7 @@ def check(
     package_path: Sequence[Path] = (),
     known: PluginKnowledge | None = None,
     ignore: Collection[str] = (),
+    controller_files: Sequence[Path] = (),
 ) -> Report:
     """Looks for what breaks or misleads in a description.
 
@@ -95,6 +101,7 @@ def check(
         package_path: As for `load`.
         known: What is known of plugins; without it their parameters are not looked at.
         ignore: Rules that are not to be told.
+        controller_files: Files of controllers, in place of those that lie near the robot.
 
     Raises:
         DescriptionError: it is no description, or its XML or xacro cannot be read.
@@ -111,7 +118,7 @@ def check(
         return Report(file=opened.files[0], name=name, findings=(), ignored=0, complete=True)
     if opened.root.tag not in ("robot", "sdf", "gazebo") or _is_empty(opened.root):
         understand(opened)  # says what it is instead
-    subject = _subject(opened, known)
+    subject = _subject(opened, known, controller_files)
     # Numbers near the largest overflow; no finding comes of what is not a number.
     with np.errstate(all="ignore"):
         found = _distinct(finding for each in RULES for finding in each.apply(subject))
@@ -127,7 +134,7 @@ def check(
     )
 
 
-def _subject(opened: Opened, known: PluginKnowledge | None) -> Subject:
+def _subject(opened: Opened, known: PluginKnowledge | None, given: Sequence[Path]) -> Subject:
     tree = nodes.copy(opened.root)
     mended: set[str] = set()
     if tree.tag == "robot":
@@ -139,14 +146,17 @@ def _subject(opened: Opened, known: PluginKnowledge | None) -> Subject:
     elif read is not None:
         described = (read,)
     root = opened.root if opened.root.tag == "robot" else None
+    robots = tuple(Robot(each, root, mended) for each in described)
+    search = known.controller_files if known is not None else None
     return Subject(
         root=opened.root,
         files=opened.files,
         packages=opened.packages,
         read=read,
-        robots=tuple(Robot(each, root, mended) for each in described),
+        robots=robots,
         failures=tuple(failures),
         plugins=known,
+        control=control_files(robots, opened.packages, given, search),
     )
 
 

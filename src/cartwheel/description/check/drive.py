@@ -14,14 +14,7 @@ from cartwheel.description.check.subject import DRIVE_JOINT_TAGS, Drive, Robot, 
 from cartwheel.description.model import Element, Joint
 from cartwheel.geometry import Pose, rotate
 
-TOLERANCE = 0.02
-"""Relative: what a tyre's flattening or a rounded number explains."""
 _DIRECTIONS = 32
-WIDEST_SKID = 2.5
-"""Times the track: what skidding wheels are told to be apart so that odometry comes right."""
-_SEPARATION = ("wheelSeparation", "wheel_separation")
-_DIAMETER = ("wheelDiameter", "wheel_diameter")
-_RADIUS = ("wheel_radius",)
 
 
 @rule("drive-joint-unknown", "error", "a drive plugin names a joint that does not exist")
@@ -68,58 +61,11 @@ def drive_joint_fixed(subject: Subject) -> Iterator[Remark]:
             )
 
 
-@rule("wheel-separation", "warning", "a drive's wheel separation is not that of the joints")
-def wheel_separation(subject: Subject) -> Iterator[Remark]:
-    for robot, drive, left, right in _pairs(subject):
-        stated = _parameter(drive, _SEPARATION)
-        value = nodes.number(stated.text) if stated is not None else None
-        if stated is None or value is None:
-            continue
-        apart = _apart(robot, left, right)
-        if len(drive.left) > 1 and apart <= value <= WIDEST_SKID * apart:
-            continue
-        if apart > 0 and abs(value - apart) > max(TOLERANCE * apart, 0.001):
-            yield Remark(
-                message=f"<{stated.tag}> is {value:g} m, but the wheels are {apart:.4g} m apart: "
-                f"the robot turns {abs(value / apart - 1):.0%} too "
-                f"{'far' if value > apart else 'little'}",
-                origin=stated.origin,
-                instead=nodes.written(stated.tag, {}, nodes.short(round(apart, 4))),
-                place="element",
-                mark=stated.text.strip(),
-            )
-
-
-@rule("wheel-diameter", "warning", "a drive's wheel diameter is not that of the wheels")
-def wheel_diameter(subject: Subject) -> Iterator[Remark]:
-    for robot, drive, left, _ in _pairs(subject):
-        for names, factor in ((_DIAMETER, 2.0), (_RADIUS, 1.0)):
-            stated = _parameter(drive, names)
-            value = nodes.number(stated.text) if stated is not None else None
-            radius = wheel_radius(robot, left)
-            if stated is None or value is None or radius is None:
-                continue
-            if not robot.whole(left.child):
-                continue
-            real = factor * radius
-            if abs(value - real) > max(TOLERANCE * real, 0.0005):
-                yield Remark(
-                    message=f"<{stated.tag}> is {value:g} m, but that of the wheel "
-                    f'"{left.child}" is {real:.4g} m: the robot drives '
-                    f"{abs(real / value - 1) if value else 1:.0%} too "
-                    f"{'slowly' if value > real else 'fast'}",
-                    origin=stated.origin,
-                    instead=nodes.written(stated.tag, {}, nodes.short(round(real, 4))),
-                    place="element",
-                    mark=stated.text.strip(),
-                )
-
-
 @rule("wheels-swapped", "warning", "a drive's left wheel stands on the right")
 def wheels_swapped(subject: Subject) -> Iterator[Remark]:
     for robot, drive, left, right in _pairs(subject):
-        poses = [_place(robot, joint) for joint in (left, right)]
-        element = _parameter(drive, ("leftJoint", "left_joint"))
+        poses = [wheel_place(robot, joint) for joint in (left, right)]
+        element = _parameter(drive, ("leftJoint", "left_joint", "left_wheel_joint_name"))
         across = poses[0].y - poses[1].y
         # With the wheels beside each other x is forward, else nobody can tell the sides.
         if element is None or abs(poses[0].x - poses[1].x) > 0.1 * abs(across) or across >= 0:
@@ -138,7 +84,7 @@ def wheels_swapped(subject: Subject) -> Iterator[Remark]:
 @rule("wheel-axes", "warning", "driven wheels turn backwards, or against each other")
 def wheel_axes(subject: Subject) -> Iterator[Remark]:
     for robot, _, left, right in _pairs(subject):
-        poses = [_place(robot, joint) for joint in (left, right)]
+        poses = [wheel_place(robot, joint) for joint in (left, right)]
         across = np.array(poses[0].position) - np.array(poses[1].position)
         wide = float(np.linalg.norm(across))
         if wide < 1e-6 or abs(across[2]) > 0.2 * wide:
@@ -222,13 +168,8 @@ def lowest(robot: Robot, *links: str) -> float | None:
     return None if box is None else float(box[0][2])
 
 
-def _apart(robot: Robot, left: Joint, right: Joint) -> float:
-    """Between the two wheels' axes, across the robot, m."""
-    return abs(_place(robot, left).y - _place(robot, right).y)
-
-
-def _place(robot: Robot, joint: Joint) -> Pose:
-    """Of a joint in the model's frame: a link of SDF may have its frame elsewhere."""
+def wheel_place(robot: Robot, joint: Joint) -> Pose:
+    """Where a wheel's joint is in the model's frame: a link of SDF may have its frame elsewhere."""
     return robot.links[joint.child].pose @ joint.pose
 
 
@@ -265,8 +206,6 @@ def _pairs(subject: Subject) -> Iterator[tuple[Robot, Drive, Joint, Joint]]:
 RULES = (
     drive_joint_unknown,
     drive_joint_fixed,
-    wheel_separation,
-    wheel_diameter,
     wheels_swapped,
     wheel_axes,
 )

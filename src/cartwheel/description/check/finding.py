@@ -7,12 +7,14 @@ from typing import Literal
 
 from cartwheel.errors import Diagnostic, Origin, Severity
 
-Place = Literal["", "element", "attribute", "inside", "after"]
+Place = Literal["", "element", "attribute", "inside", "after", "line"]
 """Where a finding's text goes.
 
 ``element`` replaces the element at the finding's line; ``attribute`` replaces its attribute of
 the same name, or is added to it; ``inside`` goes in before its closing tag; ``after`` follows
-it. Empty is for a text that says what to write, but not where.
+it. In YAML ``line`` replaces what its line says behind the indentation, and ``after`` is a line of
+its own below, with the same indentation. Empty is for a text that says what to write, but not
+where.
 """
 
 

@@ -6,8 +6,10 @@ import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from pathlib import Path
 
 from cartwheel.description.check import nodes
+from cartwheel.description.check.control_files import ControlFile
 from cartwheel.description.check.finding import Remark
 from cartwheel.description.check.solids import Floats, Solid, bounds, solid_of
 from cartwheel.description.model import (
@@ -34,6 +36,10 @@ class PluginKnowledge:
     """Such as ``libgazebo_ros_camera.so``."""
     judge: Callable[[PluginTag, Sensor | None], Iterable[Diagnostic] | None]
     """What is wrong with a plugin's parameters; None for a plugin that is not known."""
+    controller_types: tuple[str, ...] = ()
+    """Such as ``effort_controllers/JointPositionController``; empty where none is known."""
+    controller_files: Callable[[Path, Sequence[str]], Sequence[Path]] | None = None
+    """From a robot's file and its joints to files that a launch file could start."""
 
 
 IMPOSSIBLE = re.compile(r"principal moments")
@@ -44,6 +50,8 @@ GAZEBO_STEP = 0.001
 """s, where a world states none."""
 DRIVES = ("diff_drive", "diffdrive", "diff-drive")
 SKIDS = ("skid_steer", "skid-steer")
+MULTI_WHEEL = "diffdrive_plugin_multi_wheel"
+KOBUKI = "gazebo_ros_kobuki"
 DRIVE_JOINT_TAGS = (
     "leftJoint", "left_joint", "rightJoint", "right_joint", "leftFrontJoint", "leftRearJoint",
     "rightFrontJoint", "rightRearJoint",
@@ -166,7 +174,20 @@ class Robot:
         """Plugins that drive wheels, by the tags of both generations of Gazebo."""
         found = []
         for tag in self.description.plugins:
-            if any(name in tag.filename for name in DRIVES):
+            if MULTI_WHEEL in tag.filename:
+                both = [
+                    " ".join(_texts(tag, f"{side}Joints")).split() for side in ("left", "right")
+                ]
+                found.append(Drive(tag=tag, left=tuple(both[0]), right=tuple(both[1])))
+            elif KOBUKI in tag.filename:
+                found.append(
+                    Drive(
+                        tag=tag,
+                        left=_texts(tag, "left_wheel_joint_name"),
+                        right=_texts(tag, "right_wheel_joint_name"),
+                    )
+                )
+            elif any(name in tag.filename for name in DRIVES):
                 found.append(
                     Drive(
                         tag=tag,
@@ -251,6 +272,8 @@ class Subject:
     failures: tuple[Remark, ...] = ()
     """What ended its reading, apart from what has a rule of its own."""
     plugins: PluginKnowledge | None = None
+    control: Sequence[tuple[Robot, ControlFile]] = ()
+    """The files of each robot's controllers."""
 
     @property
     def is_urdf(self) -> bool:

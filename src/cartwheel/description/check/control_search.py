@@ -1,0 +1,92 @@
+"""Which files hold a robot's controllers: named ones, or those that a launch file could name."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+
+from cartwheel.description.check.control_files import ControlFile
+from cartwheel.description.check.finding import Remark
+from cartwheel.description.check.subject import Robot
+from cartwheel.description.model import Element
+from cartwheel.description.packages import Packages
+from cartwheel.errors import DescriptionError
+
+
+def control_files(
+    robots: Sequence[Robot],
+    packages: Packages,
+    given: Sequence[Path],
+    search: Callable[[Path, Sequence[str]], Sequence[Path]] | None,
+) -> list[tuple[Robot, ControlFile]]:
+    """The files of each robot.
+
+    Args:
+        robots: Of the description.
+        packages: Where files are looked for.
+        given: By the user, in place of what would be found.
+        search: Finds those of a robot that leaves them to its launch files; None finds none.
+    """
+    found = []
+    for robot in robots:
+        found += [(robot, ControlFile(path=_plain(path), named=True)) for path in given]
+        for element in named_files(robot):
+            path = resolved(packages, element)
+            if isinstance(path, Path):
+                found.append((robot, ControlFile(path=path, named=True, element=element)))
+        if not given and search is not None and is_of_ros1(robot):
+            file = Path(robot.description.origin.file)
+            joints = [joint.name for joint in robot.joints.values() if joint.type != "fixed"]
+            found += [
+                (robot, ControlFile(path=path, named=False))
+                for path in search(file, joints)
+                if _belongs(path, file)
+            ]
+    return found
+
+
+def named_files(robot: Robot) -> Iterator[Element]:
+    """The tags that name a file of controllers."""
+    for tag, _ in robot.plugins():
+        if "ros2_control" in tag.filename:
+            for element in tag.element.find_all("parameters"):
+                if element.text.strip():
+                    yield element
+
+
+def resolved(packages: Packages, element: Element) -> Path | Remark:
+    """The file that a tag names, or why there is none."""
+    try:
+        return packages.resolve(element.text.strip(), element.origin, what="file")
+    except DescriptionError as error:
+        return Remark(
+            message=f"{error.message}: no controller starts",
+            origin=element.origin,
+            hint=error.hint or "",
+            mark=element.text.strip(),
+        )
+
+
+def is_of_ros1(robot: Robot) -> bool:
+    """Whether ROS 1's controllers move it."""
+    return any(
+        "ros_control" in tag.filename and "ros2" not in tag.filename for tag, _ in robot.plugins()
+    )
+
+
+def _plain(path: Path) -> Path:
+    """The file of ``NAME=FILE``, by which a controller without a name gets one."""
+    name, _, file = str(path).partition("=")
+    return Path(file) if name and file and not path.exists() else path
+
+
+def _belongs(path: Path, robot: Path) -> bool:
+    """Whether a file's package is the robot's own, or one that is named after it."""
+    ours, theirs = (_package(each.absolute()) for each in (robot, path))
+    if ours is None or theirs is None:
+        return ours == theirs
+    return ours == theirs or ours.name.split("_")[0] == theirs.name.split("_")[0]
+
+
+def _package(file: Path) -> Path | None:
+    return next((each for each in file.parents if (each / "package.xml").is_file()), None)

@@ -1,0 +1,113 @@
+"""Stated sizes of wheels against those of the joints and the wheels themselves."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from cartwheel.description.check import nodes
+from cartwheel.description.check.drive import wheel_place, wheel_radius
+from cartwheel.description.check.finding import Remark
+from cartwheel.description.check.rule import rule
+from cartwheel.description.check.subject import Robot, Subject
+from cartwheel.description.check.wheel_stated import Stated, stated
+
+TOLERANCE = 0.02
+"""Relative: what a tyre's flattening or a rounded number explains."""
+_LEAST = 0.001
+"""m, of a distance; half of it of a wheel."""
+WIDEST_SKID = 2.5
+"""Times the track: what skidding wheels are told to be apart so that odometry comes right."""
+
+
+@rule("wheel-separation", "warning", "a stated wheel separation is not that of the joints")
+def wheel_separation(subject: Subject) -> Iterator[Remark]:
+    for one in stated(subject):
+        if one.measure not in ("apart", "reach"):
+            continue
+        apart = _mean_between(one, 1)
+        if one.measure == "reach":
+            apart = (apart + _mean_between(one, 0)) / 2
+        if one.skids and apart <= one.value <= WIDEST_SKID * apart:
+            continue
+        if _differs(one.value, apart, _LEAST):
+            far = "far" if one.value > apart else "little"
+            said = "the wheels are" if one.measure == "apart" else "half of base and track is"
+            yield _remark(
+                one,
+                apart,
+                f"{said} {apart:.4g} m{' apart' * (one.measure == 'apart')}: the robot turns "
+                f"{abs(one.value / apart - 1):.0%} too {far}",
+            )
+
+
+@rule("wheel-base", "warning", "a stated wheel base is not that of the axles")
+def wheel_base(subject: Subject) -> Iterator[Remark]:
+    for one in stated(subject):
+        if one.measure == "base":
+            apart = _mean_between(one, 0)
+            if _differs(one.value, apart, _LEAST):
+                far = "far" if one.value > apart else "little"
+                yield _remark(
+                    one,
+                    apart,
+                    f"the axles are {apart:.4g} m apart: the robot turns "
+                    f"{abs(one.value / apart - 1):.0%} too {far}",
+                )
+
+
+@rule("wheel-diameter", "warning", "a stated wheel diameter or radius is not that of the wheels")
+def wheel_diameter(subject: Subject) -> Iterator[Remark]:
+    for one in stated(subject):
+        if one.measure not in ("radius", "diameter"):
+            continue
+        wheel = one.robot.joints[one.first[0]]
+        if wheel.child not in one.robot.links or not one.robot.whole(wheel.child):
+            continue
+        radius = wheel_radius(one.robot, wheel)
+        if radius is None:
+            continue
+        real = radius if one.measure == "radius" else 2 * radius
+        if _differs(one.value, real, _LEAST / 2):
+            slow = "slowly" if one.value > real else "fast"
+            far = abs(real / one.value - 1) if one.value else 1.0
+            yield _remark(
+                one,
+                real,
+                f'that of the wheel "{wheel.child}" is {real:.4g} m: the robot drives {far:.0%} '
+                f"too {slow}",
+            )
+
+
+def _remark(one: Stated, real: float, why: str) -> Remark:
+    stated = f"{one.label} is {one.value:g} m"
+    if not one.written:
+        stated = f"{one.label} is not written, so that {one.value:g} m counts"
+    return Remark(
+        message=f"{stated}, but {why}",
+        origin=one.origin,
+        instead=one.write(nodes.short(round(real, 4))),
+        place=one.place,
+        mark=one.mark,
+    )
+
+
+def _differs(value: float, real: float, least: float) -> bool:
+    return real > 0 and abs(value - real) > max(TOLERANCE * real, least)
+
+
+def _mean_between(one: Stated, axis: int) -> float:
+    """Between the means of the two sets of joints along an axis of the robot, m."""
+    first, second = (_mean(one.robot, names, axis) for names in (one.first, one.second))
+    return 0.0 if first is None or second is None else abs(first - second)
+
+
+def _mean(robot: Robot, names: tuple[str, ...], axis: int) -> float | None:
+    places = [
+        wheel_place(robot, joint).position[axis]
+        for name in names
+        if (joint := robot.joints[name]).child in robot.links
+    ]
+    return sum(places) / len(places) if places else None
+
+
+RULES = (wheel_separation, wheel_base, wheel_diameter)

@@ -1,0 +1,227 @@
+"""Files of controllers: what is wrong in them is told in their own line, and mended there."""
+
+from __future__ import annotations
+
+import pytest
+
+ROS1 = (
+    "</robot>",
+    '<gazebo><plugin name="c" filename="libgazebo_ros_control.so"/></gazebo>\n</robot>',
+)
+
+
+def transmission(joint, interface):
+    return (
+        "</robot>",
+        f'<transmission name="{joint}_t"><type>transmission_interface/SimpleTransmission</type>\n'
+        f'<joint name="{joint}">\n<hardwareInterface>{interface}</hardwareInterface></joint>'
+        "</transmission>\n</robot>",
+    )
+
+
+EFFORT = "hardware_interface/EffortJointInterface"
+ARM = """arm:
+  type: effort_controllers/JointPositionController
+  joint: arm_joint
+  pid: {p: 10.0, i: 0.1, d: 1.0}
+"""
+WHEELS = """drive:
+  type: diff_drive_controller/DiffDriveController
+  left_wheel: left_wheel_joint
+  right_wheel: right_wheel_joint
+  wheel_separation: 0.4  # between the tyres
+  wheel_radius: 0.08
+"""
+RULES = {
+    "controllers-file", "controller-joint-unknown", "controller-type-unknown",
+    "controller-interface", "controller-gains", "joint-claimed-twice", "wheel-separation",
+    "wheel-base", "wheel-diameter",
+}  # fmt: skip
+
+
+@pytest.fixture
+def arm(spoil):
+    """A robot whose arm a controller of ROS 1 can move."""
+    return spoil(ROS1, transmission("arm_joint", EFFORT))
+
+
+@pytest.fixture
+def told(bench, tmp_path):
+    """What the rules of controllers say of a robot and a file that the user names."""
+
+    def tell(text, yaml, name="arm.yaml"):
+        (tmp_path / name).write_text(yaml)
+        found = bench.report(text, controller_files=[tmp_path / name]).findings
+        return [finding for finding in found if finding.rule in RULES]
+
+    return tell
+
+
+def test_a_file_without_a_fault_gives_no_finding(arm, spoil, told):
+    assert told(arm, ARM) == []
+    wheels = [
+        transmission(f"{side}_wheel_joint", "hardware_interface/VelocityJointInterface")
+        for side in ("left", "right")
+    ]
+    assert told(spoil(ROS1, *wheels), WHEELS) == []
+
+
+# The rule; what is replaced by what in the file; its line; a text of the advice.
+FAULTS = {
+    "joint": ("controller-joint-unknown", ("joint: arm_joint", "joint: arm_jiont"), 3,
+        "joint: arm_joint"),
+    "type": ("controller-type-unknown", ("effort_controllers/Joint", "effort_controller/Joint"), 2,
+        "type: effort_controllers/JointPositionController"),
+    "type of ROS 2": ("controller-type-unknown", ("pid: {p: 10.0, i: 0.1, d: 1.0}\n",
+        "pid: {p: 10.0}\nstates:\n  type: joint_state_broadcaster/JointStateBroadcaster\n"), 6,
+        "type: joint_state_controller/JointStateController"),
+    "no gains": ("controller-gains", ("  pid: {p: 10.0, i: 0.1, d: 1.0}\n", ""), 2, "pid: {p: "),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", FAULTS.values(), ids=FAULTS)
+def test_a_fault_in_a_file_is_found_and_its_advice_mends_it(case, arm, told, take):
+    rule, (old, new), line, advice = case
+    assert old in ARM
+    wrong = ARM.replace(old, new)
+    (finding,) = told(arm, wrong)
+    assert finding.rule == rule
+    assert finding.severity == ("warning" if "broadcaster" in new else "error")
+    assert (finding.origin.line, finding.origin.file.endswith("arm.yaml")) == (line, True)
+    assert advice in finding.instead
+    assert told(arm, take(wrong, finding)) == []
+
+
+def test_a_type_that_is_not_simulated_is_a_note(arm, told):
+    (finding,) = told(arm, ARM.replace("effort_controllers/JointPosition", "my_own/Wobble"))
+    assert (finding.rule, finding.severity, finding.instead) == (
+        "controller-type-unknown",
+        "info",
+        "",
+    )
+
+
+def test_a_joint_without_a_transmission_is_given_one(spoil, told):
+    text = spoil(ROS1)
+    (finding,) = told(text, ARM)
+    assert finding.rule == "controller-interface"
+    assert finding.origin.line == 3
+    assert told(text.replace("</robot>", finding.instead + "</robot>"), ARM) == []
+
+
+def test_a_transmission_with_another_interface_is_told_at_its_line(spoil, told, take, line_of):
+    text = spoil(ROS1, transmission("arm_joint", "hardware_interface/PositionJointInterface"))
+    (finding,) = told(text, ARM)
+    assert finding.rule == "controller-interface"
+    assert finding.origin.line == line_of(text, "<hardwareInterface>")
+    assert told(take(text, finding), ARM) == []
+    # Another controller of the file has what the transmission offers: it may be the one that runs.
+    other = "other:\n  type: position_controllers/JointPositionController\n  joint: arm_joint\n"
+    assert told(text, ARM + other) == []
+
+
+def test_hardware_of_another_kind_may_offer_anything(spoil, told):
+    own = (ROS1[0], ROS1[1].replace("/>", "><robotSimType>my/Sim</robotSimType></plugin>", 1))
+    assert told(spoil(own), ARM) == []
+
+
+def test_two_controllers_of_one_joint_are_a_note(arm, told):
+    (finding,) = told(arm, ARM + ARM.replace("arm:", "other:"))
+    assert (finding.rule, finding.severity) == ("joint-claimed-twice", "info")
+    assert '"arm" and "other"' in finding.message
+    assert finding.origin.line == 7
+    # Of two types one is the other's alternative.
+    other = "other:\n  type: effort_controllers/JointEffortController\n  joint: arm_joint\n"
+    assert "joint-claimed-twice" not in [each.rule for each in told(arm, ARM + other)]
+
+
+def test_sizes_of_wheels_are_told_in_the_files_line(spoil, told, take):
+    wheels = [
+        transmission(f"{side}_wheel_joint", "hardware_interface/VelocityJointInterface")
+        for side in ("left", "right")
+    ]
+    text = spoil(ROS1, *wheels)
+    wrong = WHEELS.replace("0.4 ", "0.5 ").replace("0.08", "0.16")
+    apart, radius = told(text, wrong)
+    assert (apart.rule, apart.origin.line) == ("wheel-separation", 5)
+    assert apart.instead == "wheel_separation: 0.4  # between the tyres"
+    assert (radius.rule, radius.origin.line) == ("wheel-diameter", 6)
+    assert told(text, take(take(wrong, apart), radius)) == []
+
+
+ROS2 = """controller_manager:
+  ros__parameters:
+    arm:
+      type: joint_trajectory_controller/JointTrajectoryController
+arm:
+  ros__parameters:
+    joints: [arm_joint]
+    command_interfaces: [position]
+    state_interfaces: [position]
+"""
+
+
+def system(*commands):
+    inner = "".join(f'<command_interface name="{name}"/>' for name in commands)
+    return (
+        "</robot>",
+        f'<ros2_control name="s" type="system">\n<joint name="arm_joint">{inner}</joint>'
+        "</ros2_control>\n</robot>",
+    )
+
+
+def test_a_command_that_ros2_control_does_not_offer_is_added(spoil, told, take):
+    assert told(spoil(system("position")), ROS2) == []
+    text = spoil(system("velocity"))
+    (finding,) = told(text, ROS2)
+    assert finding.rule == "controller-interface"
+    assert finding.instead == '<command_interface name="position"/>'
+    assert told(take(text, finding), ROS2) == []
+
+
+def test_a_trajectory_by_effort_needs_gains(spoil, told, take):
+    text = spoil(system("effort"))
+    yaml = ROS2.replace("command_interfaces: [position]", "command_interfaces: [effort]")
+    (finding,) = told(text, yaml)
+    assert (finding.rule, finding.severity) == ("controller-gains", "warning")
+    where = "      type: joint_trajectory_controller/JointTrajectoryController\n"
+    good = yaml + f"    {finding.instead}\n"
+    assert where in good
+    assert told(text, good) == []
+
+
+def test_a_type_of_ros1_in_a_file_of_ros2(spoil, told, take):
+    yaml = ROS2.replace("joint_trajectory_controller/", "position_controllers/")
+    text = spoil(system("position"))
+    (finding,) = told(text, yaml)
+    assert finding.rule == "controller-type-unknown"
+    assert "ROS 2 has the type" in finding.message
+    assert told(text, take(yaml, finding)) == []
+
+
+def test_a_file_that_lies_nearby_is_checked_where_it_is_of_this_robot(bench, arm, tmp_path):
+    (tmp_path / "config").mkdir()
+    near = tmp_path / "config" / "arm.yaml"
+    near.write_text(ARM.replace("  pid: {p: 10.0, i: 0.1, d: 1.0}\n", ""))
+    (finding,) = bench.find(arm, "controller-gains")
+    assert finding.severity == "warning"
+    near.write_text(ARM.replace("arm_joint", "elbow").replace("  pid:", "  pids:"))
+    assert not [f for f in bench.report(arm).findings if f.rule in RULES]
+    # Without gazebo_ros_control nothing of it matters.
+    near.write_text(ARM.replace("  pid:", "  pids:"))
+    without = arm.replace("libgazebo_ros_control.so", "libother.so")
+    assert not [f for f in bench.report(without).findings if f.rule in RULES]
+
+
+def test_a_file_that_is_missing_or_damaged_is_told(arm, told, bench, tmp_path):
+    (finding,) = told(arm, "arm: [")
+    assert (finding.rule, finding.origin.line) == ("controllers-file", 1)
+    missing = bench.report(arm, controller_files=[tmp_path / "no.yaml"]).findings
+    assert [finding.rule for finding in missing] == ["controllers-file"]
+
+
+def test_one_controller_may_be_a_file(arm, told):
+    lines = [line.removeprefix("  ") for line in ARM.splitlines()[1:]]
+    assert told(arm, "\n".join(lines)) == []
+    (finding,) = told(arm, "\n".join(lines).replace("arm_joint", "arm_jiont"))
+    assert finding.origin.line == 2

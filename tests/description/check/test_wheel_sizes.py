@@ -1,0 +1,262 @@
+"""What drives say of their wheels, against a car whose sizes are known."""
+
+from __future__ import annotations
+
+import pytest
+
+BASE, TRACK, KINGPINS, RADIUS = 0.5, 0.3, 0.26, 0.1
+"""m: between the axles, between the wheels, between the steered joints, of the wheels."""
+CORNERS = {
+    "front_left": (1, 1),
+    "front_right": (1, -1),
+    "rear_left": (-1, 1),
+    "rear_right": (-1, -1),
+}
+
+
+def link(name, more=""):
+    return (
+        f'<link name="{name}"><inertial><mass value="1"/><inertia ixx="0.005" iyy="0.005" '
+        f'izz="0.005"/></inertial>{more}</link>\n'
+    )
+
+
+def joint(name, ends, xyz, axis, kind="continuous"):
+    parent, child = ends
+    limit = '<limit lower="-1" upper="1" effort="5" velocity="5"/>' if kind == "revolute" else ""
+    return (
+        f'<joint name="{name}" type="{kind}"><parent link="{parent}"/><child link="{child}"/>'
+        f'<origin xyz="{xyz}"/><axis xyz="{axis}"/>{limit}</joint>\n'
+    )
+
+
+WHEEL = (
+    '<collision><origin rpy="1.5707963 0 0"/><geometry>'
+    f'<cylinder radius="{RADIUS}" length="0.02"/></geometry></collision>'
+)
+
+
+def car(plugin=""):
+    """Front wheels on forks, rear ones on the body."""
+    parts = [link("base_link")]
+    for name, (ahead, left) in CORNERS.items():
+        x, y = ahead * BASE / 2, left * TRACK / 2
+        parent, place = "base_link", f"{x} {y} 0"
+        if ahead > 0:
+            fork = f"{name}_fork"
+            parts.append(link(fork))
+            at = f"{x} {left * KINGPINS / 2} 0"
+            parts.append(joint(f"{name}_steer", ("base_link", fork), at, "0 0 1", "revolute"))
+            parent, place = fork, f"0 {y - left * KINGPINS / 2} 0"
+        parts.append(link(f"{name}_wheel", WHEEL))
+        parts.append(joint(f"{name}_joint", (parent, f"{name}_wheel"), place, "0 1 0"))
+    body = "".join(parts)
+    return (
+        f'<?xml version="1.0"?>\n<robot name="car">\n{body}<gazebo>\n{plugin}</gazebo>\n</robot>\n'
+    )
+
+
+def plugin(filename, **tags):
+    inner = "".join(f"<{tag}>{value}</{tag}>\n" for tag, value in tags.items())
+    return f'<plugin name="p" filename="{filename}">\n{inner}</plugin>\n'
+
+
+REAR = {"left_joint": "rear_left_joint", "right_joint": "rear_right_joint"}
+STEERED = {"left_steering_joint": "front_left_steer", "right_steering_joint": "front_right_steer"}
+ACKERMANN = {
+    **REAR, **STEERED, "wheel_separation": TRACK, "kingpin_width": KINGPINS, "wheel_base": BASE,
+    "wheel_radius": RADIUS,
+}  # fmt: skip
+MECANUM = {
+    "front_left_joint": "front_left_joint", "front_right_joint": "front_right_joint",
+    "back_left_joint": "rear_left_joint", "back_right_joint": "rear_right_joint",
+    "wheelbase": BASE, "wheel_separation": TRACK, "wheel_radius": RADIUS,
+}  # fmt: skip
+TRICYCLE = {
+    "steeringJoint": "front_left_steer", "actuatedWheelJoint": "front_left_joint",
+    "encoderWheelLeftJoint": "rear_left_joint", "encoderWheelRightJoint": "rear_right_joint",
+    "actuatedWheelDiameter": 2 * RADIUS, "encoderWheelDiameter": 2 * RADIUS,
+    "encoderWheelSeparation": TRACK,
+}  # fmt: skip
+KOBUKI = {
+    "left_wheel_joint_name": "rear_left_joint", "right_wheel_joint_name": "rear_right_joint",
+    "wheel_separation": TRACK, "wheel_diameter": 2 * RADIUS,
+}  # fmt: skip
+MULTI = {
+    "leftJoints": "front_left_joint rear_left_joint",
+    "rightJoints": "front_right_joint rear_right_joint",
+    "wheelSeparation": TRACK, "wheelDiameter": 2 * RADIUS,
+}  # fmt: skip
+SKID = {
+    "leftFrontJoint": "front_left_joint", "rightFrontJoint": "front_right_joint",
+    "leftRearJoint": "rear_left_joint", "rightRearJoint": "rear_right_joint",
+    "wheelSeparation": TRACK, "wheelDiameter": 2 * RADIUS,
+}  # fmt: skip
+PAIRS = {
+    "num_wheel_pairs": 1, "left_joint": "rear_left_joint", "right_joint": "rear_right_joint",
+    "wheel_separation": TRACK, "wheel_diameter": 2 * RADIUS,
+}  # fmt: skip
+DRIVES = {
+    "gz-sim-ackermann-steering-system": ACKERMANN,
+    "libignition-gazebo-ackermann-steering-system.so": ACKERMANN,
+    "gz-sim-mecanum-drive-system": MECANUM,
+    "libgazebo_ros_tricycle_drive.so": TRICYCLE,
+    "libgazebo_ros_kobuki.so": KOBUKI,
+    "libdiffdrive_plugin_multi_wheel.so": MULTI,
+    "libgazebo_ros_skid_steer_drive.so": SKID,
+    "libgazebo_ros_diff_drive.so": PAIRS,
+    "gz-sim-diff-drive-system": {**REAR, "wheel_separation": TRACK, "wheel_radius": RADIUS},
+}
+SIZES = {
+    "wheel_separation": "wheel-separation", "wheelSeparation": "wheel-separation",
+    "kingpin_width": "wheel-separation", "encoderWheelSeparation": "wheel-separation",
+    "wheel_base": "wheel-base", "wheelbase": "wheel-base", "wheel_radius": "wheel-diameter",
+    "wheel_diameter": "wheel-diameter", "wheelDiameter": "wheel-diameter",
+    "actuatedWheelDiameter": "wheel-diameter", "encoderWheelDiameter": "wheel-diameter",
+}  # fmt: skip
+STATED = [(name, tag) for name, tags in DRIVES.items() for tag in tags if tag in SIZES]
+
+
+@pytest.fixture
+def told(bench):
+    """What the rules of sizes say of a text."""
+    return lambda text, **options: [
+        finding
+        for finding in bench.report(text, **options).findings
+        if finding.rule in SIZES.values()
+    ]
+
+
+@pytest.mark.parametrize("name", DRIVES)
+def test_the_cars_own_sizes_are_no_fault(told, name):
+    assert told(car(plugin(name, **DRIVES[name]))) == []
+
+
+@pytest.mark.parametrize(("name", "tag"), STATED)
+def test_a_size_that_is_not_the_cars_is_told_with_its_own(told, take, line_of, name, tag):
+    # Below the car's own: a skid's separation may be wider.
+    wrong = car(plugin(name, **{**DRIVES[name], tag: 0.8 * DRIVES[name][tag]}))
+    (finding,) = told(wrong)
+    assert finding.rule == SIZES[tag]
+    assert finding.origin.line == line_of(wrong, f"<{tag}>")
+    assert finding.instead == f"<{tag}>{DRIVES[name][tag]:g}</{tag}>"
+    assert told(take(wrong, finding)) == []
+
+
+@pytest.mark.parametrize(
+    ("name", "tag"), [each for each in STATED if each[0] != "libgazebo_ros_kobuki.so"]
+)
+def test_a_size_that_is_not_written_is_the_plugins_default(told, take, name, tag):
+    """None of the defaults is the car's, but for the kingpins', which are left out here."""
+    tags = {key: value for key, value in DRIVES[name].items() if key != tag}
+    text = car(plugin(name, **tags))
+    skids = name in ("libgazebo_ros_skid_steer_drive.so", "libdiffdrive_plugin_multi_wheel.so")
+    if skids and tag == "wheelSeparation":
+        assert told(text) == []  # 0.34 m for 0.3 m: wider, as a skid's may be
+        return
+    (finding,) = told(text)
+    assert "is not written" in finding.message
+    assert finding.place == "inside"
+    assert told(take(text, finding)) == []
+
+
+def test_a_pair_of_wheels_has_its_own_separation(told):
+    pairs = (
+        '<plugin name="p" filename="libgazebo_ros_diff_drive.so"><num_wheel_pairs>2'
+        "</num_wheel_pairs><left_joint>rear_left_joint</left_joint><left_joint>front_left_joint"
+        "</left_joint><right_joint>rear_right_joint</right_joint><right_joint>front_right_joint"
+        "</right_joint>\n<wheel_separation>0.3</wheel_separation>\n"
+        "<wheel_separation>0.2</wheel_separation><wheel_diameter>0.2</wheel_diameter></plugin>"
+    )
+    (finding,) = told(car(pairs))
+    assert finding.instead == "<wheel_separation>0.3</wheel_separation>"
+    assert "0.2 m" in finding.message
+
+
+ROS1_STEERED = f"""car:
+  type: ackermann_steering_controller/AckermannSteeringController
+  rear_wheel: rear_left_joint
+  front_steer: front_left_steer
+  wheel_separation_h: {BASE}
+  wheel_radius: {RADIUS}
+"""
+ROS1_MECANUM = f"""car:
+  type: mecanum_drive_controller/MecanumDriveController
+  front_left_wheel_joint: front_left_joint
+  front_right_wheel_joint: front_right_joint
+  back_left_wheel_joint: rear_left_joint
+  back_right_wheel_joint: rear_right_joint
+  wheel_separation_x: {BASE}
+  wheel_separation_y: {TRACK}
+  wheel_radius: {RADIUS}
+"""
+ROS2 = """controller_manager:
+  ros__parameters:
+    car: {{type: {type}}}
+car:
+  ros__parameters:
+"""
+ROS2_DIFF = ROS2.format(type="diff_drive_controller/DiffDriveController") + (
+    f"""    left_wheel_names: [rear_left_joint]
+    right_wheel_names: [rear_right_joint]
+    wheel_separation: {TRACK}
+    wheel_radius: {RADIUS}
+"""
+)
+ROS2_ACKERMANN = ROS2.format(type="ackermann_steering_controller/AckermannSteeringController") + (
+    f"""    rear_wheels_names: [rear_right_joint, rear_left_joint]
+    front_wheels_names: [front_right_steer, front_left_steer]
+    wheelbase: {BASE}
+    front_wheel_track: {KINGPINS}
+    rear_wheel_track: {TRACK}
+    rear_wheels_radius: {RADIUS}
+"""
+)
+ROS2_MECANUM = ROS2.format(type="mecanum_drive_controller/MecanumDriveController") + (
+    f"""    front_left_wheel_command_joint_name: front_left_joint
+    front_right_wheel_command_joint_name: front_right_joint
+    rear_left_wheel_command_joint_name: rear_left_joint
+    rear_right_wheel_command_joint_name: rear_right_joint
+    kinematics:
+      sum_of_robot_center_projection_on_X_Y_axis: {(BASE + TRACK) / 2}
+      wheels_radius: {RADIUS}
+"""
+)
+ROS2_TRICYCLE = ROS2.format(type="tricycle_controller/TricycleController") + (
+    f"""    traction_joint_name: front_left_joint
+    steering_joint_name: front_left_steer
+    wheel_radius: {RADIUS}
+"""
+)
+FILES = {
+    "ROS 1 steered": (ROS1_STEERED, ("wheel_separation_h", "wheel_radius")),
+    "ROS 1 mecanum": (ROS1_MECANUM, ("wheel_separation_x", "wheel_separation_y", "wheel_radius")),
+    "ROS 2 differential": (ROS2_DIFF, ("wheel_separation", "wheel_radius")),
+    "ROS 2 Ackermann": (
+        ROS2_ACKERMANN,
+        ("wheelbase", "front_wheel_track", "rear_wheel_track", "rear_wheels_radius"),
+    ),
+    "ROS 2 mecanum": (
+        ROS2_MECANUM,
+        ("sum_of_robot_center_projection_on_X_Y_axis", "wheels_radius"),
+    ),
+    "ROS 2 tricycle": (ROS2_TRICYCLE, ("wheel_radius",)),
+}
+
+
+@pytest.mark.parametrize("case", FILES.values(), ids=FILES)
+def test_controllers_sizes_are_those_of_the_car(told, take, tmp_path, case):
+    text, sizes = case
+    path = tmp_path / "car.yaml"
+    path.write_text(text)
+    assert told(car(), controller_files=[path]) == []
+    for size in sizes:
+        line = next(line for line in text.splitlines() if line.strip().startswith(f"{size}:"))
+        value = float(line.partition(":")[2])
+        wrong = text.replace(line, line.replace(f": {value}", f": {1.3 * value:.4g}"))
+        path.write_text(wrong)
+        (finding,) = told(car(), controller_files=[path])
+        assert finding.instead == f"{size}: {value:.6g}", size
+        assert finding.origin.line == text.splitlines().index(line) + 1
+        path.write_text(take(wrong, finding))
+        assert told(car(), controller_files=[path]) == []
