@@ -62,17 +62,24 @@ class World:
         world: ``empty``, another shipped world, a file, or a description.
         seed: Of all noise: the same seed and commands give the same bits.
         strict: Every warning about a file is an error.
+        bridge: Files of ros_gz_bridge, whose names topics have.
 
     Raises:
         DescriptionError: The world's file cannot be used.
     """
 
     def __init__(
-        self, world: str | Path | WorldDescription = "empty", *, seed: int = 0, strict: bool = False
+        self,
+        world: str | Path | WorldDescription = "empty",
+        *,
+        seed: int = 0,
+        strict: bool = False,
+        bridge: Sequence[str | Path] = (),
     ) -> None:
         if not isinstance(world, WorldDescription):
             world = descriptions.load_world(world)
-        self.session = Session(world, seed=seed, strict=strict)
+        files = [Path(file) for file in bridge]
+        self.session = Session(world, seed=seed, strict=strict, bridge=files)
         self.session.simulation.drain()  # this thread is the owner
 
     def __enter__(self) -> World:

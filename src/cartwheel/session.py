@@ -12,6 +12,7 @@ from cartwheel.geometry import Pose
 from cartwheel.graph import Graph
 from cartwheel.messages import message_class, stamp
 from cartwheel.plugins.control.files import ControllerFiles
+from cartwheel.plugins.gz_bridge import GzBridge, read_bridge
 from cartwheel.plugins.registry import attach
 from cartwheel.plugins.world_plugins import attach_world
 from cartwheel.simulation import Simulation
@@ -29,10 +30,23 @@ class Session:
         world: What stands in it from the start.
         seed: Of all noise.
         strict: Treat every warning about a file as an error.
+        bridge: Files of ros_gz_bridge, whose names topics have.
+
+    Raises:
+        CartwheelError: One of these cannot be used.
     """
 
-    def __init__(self, world: WorldDescription, *, seed: int = 0, strict: bool = False) -> None:
+    def __init__(
+        self,
+        world: WorldDescription,
+        *,
+        seed: int = 0,
+        strict: bool = False,
+        bridge: Sequence[Path] = (),
+    ) -> None:
         self.graph = Graph()
+        for path in bridge:
+            GzBridge.of(self.graph).add(read_bridge(path))
         self.strict = strict
         self.simulation = Simulation(
             world,
@@ -93,6 +107,14 @@ class Session:
             self.simulation.delete(spawned)
             raise
         return spawned
+
+    def report_unbridged(self) -> None:
+        """Tells what the files of ros_gz_bridge name and is not there; on the owner's thread."""
+        before = len(self.simulation.diagnostics)
+        names = {topic.name for topic in self.graph.topics()}
+        for fault in GzBridge.of(self.graph).faults(names):
+            self.simulation.engine.report(fault)
+        self._check(before)
 
     def set_clock_rate(self, rate: float) -> None:
         """Tells the time `rate` times a second of it; on the owner's thread.

@@ -37,6 +37,17 @@ def test_any_file_from_any_folder(program):
     assert "world   " in done.stdout
 
 
+def test_topics_have_the_names_of_a_bridge(program):
+    (program.folder / "bridge.yaml").write_text(
+        "- {ros_topic_name: /a, gz_topic_name: /b, ros_type_name: sensor_msgs/msg/Range}"
+    )
+    run = ("run", "--headless", "--for", "0.1", "--speed", "max", "--bridge", "bridge.yaml")
+    done = program(*run)
+    assert "bridge.yaml:1: nothing here publishes or reads" in done.stderr
+    done = program(*run, "--strict", status=2)
+    assert "nothing here publishes or reads" in done.stderr
+
+
 def test_a_world_is_the_world(program):
     done = program("run", "walls", "--headless", "--for", "0.1", "--speed", "max")
     assert "robot" not in done.stdout

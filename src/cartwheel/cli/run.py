@@ -51,6 +51,14 @@ def run(
             help="YAML of ros_control or ros2_control, whose controllers start; may be repeated.",
         ),
     ] = None,
+    bridge: Annotated[
+        list[Path] | None,
+        typer.Option(
+            "--bridge",
+            metavar="FILE",
+            help="YAML of ros_gz_bridge, whose names topics have; may be repeated.",
+        ),
+    ] = None,
     ros1: Annotated[
         bool,
         typer.Option("--ros1", help="Be a node of ROS 1, with Gazebo's topics and services."),
@@ -134,6 +142,7 @@ def run(
             model=model,
             package_path=tuple(package_path or ()),
             controllers=tuple(controllers or ()),
+            bridge=tuple(bridge or ()),
             ros1_node=ros1_node if ros1 else None,
             ros2_node=ros2_node if ros2 else None,
             rmw=arguments.rmw(rmw),

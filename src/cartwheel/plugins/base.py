@@ -20,6 +20,7 @@ from cartwheel.graph import (
     resolve_name,
 )
 from cartwheel.graph.reconfigure import OnChange, Value
+from cartwheel.plugins.gz_bridge import GzBridge
 from cartwheel.plugins.parameters import read
 from cartwheel.simulation import LinkHandle, Part
 
@@ -133,15 +134,14 @@ class Plugin(Generic[C]):
         self, topic: str, type_name: str, *, rate: float | None = None, qos: Qos = "default"
     ) -> Publisher:
         """A publisher that closes with the plugin."""
-        return self.keep(
-            self.graph.advertise(self.resolve(topic), type_name, node=self.node, rate=rate, qos=qos)
-        )
+        name = GzBridge.of(self.graph).published(self.resolve(topic), type_name)
+        return self.keep(self.graph.advertise(name, type_name, node=self.node, rate=rate, qos=qos))
 
     def subscribe(self, topic: str, type_name: str, callback: Callable[[Any], None]) -> None:
         """A subscription that closes with the plugin."""
-        self.keep(
-            self.graph.subscribe(self.resolve(topic), callback, type_name=type_name, node=self.node)
-        )
+        bridge = GzBridge.of(self.graph)
+        name, kind, taker = bridge.read(self.resolve(topic), type_name, callback)
+        self.keep(self.graph.subscribe(name, taker, type_name=kind, node=self.node))
 
     def serve(
         self,

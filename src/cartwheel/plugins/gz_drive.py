@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import dataclasses
-import re
 from dataclasses import dataclass
 from typing import Any
 
 from cartwheel.errors import PluginError
 from cartwheel.plugins.base import Plugin
+from cartwheel.plugins.gz_bridge import gz_topic
 from cartwheel.plugins.odometry import Odometry
 from cartwheel.plugins.parameters import tag
 
@@ -153,10 +153,7 @@ def report_limits(plugin: Plugin[Any], limits: GzLimitedParameters) -> None:
 
 def gz_name(plugin: Plugin[Any], topic: str, default: str) -> str:
     """A topic as new Gazebo names it: global, and under the model's name by default."""
-    topic = topic.strip() or f"model/{plugin.part.name}/{default}"
-    # Gazebo's names may hold dashes and blanks, and begin with digits.
-    parts = [re.sub(r"\W", "_", part, flags=re.ASCII) for part in topic.strip("/").split("/")]
-    return "".join(f"/_{part}" if part[:1].isdigit() else f"/{part}" for part in parts)
+    return gz_topic(topic.strip() or f"model/{plugin.part.name}/{default}")
 
 
 def gz_odometry(plugin: Plugin[Any], config: GzDriveParameters) -> Odometry:

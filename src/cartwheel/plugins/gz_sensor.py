@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import re
+import dataclasses
 from collections.abc import Iterable
 from typing import Any
 
 from cartwheel.description.model import PluginTag, Sensor
+from cartwheel.plugins.gz_bridge import gz_topic
 from cartwheel.plugins.parameters import tag
 from cartwheel.simulation import Part
 
@@ -81,7 +82,11 @@ def own_tag(sensor: Sensor, known: Iterable[str]) -> PluginTag:
     """The sensor's element as the tag of the plugin that serves it, with what that one reads."""
     tops = {name.split("/")[0] for name in known}
     element = sensor.element
-    children = tuple(child for child in element.children if child.tag in tops)
+    children = tuple(
+        dataclasses.replace(child, text=_spelt(child.text)) if child.tag == "topic" else child
+        for child in element.children
+        if child.tag in tops
+    )
     return PluginTag(
         name=sensor.name,
         filename="",
@@ -90,9 +95,14 @@ def own_tag(sensor: Sensor, known: Iterable[str]) -> PluginTag:
     )
 
 
+def _spelt(topic: str) -> str:
+    """A topic in ROS's letters, as relative as it was."""
+    topic = topic.strip()
+    spelt = gz_topic(topic) if topic else ""
+    return spelt if topic.startswith("/") else spelt.removeprefix("/")
+
+
 def default_topic(part: Part, sensor: Sensor, last: str) -> str:
     """Where a sensor publishes that names no topic: Gazebo's long name."""
     scope = ("world", part.world.name, "model", part.name, "link", sensor.link)
-    parts = (*scope, "sensor", sensor.name, last)
-    names = (re.sub(r"\W", "_", name, flags=re.ASCII) for name in parts)
-    return "".join(f"/_{name}" if name[:1].isdigit() else f"/{name}" for name in names)
+    return gz_topic("/".join((*scope, "sensor", sensor.name, last)))

@@ -35,6 +35,8 @@ class Options:
     package_path: tuple[Path, ...] = ()
     controllers: tuple[Path, ...] = ()
     """YAML files whose controllers start."""
+    bridge: tuple[Path, ...] = ()
+    """YAML files of ros_gz_bridge."""
     ros1_node: str | None = None
     """Name of the ROS 1 node; None is to be none."""
     ros1_arguments: tuple[str, ...] = ()

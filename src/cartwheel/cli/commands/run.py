@@ -56,7 +56,7 @@ def simulate(options: Options) -> None:
     from cartwheel.control.server import ControlServer
     from cartwheel.session import Session
 
-    session = Session(world, seed=options.seed, strict=options.strict)
+    session = Session(world, seed=options.seed, strict=options.strict, bridge=options.bridge)
     name = None
     if robot is None and options.controllers:
         raise CartwheelError(
@@ -65,6 +65,7 @@ def simulate(options: Options) -> None:
     if robot is not None:
         pose = placed(robot.pose, options.place)
         name = session.spawn(robot, name=options.model, pose=pose, controllers=options.controllers)
+    session.report_unbridged()
     where = world_title(world)
     title = f"{name} in {where}" if name else where
     # Ctrl-C is how an endless run is meant to end, so it is no failure; a run that was to

@@ -1,0 +1,137 @@
+"""Files of ros_gz_bridge: topics have the names and types that they have in ROS."""
+
+import pytest
+from tests.plugins.conftest import cart_sdf
+
+import cartwheel as cw
+from cartwheel.errors import CartwheelError
+from cartwheel.plugins.gz_bridge import read_bridge
+
+DRIVE = """<plugin filename="gz-sim-diff-drive-system" name="d">
+  <left_joint>left_joint</left_joint><right_joint>right_joint</right_joint>
+  <wheel_separation>0.4</wheel_separation><wheel_radius>0.1</wheel_radius></plugin>"""
+CAMERA = """<model name="eye"><static>true</static><link name="l"><sensor name="s" type="camera">
+  <topic>front-eye/image</topic><update_rate>10</update_rate><camera><image><width>8</width>
+  <height>8</height></image></camera></sensor></link></model>"""
+
+
+@pytest.fixture
+def bridged(tmp_path):
+    """A world of models, all of it in a file, with the topics that a bridge makes of them."""
+    worlds = []
+
+    def made(entries, *models, version="1.9"):
+        file, bridge = tmp_path / "w.sdf", tmp_path / "bridge.yaml"
+        file.write_text(f'<sdf version="{version}"><world name="w">{"".join(models)}</world></sdf>')
+        bridge.write_text(entries)
+        world = cw.World(file, bridge=[bridge])
+        world.session.report_unbridged()
+        worlds.append(world)
+        return world
+
+    yield made
+    for each in worlds:
+        each.close()
+
+
+def cart():
+    return cart_sdf({"left": (0, 0.2), "right": (0, -0.2)}, DRIVE)
+
+
+def topics(world):
+    return {topic.name: topic.type for topic in world.graph.topics()}
+
+
+def told(world):
+    return [d.message for d in world.diagnostics if d.severity != "info"]
+
+
+def test_topics_have_their_names_in_ros_and_commands_their_types(bridged):
+    world = bridged(
+        """
+- ros_topic_name: /clock
+  gz_topic_name: /world/w/clock
+  ros_type_name: rosgraph_msgs/msg/Clock
+- ros_topic_name: drive
+  gz_topic_name: /model/cart/cmd_vel
+  ros_type_name: geometry_msgs/msg/TwistStamped
+  gz_type_name: gz.msgs.Twist
+  direction: ROS_TO_GZ
+- {ros_topic_name: /odom, gz_topic_name: model/cart/odometry, ros_type_name: nav_msgs/Odometry}
+""",
+        cart(),
+    )
+    assert told(world) == []
+    assert topics(world) == {
+        "/clock": "rosgraph_msgs/msg/Clock",
+        "/drive": "geometry_msgs/msg/TwistStamped",
+        "/odom": "nav_msgs/msg/Odometry",
+        "/model/cart/tf": "tf2_msgs/msg/TFMessage",
+    }
+    box = world.mailbox("/odom", size=1)
+    world.publish("/drive", twist={"linear": {"x": 0.3}})
+    world.run(1.0)
+    (message,) = box.drain()
+    assert message.twist.twist.linear.x == pytest.approx(0.3, rel=0.02)
+
+
+def test_what_stands_beside_an_image_goes_with_it(bridged):
+    # A dash is a letter of Gazebo's and none of ROS's.
+    world = bridged(
+        "- {ros_topic_name: /front/rgb, gz_topic_name: /front-eye/image, "
+        "ros_type_name: sensor_msgs/msg/Image}",
+        CAMERA,
+    )
+    assert told(world) == []
+    assert set(topics(world)) >= {"/front/rgb", "/front/rgb/compressed", "/front_eye/camera_info"}
+
+
+def test_what_has_no_effect_is_told(bridged):
+    world = bridged(
+        """- {topic_name: /model/cat/cmd_vel, ros_type_name: geometry_msgs/msg/Twist}
+- ros_topic_name: /a
+  gz_topic_name: /model/cart/odometry
+  ros_type_name: nav_msgs/msg/Path
+- ros_topic_name: /b
+  gz_topic_name: /model/cart/odometry
+  ros_type_name: nav_msgs/msg/Odometry
+""",
+        cart(),
+    )
+    warnings = [d for d in world.diagnostics if d.severity == "warning"]
+    assert [(d.origin.line, d.message) for d in warnings] == [
+        (5, '/b has no effect: "/model/cart/odometry" is /a already, and has one name here'),
+        (
+            1,
+            'nothing here publishes or reads "/model/cat/cmd_vel", which is /model/cat/cmd_vel in '
+            'ROS. Did you mean "/model/cart/cmd_vel"?',
+        ),
+        (2, "/a has the type nav_msgs/msg/Odometry here, not nav_msgs/msg/Path"),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "reason"),
+    [
+        ("a: 1", 0, "the file is no list of topics"),
+        ("- [", 1, "the file is no YAML: "),
+        ("- one", 1, "an entry is no mapping"),
+        ("\n- {ros_topic_name: /a}", 2, "an entry needs ros_topic_name, gz_topic_name and ros_"),
+        ("- {topic_name: <ns>/a, ros_type_name: a/msg/B}", 1, '"<ns>/a" is no valid name'),
+    ],
+)
+def test_a_file_that_cannot_be_used(text, line, reason, tmp_path):
+    file = tmp_path / "bridge.yaml"
+    file.write_text(text)
+    with pytest.raises(CartwheelError) as raised:
+        read_bridge(file)
+    assert raised.value.message.startswith(reason)
+    assert (raised.value.origin.file, raised.value.origin.line) == (str(file), line)
+
+
+def test_a_file_that_is_empty_or_missing(tmp_path):
+    file = tmp_path / "bridge.yaml"
+    with pytest.raises(CartwheelError, match="cannot be read"):
+        read_bridge(file)
+    file.write_text("---\n")
+    assert read_bridge(file) == []
