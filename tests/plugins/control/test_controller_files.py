@@ -105,6 +105,26 @@ def test_names_with_a_namespace(spawn, key):
     world.graph.service("/robot1/controller_manager/list_controllers")
 
 
+def test_a_key_that_stands_twice_holds_both(spawn):
+    world = spawn(f"""
+/**:
+  controller_manager:
+    ros__parameters:
+      update_rate: 100
+      c: {{type: {GROUP}}}
+/**:
+  c:
+    ros__parameters:
+      joints: [wrong]
+/**:
+  c:
+    ros__parameters:
+      joints: [beam_joint]
+""")
+    assert started(world) == ["c"]
+    assert warnings(world) == []
+
+
 def test_nested_namespaces_are_the_same(spawn):
     world = spawn(
         f"""

@@ -106,7 +106,12 @@ def read_yaml(path: Path) -> dict[str, Any]:
 
     origin = Origin(file=str(path))
     try:
-        content = yaml.safe_load(path.read_text())
+        text = path.read_text()
+        loader = yaml.SafeLoader(text)
+        node = loader.get_single_node()
+        if node is not None and "ros__parameters" in text:
+            _join(node, set())
+        content = loader.construct_document(node) if node is not None else None
     except OSError as error:
         raise PluginError(
             f"the file cannot be read: {error.strerror or error}", origin=origin
@@ -125,6 +130,29 @@ def read_yaml(path: Path) -> dict[str, Any]:
     if not isinstance(content, dict):
         raise PluginError("the file holds no parameters by name", origin=origin)
     return content
+
+
+def _join(node: Any, seen: set[int]) -> None:
+    """Joins mappings of a file that stand under the same key, as ROS 2 reads them.
+
+    YAML's own rule, which ROS 1 keeps to, is that the last one counts.
+    """
+    if node.id == "scalar" or id(node) in seen:
+        return
+    seen.add(id(node))
+    if node.id == "mapping":
+        kept: list[tuple[Any, Any]] = []
+        first: dict[str, Any] = {}
+        for key, value in node.value:
+            before = first.get(str(key.value))
+            if before is not None and before.id == value.id == "mapping":
+                before.value = [*before.value, *value.value]
+            else:
+                kept.append((key, value))
+                first[str(key.value)] = value
+        node.value = kept
+    for each in node.value:
+        _join(each[1] if node.id == "mapping" else each, seen)
 
 
 def for_robot(content: dict[str, Any], path: Path, robot: RobotDescription) -> dict[str, Any]:
