@@ -134,3 +134,35 @@ def test_a_small_plane_is_drawn_as_large_as_it_says_and_a_ground_to_the_horizon(
     )
     model = make.world(sign, ground=None).session.simulation.model
     assert model.geom_size[0, :2] == pytest.approx(half)
+
+
+def block(name: str, z: float) -> str:
+    """A cube of 0.2 m and 1 kg."""
+    return f"""<link name="{name}"><inertial><origin xyz="0 0 {z}"/><mass value="1"/>
+      <inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial><collision>
+      <origin xyz="0 0 {z}"/><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link>"""
+
+
+@pytest.mark.parametrize("stands", [True, False])
+def test_links_that_a_joint_connects_do_not_collide(stands: bool) -> None:
+    # The tip is fixed to the link that turns, and with it connected to the base; the far one is
+    # connected to that, 0.1 m inside of the base.
+    anchor = """<link name="world"/><joint name="stand" type="fixed"><parent link="world"/>
+      <child link="base"/></joint>"""
+    urdf = f"""<robot name="r">{block("base", 0.0)}{block("turn", 0.3)}{block("tip", 0.1)}
+      {block("far", 0.0)}{anchor if stands else ""}
+      <joint name="j1" type="continuous"><parent link="base"/><child link="turn"/>
+        <axis xyz="0 0 1"/></joint>
+      <joint name="held" type="fixed"><parent link="turn"/><child link="tip"/></joint>
+      <joint name="j2" type="continuous"><parent link="tip"/><child link="far"/>
+        <origin xyz="0 0 0.1"/><axis xyz="0 0 1"/></joint>
+      <gazebo><self_collide>true</self_collide></gazebo></robot>"""
+    with cw.World("empty") as world:
+        world.spawn(load_text(urdf, file="r.urdf"), z=5.0)
+        world.run(0.01)
+        simulation = world.session.simulation
+        touching = {
+            frozenset(simulation.model.geom(geom).name.split("::")[1] for geom in pair)
+            for pair in simulation.data.contact.geom
+        }
+        assert touching == {frozenset(("base", "far"))}

@@ -202,10 +202,29 @@ class BodyBuilder:
                 )
 
     def _exclude(self, entry: ModelEntry, description: RobotDescription) -> None:
-        """Links of one model collide only where both ask for it, as in Gazebo."""
+        """Links of one model collide only where both ask for it, as in Gazebo.
+
+        Those that a joint connects never do. The engine knows that of all but a first joint
+        behind what stands in the world.
+        """
         if description.static:
             return
         solid = [link for link in description.links if link.collisions]
+        inbound: dict[str, Joint] = {}
+        for joint in description.joints:
+            inbound.setdefault(joint.child, joint)
+
+        def rigid(name: str) -> str:
+            """The first of the links that are fixed to one another, this one among them."""
+            joint = inbound.get(name)
+            while joint is not None and joint.type == "fixed" and joint.parent != "world":
+                name = joint.parent
+                joint = inbound.get(name)
+            return name
+
+        connected = {
+            frozenset((rigid(joint.parent), rigid(joint.child))) for joint in description.joints
+        }
 
         def collides(link: Link) -> bool:
             return description.self_collide if link.self_collide is None else link.self_collide
@@ -216,7 +235,8 @@ class BodyBuilder:
 
         for i, first in enumerate(solid):
             for second in solid[i + 1 :]:
-                if not (collides(first) and collides(second)):
+                joined = frozenset((rigid(first.name), rigid(second.name))) in connected
+                if joined or not (collides(first) and collides(second)):
                     self._spec.add_exclude(bodyname1=body(first), bodyname2=body(second))
 
     def _add_mimics(self, entry: ModelEntry) -> None:

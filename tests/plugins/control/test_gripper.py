@@ -18,15 +18,16 @@ from cartwheel.messages import from_dict
 GOAL = "/gripper/gripper_cmd/goal"
 SUCCEEDED, ABORTED, REJECTED = 3, 4, 5
 BODY = """<link name="palm"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0"
-  ixz="0" iyz="0"/></inertial>{stop}</link><joint name="bolt" type="fixed"><parent link="world"/>
+  ixz="0" iyz="0"/></inertial></link>{stop}<joint name="bolt" type="fixed"><parent link="world"/>
   <child link="palm"/><origin xyz="0 0 1"/></joint>
   <link name="finger"><inertial><mass value="0.2"/><inertia ixx="1e-4" iyy="1e-4" izz="1e-4"
   ixy="0" ixz="0" iyz="0"/></inertial><collision><geometry><box size="0.02 0.02 0.02"/></geometry>
   </collision></link><joint name="finger_joint" type="prismatic"><parent link="palm"/>
   <child link="finger"/><axis xyz="1 0 0"/><limit lower="0" upper="0.3" effort="50" velocity="1"/>
   </joint>"""
-STOP = """<collision><origin xyz="0.15 0 0"/><geometry><box size="0.02 0.1 0.1"/></geometry>
-  </collision>"""
+STOP = """<link name="stop"><collision><origin xyz="0.15 0 0"/><geometry><box size="0.02 0.1 0.1"/>
+  </geometry></collision></link><joint name="post" type="fixed"><parent link="world"/>
+  <child link="stop"/><origin xyz="0 0 1"/></joint>"""
 """Its face is at 0.14 m, which a finger of 0.02 m reaches at 0.13 m."""
 
 
