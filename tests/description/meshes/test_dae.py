@@ -86,6 +86,14 @@ def test_unit_is_applied_and_up_axis_is_not(tmp_path):
     assert (part.name, part.geometry) == ("n", "part")
 
 
+def test_an_accessor_that_counts_numbers_instead_of_points_is_read(tmp_path):
+    text = document(surface=TRIANGLE.format(inputs=VERTEX))
+    right = '<accessor source="#pa" count="3"'
+    assert right in text
+    (part,) = load(tmp_path, text.replace(right, right.replace("3", "9")))
+    assert points(part) == [(0, 0, 0), (0, 1, 0), (1, 0, 0)]
+
+
 def test_nodes_place_their_geometry(tmp_path):
     # Outer: 90 degrees about z, then 10 along the turned x, which is y. Inner: twice as large.
     nodes = """<node id="outer"><rotate>0 0 1 90</rotate><translate>10 0 0</translate>
