@@ -137,6 +137,14 @@ def test_continuous_joints_have_no_range_but_effort():
     assert (axis.lower, axis.upper, axis.effort, axis.velocity) == (None, None, 5, None)
 
 
+@pytest.mark.parametrize("what", ["effort", "velocity"])
+def test_an_effort_or_velocity_below_zero_means_no_limit(what):
+    limit = f'<limit {what}="-1"/>'
+    robot = load_text(urdf(link("a"), link("b"), joint("j", "a", "b", limit, "continuous")))
+    assert getattr(robot.joints[0].axis, what) is None
+    assert [f"the {what} limit -1 is below 0" in d.message for d in robot.diagnostics] == [True]
+
+
 def test_mimic():
     robot = load(
         urdf(
@@ -281,11 +289,6 @@ ERRORS = [
         ),
         4,
         'joint "j": the lower limit 2 is above the upper limit 1',
-    ),
-    (
-        urdf(link("a"), link("b"), joint("j", "a", "b", '<limit effort="-1"/>', "continuous")),
-        4,
-        'joint "j": the effort limit -1 is below 0',
     ),
     (
         urdf(link("a"), link("b"), joint("j", "a", "b", '<dynamics damping="-1"/>', "continuous")),

@@ -93,14 +93,8 @@ def _axis(node: Node, limits: Node | None, name: str, kind: JointType, ctx: Urdf
     if limits is not None:
         lower = limits.optional_number_of("lower", infinite=True)
         upper = limits.optional_number_of("upper", infinite=True)
-        effort = limits.optional_number_of("effort", infinite=True)
-        velocity = limits.optional_number_of("velocity", infinite=True)
-        for what, value in (("effort", effort), ("velocity", velocity)):
-            if value is not None and value < 0:
-                raise limits.fail(
-                    f'joint "{name}": the {what} limit {value:g} is below 0',
-                    "Leave it out where there is no limit.",
-                )
+        effort = _bound(limits, "effort", name, ctx)
+        velocity = _bound(limits, "velocity", name, ctx)
         if kind in ("revolute", "prismatic"):
             lower, upper = lower or 0.0, upper or 0.0
             if lower > upper:
@@ -134,6 +128,16 @@ def _axis(node: Node, limits: Node | None, name: str, kind: JointType, ctx: Urdf
         damping=damping,
         friction=friction,
     )
+
+
+def _bound(limits: Node, attribute: str, joint: str, ctx: UrdfContext) -> float | None:
+    """An effort or velocity that a joint may have; what is below 0 means none, as in SDF."""
+    value = limits.optional_number_of(attribute, infinite=True)
+    if value is None or value >= 0:
+        return value
+    told = f'joint "{joint}": the {attribute} limit {value:g} is below 0: there is none, as in SDF'
+    ctx.tell("info", told, limits.origin)
+    return None
 
 
 def _finite(value: float | None) -> float | None:
