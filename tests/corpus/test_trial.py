@@ -119,6 +119,12 @@ def test_the_controllers_beside_a_robot_take_its_joint_where_they_are_told(tmp_p
         "arm_controller:\n  type: position_controllers/JointTrajectoryController\n"
         "  joints: [shoulder]\n"
     )
+    # Of ROS 2, and so for another robot.
+    (tmp_path / "config" / "ros2.yaml").write_text(
+        "controller_manager:\n  ros__parameters:\n    other:\n"
+        "      type: position_controllers/JointGroupPositionController\n"
+        "other:\n  ros__parameters:\n    joints: [shoulder]\n"
+    )
     verdict = tried(ARM.format(kind="Position"))
     assert verdict.controllers == ("arm_controller",)
     (reach,) = verdict.reaches

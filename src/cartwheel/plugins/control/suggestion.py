@@ -1,4 +1,4 @@
-"""Which files could start the controllers of a robot that starts none by itself."""
+"""Which files could start the controllers of a robot of ros_control, which starts none itself."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from cartwheel.errors import CartwheelError
-from cartwheel.plugins.control.files import read_parameters, ros1_entries
+from cartwheel.plugins.control.files import is_ros2, read_parameters, ros1_entries
 
 _LEVELS = 4
 """Folders above the robot's file that are looked through."""
@@ -25,6 +25,8 @@ def files_for(robot: Path, joints: Sequence[str]) -> list[Path]:
         try:
             content = read_parameters(path)
         except CartwheelError:
+            continue
+        if is_ros2(content):
             continue
         entries = ros1_entries(content, str(path))
         words = {word for entry in entries for word in _words(entry.values)}
