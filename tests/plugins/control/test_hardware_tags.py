@@ -72,6 +72,21 @@ def test_a_joint_follows_another_as_the_urdf_says(bench, tmp_path):
     assert made.position("b_joint") == pytest.approx(2 * 0.3 + 0.1, abs=0.02)
 
 
+@pytest.mark.parametrize("interface", ["Position", "Effort"])
+def test_a_joint_that_follows_is_not_held_by_a_transmission_of_its_own(bench, interface):
+    """As of the second finger of grippers, which no controller commands."""
+    mimic = '<mimic joint="a_joint" multiplier="-1"/></joint>'
+    body = two_beams(axis="0 0 1")
+    body = body[: body.rindex("</joint>")] + mimic
+    tags = transmission("a_joint", "Position") + transmission("b_joint", interface)
+    lead = {"type": "position_controllers/JointPositionController", "joint": "a_joint"}
+    made = bench(robot(body + tags, ROS1), {"lead": lead})
+    made.publish("/lead/command", "std_msgs/msg/Float64", data=0.3)
+    made.world.run(1.0)
+    assert made.position("a_joint") == pytest.approx(0.3, abs=0.01)
+    assert made.position("b_joint") == pytest.approx(-0.3, abs=0.02)
+
+
 def test_a_joint_of_several_interfaces_takes_what_its_controller_commands(bench, tmp_path):
     """As universal robots' have position and velocity; one controller runs, then the other."""
     made = ros2(

@@ -81,6 +81,8 @@ class JointHardware:
         self.strength = math.inf
         """N m or N that a held position may take, where a controller grips more gently."""
         self._damping = 0.0
+        self._led = joint.mimic is not None or interfaces.mimic is not None
+        """Whether it follows another joint, and must not be held while nothing commands it."""
         if interfaces.mimic is not None and joint.mimic is None:
             leader, multiplier = interfaces.mimic
             part.mimic(name, Mimic(joint=leader, multiplier=multiplier), origin=origin)
@@ -165,6 +167,10 @@ class JointHardware:
         """
         commands = self.interfaces.commands
         if not commands:
+            return
+        if self._led and self.servo is not None:
+            self.active = ""
+            self.servo.release()
             return
         self.activate(commands[0])
         if holds and self.servo is not None:
