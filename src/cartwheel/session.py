@@ -67,7 +67,7 @@ class Session:
         *,
         name: str | None = None,
         pose: Pose | None = None,
-        namespace: str = "",
+        namespace: str = "/",
         frame_prefix: str = "",
         controllers: Sequence[Path] = (),
     ) -> str:
@@ -77,7 +77,8 @@ class Session:
             description: Of the model.
             name: In this world; the description's own when None.
             pose: Of its root link; the description's own when None.
-            namespace: Of its topics and services, where a plugin names none.
+            namespace: Of its topics and services, where a plugin names none; ROS 1's spawn_model
+                says "/" as well. "" leaves it to each plugin.
             frame_prefix: Of its frames.
             controllers: YAML files whose controllers its manager starts by itself.
 

@@ -244,3 +244,61 @@ def test_a_contact_sensor_of_new_gazebo_needs_no_plugin(make):
     (state,) = messages[-1].states
     assert state.collision1_name == "box::l::c"
     assert state.total_wrench.force.z == pytest.approx(3 * G, rel=0.02)
+
+
+STOOL = """<model name="stool"><pose>0 0 0.25 0 0 0</pose><link name="seat"><inertial>
+  <pose>0 0.1 0 0 0 0</pose><mass>4</mass><inertia><ixx>.2</ixx><iyy>.2</iyy><izz>.2</izz></inertia>
+  </inertial>{legs}
+  <sensor name="s" type="contact"><update_rate>50</update_rate><contact>{watched}</contact>
+    <plugin name="b" filename="libgazebo_ros_bumper.so">
+    <bumperTopicName>bumpers</bumperTopicName><frameName>seat</frameName></plugin></sensor>
+  </link></model>"""
+LEGS = {"left": (-0.4, -0.2), "right": (0.4, -0.2), "back": (0.0, 0.4)}
+
+
+def test_a_sensor_watches_several_collisions(make):
+    """Three legs bear what the lever says; the one that is not named is not told of."""
+    legs = "".join(
+        f"""<collision name="{name}"><pose>{x} {y} 0 0 0 0</pose><geometry><sphere>
+        <radius>0.25</radius></sphere></geometry></collision>"""
+        for name, (x, y) in LEGS.items()
+    )
+    watched = "".join(f"<collision>{name}</collision>" for name in ("back", "left"))
+    world = make.world(make.sdf(STOOL.format(legs=legs, watched=watched)))
+    world.run(2.0)
+    message = read(world, 0.1)[-1]
+    assert [state.collision1_name for state in message.states] == [
+        "stool::seat::back",
+        "stool::seat::left",
+    ]
+    # The weight lies 0.3 m of 0.6 m behind the front legs, which share the other half.
+    borne = dict(zip(("back", "left"), (0.5, 0.25), strict=True))
+    for state, (leg, share) in zip(message.states, borne.items(), strict=True):
+        assert state.collision2_name == "ground_plane::link::collision"
+        assert vector(state.total_wrench.force) == pytest.approx([0, 0, share * 4 * G], abs=0.02)
+        (place,), (normal,) = state.contact_positions, state.contact_normals
+        assert vector(place) == pytest.approx([*LEGS[leg], 0], abs=1e-3)
+        assert vector(normal) == pytest.approx([0, 0, 1], abs=1e-6)
+        assert 0 <= state.depths[0] < 1e-3
+        # About the centre of mass of the seat.
+        arm = vector(place) - [0, 0.1, 0.25]
+        lever = np.cross(arm, vector(state.total_wrench.force))
+        assert vector(state.total_wrench.torque) == pytest.approx(lever, abs=1e-3)
+    assert message.header.frame_id == "seat"
+
+
+def test_what_rests_on_a_bumper_that_is_bolted_down_is_felt_too(make):
+    plate = make.sdf(
+        """<model name="plate"><link name="link"><pose>0 0 0.05 0 0 0</pose>
+        <collision name="c"><geometry><box><size>1 1 0.1</size></box></geometry></collision>
+        <sensor name="s" type="contact"><update_rate>50</update_rate>
+          <contact><collision>c</collision></contact>
+          <plugin name="b" filename="libgazebo_ros_bumper.so">
+            <bumperTopicName>bumpers</bumperTopicName></plugin></sensor></link>
+        <joint name="bolt" type="fixed"><parent>world</parent><child>link</child></joint></model>"""
+    )
+    world = make.world(plate, make.box("box", (0.3, 0.3, 0.3), mass=5, pose=Pose((0, 0, 0.25))))
+    world.run(5.0)
+    for message in read(world, 0.1):
+        (state,) = message.states
+        assert vector(state.total_wrench.force) == pytest.approx([0, 0, -5 * G], abs=1e-3)

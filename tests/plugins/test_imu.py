@@ -1,11 +1,19 @@
 """What an inertial measurement unit reads: REP 145, at the place where it is mounted."""
 
+import dataclasses
 import math
 
 import numpy as np
 import pytest
 
-from cartwheel.geometry import Pose, matrix_from_quat, quat_from_rpy
+from cartwheel.geometry import (
+    Pose,
+    matrix_from_quat,
+    quat_conjugate,
+    quat_from_rpy,
+    quat_multiply,
+    rotate,
+)
 
 G = 9.8
 COMMAND = "/part2_cmr/cmd_vel"
@@ -203,13 +211,57 @@ def test_the_sensors_plugin_reads_the_same(make):
       <collision name="c"><geometry><box><size>0.4 0.4 0.1</size></box></geometry></collision>
       <sensor name="s" type="imu"><update_rate>50</update_rate>
         <plugin name="imu" filename="libgazebo_ros_imu_sensor.so"><topicName>imu</topicName>
-        </plugin></sensor>
+        <robotNamespace>/</robotNamespace></plugin></sensor>
     </link></model>"""
     world = make.world(make.sdf(sensor))
     world.run(1.0)
     messages = read(world, 1.0)
     assert len(messages) == 50
     assert mean(messages, "linear_acceleration") == pytest.approx([0, 0, G], abs=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("asked", "sensors", "counted"), [(100, 50, 50), (25, 50, 25), (0, 40, 40), (20, 0, 20)]
+)
+def test_the_slower_of_the_two_rates_counts(make, asked, sensors, counted):
+    model = f"""<model name="unit"><static>1</static><link name="link">
+      <sensor name="s" type="imu"><update_rate>{sensors}</update_rate>
+        <plugin name="imu" filename="libgazebo_ros_imu_sensor.so"><topicName>/imu</topicName>
+        <updateRateHZ>{asked}</updateRateHZ></plugin></sensor></link></model>"""
+    assert len(read(make.world(make.sdf(model)), 1.0)) == counted
+
+
+@pytest.mark.parametrize("how", ["spawned", "of the world"])
+def test_its_orientation_can_be_against_the_first(make, how):
+    """A unit on its side, on a model that is turned by 1 rad, and later by 1.7 rad more."""
+    model = make.sdf(
+        """<model name="unit"><link name="base"><pose>0 0 1 0 0 0.3</pose></link>
+        <link name="link"><pose>1 0 1 0.4 0 0</pose>
+        <inertial><mass>4</mass><inertia><ixx>0.06</ixx><iyy>0.06</iyy><izz>0.1</izz></inertia>
+        </inertial><sensor name="s" type="imu"><pose>0 0 0 0 1.2 0</pose>
+        <update_rate>50</update_rate><plugin name="p" filename="libgazebo_ros_imu_sensor.so">
+        <topicName>/imu</topicName><initialOrientationAsReference>true
+        </initialOrientationAsReference></plugin></sensor></link>
+        <joint name="fix" type="fixed"><parent>base</parent><child>link</child></joint>
+        <joint name="turn" type="revolute"><parent>world</parent><child>base</child>
+        <axis><xyz>0 0 1</xyz></axis></joint></model>"""
+    )
+    pose = Pose((0, 0, 0), quat_from_rpy(0, 0, 1.0))
+    if how == "spawned":
+        world = make.world()
+        world.session.spawn(model, pose=pose)
+    else:
+        world = make.world(dataclasses.replace(model, pose=pose))
+    first = read(world, 0.2)[-1].orientation
+    assert [first.x, first.y, first.z] == pytest.approx([0, 0, 0], abs=1e-9)
+    world.session.simulation.data.joint("unit::turn").qpos[0] = 1.7
+    turned = read(world, 0.2)[-1].orientation
+    # The vertical in the unit's axes at first: the turn's axis is the same in both.
+    x, y, z = rotate(quat_conjugate(quat_multiply(
+        quat_from_rpy(0.4, 0, 0), quat_from_rpy(0, 1.2, 0))), (0.0, 0.0, 1.0))  # fmt: skip
+    sin = math.sin(0.85)
+    expected = [sin * x, sin * y, sin * z, math.cos(0.85)]
+    assert [turned.x, turned.y, turned.z, turned.w] == pytest.approx(expected, abs=1e-9)
 
 
 def test_its_service_answers_as_gazebos(make):

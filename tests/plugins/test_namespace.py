@@ -64,3 +64,40 @@ def test_a_drive_puts_its_namespace_before_its_frames(tag, spawner, prefix, fram
         world.subscribe(topic, seen.append)
         world.run(0.1)
         assert (seen[0].header.frame_id, seen[0].child_frame_id) == frames
+
+
+NAMED = """<model name="two"><link name="base"/><link name="arm"><inertial><mass>1</mass>
+  <inertia><ixx>1</ixx><iyy>1</iyy><izz>1</izz></inertia></inertial>
+  <sensor name="s" type="imu"><plugin name="i" filename="libgazebo_ros_imu_sensor.so">{tag}
+  </plugin></sensor></link><joint name="j" type="continuous"><parent>base</parent>
+  <child>arm</child><axis><xyz>0 0 1</xyz></axis></joint>
+  <plugin name="p" filename="libgazebo_ros_joint_state_publisher.so">{tag}</plugin></model>"""
+
+
+@pytest.mark.parametrize(
+    ("tag", "spawner", "states", "imu"),
+    [
+        ("", None, "/two/joint_states", "/two/imu_data"),
+        ("", "", "/two/joint_states", "/two/imu_data"),
+        ("", "/", "/joint_states", "/imu_data"),
+        ("", "/r1", "/r1/joint_states", "/r1/imu_data"),
+        ("<robotNamespace>/</robotNamespace>", None, "/joint_states", "/imu_data"),
+        ("<robotNamespace>a/b</robotNamespace>", "/r1", "/a/b/joint_states", "/a/b/imu_data"),
+        ("<robotNamespace></robotNamespace>", "/r1", "/two/joint_states", "/imu_data"),
+        ("<ros/>", None, "/joint_states", "/i/out"),
+    ],
+)
+def test_two_plugins_take_the_models_name_where_nobody_says_one(make, tag, spawner, states, imu):
+    """Gazebo's joint states and IMU of a sensor; spawn_model says "/" by itself."""
+    model = make.sdf(NAMED.format(tag=tag))
+    world = make.world(*([model] if spawner is None else []))
+    if spawner is not None:
+        world.session.spawn(model, namespace=spawner)
+    assert {states, imu} <= {topic.name for topic in world.graph.topics()}
+
+
+def test_who_is_spawned_by_hand_has_no_namespace(make):
+    """As spawn_model has it: its joint states are where robot_state_publisher reads them."""
+    world = make.world()
+    world.session.spawn(make.sdf(NAMED.format(tag="")))
+    assert "/joint_states" in {topic.name for topic in world.graph.topics()}

@@ -119,6 +119,54 @@ def test_hector_gps_takes_the_worlds_reference_when_asked(make, read):
     assert fix.altitude == pytest.approx(12.0)
 
 
+@pytest.mark.parametrize("heading", [0.0, 30.0, 90.0, -135.0, 400.0])
+def test_hector_gps_turns_place_and_velocity_by_the_heading(make, read, heading):
+    """The world's x axis points that far from the north towards the east."""
+    tags = f"""<referenceLatitude>-20</referenceLatitude>
+      <referenceLongitude>150</referenceLongitude>
+      <referenceHeading>{heading}</referenceHeading><updateRate>10</updateRate>"""
+    plugin = f'<plugin name="g" filename="libhector_gazebo_ros_gps.so">{tags}</plugin>'
+    world = floating(make, unit(plugin), Pose((300, -70, 5)))
+    world.session.simulation.data.joint("unit::link").qvel[:3] = [1.0, 2.0, 0.5]
+    box = world.mailbox("/fix_velocity")
+    fix = read(world, "/fix", 0.2)[0]
+    turn = math.radians(heading)
+    # Ahead is (cos, sin) in north and east, left of it (sin, -cos).
+    axes = np.array([[math.cos(turn), math.sin(turn)], [math.sin(turn), -math.cos(turn)]])
+    north, east = np.array([300, -70]) @ axes
+    datum = Datum(latitude=math.radians(-20), longitude=math.radians(150))
+    expected = datum.locate((east, north, 5.0))
+    assert fix.latitude == pytest.approx(math.degrees(expected[0]), abs=2e-7)
+    assert fix.longitude == pytest.approx(math.degrees(expected[1]), abs=2e-7)
+    north, east = np.array([1.0, 2.0]) @ axes
+    assert vector(box.drain()[0].vector) == pytest.approx([north, -east, 0.5])
+
+
+@pytest.mark.parametrize("heading", [0.0, 30.0, -135.0])
+def test_sensors_take_the_worlds_heading(make, read, heading):
+    """Here it is the angle of the world's x axis from the east towards the north (SDF)."""
+    sensor = """<sensor name="gps" type="gps"><update_rate>10</update_rate>
+      <plugin name="g" filename="libgazebo_ros_gps_sensor.so"/></sensor>"""
+    world = floating(
+        make,
+        unit(sensor=sensor),
+        Pose((300, -70, 5)),
+        spherical_coordinates=spherical(60.0, -100.0, heading=heading),
+    )
+    world.session.simulation.data.joint("unit::link").qvel[:3] = [1.0, 2.0, 0.5]
+    box = world.mailbox("/g/vel")
+    fix = read(world, "/g/out", 0.2)[0]
+    turn = math.radians(heading)
+    axes = np.array([[math.cos(turn), math.sin(turn)], [-math.sin(turn), math.cos(turn)]])
+    east, north = np.array([300, -70]) @ axes
+    datum = Datum(latitude=math.radians(60), longitude=math.radians(-100))
+    expected = datum.locate((east, north, 5.0))
+    assert fix.latitude == pytest.approx(math.degrees(expected[0]), abs=1e-7)
+    assert fix.longitude == pytest.approx(math.degrees(expected[1]), abs=1e-7)
+    east, north = np.array([1.0, 2.0]) @ axes
+    assert vector(box.drain()[0].vector) == pytest.approx([east, north, 0.5])
+
+
 GPS_NOISE = """<position_sensing><horizontal><noise type="gaussian"><stddev>0.5</stddev></noise>
   </horizontal><vertical><noise type="gaussian"><stddev>1.0</stddev></noise></vertical>
   </position_sensing>"""
@@ -197,6 +245,30 @@ def test_hector_magnetic_is_the_field_in_the_links_axes(make, read):
     assert len(messages) == 20
     felt = rotate(turned, vector(messages[0].vector).tolist())
     assert felt == pytest.approx((25.0, 0.0, -50 * math.sqrt(3) / 2), abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("heading", "declination", "inclination"),
+    [(0, 0, 60), (90, 0, 0), (0, 15, -30), (40, -25, 70), (-120, 100, 20)],
+)
+def test_hector_magnetic_points_to_where_the_compass_does(
+    make, read, heading, declination, inclination
+):
+    """Magnetic north lies `declination` east of the north, the x axis `heading` east of it."""
+    tags = f"""<magnitude>2</magnitude><referenceHeading>{heading}</referenceHeading>
+      <declination>{declination}</declination><inclination>{inclination}</inclination>
+      <useMagneticFieldMsgs>true</useMagneticFieldMsgs>"""
+    plugin = f'<plugin name="m" filename="libhector_gazebo_ros_magnetic.so">{tags}</plugin>'
+    turned = quat_from_rpy(0.2, -0.3, 1.1)
+    world = floating(make, unit(plugin), Pose((0, 0, 0), turned))
+    (message, *_) = read(world, "/magnetic", 0.1)
+    x, y, z = rotate(turned, vector(message.magnetic_field).tolist())
+    assert z == pytest.approx(-2 * math.sin(math.radians(inclination)))
+    assert math.hypot(x, y) == pytest.approx(2 * math.cos(math.radians(inclination)))
+    # A compass tells how far the x axis is clockwise from the field.
+    compass = math.degrees(math.atan2(y, x))
+    assert (compass - (heading - declination) + 180) % 360 - 180 == pytest.approx(0, abs=1e-9)
+    assert message.header.frame_id == "link"
 
 
 def test_gz_magnetometer_feels_the_worlds_field(make, read):

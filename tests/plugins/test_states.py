@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from cartwheel.errors import PluginError, UnknownNameError
-from cartwheel.geometry import Pose, quat_from_rpy
+from cartwheel.geometry import Pose, matrix_from_quat, quat_from_rpy
 from cartwheel.messages import message_class
 
 G = 9.8
@@ -277,6 +277,86 @@ def test_gz_force_torque_sensor_says_who_pulls(make, read, words, sign, frame):
     message = read(world, "/ft", 0.5)[-1]
     assert vector(message.wrench.force) == pytest.approx([0, 0, -sign * 2 * G], abs=1e-6)
     assert message.header.frame_id == frame
+
+
+@pytest.mark.parametrize(
+    ("words", "sign", "axes", "frame"),
+    [
+        ("", 1, "child", "hand"),
+        ("<frame>parent</frame>", 1, "parent", "beam"),
+        ("<frame>sensor</frame>", 1, "sensor", "ft"),
+        (
+            "<frame>sensor</frame><measure_direction>parent_to_child</measure_direction>",
+            -1,
+            "sensor",
+            "ft",
+        ),
+    ],
+)
+@pytest.mark.parametrize("relative", ["", "beam"])
+def test_a_wrench_is_in_the_axes_that_are_asked_for(  # noqa: PLR0917
+    make, read, words, sign, axes, frame, relative
+):
+    """Beam, hand, joint and sensor are all turned; what hangs pulls straight down."""
+    turns = {"beam": (0, 0, 0.5), "hand": (0.3, 0, 0), "joint": (0, 0.4, 0), "own": (0, 0, 1.1)}
+    beam, hand, joint, own = (matrix_from_quat(quat_from_rpy(*each)) for each in turns.values())
+    of = f' relative_to="{relative}"' if relative else ""
+    model = f"""<model name="unit"><link name="beam"><pose>0 0 2 0 0 0.5</pose></link>
+      <link name="hand"><pose>0 0 1 0.3 0 0</pose><inertial><pose>0.1 0 0 0 0 0</pose>
+        <mass>2</mass><inertia><ixx>.1</ixx><iyy>.1</iyy><izz>.1</izz></inertia></inertial></link>
+      <joint name="bolt" type="fixed"><parent>world</parent><child>beam</child></joint>
+      <joint name="wrist" type="fixed"><pose>0 0 0 0 0.4 0</pose><parent>beam</parent>
+        <child>hand</child><sensor name="ft" type="force_torque"><pose{of}>0 0 0 0 0 1.1</pose>
+        <topic>ft</topic><update_rate>50</update_rate><force_torque>{words}</force_torque>
+        </sensor></joint></model>"""
+    world = make.world(make.sdf(model), ground=None)
+    message = read(world, "/ft", 0.1)[-1]
+    in_world = {"child": hand, "parent": beam, "sensor": (beam if relative else hand @ joint) @ own}
+    force = np.array([0, 0, -2 * G])
+    torque = np.cross(hand @ [0.1, 0, 0], force)
+    turned = sign * in_world[axes].T
+    assert vector(message.wrench.force) == pytest.approx(turned @ force, abs=1e-9)
+    assert vector(message.wrench.torque) == pytest.approx(turned @ torque, abs=1e-9)
+    assert message.header.frame_id == frame
+
+
+PLATE = """<model name="plate">{static}<link name="foot"><pose>0 0 2 0 0 0</pose></link>
+  <link name="plate"><pose>0 0 2.2 0 0 0</pose><inertial><mass>2</mass><inertia><ixx>.1</ixx>
+    <iyy>.1</iyy><izz>.1</izz></inertia></inertial><collision name="c"><geometry><box>
+    <size>1 1 .1</size></box></geometry></collision></link>{bolt}
+  <joint name="cell" type="fixed"><parent>foot</parent><child>plate</child></joint>{plugin}</model>
+"""
+BOLT = """<joint name="bolt" type="fixed"><parent>world</parent><child>foot</child></joint>"""
+
+
+@pytest.mark.parametrize("stands", [{"static": "<static>1</static>", "bolt": ""},
+                                    {"static": "", "bolt": BOLT}])  # fmt: skip
+@pytest.mark.parametrize(
+    ("tags", "weight", "frame"),
+    [
+        ("<jointName>cell</jointName>", 7, "plate"),
+        ("<ros/><joint_name>cell</joint_name>", 7, "plate"),
+        ("<ros/><body_name>plate</body_name>", 5, "world"),
+        ("<ros/><body_name>plate</body_name><frame_name>foot</frame_name>", 5, "foot"),
+    ],
+)
+def test_a_scale_feels_what_lies_on_it_for_as_long_as_it_lies(  # noqa: PLR0917
+    make, read, stands, tags, weight, frame
+):
+    """A joint bears the plate of 2 kg and the box of 5; on the plate itself the box presses."""
+    box = make.box("box", (0.3, 0.3, 0.3), mass=5, pose=Pose((0, 0, 2.4)))
+    world = make.world(make.sdf(PLATE.format(plugin=ft(tags), **stands)), box)
+    world.run(5.0)
+    assert not world.diagnostics
+    for message in read(world, "/ft", 0.1):
+        assert vector(message.wrench.force) == pytest.approx([0, 0, -weight * G], abs=1e-3)
+        assert message.header.frame_id == frame
+
+
+def test_a_frame_of_a_joints_wrench_is_told_as_idle(make):
+    tags = "<jointName>wrist</jointName><frame_name>beam</frame_name>"
+    (told,) = make.world(make.sdf(arm(ft(tags)))).diagnostics
+    assert "<frame_name> has no effect" in told.message
 
 
 # -- pushes

@@ -74,7 +74,7 @@ class Plugin(Generic[C]):
         ros = tag.element.find("ros/namespace")
         plain = tag.element.find("robotNamespace")
         # As Gazebo does: what the tag says counts, and else what the spawner said.
-        self.namespace = part.namespace
+        self.namespace = part.namespace.rstrip("/")
         self._frame_prefix = part.frame_prefix
         if ros is not None:
             self.namespace = ros.text.strip()
@@ -111,6 +111,16 @@ class Plugin(Generic[C]):
         """What is to be closed with the plugin."""
         self._open.callback(item.close)
         return item
+
+    def under_model(self) -> None:
+        """Takes the model's name for a namespace where neither the tag nor the spawner says one.
+
+        Most of Gazebo's plugins take none then.
+        """
+        element = self.tag.element
+        told = element.find("robotNamespace") or element.find("ros")
+        if told is None and not self.part.namespace:
+            self.namespace = self.part.name
 
     def resolve(self, name: str) -> str:
         """A topic or service name in the plugin's namespace, remapped."""

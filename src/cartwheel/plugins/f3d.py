@@ -33,6 +33,7 @@ class F3D(Plugin[F3DParameters]):
 
     def configure(self) -> None:
         self._link = self.part.link(self.config.body, origin=self.tag.origin)
+        self.part.feel(self.config.body)
         self._frame = self.frame(self.config.frame)
         self._WrenchStamped = message_class("geometry_msgs/msg/WrenchStamped")
         self._Wrench = message_class("geometry_msgs/msg/Wrench")

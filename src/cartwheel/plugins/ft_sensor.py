@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 
 from cartwheel.description.model import Sensor
 from cartwheel.errors import PluginError, UnknownNameError
-from cartwheel.geometry import matrix_from_quat, quat_conjugate, quat_multiply
+from cartwheel.geometry import IDENTITY, matrix_from_quat, quat_conjugate, quat_multiply
 from cartwheel.messages import header, message_class
 from cartwheel.plugins.base import Plugin
 from cartwheel.plugins.gz_sensor import frame_tag
@@ -19,7 +19,7 @@ _AXES = "xyz"
 
 
 class _JointWrench(Plugin[Any]):
-    """Reads what a joint bears, about its anchor."""
+    """Reads a wrench: what a joint bears, about its anchor, where nothing else is said."""
 
     def _take(self, name: str, *, topic: str, frame: str, rate: float) -> None:
         description = self.part.description
@@ -28,16 +28,16 @@ class _JointWrench(Plugin[Any]):
             raise UnknownNameError(
                 "joint", name, [one.name for one in description.joints], origin=self.tag.origin
             )
+        self._child = self.part.link(joint.child)
+        self._anchor = joint.pose
+        self.part.feel(joint.child)
+        self._offer(topic, frame=frame or joint.child, rate=rate)
+
+    def _offer(self, topic: str, *, frame: str, rate: float) -> None:
+        """Advertises and schedules."""
         if rate < 0:
             raise PluginError("a rate cannot be below 0", origin=self.tag.origin)
-        if description.static or self._stands(joint.child):
-            self.warn(f'joint "{name}" holds what stands fixed in the world: it bears nothing here')
-        self._child = self.part.link(joint.child)
-        self._parent = (
-            self.part.link(joint.parent) if description.link(joint.parent) is not None else None
-        )
-        self._anchor = joint.pose
-        self._frame = self.frame(frame or joint.child)
+        self._frame = self.frame(frame)
         self._WrenchStamped = message_class("geometry_msgs/msg/WrenchStamped")
         self._Wrench = message_class("geometry_msgs/msg/Wrench")
         self._Vector3 = message_class("geometry_msgs/msg/Vector3")
@@ -45,17 +45,6 @@ class _JointWrench(Plugin[Any]):
             topic, "geometry_msgs/msg/WrenchStamped", rate=rate or None, qos="sensor"
         )
         self.part.schedule(rate, after=self._publish, active=lambda: self._publisher.wanted)
-
-    def _stands(self, link: str) -> bool:
-        """Whether only fixed joints are between a link and the world."""
-        inbound = {joint.child: joint for joint in self.part.description.joints}
-        seen = set()
-        while link in inbound and link not in seen:
-            seen.add(link)
-            if inbound[link].type != "fixed":
-                return False
-            link = inbound[link].parent
-        return link == "world"
 
     def _measure(self) -> list[float]:
         """Force in N and torque in N m that the child exerts on the parent, in the child's axes."""
@@ -71,10 +60,16 @@ class _JointWrench(Plugin[Any]):
 @dataclass(frozen=True, kw_only=True, slots=True)
 class FtSensorParameters:
     joint: str = tag("jointName", "joint_name", default="", doc="Joint that bears the load.")
-    body: str = tag("bodyName", "body_name", default="", doc="Not supported: name a joint.")
+    body: str = tag(
+        "body_name",
+        default="",
+        doc="Instead of a joint, a link: what acts on it from outside, as with f3d (ROS 2).",
+    )
     topic: str = tag("topicName", "topic_name", default="wrench", doc="WrenchStamped.")
     frame: str = tag(
-        "frame_name", default="", doc="Has no effect: the child link's frame counts, as in Gazebo."
+        "frame_name",
+        default="",
+        doc="Of a link's wrench; world when empty. A joint's is its child's, as in Gazebo.",
     )
     noise: float = tag(
         "gaussianNoise", "gaussian_noise", default=0.0, unit="N, N m", doc="Standard deviation."
@@ -98,15 +93,27 @@ class FtSensor(_JointWrench):
         config: FtSensorParameters = self.config
         sensed = self.sensor.joint if self.sensor is not None else None
         name = config.joint or sensed or ""
-        if not name:
-            raise PluginError("a force-torque sensor needs <jointName>", origin=self.tag.origin)
         if config.noise < 0:
             raise PluginError("a noise cannot be below 0", origin=self.tag.origin)
         rate = config.update_rate or (self.sensor.update_rate if self.sensor is not None else 0.0)
+        if config.body:
+            # Where both are named it is the link's in Gazebo too.
+            self._child = self.part.link(config.body, origin=self.tag.origin)
+            self.part.feel(config.body)
+            self._offer(config.topic, frame=config.frame or "world", rate=rate)
+            return
+        if not name:
+            raise PluginError("a force-torque sensor needs <jointName>", origin=self.tag.origin)
+        if config.frame:
+            self.warn("<frame_name> has no effect: a joint's wrench is in its child's frame")
         self._take(name, topic=config.topic, frame="", rate=rate)
 
     def _measure(self) -> list[float]:
-        values = super()._measure()
+        if self.config.body:
+            force, torque = self._child.load()
+            values = [*force.tolist(), *torque.tolist()]
+        else:
+            values = super()._measure()
         if self.config.noise > 0:
             random = self.part.random(f"force {self._publisher.topic}")
             return [float(v) for v in values + random.normal(0.0, self.config.noise, 6)]
@@ -147,7 +154,8 @@ class JointLoad:
         known = part.description.link(joint.parent) is not None
         self._parent = part.link(joint.parent) if known else None
         self._anchor = joint.pose.position
-        self._turn = quat_conjugate((joint.pose @ sensor.pose).orientation)
+        # In the child, as every sensor's pose is in its link.
+        self._turn = quat_conjugate(sensor.pose.orientation)
 
     def measure(self) -> list[float]:
         """Force in N, then torque in N m about the joint."""
@@ -173,7 +181,8 @@ class GzForceTorque(_JointWrench):
     """Publishes what the joint that holds a ``force_torque`` sensor bears.
 
     ``<frame>`` says in whose axes (child, parent or sensor), ``<measure_direction>`` who pulls
-    (child_to_parent or parent_to_child), ``<force>`` and ``<torque>`` have noise by axis.
+    (child_to_parent or parent_to_child), ``<force>`` and ``<torque>`` have noise by axis. The
+    messages' frame is that link; the sensor's name where it is turned on its link and counts.
     Source: gz-sensors, ForceTorqueSensor; sdformat.
     """
 
@@ -198,6 +207,8 @@ class GzForceTorque(_JointWrench):
         frame = config.frame
         if not frame and joint is not None and self._load.axes == "parent":
             frame = joint.parent
+        elif not frame and self._load.axes == "sensor" and sensor.pose.orientation != IDENTITY:
+            frame = sensor.name
         self._take(sensor.joint, topic=topic, frame=frame, rate=sensor.update_rate)
 
     def _measure(self) -> list[float]:

@@ -62,10 +62,18 @@ class ImuBase(Plugin[Any]):
         noise: float,
         rate: float,
         sensor: Sensor | None = None,
+        from_first: bool = False,
     ) -> None:
         if rate < 0 or noise < 0:
             raise PluginError("a rate or noise cannot be below 0", origin=self.tag.origin)
-        self._unit = InertialUnit(self.part, link, mount, sensor=sensor, origin=self.tag.origin)
+        self._unit = InertialUnit(
+            self.part,
+            link,
+            mount,
+            sensor=sensor,
+            from_first=from_first,
+            origin=self.tag.origin,
+        )
         self._frame = self.frame(frame)
         self._noise = noise
         self._Imu = message_class("sensor_msgs/msg/Imu")
@@ -140,7 +148,7 @@ class Imu(ImuBase):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ImuSensorParameters:
-    topic: str = tag("topicName", "topic", default="imu", doc="Imu.")
+    topic: str = tag("topicName", "topic", default="imu_data", doc="Imu.")
     body: str = tag("bodyName", default="", doc="Read and ignored: the sensor's link counts.")
     frame: str = tag(
         "frameName", "frame_name", default="", doc="Frame of the messages; the link's when empty."
@@ -158,22 +166,27 @@ class ImuSensorParameters:
         "xyzOffset", "xyzOffsets", default=(0.0, 0.0, 0.0), unit="m", doc="Mounting."
     )
     update_rate: float = tag(
-        "updateRateHZ", "updateRate", default=0.0, unit="Hz", doc="0 is the sensor's own."
+        "updateRateHZ",
+        "updateRate",
+        default=0.0,
+        unit="Hz",
+        doc="The slower of this and the sensor's counts; 0 is the sensor's.",
     )
     initial_orientation: bool = tag(
         "initialOrientationAsReference",
         "initial_orientation_as_reference",
         default=False,
-        doc="Accepted; the orientation is against the world (REP 145).",
+        doc="The orientation is against that at first, not against the world (REP 145).",
     )
 
 
 class ImuSensor(ImuBase):
     """The plugin of an ``imu`` sensor, with the noise that its ``<imu>`` states.
 
-    In ROS 2's spelling, with ``<ros>``, the topic is ``~/out``, to be remapped. Its orientation is
-    against the world, or what the sensor's ``<orientation_reference_frame>`` says. Source:
-    gazebo_plugins, gazebo_ros_imu_sensor; REP 145.
+    In ROS 2's spelling, with ``<ros>``, the topic is ``~/out``, to be remapped. In ROS 1's, in a
+    model of a world, it is under the model's name where no ``<robotNamespace>`` is stated. Its
+    orientation is against the world, or what the sensor's ``<orientation_reference_frame>`` says.
+    Source: gazebo_plugins, gazebo_ros_imu_sensor; REP 145.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_imu_sensor.so",)
@@ -184,24 +197,24 @@ class ImuSensor(ImuBase):
         assert self.sensor is not None
         config: ImuSensorParameters = self.config
         offset = Pose(config.xyz_offset, quat_from_rpy(*config.rpy_offset))
-        if config.initial_orientation:
-            self.warn(
-                "<initialOrientationAsReference> has no effect: "
-                "the orientation is against the world, as REP 145 asks"
-            )
+        self.under_model()
         topic = config.topic
         element = self.tag.element
         named = element.find("topicName") or element.find("topic")
         if element.find("ros") is not None and named is None:
             topic = "out" if self.remaps("out") else f"{self.tag.name or 'imu'}/out"
+        if config.update_rate < 0:
+            raise PluginError("a rate cannot be below 0", origin=self.tag.origin)
+        rates = [each for each in (config.update_rate, self.sensor.update_rate) if each > 0]
         self.start(
             link=self.sensor.link,
             mount=self.sensor.pose @ offset,
             topic=topic,
             frame=config.frame or self.sensor.link,
             noise=config.noise,
-            rate=config.update_rate or self.sensor.update_rate,
+            rate=min(rates, default=0.0),
             sensor=self.sensor,
+            from_first=config.initial_orientation,
         )
 
 

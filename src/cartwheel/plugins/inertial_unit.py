@@ -37,6 +37,8 @@ class InertialUnit:
         link: That carries it.
         mount: Of the unit in the link.
         sensor: Whose ``<imu>`` states noise; None is without.
+        from_first: Its orientation is against that at which it was spawned, where the sensor
+            states no other.
         origin: Place of a link that does not exist.
     """
 
@@ -47,6 +49,7 @@ class InertialUnit:
         mount: Pose,
         *,
         sensor: Sensor | None = None,
+        from_first: bool = False,
         origin: Origin | None = None,
     ) -> None:
         self._link = part.link(link, origin=origin)
@@ -58,12 +61,18 @@ class InertialUnit:
         self.has_orientation = True
         """Whether it tells its orientation; else that is none at all."""
         self._reference = IDENTITY
+        if from_first:
+            described = part.description.link(link)
+            assert described is not None
+            first = part.start @ described.pose @ mount
+            self._reference = quat_conjugate(first.orientation)
         element = sensor.element.find("imu") if sensor is not None else None
         if sensor is None or element is None:
             return
         told = element.find("enable_orientation")
         self.has_orientation = told is None or told.text.strip().lower() not in ("false", "0")
-        self._reference = quat_conjugate(_reference(part, element))
+        if element.find("orientation_reference_frame") is not None:
+            self._reference = quat_conjugate(_reference(part, element))
         both = []
         for what, older in (("angular_velocity", "rate"), ("linear_acceleration", "accel")):
             noises = [
@@ -119,8 +128,7 @@ def _reference(part: Part, imu: Element) -> Quat:
         PluginError: A word or numbers that there are not.
     """
     frame = imu.find("orientation_reference_frame")
-    if frame is None:
-        return IDENTITY
+    assert frame is not None
     child = frame.find("localization")
     word = child.text.strip().upper() if child is not None else "CUSTOM"
     if word in _NORTH:

@@ -50,20 +50,22 @@ class JointStatePublisherParameters:
 class JointStatePublisher(Plugin[JointStatePublisherParameters]):
     """Publishes positions and velocities of joints on ``joint_states``.
 
-    Without a namespace that is ``/<model>/joint_states``, as in Gazebo Classic; in ROS 2's
-    spelling it is ``/joint_states``. Source: gazebo_plugins, gazebo_ros_joint_state_publisher.
+    In a model of a world, or with an empty ``<robotNamespace>``, that is
+    ``/<model>/joint_states``, as in Gazebo Classic; in ROS 2's spelling it is ``/joint_states``.
+    Source: gazebo_plugins, gazebo_ros_joint_state_publisher.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_joint_state_publisher.so",)
     parameters: ClassVar[type] = JointStatePublisherParameters
+    empty_is_model: ClassVar[bool] = True
 
     def configure(self) -> None:
         config, element = self.config, self.tag.element
         if config.update_rate < 0:
             raise PluginError("a rate cannot be below 0", origin=self.tag.origin)
         ros2 = any(element.find(name) for name in ("ros", "joint_name", "update_rate"))
-        if not ros2 and not self.namespace.strip("/"):
-            self.namespace = self.part.name
+        if not ros2:
+            self.under_model()
         names = [name.strip() for text in config.names for name in text.split(",")]
         self._states = JointStates(
             self,

@@ -60,7 +60,7 @@ class Part:
         self._engine = engine
         self._entry = entry
         self.namespace = namespace
-        """Of topics and services whose plugin names none; "" is the global one."""
+        """Of topics and services whose plugin names none; "" where nobody said one."""
         self.frame_prefix = frame_prefix
         """Of all frames: ROS 1's tf_prefix."""
         self.handles: list[Handle | RayHandle] = []
@@ -74,6 +74,11 @@ class Part:
     def name(self) -> str:
         """The model's name in this world."""
         return self._entry.name
+
+    @property
+    def start(self) -> Pose:
+        """Of the model's frame in the world, where it was spawned."""
+        return self._entry.pose
 
     @property
     def description(self) -> RobotDescription:
@@ -279,6 +284,10 @@ class Part:
         self.handles.append(handle)
         return handle
 
+    def feel(self, link: str) -> None:
+        """What lies on a link stays awake: asleep it would press on nothing that stands."""
+        self._entry.felt.append(link)
+
     def slip(self, link: str, *, radius: float, origin: Origin | None = None) -> SlipHandle:
         """A wheel's slip on the ground.
 
@@ -409,6 +418,7 @@ class Part:
             entry.drives,
             entry.cameras,
             entry.attachments,
+            entry.felt,
         )
         tables: tuple[dict[str, Any], ...] = (entry.motors, entry.mimics, entry.slips)
         lengths = [len(each) for each in lists]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 import mujoco
@@ -67,9 +67,6 @@ def build(world: WorldDescription, entries: Iterable[ModelEntry], *, xml: bool =
     }
     for name in (name for entry in entries for name in entry.attachments):
         joints.add_attachment(spec, name)
-    if any(_feels_touch(entry) for entry in entries if entry.description.static):
-        # A body asleep on something that stands has no contact with it to be reported.
-        spec.option.enableflags &= ~mujoco.mjtEnableBit.mjENBL_SLEEP.value
     ranks = contact.priorities(surface.friction[0] for surface in bodies.surfaces)
     for surface in bodies.surfaces:
         surface.geom.priority = ranks[surface.friction[0]]
@@ -89,6 +86,10 @@ def build(world: WorldDescription, entries: Iterable[ModelEntry], *, xml: bool =
         raise _explain(str(error), entries) from None
     # What has no extent is as far from rest as its speed says, and not asleep while it spins.
     model.dof_length[:] = np.maximum(model.dof_length, _SHORTEST)
+    if any(model.body_treeid[model.body(name).id] < 0 for name in _felt(entries)):
+        # A body asleep on something that stands has no contact with it to be reported.
+        for option in (spec.option, model.opt):
+            option.enableflags &= ~mujoco.mjtEnableBit.mjENBL_SLEEP.value
     _judge_without_rotors(model)
     for index, coefficient in chains.apply(model).items():
         # For the text alone: the compiled model has it.
@@ -113,10 +114,12 @@ def _judge_without_rotors(model: mujoco.MjModel) -> None:
         model.stat.meaninertia = max(float(masses.mean()), 1e-9)
 
 
-def _feels_touch(entry: ModelEntry) -> bool:
-    return any(
-        sensor.type == "contact" for link in entry.description.links for sensor in link.sensors
-    )
+def _felt(entries: Iterable[ModelEntry]) -> Iterator[str]:
+    """The links that somebody asks what lies on them, scoped."""
+    for entry in entries:
+        for link in entry.description.links:
+            if link.name in entry.felt or any(each.type == "contact" for each in link.sensors):
+                yield scoped(entry.name, link.name)
 
 
 def _empty(world: WorldDescription) -> mujoco.MjSpec:

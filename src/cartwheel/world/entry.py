@@ -98,5 +98,7 @@ class ModelEntry:
     cameras: list[CameraMount] = field(default_factory=list)
     slips: dict[str, float] = field(default_factory=dict)
     """Wheels whose tyres give way, with their radius in m, by link; see `SlipHandle`."""
+    felt: list[str] = field(default_factory=list)
+    """Links on which what lies must stay awake, besides those with contact sensors."""
     attachments: list[str] = field(default_factory=list)
     """Names of welds that hold nothing at first; see `AttachmentHandle`."""
