@@ -16,7 +16,7 @@ from tests.plugins.cameras import (
     topic_names,
 )
 
-from cartwheel.errors import GraphError
+from cartwheel.errors import GraphError, PluginError
 from cartwheel.geometry import Pose
 from cartwheel.messages import from_dict, to_dict
 
@@ -329,6 +329,34 @@ def test_a_trigger_makes_one_image(make, filename, plugin):
         # A step each, from the next one on.
         assert stamps(messages)[0] - asked <= 5_000_000
         assert stamps(messages)[-1] - asked <= count * 5_000_000
+
+
+def test_ros2s_pair_has_one_trigger_for_both(make):
+    plugin = "<ros/><camera_name>pair</camera_name><triggered>true</triggered>"
+    world = make.world(make.sdf(sensor(kind="multicamera", lenses=STEREO, plugin=plugin)))
+    boxes = [world.mailbox(f"/pair/{side}/image_raw") for side in STEREO]
+    world.publish("/pair/image_trigger")
+    world.run(0.1)
+    (left,), (right,) = (box.drain() for box in boxes)
+    assert left.header == right.header
+
+
+def test_ros2_states_the_rectified_image(make):
+    """Of the projection each number may be stated; what is not is that of K."""
+    turn = "0.9 0.1 0 -0.1 0.9 0 0 0 1"
+    plugin = f"""<ros/><camera_name>eye</camera_name><P_fx>300</P_fx><P_cy>111</P_cy><Tx>-21</Tx>
+      <Ty>2</Ty><hack_baseline>0.5</hack_baseline><cx>150</cx>
+      <rectification_matrix>{turn}</rectification_matrix>"""
+    world = make.world(make.sdf(sensor(plugin=plugin)))
+    info = take(world, "/eye/camera_info")
+    f = focal()
+    assert info.k == pytest.approx([f, 0, 150, 0, f, 120.5, 0, 0, 1])
+    assert info.r == pytest.approx([float(word) for word in turn.split()])
+    assert info.p == pytest.approx([300, 0, 150, -21, 0, f, 111, 2, 0, 0, 1, 0])
+    assert not world.diagnostics
+    wrong = plugin.replace(turn, "1 0 0")
+    with pytest.raises(PluginError, match="nine numbers"):
+        make.world(make.sdf(sensor(plugin=wrong)))
 
 
 def test_a_triggered_camera_has_no_rate(make):

@@ -8,11 +8,15 @@ from dataclasses import dataclass
 from typing import ClassVar, TypeVar
 
 from cartwheel.description.model import CameraIntrinsics
+from cartwheel.errors import PluginError
 from cartwheel.plugins.camera_base import CameraBase
 from cartwheel.plugins.camera_depth import DepthOptions
 from cartwheel.plugins.camera_eye import Eye, EyeTopics, joined
+from cartwheel.plugins.camera_info import Rectified
 from cartwheel.plugins.camera_lens import Distortion
 from cartwheel.plugins.parameters import tag
+
+_NINE = 9
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -52,6 +56,15 @@ class CameraParameters:
     border_crop: bool = tag(
         "borderCrop", "border_crop", default=True, doc="Accepted: there are no black borders."
     )
+    rectification: str = tag(
+        "rectification_matrix", default="", doc="Nine numbers, row by row: R (ROS 2)."
+    )
+    p_fx: float | None = tag("P_fx", default=None, unit="px", doc="In P; that of K (ROS 2).")
+    p_fy: float | None = tag("P_fy", default=None, unit="px", doc="In P; that of K (ROS 2).")
+    p_cx: float | None = tag("P_cx", default=None, unit="px", doc="In P; that of K (ROS 2).")
+    p_cy: float | None = tag("P_cy", default=None, unit="px", doc="In P; that of K (ROS 2).")
+    p_tx: float | None = tag("Tx", default=None, doc="In P; -fx times the baseline (ROS 2).")
+    p_ty: float = tag("Ty", default=0.0, doc="In P (ROS 2).")
     trigger_topic: str = tag(
         "triggerTopicName", default="image_trigger", doc="Empty, of a triggered camera."
     )
@@ -105,6 +118,7 @@ class RosCamera(CameraBase[P]):
     def _open_eyes(self) -> Iterator[Eye]:
         config, lenses = self.config, self._lenses()
         told = Distortion(k1=config.k1, k2=config.k2, p1=config.t1, p2=config.t2, k3=config.k3)
+        rectified = self._rectified()
         for lens, base in lenses:
             left = len(lenses) > 1 and "left" in lens.name
             yield self._eye(
@@ -120,13 +134,39 @@ class RosCamera(CameraBase[P]):
                 focal_length=config.focal_length,
                 centre=(config.cx, config.cy),
                 baseline=0.0 if left else config.hack_baseline,
+                rectified=rectified,
             )
+
+    def _rectified(self) -> Rectified:
+        config = self.config
+        turn = None
+        if config.rectification:
+            try:
+                turn = tuple(float(word) for word in config.rectification.split())
+            except ValueError:
+                turn = ()
+            if len(turn) != _NINE or not all(map(math.isfinite, turn)):
+                raise PluginError(
+                    f'<rectification_matrix> "{config.rectification}" is not nine numbers',
+                    origin=self.tag.origin,
+                )
+        return Rectified(
+            turn=turn,
+            fx=config.p_fx,
+            fy=config.p_fy,
+            cx=config.p_cx,
+            cy=config.p_cy,
+            tx=config.p_tx,
+            ty=config.p_ty,
+        )
 
     def _trigger_topics(self) -> list[str]:
         config = self.config
         if not (self.waits or config.triggered):
             return []
-        return [joined(base, config.trigger_topic) for _, base in self._lenses()]
+        # In ROS 2 one trigger is for all lenses.
+        bases = [self._base()] if self.is_ros2 else [base for _, base in self._lenses()]
+        return [joined(base, config.trigger_topic) for base in bases]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,25 @@ INFO = "sensor_msgs/msg/CameraInfo"
 SET_INFO = "sensor_msgs/srv/SetCameraInfo"
 
 
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Rectified:
+    """What R and P tell where it is not the identity and K: None is that."""
+
+    turn: tuple[float, ...] | None = None
+    """R, row by row."""
+    fx: float | None = None
+    fy: float | None = None
+    cx: float | None = None
+    cy: float | None = None
+    """Pixels."""
+    tx: float | None = None
+    ty: float = 0.0
+    """The last column of P."""
+
+
+_PLAIN = Rectified()
+
+
 class Calibration:
     """The numbers of a lens: the pinhole's, with Gazebo's centre and its stereo term.
 
@@ -23,6 +43,7 @@ class Calibration:
         focal_length: Pixels; 0 is that of the field of view.
         centre: Pixels; a 0 is (size + 1) / 2.
         baseline: m to the right of the pair's left camera.
+        rectified: What is told of the rectified image; the same as of the image otherwise.
     """
 
     def __init__(
@@ -33,6 +54,7 @@ class Calibration:
         focal_length: float = 0.0,
         centre: tuple[float, float] = (0.0, 0.0),
         baseline: float = 0.0,
+        rectified: Rectified = _PLAIN,
     ) -> None:
         self._frame = frame
         self.width, self.height = lens.intrinsics.width, lens.intrinsics.height
@@ -46,8 +68,16 @@ class Calibration:
             distortion_model="plumb_bob",
             d=np.array(lens.distortion.coefficients, dtype=float),
             k=np.array([focal, 0, cx, 0, focal, cy, 0, 0, 1]),
-            r=np.eye(3).ravel(),
-            p=np.array([focal, 0, cx, -focal * baseline, 0, focal, cy, 0, 0, 0, 1, 0]),
+            r=np.eye(3).ravel() if rectified.turn is None else np.array(rectified.turn),
+            p=np.array(
+                [
+                    *(_told(rectified.fx, focal), 0, _told(rectified.cx, cx)),
+                    _told(rectified.tx, -focal * baseline),
+                    *(0, _told(rectified.fy, focal), _told(rectified.cy, cy), rectified.ty),
+                    *(0, 0, 1, 0),
+                ],
+                dtype=float,
+            ),
             binning_x=0,
             binning_y=0,
             roi=message_class("sensor_msgs/msg/RegionOfInterest")(
@@ -72,3 +102,7 @@ class Calibration:
             )
         self.told = given
         return self._response(success=True, status_message="")
+
+
+def _told(value: float | None, otherwise: float) -> float:
+    return otherwise if value is None else value
