@@ -539,9 +539,18 @@ def test_a_ray_passes_through_the_gap_of_a_mesh(make, tmp_path):
     )
 
 
-def test_angles_the_wrong_way_round_are_swapped_and_told(make):
-    world = make.world(make.sdf(model(sensor(samples=3, low=0.5, high=-0.5))))
+def test_angles_the_wrong_way_round_are_swept_clockwise_and_told(make):
+    """As Gazebo casts them; a reader that adds up the steps sees everything where it is."""
+    pillar = make.box("pillar", (0.2, 0.2, 4), static=True, pose=Pose((1.5, 0.8, 0)))
+    world = make.world(pillar, make.sdf(model(sensor(samples=101, low=0.7, high=-0.3))))
     message = scan(world)
-    assert (message.angle_min, message.angle_max) == pytest.approx((-0.5, 0.5))
-    (told,) = [each for each in world.diagnostics if "swapped" in each.message]
-    assert told.message == "<max_angle> -0.5 is below <min_angle> 0.5: they are swapped"
+    assert (message.angle_min, message.angle_max) == pytest.approx((0.7, -0.3))
+    assert message.angle_increment == pytest.approx(-0.01)
+    hits = np.flatnonzero(np.isfinite(message.ranges))
+    angles = message.angle_min + hits * message.angle_increment
+    # From its corner behind on the left to its corner ahead on the right.
+    assert angles.max() == pytest.approx(math.atan2(0.9, 1.4), abs=0.0101)
+    assert angles.min() == pytest.approx(math.atan2(0.7, 1.6), abs=0.0101)
+    (told,) = [each for each in world.diagnostics if "backwards" in each.message]
+    assert told.severity == "info"
+    assert told.message == "<max_angle> -0.3 is below <min_angle> 0.7: the sweep runs backwards"

@@ -20,7 +20,7 @@ _GPU_TYPES = {"gpu_ray", "gpu_lidar"}
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Sweep:
-    """The angles of a scan in one sense, even from first to last."""
+    """The angles of a scan in one sense, even from first to last; clockwise where last is less."""
 
     count: int
     first: float
@@ -55,8 +55,8 @@ class ScanPattern:
     def field_of_view(self) -> tuple[float, float]:
         """Horizontal and vertical, rad."""
         return (
-            self.horizontal.last - self.horizontal.first,
-            self.vertical.last - self.vertical.first,
+            abs(self.horizontal.last - self.horizontal.first),
+            abs(self.vertical.last - self.vertical.first),
         )
 
     def directions(self) -> Array:
@@ -138,14 +138,15 @@ def _sweep(element: Element, report: Callable[[Diagnostic], None], *, samples: i
             hint="It multiplies <samples>; 1 is one range a sample.",
         )
     if last < first:
+        # As with Gazebo's rays.
         report(
             Diagnostic(
-                severity="warning",
-                message=f"<max_angle> {last:g} is below <min_angle> {first:g}: they are swapped",
+                severity="info",
+                message=f"<max_angle> {last:g} is below <min_angle> {first:g}: "
+                "the sweep runs backwards",
                 origin=_place(element, "max_angle"),
             )
         )
-        first, last = last, first
     count = max(1, int(asked * resolution))
     if count == 1:
         first = last = (first + last) / 2
