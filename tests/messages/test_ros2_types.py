@@ -39,6 +39,9 @@ MESSAGES = {
     "action_msgs/srv/CancelGoal_Request": (
         "3d3c84653c1f96918086887e1dcb236faec88b81a5b14fd4cf4840065bcdf8af"
     ),
+    "ros_gz_interfaces/msg/Altimeter": (
+        "c1e452c867a0dd147e2a612d1f78e5da9675ae5ef75c0950ad1520f004101703"
+    ),
     "rmw_dds_common/msg/ParticipantEntitiesInfo": (
         "91a0593bacdcc50ea9bdcf849a938b128412cc1ea821245c663bcd26f83c295e"
     ),

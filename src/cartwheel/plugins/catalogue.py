@@ -126,6 +126,8 @@ _SENSORS = {
     "gps": "gps",
     "magnetometer": "magnetic",
     "air_pressure": "air_pressure",
+    "altimeter": "altimeter",
+    "logical_camera": "logical_camera",
     "contact": "gz_contact",
     "force_torque": "ft_sensor",
 }

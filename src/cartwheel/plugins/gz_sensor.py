@@ -31,6 +31,7 @@ SYSTEMS = {
     "gz-sim-navsat-system": ("navsat", "gps"),
     "gz-sim-magnetometer-system": ("magnetometer",),
     "gz-sim-altimeter-system": ("altimeter",),
+    "gz-sim-logical-camera-system": ("logical_camera",),
     "gz-sim-air-pressure-system": ("air_pressure",),
     "gz-sim-air-speed-system": ("air_speed",),
     "gz-sim-forcetorque-system": ("force_torque",),

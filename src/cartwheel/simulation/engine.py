@@ -17,7 +17,7 @@ from cartwheel.simulation.directions import Directions
 from cartwheel.simulation.rendering import Renderer
 from cartwheel.world.build import step_of
 from cartwheel.world.contact import Bounce
-from cartwheel.world.entry import scoped
+from cartwheel.world.entry import ModelEntry, scoped
 from cartwheel.world.pairs import Alignment
 
 _OBJ = mujoco.mjtObj
@@ -55,6 +55,8 @@ class Engine:
         """Called after a task was changed for another."""
         self.on_entries: list[Callable[[], None]] = []
         """Called after something more was asked to be built into a model that stands already."""
+        self.entries: Sequence[ModelEntry] = ()
+        """The models that stand in the world."""
         self._orders = itertools.count()
 
     def steps_until(self, time_ns: int) -> int:
@@ -169,6 +171,11 @@ class Engine:
         body = self.body_id(model, link)
         x, y, z = self.data.xpos[body].tolist()
         return Pose((x, y, z), from_wxyz(self.data.xquat[body].tolist()))
+
+    def model_pose(self, entry: ModelEntry) -> Pose:
+        """A model's frame in the world: it goes with its canonical link, a URDF's root."""
+        link = self.link_pose(entry.name, entry.description.canonical_link)
+        return link @ entry.description.canonical_pose.inverse()
 
     def free_joint(self, model: str, link: str) -> int:
         """The index of the joint that leaves a link free in the world, or -1."""

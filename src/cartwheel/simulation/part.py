@@ -106,6 +106,11 @@ class Part:
         """The same in s."""
         return self._engine.time_ns / NANOSECONDS
 
+    def models(self) -> dict[str, Pose]:
+        """All models in the world, this one among them, with their frames, by name."""
+        engine = self._engine
+        return {entry.name: engine.model_pose(entry) for entry in engine.entries}
+
     def link(self, name: str, *, origin: Origin | None = None) -> LinkHandle:
         """A link of this model.
 

@@ -276,10 +276,8 @@ class Simulation(Run):
         resident.close()
 
     def pose(self, name: str) -> Pose:
-        """Where a model's frame is, which goes with its canonical link: a URDF's root."""
-        description = self._resident(name).entry.description
-        link = self.engine.link_pose(name, description.canonical_link)
-        return link @ description.canonical_pose.inverse()
+        """Where a model's frame is; see `Engine.model_pose`."""
+        return self.engine.model_pose(self._resident(name).entry)
 
     def in_sight(self, name: str, eyes: Sequence[Vec3], target: Vec3) -> list[bool]:
         """From which points, m in the world, nothing hides a point of a model."""
@@ -576,6 +574,7 @@ class Simulation(Run):
         if step_ns != self.engine.step_ns:
             self.engine.set_step(step_ns)
         self._residents = residents
+        self.engine.entries = entries
         self._guard_due = 0
         self._guard.bind(self.model, self.data)
         self.forces.bind()

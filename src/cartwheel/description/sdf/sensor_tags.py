@@ -90,14 +90,14 @@ _SENSOR = _tags(
     gps=_PLACE,
     navsat=_PLACE,
     magnetometer=_BY_AXIS,
+    altimeter={"vertical_position": _NOISY, "vertical_velocity": _NOISY},
+    logical_camera=_tags("near", "far", "horizontal_fov", "aspect_ratio"),
     air_pressure={"reference_altitude": {}, "pressure": _NOISY},
     force_torque=_tags("frame", "measure_direction", force=_BY_AXIS, torque=_BY_AXIS),
     # Of sensors that publish nothing, which is told of the whole.
     **dict.fromkeys(
         (
             "air_speed",
-            "altimeter",
-            "logical_camera",
             "rfid",
             "rfidtag",
             "sonar",

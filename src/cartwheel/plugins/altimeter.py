@@ -1,0 +1,61 @@
+"""``altimeter`` sensors: how high they are, and how fast they rise."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from cartwheel.messages import header, message_class
+from cartwheel.plugins.base import Plugin
+from cartwheel.plugins.gz_sensor import default_topic, frame_tag
+from cartwheel.plugins.noise import VectorNoise, read_noise
+from cartwheel.plugins.parameters import tag
+
+_KIND = "ros_gz_interfaces/msg/Altimeter"
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class AltimeterParameters:
+    topic: str = tag("topic", default="", doc="Altimeter; Gazebo's long name when empty.")
+    frame: str = frame_tag()
+
+
+class Altimeter(Plugin[AltimeterParameters]):
+    """Publishes a sensor's height above where it was spawned, and its vertical velocity.
+
+    ``vertical_reference`` is that first height in the world. ``<vertical_position>`` and
+    ``<vertical_velocity>`` have noise. Source: gz-sensors, AltimeterSensor; ros_gz_bridge.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ()
+    parameters: ClassVar[type] = AltimeterParameters
+    for_sensor: ClassVar[bool] = True
+    serves: ClassVar[tuple[str, ...]] = ("altimeter",)
+
+    def configure(self) -> None:
+        sensor, part = self.sensor, self.part
+        assert sensor is not None
+        self._link, self._mount = part.link(sensor.link), sensor.pose.position
+        described = part.description.link(sensor.link)
+        assert described is not None
+        self._reference = (part.start @ described.pose).apply(self._mount)[2]
+        self._frame = self.frame(self.config.frame or sensor.link)
+        noises = [
+            read_noise(sensor.element.find(f"altimeter/{what}/noise"), part.report)
+            for what in ("vertical_position", "vertical_velocity")
+        ]
+        self._noise = VectorNoise(
+            part, f"altimeter {sensor.link} {sensor.name}", noises, rate=sensor.update_rate
+        )
+        self._Altimeter = message_class(_KIND)
+        topic = self.config.topic or default_topic(part, sensor, "altimeter")
+        rate = sensor.update_rate
+        self._publisher = self.advertise(topic, _KIND, rate=rate or None, qos="sensor")
+        part.schedule(rate, after=self._measure, active=lambda: self._publisher.wanted)
+
+    def _measure(self) -> None:
+        place = self._link.pose.apply(self._mount)
+        (_, _, rising), _ = self._link.motion_at(place)
+        height, speed = self._noise.add([place[2] - self._reference, rising])
+        head = header(self.part.time_ns, self._frame)
+        self._publisher.publish(self._Altimeter(head, height, speed, self._reference))

@@ -1,0 +1,80 @@
+"""``logical_camera`` sensors: which models are in view, and where."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from cartwheel.errors import PluginError
+from cartwheel.geometry import Pose
+from cartwheel.messages import header, message_class
+from cartwheel.plugins.base import Plugin
+from cartwheel.plugins.gz_sensor import default_topic, frame_tag
+from cartwheel.plugins.parameters import tag
+
+_KIND = "ros_gz_interfaces/msg/LogicalCameraImage"
+_HALF_TURN = math.pi
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class LogicalCameraParameters:
+    topic: str = tag("topic", default="", doc="LogicalCameraImage; Gazebo's long name when empty.")
+    frame: str = frame_tag()
+    near: float = tag("logical_camera/near", default=0.0, unit="m", doc="Nearest that is seen.")
+    far: float = tag("logical_camera/far", default=1.0, unit="m", doc="Farthest that is seen.")
+    view: float = tag("logical_camera/horizontal_fov", default=1.0, unit="rad", doc="Its width.")
+    aspect: float = tag(
+        "logical_camera/aspect_ratio", default=1.0, doc="Of the view's width to its height."
+    )
+
+
+class LogicalCamera(Plugin[LogicalCameraParameters]):
+    """Publishes the models whose frames lie in its view, each with its pose in the sensor's axes.
+
+    It looks along its x axis, and nothing hides anything. ``pose`` is the sensor's own in the
+    world. Source: gz-sensors, LogicalCameraSensor; ros_gz_bridge.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ()
+    parameters: ClassVar[type] = LogicalCameraParameters
+    for_sensor: ClassVar[bool] = True
+    serves: ClassVar[tuple[str, ...]] = ("logical_camera",)
+
+    def configure(self) -> None:
+        sensor, part, config = self.sensor, self.part, self.config
+        assert sensor is not None
+        if not (0 <= config.near < config.far and 0 < config.view < _HALF_TURN):
+            raise PluginError(
+                "a view needs 0 <= <near> < <far>, and a <horizontal_fov> between 0 and pi",
+                origin=sensor.origin,
+            )
+        self.check_above_zero(aspect_ratio=config.aspect)
+        self._wide = math.tan(config.view / 2)
+        self._high = self._wide / config.aspect
+        self._link, self._mount = part.link(sensor.link), sensor.pose
+        self._frame = self.frame(config.frame or sensor.link)
+        self._Image, self._Model = message_class(_KIND), message_class(f"{_KIND}Model")
+        self._Pose = message_class("geometry_msgs/msg/Pose")
+        self._Point = message_class("geometry_msgs/msg/Point")
+        self._Quaternion = message_class("geometry_msgs/msg/Quaternion")
+        topic = config.topic or default_topic(part, sensor, "logical_camera")
+        rate = sensor.update_rate
+        self._publisher = self.advertise(topic, _KIND, rate=rate or None, qos="sensor")
+        part.schedule(rate, after=self._look, active=lambda: self._publisher.wanted)
+
+    def _look(self) -> None:
+        eye = self._link.pose @ self._mount
+        back = eye.inverse()
+        seen = ((name, back @ pose) for name, pose in self.part.models().items())
+        models = [self._Model(name, self._told(pose)) for name, pose in seen if self._sees(pose)]
+        head = header(self.part.time_ns, self._frame)
+        self._publisher.publish(self._Image(head, self._told(eye), models))
+
+    def _sees(self, pose: Pose) -> bool:
+        x, y, z = pose.position
+        inside = self.config.near <= x <= self.config.far
+        return inside and abs(y) <= self._wide * x and abs(z) <= self._high * x
+
+    def _told(self, pose: Pose) -> Any:
+        return self._Pose(self._Point(*pose.position), self._Quaternion(*pose.orientation))

@@ -1,0 +1,133 @@
+"""Altimeters and logical cameras of new Gazebo, against where things are."""
+
+import math
+
+import numpy as np
+import pytest
+
+from cartwheel.geometry import Pose, quat_from_rpy
+
+G = 9.8
+INERTIA = """<inertial><mass>1</mass><inertia><ixx>1</ixx><iyy>1</iyy><izz>1</izz></inertia>
+  </inertial>"""
+
+
+def altimeter(tags="<topic>height</topic>", inside=""):
+    return f"""<model name="unit"><link name="link"><pose>0 0 0.5 0 0 0</pose>{INERTIA}
+      <sensor name="alt" type="altimeter"><pose>0.3 0 0.2 0 0 0</pose>
+      <update_rate>50</update_rate>{tags}<altimeter>{inside}</altimeter></sensor></link></model>"""
+
+
+def test_an_altimeter_tells_how_far_it_fell_since_its_spawn(make, read):
+    world = make.world(ground=None)
+    world.session.spawn(make.sdf(altimeter()), pose=Pose((0, 0, 100)))
+    messages = read(world, "/height", 1.0)
+    assert len(messages) == 50
+    for message in (messages[0], messages[-1]):
+        seconds = message.header.stamp.sec + message.header.stamp.nanosec * 1e-9
+        assert message.vertical_reference == pytest.approx(100.7)
+        assert message.vertical_velocity == pytest.approx(-G * seconds, abs=1e-9)
+        # The engine's steps of 5 ms fall a little further than a parabola.
+        fallen = G * seconds * (seconds + 0.005) / 2
+        assert message.vertical_position == pytest.approx(-fallen, abs=1e-6)
+    assert messages[0].header.frame_id == "link"
+
+
+def test_an_altimeter_rises_where_it_is_mounted(make, read):
+    """In a turn about y what lies ahead goes down, by the rate times the arm."""
+    world = make.world(ground=None, gravity=0.0)
+    world.session.spawn(make.sdf(altimeter("<topic>height</topic><gz_frame_id>f</gz_frame_id>")))
+    world.session.simulation.data.joint("unit::link").qvel[4] = 0.5
+    message = read(world, "/height", 0.01)[0]
+    assert message.vertical_velocity == pytest.approx(-0.5 * 0.3, rel=1e-2)
+    assert message.header.frame_id == "f"
+
+
+def test_an_altimeters_noise_has_its_spread(make, read):
+    inside = "".join(
+        f"<{what}><noise type='gaussian'><stddev>{spread}</stddev></noise></{what}>"
+        for what, spread in (("vertical_position", 0.2), ("vertical_velocity", 0.05))
+    )
+    world = make.world(ground=None, gravity=0.0)
+    world.session.spawn(make.sdf(altimeter(inside=inside)))
+    messages = read(world, "/height", 20.0)
+    tolerance = 4 / math.sqrt(2 * len(messages))
+    heights = np.array([message.vertical_position for message in messages])
+    speeds = np.array([message.vertical_velocity for message in messages])
+    assert heights.std() == pytest.approx(0.2, rel=tolerance)
+    assert speeds.std() == pytest.approx(0.05, rel=tolerance)
+    assert not world.diagnostics
+
+
+def logical(view="<near>0.5</near><far>5</far><horizontal_fov>1.2</horizontal_fov>"
+            "<aspect_ratio>2</aspect_ratio>", topic="<topic>seen</topic>"):  # fmt: skip
+    return f"""<model name="eye"><static>1</static><pose>1 2 1 0 0 0.7</pose>
+      <link name="link"><sensor name="lc" type="logical_camera"><pose>0 0 0.5 0.1 0 0</pose>
+      <update_rate>10</update_rate>{topic}<logical_camera>{view}</logical_camera></sensor></link>
+      </model>"""
+
+
+EYE = Pose((1, 2, 1), quat_from_rpy(0, 0, 0.7)) @ Pose((0, 0, 0.5), quat_from_rpy(0.1, 0, 0))
+WIDE = math.tan(0.6)
+
+
+@pytest.mark.parametrize(
+    ("place", "seen"),
+    [
+        ((2.0, 0.0, 0.0), True),
+        ((0.49, 0.0, 0.0), False),
+        ((0.51, 0.0, 0.0), True),
+        ((4.99, 0.0, 0.0), True),
+        ((5.01, 0.0, 0.0), False),
+        ((2.0, 1.99 * WIDE, 0.0), True),
+        ((2.0, -2.01 * WIDE, 0.0), False),
+        ((2.0, 0.0, 0.99 * WIDE), True),
+        ((2.0, 0.0, -1.01 * WIDE), False),
+        ((-2.0, 0.0, 0.0), False),
+    ],
+)
+def test_a_logical_camera_sees_what_lies_in_its_view(make, read, place, seen):
+    turned = Pose(place, quat_from_rpy(0.3, 0.2, 0.1))
+    world = make.world(make.sdf(logical()), ground=None)
+    world.session.spawn(make.box("thing", (0.1, 0.1, 0.1), static=True), pose=EYE @ turned)
+    message = read(world, "/seen", 0.1)[-1]
+    assert [model.name for model in message.model] == (["thing"] if seen else [])
+    told = message.pose
+    assert (told.position.x, told.position.y, told.position.z) == pytest.approx(EYE.position)
+    for model in message.model:
+        at, turn = model.pose.position, model.pose.orientation
+        assert (at.x, at.y, at.z) == pytest.approx(place)
+        assert (turn.x, turn.y, turn.z, turn.w) == pytest.approx(turned.orientation)
+
+
+def test_a_logical_camera_has_gazebos_long_name(make):
+    system = '<plugin name="p" filename="gz-sim-logical-camera-system"/>'
+    model = logical(topic="").replace("</model>", f"{system}</model>")
+    world = make.world(make.sdf(model))
+    kinds = {topic.name: topic.type for topic in world.graph.topics()}
+    name = "/world/test/model/eye/link/link/sensor/lc/logical_camera"
+    assert kinds[name] == "ros_gz_interfaces/msg/LogicalCameraImage"
+    assert not world.diagnostics
+
+
+@pytest.mark.parametrize(
+    "view",
+    [
+        "<near>2</near><far>1</far>",
+        "<horizontal_fov>4</horizontal_fov>",
+        "<aspect_ratio>0</aspect_ratio>",
+    ],
+)
+def test_a_view_that_is_none_leaves_the_sensor_out(make, view):
+    (told,) = make.world(make.sdf(logical(view))).diagnostics
+    assert told.severity == "error"
+    assert 'sensor "lc" is left out' in told.message
+
+
+def test_what_classic_alone_has_is_told(make):
+    model = """<model name="m"><static>1</static><link name="l"><sensor name="a" type="{}"/>
+      </link></model>"""
+    for kind in ("altimeter", "logical_camera", "sonar", "wireless_receiver"):
+        (told,) = make.world(make.sdf(model.format(kind))).diagnostics
+        assert told.message == 'sensor "a" has no <plugin>, so it publishes nothing'
+        assert told.origin is not None
