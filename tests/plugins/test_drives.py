@@ -517,6 +517,22 @@ def test_mecanum_goes_where_it_is_told_and_believes_its_wheels(make, cart, read,
     )
 
 
+def test_mecanum_wheels_speed_up_no_faster_than_they_may(make, cart, read):
+    limits = "<max_velocity>0.4</max_velocity><max_acceleration>0.5</max_acceleration>"
+    drive = MECANUM.replace("</plugin>", f"{limits}<max_jerk>1</max_jerk></plugin>")
+    world = spawn(make, cart(FOUR, drive, mu=0.3))
+    assert [d.message for d in world.diagnostics if d.severity == "warning"] == [
+        "<max_jerk> has no effect: jerk is not limited"
+    ]
+    world.publish("/model/cart/cmd_vel", linear_x=1.0)
+    world.run(0.4)
+    slow = read(world, "/model/cart/odometry", 0.02)[-1].twist.twist.linear.x
+    assert slow == pytest.approx(0.5 * 0.4, abs=0.03)
+    world.run(1.0)
+    fast = read(world, "/model/cart/odometry", 0.02)[-1].twist.twist.linear.x
+    assert fast == pytest.approx(0.4, abs=0.01)
+
+
 def test_a_wheel_on_the_wrong_side_is_told(make, cart, read):
     """As in Gazebo's own pioneer3dx: it turns to the right when it is told to turn left."""
     swapped = {"left": (0.0, -0.15), "right": (0.0, 0.15)}

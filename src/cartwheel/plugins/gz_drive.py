@@ -32,7 +32,9 @@ class GzDriveParameters:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class GzLimitedParameters(GzDriveParameters):
+class GzCommonLimits(GzDriveParameters):
+    """Of straight and turning motion alike."""
+
     min_velocity: float | None = tag(
         "min_velocity", default=None, unit="m/s, rad/s", doc="Of the command; none when missing."
     )
@@ -47,6 +49,12 @@ class GzLimitedParameters(GzDriveParameters):
     )
     min_jerk: float | None = tag("min_jerk", default=None, unit="m/s³", doc="Has no effect.")
     max_jerk: float | None = tag("max_jerk", default=None, unit="m/s³", doc="Has no effect.")
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class GzLimitedParameters(GzCommonLimits):
+    """Of each motion its own, where it is stated."""
+
     min_linear_velocity: float | None = tag(
         "min_linear_velocity", default=None, unit="m/s", doc="In place of min_velocity."
     )
@@ -102,6 +110,14 @@ class Limiter:
         self.value = 0.0
 
     @classmethod
+    def common(cls, limits: GzCommonLimits) -> Limiter:
+        """That of any motion."""
+        return cls(
+            (limits.min_velocity, limits.max_velocity),
+            (limits.min_acceleration, limits.max_acceleration),
+        )
+
+    @classmethod
     def of(cls, limits: GzLimitedParameters, kind: str) -> Limiter:
         """That of ``linear`` or ``angular`` motion."""
 
@@ -132,7 +148,7 @@ def _clamp(value: float, low: float | None, high: float | None) -> float:
     return value if high is None else min(value, high)
 
 
-def report_limits(plugin: Plugin[Any], limits: GzLimitedParameters) -> None:
+def report_limits(plugin: Plugin[Any], limits: GzCommonLimits) -> None:
     """Tells of limits on jerk, which are not kept.
 
     Raises:

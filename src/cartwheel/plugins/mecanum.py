@@ -6,20 +6,26 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from cartwheel.plugins.base import Plugin
-from cartwheel.plugins.gz_drive import GzDriveParameters, gz_name, gz_odometry
+from cartwheel.plugins.gz_drive import (
+    GzCommonLimits,
+    Limiter,
+    gz_name,
+    gz_odometry,
+    report_limits,
+)
 from cartwheel.plugins.odometry import DeadReckoning
 from cartwheel.plugins.parameters import tag
 from cartwheel.plugins.rollers import has_rollers
 
 CONTROL_RATE = 100.0
-"""Hz at which the wheels' turning is read."""
+"""Hz at which limits are kept, and the wheels' turning is read."""
 _CORNERS = ("front_left", "front_right", "back_left", "back_right")
 _SIDEWAYS = (-1.0, 1.0, 1.0, -1.0)
 _LEFT_RIGHT = (-1.0, 1.0, -1.0, 1.0)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class MecanumParameters(GzDriveParameters):
+class MecanumParameters(GzCommonLimits):
     front_left: tuple[str, ...] = tag(
         "front_left_joint", default=("front_left_joint",), doc="Joint of a wheel; once for each."
     )
@@ -57,6 +63,8 @@ class MecanumDrive(Plugin[MecanumParameters]):
             wheel_separation=config.wheel_separation,
             wheel_radius=config.wheel_radius,
         )
+        report_limits(self, config)
+        self._limiters = [Limiter.common(config) for _ in range(3)]
         self._wheels = [
             [(part.joint(name, origin=origin), part.velocity_motor(name, max_effort=None))
              for name in getattr(config, corner)]
@@ -76,6 +84,8 @@ class MecanumDrive(Plugin[MecanumParameters]):
 
     def reset(self) -> None:
         self._command = (0.0, 0.0, 0.0)
+        for limiter in self._limiters:
+            limiter.value = 0.0
         self._turned: list[float] | None = None
         self._updated_ns = 0
         self._reckoning.restart()
@@ -87,14 +97,17 @@ class MecanumDrive(Plugin[MecanumParameters]):
         if not self.is_finite(forward, sideways, turn):
             return
         self._command = (forward, sideways, turn)
-        self._push(forward, sideways, turn)
 
     def _push(self, forward: float, sideways: float, turn: float) -> None:
         if self._drive is not None:
             self._drive.command((forward, sideways, None), (None, None, turn))
 
     def _control(self) -> None:
-        forward, sideways, turn = self._command
+        forward, sideways, turn = (
+            limiter.step(wanted, 1 / CONTROL_RATE)
+            for limiter, wanted in zip(self._limiters, self._command, strict=True)
+        )
+        self._push(forward, sideways, turn)
         radius = self.config.wheel_radius
         for wheels, across, side in zip(self._wheels, _SIDEWAYS, _LEFT_RIGHT, strict=True):
             speed = (forward + across * sideways + side * self._reach * turn) / radius
