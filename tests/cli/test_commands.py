@@ -191,6 +191,26 @@ def test_teleop_over_a_pipe(cart):
     cart("reset")
 
 
+def test_teleop_stamps_its_commands_where_they_are_read_so(program):
+    (program.folder / "bridge.yaml").write_text(
+        f"- {{topic_name: {CART_TOPIC}, ros_type_name: geometry_msgs/msg/TwistStamped}}"
+    )
+    running = program.start("run", "--headless", "--bridge", "bridge.yaml")
+    program.wait_until_up(running)
+    try:
+        process = program.start("teleop", stdin=subprocess.PIPE)
+        process.stdin.write("i")
+        process.stdin.flush()
+        deadline = time.monotonic() + 120
+        while position(program)["x"] < 0.05:
+            assert time.monotonic() < deadline
+        process.stdin.close()
+        assert process.wait(120) == 0
+    finally:
+        running.send_signal(signal.SIGINT)
+    assert running.wait(120) == 0
+
+
 def speed(cart):
     text = cart("topic", "echo", "/odom", "-n", "1", "--field", "twist.twist.linear.x").stdout
     return abs(float(text.split()[0]))

@@ -3,16 +3,18 @@
 import math
 from dataclasses import replace
 from types import SimpleNamespace
+from unittest.mock import MagicMock
 
 import numpy as np
 import pytest
 
 from cartwheel.errors import Diagnostic, Origin
-from cartwheel.graph import TopicInfo
+from cartwheel.graph import Graph, TopicInfo
 from cartwheel.messages import header, message_class
 from cartwheel.viewer.every import Every
 from cartwheel.viewer.panels.bumper import light_html, other_side
 from cartwheel.viewer.panels.camera import pixels_of
+from cartwheel.viewer.panels.drive import DrivePanel
 from cartwheel.viewer.panels.imu import row_of, thin
 from cartwheel.viewer.panels.notes import notes_html
 from cartwheel.viewer.panels.topics import list_html
@@ -27,6 +29,20 @@ def image(encoding, data, *, width, height, step):
         step=step,
         data=np.array(data, dtype=np.uint8),
     )
+
+
+def test_a_key_drives_what_reads_commands_with_a_stamp_too():
+    graph, stage = Graph(), MagicMock()
+    stage.session.graph = graph
+    stage.page.gui.add_dropdown.return_value = SimpleNamespace(value="", options=())
+    panel = DrivePanel(stage)
+    plain, stamped = [], []
+    graph.subscribe("/a", plain.append, type_name="geometry_msgs/msg/Twist")
+    graph.subscribe("/b", stamped.append, type_name="geometry_msgs/msg/TwistStamped")
+    panel.show_topics(graph.topics())
+    panel.press("i")
+    assert [message.linear.x for message in plain] == [0.5]
+    assert [message.twist.linear.x for message in stamped] == [0.5]
 
 
 def test_bgr_becomes_rgb():

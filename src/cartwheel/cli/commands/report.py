@@ -166,7 +166,8 @@ class Report:
 
     def _try(self, session: Session) -> None:
         topics = session.graph.topics()
-        if any(t.type == "geometry_msgs/msg/Twist" and t.subscribers for t in topics):
+        twists = ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
+        if any(t.type in twists and t.subscribers for t in topics):
             self._line("try", "cartwheel teleop")
         published = [topic.name for topic in topics if topic.publishers]
         for wanted in ("odom", "imu", "image", "clock"):

@@ -5,7 +5,8 @@ from __future__ import annotations
 import contextlib
 import os
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from typing import Any
 
 from cartwheel.cli import interrupts
 from cartwheel.cli.commands.clients import connect
@@ -15,41 +16,49 @@ from cartwheel.control import ControlClient
 from cartwheel.errors import CartwheelError
 
 TWIST = "geometry_msgs/msg/Twist"
+STAMPED = "geometry_msgs/msg/TwistStamped"
 
 
 def drive(sim: int | None, topic: str | None, *, speed: float, turn: float) -> None:
     """Publishes a Twist for each key, and a stop at the end."""
     with connect(sim) as client:
-        topic = topic or find_topic(client)
+        read = topics_read(client)
+        topic = topic or the_topic(read)
+        kind = read.get(topic, TWIST)
         driver = Driver(speed, turn)
-        if not client.publish(topic, TWIST, _twist(driver)):
+        if not client.publish(topic, kind, _message(driver, kind)):
             raise CartwheelError(f"nobody reads {topic}", hint="See: cartwheel topic list -v")
         try:
             with single_keys():
                 note(f"driving {paint(topic, 'bold', stream=sys.stderr)}\n\n{HELP}\n")
                 for key in keys():
                     driver.press(key)
-                    client.publish(topic, TWIST, _twist(driver))
+                    client.publish(topic, kind, _message(driver, kind))
                     _show(driver)
         except interrupts.Interrupted:
             pass  # The way to end it.
         finally:
             driver.press("k")
-            client.publish(topic, TWIST, _twist(driver))
+            client.publish(topic, kind, _message(driver, kind))
         note("")
 
 
-def find_topic(client: ControlClient) -> str:
-    """The one topic on which a robot waits for a Twist.
+def topics_read(client: ControlClient) -> dict[str, str]:
+    """The types of the topics on which robots wait for a Twist, stamped or not."""
+    return {
+        one["name"]: one["type"]
+        for one in client.request("topics")["topics"]
+        if one["type"] in (TWIST, STAMPED) and one["subscribers"]
+    }
+
+
+def the_topic(found: Iterable[str]) -> str:
+    """The one of them that drives.
 
     Raises:
         CartwheelError: There is none, or several.
     """
-    found = [
-        one["name"]
-        for one in client.request("topics")["topics"]
-        if one["type"] == TWIST and one["subscribers"]
-    ]
+    found = list(found)
     driven = [name for name in found if name.rsplit("/", 1)[-1] == "cmd_vel"] or found
     if not driven:
         raise CartwheelError(
@@ -60,7 +69,7 @@ def find_topic(client: ControlClient) -> str:
             f"{len(driven)} robots can be driven; name one with --topic",
             hint=f"They are: {', '.join(driven)}.",
         )
-    return str(driven[0])
+    return driven[0]
 
 
 @contextlib.contextmanager
@@ -88,9 +97,10 @@ def keys() -> Iterator[str]:
         yield from ("k",) if text.startswith("\x1b") else "".join(text.split("\n"))
 
 
-def _twist(driver: Driver) -> dict[str, dict[str, float]]:
+def _message(driver: Driver, kind: str) -> dict[str, Any]:
     x, y, z = driver.linear
-    return {"linear": {"x": x, "y": y, "z": z}, "angular": {"z": driver.angular}}
+    twist = {"linear": {"x": x, "y": y, "z": z}, "angular": {"z": driver.angular}}
+    return {"twist": twist} if kind == STAMPED else twist
 
 
 def _show(driver: Driver) -> None:

@@ -14,12 +14,13 @@ from collections.abc import Sequence
 from typing import Any
 
 from cartwheel.graph import TopicInfo
-from cartwheel.messages import message_class
+from cartwheel.messages import header, message_class
 from cartwheel.viewer.panels.base import Panel
 from cartwheel.viewer.stage import Stage
 from cartwheel.viewer.teleop import MOVES, Teleop
 
 TWIST = "geometry_msgs/msg/Twist"
+STAMPED = "geometry_msgs/msg/TwistStamped"
 _ALL = "all that listen"
 _NONE = "nothing listens"
 _LABELS = {
@@ -48,7 +49,7 @@ class DrivePanel(Panel):
     def __init__(self, stage: Stage) -> None:
         super().__init__(stage)
         self._teleop = Teleop()
-        self._drivable: tuple[str, ...] = ()
+        self._drivable: dict[str, str] = {}
         self._topic = self.gui.add_dropdown("Drive", (_NONE,))
         self._pad = self.gui.add_html(self._html())
         for key, label in _LABELS.items():
@@ -63,12 +64,13 @@ class DrivePanel(Panel):
         self._pad.content = self._html()
 
     def show_topics(self, topics: Sequence[TopicInfo]) -> None:
-        drivable = tuple(t.name for t in topics if t.type == TWIST and t.subscribers)
+        kinds = (TWIST, STAMPED)
+        drivable = {t.name: t.type for t in topics if t.type in kinds and t.subscribers}
         if drivable == self._drivable:
             return
         self._drivable = drivable
         chosen = self._topic.value
-        options = (_ALL, *drivable) if len(drivable) > 1 else (drivable or (_NONE,))
+        options = (_ALL, *drivable) if len(drivable) > 1 else (tuple(drivable) or (_NONE,))
         self._topic.options = options
         self._topic.value = chosen if chosen in options else options[0]
 
@@ -79,14 +81,19 @@ class DrivePanel(Panel):
 
     def _publish(self) -> None:
         vector = message_class("geometry_msgs/msg/Vector3")
-        message: Any = message_class(TWIST)(
+        twist: Any = message_class(TWIST)(
             linear=vector(x=float(self._teleop.linear), y=0.0, z=0.0),
             angular=vector(x=0.0, y=0.0, z=float(self._teleop.angular)),
         )
         chosen = self._topic.value
         for topic in self._drivable if chosen == _ALL else (chosen,):
-            if topic in self._drivable:
-                self.graph.publish(topic, TWIST, message)
+            kind = self._drivable.get(topic)
+            if kind == TWIST:
+                self.graph.publish(topic, TWIST, twist)
+            elif kind == STAMPED:
+                # Without a time it is of now: this thread may not ask the simulation for it.
+                message: Any = message_class(STAMPED)(header=header(0, ""), twist=twist)
+                self.graph.publish(topic, STAMPED, message)
 
     def _html(self) -> str:
         teleop = self._teleop
