@@ -156,6 +156,28 @@ def test_what_a_frozen_reader_misses_is_counted_once() -> None:
     assert writer.dropped == 6
 
 
+@pytest.mark.parametrize("size", [8, 150_000])
+def test_what_the_system_does_not_take_is_counted_where_nobody_asks_again(size: int) -> None:
+    told: list[int] = []
+    takes = [True]
+    writer = Writer(endpoint(OURS + WRITER), lambda *_: takes[0])
+    writer.on_refusal = lambda: told.append(writer.dropped)
+    other = b"o" * 12
+    for guid in (THEIRS + READER, THEIRS + b"\0\0\2\4", other + READER):
+        writer.match(endpoint(guid, reliable=guid.startswith(other)), HERE)
+    payload = bytes(size)
+    writer.write(payload)
+    assert writer.dropped == 0
+    takes[0] = False
+    writer.write(payload)
+    # Two readers of one participant get none of it; the reliable one will ask.
+    assert told == [2]
+    writer.unmatch(THEIRS + READER)
+    writer.unmatch(THEIRS + b"\0\0\2\4")
+    writer.write(payload)
+    assert told == [2]
+
+
 def test_a_response_goes_to_whom_it_is_for_and_others_do_not_wait_for_it() -> None:
     sent: list[bytes] = []
     writer = Writer(endpoint(OURS + WRITER), lambda parts, _: sent.append(b"".join(parts)))

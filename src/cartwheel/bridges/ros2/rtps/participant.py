@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import os
 import socket
 import struct
@@ -230,10 +229,13 @@ class Participant:
 
     # -- datagrams
 
-    def _send(self, parts: Sequence[bytes | memoryview], address: Address) -> None:
-        # A full buffer or a network that is down: reliability mends it, if anything does.
-        with contextlib.suppress(OSError):
+    def _send(self, parts: Sequence[bytes | memoryview], address: Address) -> bool:
+        try:
             self._network.unicast.sendmsg(parts, (), 0, address)
+        except OSError:
+            # A full buffer or a network that is down: reliability mends it, if anything does.
+            return False
+        return True
 
     def _receive(self, sock: socket.socket) -> None:
         for _ in range(_AT_ONCE):

@@ -11,8 +11,8 @@ from cartwheel.bridges.ros2.rtps import wire
 from cartwheel.bridges.ros2.rtps.discovery import Address, Endpoint
 from cartwheel.bridges.ros2.rtps.wire import UNKNOWN, Guid, Prefix
 
-Send = Callable[[Sequence[bytes | memoryview], Address], None]
-"""Sends one datagram; never waits long, and may lose it."""
+Send = Callable[[Sequence[bytes | memoryview], Address], bool]
+"""Sends one datagram; never waits long, and may lose it. False where the system did not take it."""
 
 _FIRST_AGAIN, _LAST_AGAIN = 0.1, 2.0
 """s between two reminders to a reader that does not answer."""
@@ -76,11 +76,14 @@ class Writer:
         self.endpoint = endpoint
         self.proxies: dict[Guid, ReaderProxy] = {}
         self.dropped = 0
-        """Samples that readers have missed: asked for in vain, or gone while one was frozen."""
+        """Samples that readers have missed: asked for in vain, gone while one was frozen, or, of
+        those that nobody asks for again, not taken by the system."""
         self.on_readers: Callable[[], None] = lambda: None
         """Told when readers come or go."""
         self.on_drop: Callable[[], None] = lambda: None
         """Told when a reader has asked in vain."""
+        self.on_refusal: Callable[[], None] = lambda: None
+        """Told when the system took no more of what is sent but once."""
         self.on_silence: Callable[[], None] = lambda: None
         """Told when samples go that a frozen reader has not got."""
         self._prefix, self._entity = endpoint.guid[:12], endpoint.guid[12:]
@@ -159,7 +162,8 @@ class Writer:
             elif prefix not in reached:
                 # One datagram serves all readers of a participant.
                 reached.add(prefix)
-                self._send_sample(self._last, sample, proxy, UNKNOWN)
+                if not self._send_sample(self._last, sample, proxy, UNKNOWN):
+                    self._count_refused(prefix)
             if proxy.reliable and not proxy.remind_at:
                 proxy.remind_at = time.monotonic() + proxy.patience
 
@@ -229,6 +233,15 @@ class Writer:
             self.dropped += gone - before
             self.on_silence()
 
+    def _count_refused(self, prefix: Prefix) -> None:
+        """Counts a sample that no reader of a participant got who does not ask for it again."""
+        lost = sum(
+            not proxy.reliable for guid, proxy in self.proxies.items() if guid[:12] == prefix
+        )
+        if lost:
+            self.dropped += lost
+            self.on_refusal()
+
     def _keep(self, number: int, sample: Sample) -> None:
         self._kept[number] = sample
         self._kept_bytes += len(sample.payload)
@@ -266,11 +279,11 @@ class Writer:
             final=final,
         )
 
-    def _send_sample(self, number: int, sample: Sample, proxy: ReaderProxy, reader: bytes) -> None:
+    def _send_sample(self, number: int, sample: Sample, proxy: ReaderProxy, reader: bytes) -> bool:
+        """Whether the system took all of it."""
         if len(sample.payload) > wire.LARGEST:
             count = -(-len(sample.payload) // wire.LARGEST)
-            self._send_fragments(number, sample, proxy, reader, range(1, count + 1))
-            return
+            return self._send_fragments(number, sample, proxy, reader, range(1, count + 1))
         head = wire.message(
             self._prefix,
             sample.written,
@@ -284,7 +297,7 @@ class Writer:
             ),
             to=proxy.guid[:12],
         )
-        self._send((head, sample.payload), proxy.address)
+        return self._send((head, sample.payload), proxy.address)
 
     def _send_fragments(
         self,
@@ -293,9 +306,10 @@ class Writer:
         proxy: ReaderProxy,
         reader: bytes,
         fragments: Sequence[int],
-    ) -> None:
+    ) -> bool:
         whole = memoryview(sample.payload)
         sent = 0
+        taken = True
         for fragment in fragments:
             part = whole[(fragment - 1) * wire.LARGEST : fragment * wire.LARGEST]
             if not part:
@@ -314,10 +328,11 @@ class Writer:
                 ),
                 to=proxy.guid[:12],
             )
-            self._send((head, part), proxy.address)
+            taken = self._send((head, part), proxy.address) and taken
             sent += 1
             if sent % _BURST == 0:
                 time.sleep(_PAUSE)
+        return taken
 
 
 def _ranges(numbers: Sequence[int]) -> list[tuple[int, int]]:
