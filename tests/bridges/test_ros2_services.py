@@ -12,6 +12,7 @@ from tests.bridges.ros2_peers import DOMAIN, REASON, Peer, Ros2Bridged
 
 from cartwheel.cli.commands.ros2 import node_parameters
 from cartwheel.gazebo.ros2_api import Ros2Api
+from cartwheel.messages.ros2_types import ros2_type
 from cartwheel.session import Session
 from cartwheel.simulation import RunState
 
@@ -310,9 +311,17 @@ def test_parameters_are_listed_described_got_and_set(bridged: Ros2Bridged, peer:
     assert [each.successful for each in results] == [True, False, False, False, False]
     assert "read-only" in results[2].reason
     wait_for(lambda: bridged.simulation.speed == 2.0, "the speed that was set")
-    (event,) = wait_for(lambda: peer.messages("/parameter_events", events), "the change told")
+
+    def told() -> list[Any]:
+        """What other tests did to time may be told still."""
+        return [
+            event
+            for event in peer.messages("/parameter_events", events)
+            if [each.name for each in event.changed_parameters] == ["real_time_factor"]
+        ]
+
+    (event,) = wait_for(told, "the change told")
     assert event.node == "/gazebo"
-    assert [each.name for each in event.changed_parameters] == ["real_time_factor"]
     whole = peer.call(
         "/gazebo/set_parameters_atomically",
         f"{package}/SetParametersAtomically",
@@ -325,6 +334,61 @@ def test_parameters_are_listed_described_got_and_set(bridged: Ros2Bridged, peer:
     ).result
     assert not whole.successful
     assert bridged.simulation.speed == 2.0
+
+
+def test_parameters_that_something_else_changes_are_told_too(
+    bridged: Ros2Bridged,
+) -> None:
+    events = "rcl_interfaces/msg/ParameterEvent"
+    peer = Peer(DOMAIN + 1)
+    peer.subscribe("/parameter_events", events)
+    simulation = bridged.simulation
+
+    def told() -> list[bool]:
+        """How often time is said to be held, with repetitions."""
+        return [
+            each.value.bool_value
+            for event in peer.messages("/parameter_events", events)
+            for each in event.changed_parameters
+            if each.name == "paused"
+        ]
+
+    def hold(held: bool) -> None:
+        change = simulation.pause if held else simulation.resume
+        simulation.call(change).result()
+
+    try:
+        # The first ones may go before the two know each other.
+        def seen() -> bool:
+            hold(held=simulation.run_state is RunState.RUNNING)
+            return len(told()) > 2
+
+        wait_for(seen, "a change that nobody set as a parameter")
+        assert all(a != b for a, b in itertools.pairwise(told()))
+    finally:
+        hold(held=False)
+        peer.close()
+
+
+def test_types_are_described_as_by_any_node(bridged: Ros2Bridged, peer: Peer) -> None:
+    name, kind = (
+        "/gazebo/get_type_description",
+        "type_description_interfaces/srv/GetTypeDescription",
+    )
+    odometry = ros2_type("nav_msgs/msg/Odometry")
+    asked = {"type_name": odometry.name, "type_hash": odometry.hash, "include_type_sources": True}
+    answer = peer.call(name, kind, asked)
+    assert (answer.successful, answer.failure_reason) == (True, "")
+    own = answer.type_description.type_description
+    assert own.type_name == odometry.name
+    assert [each.name for each in own.fields] == ["header", "child_frame_id", "pose", "twist"]
+    within = {each.type_name for each in answer.type_description.referenced_type_descriptions}
+    assert within >= {"std_msgs/msg/Header", "geometry_msgs/msg/PoseWithCovariance"}
+    assert {each.type_name for each in answer.type_sources} == within | {odometry.name}
+    for wrong in ({"type_hash": "RIHS01_0"}, {"type_name": "nav_msgs/msg/Odo"}):
+        refused = peer.call(name, kind, {**asked, **wrong})
+        assert not refused.successful
+        assert refused.failure_reason
 
 
 def test_a_request_that_is_none_harms_nobody(bridged: Ros2Bridged, peer: Peer) -> None:

@@ -28,7 +28,7 @@ _ROS1_TYPES = frozenset(
         "gazebo_msgs/srv/SetLightProperties",
     }
 )
-_PART = re.compile(r"_(Request|Response)\Z")
+_PART = re.compile(r"_(Request|Response|Event)\Z")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -110,6 +110,36 @@ def ros2_service(name: str) -> Ros2Service:
         request_hash=made.hash_rihs01(f"{real}_Request"),
         response_hash=made.hash_rihs01(f"{real}_Response"),
     )
+
+
+def ros2_hash_of(name: str) -> str:
+    """The hash of a message or service type by ROS 2's name.
+
+    Raises:
+        UnknownNameError: ROS 2 has no such type.
+    """
+    fields_of(name)
+    return str(_hash_store().hash_rihs01(name))
+
+
+def fields_of(name: str) -> list[tuple[str, Any]]:
+    """The fields of a message or service type by ROS 2's name, as ROS 2 hashes them.
+
+    Raises:
+        UnknownNameError: ROS 2 has no such type.
+    """
+    known = _hash_store().fielddefs
+    if name not in known and "/msg/" not in name:
+        service = _PART.sub("", name)
+        twin = twin_name(service)
+        ros2_service(twin if f"{twin}_Request" in store().fielddefs else service)
+    if name not in known:
+        raise UnknownNameError("ROS 2 type", name, known)
+    from rosbags.interfaces import Nodetype
+
+    # What rosidl puts into a type without fields.
+    nothing = ("structure_needs_at_least_one_member", (Nodetype.BASE, ("uint8", 0)))
+    return list(known[name][1]) or [nothing]
 
 
 def ros2_name(name: str) -> str:

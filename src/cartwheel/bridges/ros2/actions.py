@@ -13,6 +13,7 @@ import numpy as np
 
 from cartwheel.bridges.loop import Loop
 from cartwheel.bridges.ros2.middleware import (
+    CALLS,
     DEFAULT,
     LATCHED,
     Answer,
@@ -89,7 +90,8 @@ class OfferedAction:
                 f"{base}/{name}",
                 ros2_service(self._types[name]),
                 self._answer(name, handler),
-                request_check(ros2_service(self._types[name])),
+                fits=request_check(ros2_service(self._types[name])),
+                depth=CALLS,
             )
             for name, handler in (
                 ("send_goal", self._send_goal),

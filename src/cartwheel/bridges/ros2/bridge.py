@@ -13,7 +13,9 @@ from cartwheel.bridges.mirror import Arrivals, asked, survey
 from cartwheel.bridges.ros2.actions import OfferedAction
 from cartwheel.bridges.ros2.log import Log
 from cartwheel.bridges.ros2.middleware import (
+    CALLS,
     DEFAULT,
+    PARAMETER_CALLS,
     Closable,
     Middleware,
     Outlet,
@@ -22,6 +24,8 @@ from cartwheel.bridges.ros2.middleware import (
     request_check,
 )
 from cartwheel.bridges.ros2.parameters import NodeParameters, Parameter
+from cartwheel.bridges.ros2.type_descriptions import TYPE as DESCRIPTION
+from cartwheel.bridges.ros2.type_descriptions import get_type_description
 from cartwheel.bridges.tap import Tap
 from cartwheel.errors import (
     CartwheelError,
@@ -44,6 +48,8 @@ _MOST_CALLS = 32
 _TOLD = 500
 """Different warnings; they name nodes, of which any number may come."""
 _CLOSING = 10.0
+_LOOK = 0.2
+"""s between two looks whether parameters were changed by others."""
 
 Report = Callable[[Diagnostic], None]
 
@@ -159,7 +165,17 @@ class Ros2Bridge:
     def _begin(self) -> None:
         self.middleware.start()
         self._log.begin(self.middleware)
-        self._parameters.begin(self.middleware, self._offer)
+        self._parameters.begin(
+            self.middleware, functools.partial(self._offer, depth=PARAMETER_CALLS)
+        )
+        self._offer(f"{self.name}/get_type_description", DESCRIPTION, get_type_description)
+        self._look_at_parameters()
+
+    def _look_at_parameters(self) -> None:
+        """Others change parameters too: a page, a service, another wire."""
+        if not self._closed:
+            self._parameters.look()
+            self._loop.after(_LOOK, self._look_at_parameters)
 
     def _wake(self) -> None:
         """The graph has changed; on any thread, the graph locked."""
@@ -229,7 +245,13 @@ class Ros2Bridge:
                 )
 
     def _offer(
-        self, name: str, type_name: str, handler: Callable[[Any], Any], *, threaded: bool = False
+        self,
+        name: str,
+        type_name: str,
+        handler: Callable[[Any], Any],
+        *,
+        threaded: bool = False,
+        depth: int = CALLS,
     ) -> Closable:
         """Offers a service whose handler may take long, if it is `threaded`."""
         type_ = ros2_service(type_name)
@@ -256,7 +278,7 @@ class Ros2Bridge:
                 data = encode_cdr(self._failure(name, type_name, text))
             self._loop.post(lambda: reply(data))
 
-        return self.middleware.serve(name, type_, answer, request_check(type_))
+        return self.middleware.serve(name, type_, answer, fits=request_check(type_), depth=depth)
 
     def _in_thread(self, function: Callable[[], None], name: str) -> None:
         if self._calls >= _MOST_CALLS:

@@ -31,7 +31,8 @@ _HEADER = 16
 """Bytes before a request's and a response's fields in rmw_cyclonedds: who asks, and which."""
 _PATIENCE, _PAUSE = 2.0, 0.02
 """s that a response waits for the reader of it to be found."""
-_CALLS = EndpointQos(depth=100)
+_CALLS = 100
+"""Responses that are kept at least: who asks much must not lose any."""
 
 
 class Dds:
@@ -105,6 +106,9 @@ class Dds:
         writer.on_drop = lambda: self._tell(
             f"a node reads {topic} too slowly: messages to it are dropped"
         )
+        writer.on_refusal = lambda: self._tell(
+            f"the network takes no more: messages of {topic} are dropped"
+        )
         writer.on_silence = lambda: self._tell(
             f"a node that reads {topic} does not answer any more: messages to it are dropped"
         )
@@ -128,10 +132,17 @@ class Dds:
         return _Inlet(self, reader)
 
     def serve(
-        self, name: str, type_: Ros2Service, answer: Answer, fits: Callable[[bytes], bool]
+        self,
+        name: str,
+        type_: Ros2Service,
+        answer: Answer,
+        *,
+        fits: Callable[[bytes], bool],
+        depth: int,
     ) -> _Service:
         """See `Middleware`."""
-        return _Service(self, name, type_, answer=answer, fits=fits)
+        qos = EndpointQos(depth=max(depth, _CALLS))
+        return _Service(self, name, type_, answer=answer, fits=fits, qos=qos)
 
     def topics_of_others(self) -> set[str]:
         """See `Middleware`."""
@@ -228,6 +239,7 @@ class _Service:
         *,
         answer: Answer,
         fits: Callable[[bytes], bool],
+        qos: EndpointQos,
     ) -> None:
         self._dds = dds
         self._loop = dds.loop
@@ -236,10 +248,10 @@ class _Service:
         identity = ".".join(f"{byte:02x}" for byte in os.urandom(16))
         user_data = f"serviceid={identity};".encode() + _hash(type_.hash)
         self._writer = dds.participant.writer(
-            f"rr{name}Reply", type_.dds_response, _CALLS, user_data=user_data
+            f"rr{name}Reply", type_.dds_response, qos, user_data=user_data
         )
         self._reader = dds.participant.reader(
-            f"rq{name}Request", type_.dds_request, _CALLS, self._take, user_data=user_data
+            f"rq{name}Request", type_.dds_request, qos, self._take, user_data=user_data
         )
         dds._add(self._writer, self._reader)
 

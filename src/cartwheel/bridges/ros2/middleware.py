@@ -29,6 +29,8 @@ class Profile:
 LATCHED = Profile(transient_local=True, depth=1)
 SENSOR = Profile(reliable=False, depth=5)
 DEFAULT = Profile()
+CALLS, PARAMETER_CALLS = 10, 1000
+"""Depths of services, and of those for parameters. Source: rmw's qos_profiles.h."""
 _BY_TOPIC = {
     "/tf": Profile(depth=100),
     "/tf_static": LATCHED,
@@ -94,9 +96,23 @@ class Middleware(Protocol):
         """Reads a topic."""
 
     def serve(
-        self, name: str, type_: Ros2Service, answer: Answer, fits: Callable[[bytes], bool]
+        self,
+        name: str,
+        type_: Ros2Service,
+        answer: Answer,
+        *,
+        fits: Callable[[bytes], bool],
+        depth: int,
     ) -> Closable:
-        """Offers a service; `fits` tells whether bytes can be a request."""
+        """Offers a service.
+
+        Args:
+            name: Of the service.
+            type_: Its type.
+            answer: Takes requests.
+            fits: Tells whether bytes can be a request.
+            depth: Requests, and responses, that are kept.
+        """
 
     def topics_of_others(self) -> set[str]:
         """The topics that other nodes publish; another simulation's do not count."""

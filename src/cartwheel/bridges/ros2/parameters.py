@@ -22,6 +22,8 @@ _TYPES: dict[type, int] = {bool: 1, int: 2, float: 3, str: 4}
 _FIELDS = {1: "bool_value", 2: "integer_value", 3: "double_value", 4: "string_value"}
 _NAMES = {1: "bool", 2: "integer", 3: "double", 4: "string"}
 _NOT_SET = 0
+_SETTLING = 50
+"""Looks that a value may take to hold after it was set: the simulation may be busy."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -51,9 +53,14 @@ class NodeParameters:
         self._time_ns = time_ns
         self._parameters = {one.name: one for one in parameters}
         self._events: Outlet | None = None
+        self._told: dict[str, Value] = {}
+        """Values by name, as others know them."""
+        self._settling: dict[str, int] = {}
+        """Looks that what was set may still take to hold."""
 
     def begin(self, middleware: Middleware, offer: Offer) -> None:
         """Offers everything; on the loop's thread."""
+        self._told = {name: one.get() for name, one in self._parameters.items()}
         self._events = middleware.publish(
             EVENTS, ros2_type(EVENT), profile_of(EVENTS, "default"), lambda _: None
         )
@@ -66,6 +73,24 @@ class NodeParameters:
             ("set_parameters_atomically", "SetParametersAtomically", self._set_atomically),
         ):
             offer(f"{self._node}/{name}", f"rcl_interfaces/srv/{type_name}", handler)
+
+    def look(self) -> None:
+        """Tells what something else has changed since the last look; on the loop's thread."""
+        changed = []
+        for name, one in self._parameters.items():
+            value = one.get()
+            left = self._settling.pop(name, 0)
+            if value == self._told[name]:
+                continue
+            if left:
+                self._settling[name] = left - 1
+                continue
+            self._told[name] = value
+            changed.append(
+                message_class("rcl_interfaces/msg/Parameter")(name=name, value=_value(value))
+            )
+        if changed:
+            self._tell(changed)
 
     def _describe(self, request: Any) -> Any:
         descriptors = []
@@ -131,6 +156,8 @@ class NodeParameters:
                 assert known.set is not None
                 known.set(before)
             return result(successful=False, reason=error.message)
+        for known, value in checked:
+            self._told[known.name], self._settling[known.name] = value, _SETTLING
         self._tell(given)
         return result(successful=True, reason="")
 

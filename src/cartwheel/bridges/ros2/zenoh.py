@@ -152,11 +152,17 @@ class Zenoh:
         return _Declared(token, subscriber)
 
     def serve(
-        self, name: str, type_: Ros2Service, answer: Answer, fits: Callable[[bytes], bool]
+        self,
+        name: str,
+        type_: Ros2Service,
+        answer: Answer,
+        *,
+        fits: Callable[[bytes], bool],
+        depth: int,
     ) -> _Service:
         """See `Middleware`."""
         del fits
-        return _Service(self, name, type_, answer)
+        return _Service(self, name, type_, answer, Profile(depth=depth))
 
     def topics_of_others(self) -> set[str]:
         """See `Middleware`."""
@@ -324,10 +330,12 @@ class _Outlet:
 class _Service:
     """A queryable."""
 
-    def __init__(self, zenoh: Zenoh, name: str, type_: Ros2Service, answer: Answer) -> None:
+    def __init__(
+        self, zenoh: Zenoh, name: str, type_: Ros2Service, answer: Answer, profile: Profile
+    ) -> None:
         self._zenoh = zenoh
         self._answer = answer
-        self._token, _ = zenoh.token("SS", name, type_.dds, type_.hash, Profile())
+        self._token, _ = zenoh.token("SS", name, type_.dds, type_.hash, profile)
         with zenoh.calling():
             self._queryable = zenoh._session.declare_queryable(
                 zenoh.key(name, type_.dds, type_.hash), self._asked, complete=True

@@ -1,0 +1,33 @@
+"""``get_type_description``, which every node of Jazzy and later has."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from cartwheel.errors import UnknownNameError
+from cartwheel.messages import zero
+from cartwheel.messages.ros2_types import ros2_hash_of
+from cartwheel.messages.type_description import type_description
+
+TYPE = "type_description_interfaces/srv/GetTypeDescription"
+
+
+def get_type_description(request: Any) -> Any:
+    """Answers with what a type is made of; without source texts, as for types made at run time."""
+    response = zero(f"{TYPE}_Response")
+    try:
+        known = ros2_hash_of(request.type_name)
+        if request.type_hash != known:
+            raise UnknownNameError("hash of this type", request.type_hash, [known])
+        response.type_description = type_description(request.type_name)
+    except UnknownNameError as error:
+        response.failure_reason = error.message
+        return response
+    response.successful = True
+    if request.include_type_sources:
+        found = response.type_description
+        for each in (found.type_description, *found.referenced_type_descriptions):
+            source = zero("type_description_interfaces/msg/TypeSource")
+            source.type_name, source.encoding = each.type_name, "dynamic"
+            response.type_sources.append(source)
+    return response
