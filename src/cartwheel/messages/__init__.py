@@ -1,9 +1,10 @@
 """ROS messages in process: classes, names, parts, and their forms outside."""
 
+from cartwheel.messages.cdr_writing import encode_cdr
 from cartwheel.messages.common import header, stamp
 from cartwheel.messages.convert import from_dict, from_flat, recast, to_dict, zero
 from cartwheel.messages.echo import to_yaml
-from cartwheel.messages.encoding import CdrCache, decode_cdr, encode_cdr
+from cartwheel.messages.encoding import CdrCache, decode_cdr
 from cartwheel.messages.store import message_class, service_classes, store, type_name
 from cartwheel.messages.times import nanoseconds
 

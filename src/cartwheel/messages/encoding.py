@@ -6,12 +6,8 @@ import threading
 from typing import Any
 
 from cartwheel.errors import GraphError
+from cartwheel.messages.cdr_writing import encode_cdr
 from cartwheel.messages.store import loaded, message_class
-
-
-def encode_cdr(message: Any) -> bytes:
-    """A message as CDR with its four bytes of encapsulation, as ROS 2 and MCAP carry it."""
-    return bytes(loaded().serialize_cdr(message, message.__msgtype__))
 
 
 def decode_cdr(data: bytes | memoryview, type_name: str) -> Any:

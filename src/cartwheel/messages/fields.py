@@ -11,6 +11,21 @@ from cartwheel.messages.store import loaded, message_class
 FILLER = "structure_needs_at_least_one_member"
 """The byte that ROS 2 puts into a message without fields; nobody writes or reads it."""
 
+CODES = {
+    "bool": "?",
+    "int8": "b",
+    "uint8": "B",
+    "int16": "h",
+    "uint16": "H",
+    "int32": "i",
+    "uint32": "I",
+    "int64": "q",
+    "uint64": "Q",
+    "float32": "f",
+    "float64": "d",
+}
+"""`struct`'s letters."""
+
 _DTYPES = {"octet": "uint8", "byte": "uint8", "char": "uint8", "float128": "longdouble"}
 
 Kind = Literal["bool", "int", "float", "string", "message"]

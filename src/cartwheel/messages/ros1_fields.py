@@ -17,21 +17,6 @@ from cartwheel.messages.store import type_name
 
 HEADER = "std_msgs/msg/Header"
 
-CODES = {
-    "bool": "?",
-    "int8": "b",
-    "uint8": "B",
-    "int16": "h",
-    "uint16": "H",
-    "int32": "i",
-    "uint32": "I",
-    "int64": "q",
-    "uint64": "Q",
-    "float32": "f",
-    "float64": "d",
-}
-"""`struct`'s letters."""
-
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Pair:

@@ -11,8 +11,8 @@ import numpy as np
 
 from cartwheel.errors import GraphError
 from cartwheel.messages.convert import zero
-from cartwheel.messages.fields import FILLER, Field
-from cartwheel.messages.ros1_fields import CODES, Pair, pairs
+from cartwheel.messages.fields import CODES, FILLER, Field
+from cartwheel.messages.ros1_fields import Pair, pairs
 from cartwheel.messages.store import loaded, message_class, type_name
 
 _COUNT = struct.Struct("<I")

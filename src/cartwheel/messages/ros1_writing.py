@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 
 from cartwheel.errors import GraphError
-from cartwheel.messages.fields import Field
-from cartwheel.messages.ros1_fields import CODES, HEADER, pairs
+from cartwheel.messages.fields import CODES, Field
+from cartwheel.messages.ros1_fields import HEADER, pairs
 
 _COUNT = struct.Struct("<I")
 _SHARED = 4096
