@@ -17,9 +17,9 @@ from cartwheel.description.check.solids import bounds, solid_of
 from cartwheel.description.model import RobotDescription
 from cartwheel.errors import CartwheelError
 from cartwheel.geometry import Pose
-from cartwheel.plugins.catalogue import ROS_CONTROL, plugin_named, short_name
+from cartwheel.plugins.catalogue import plugin_named, short_name
 from cartwheel.plugins.control.files import ControllerFiles
-from cartwheel.plugins.control.suggestion import files_for
+from cartwheel.plugins.control.suggestion import suggested
 from cartwheel.plugins.world_plugins import BUILT_IN
 
 STANDING = 10.0
@@ -58,7 +58,7 @@ def try_robot(
         robot = load_robot(file, arguments=arguments or {}, package_path=package_path)
         verdict = _described(verdict, robot)
         if controllers is None:
-            controllers = _controllers(robot)
+            controllers = suggested(robot)
         with World() as world:
             pose = _place(robot)
             # A ground_plane stands there already.
@@ -98,15 +98,6 @@ def _described(verdict: Verdict, robot: RobotDescription) -> Verdict:
         missing_meshes=sum(bool(_NO_MESH.search(each.message)) for each in robot.diagnostics),
         diagnostics=robot.diagnostics,
     )
-
-
-def _controllers(robot: RobotDescription) -> list[Path]:
-    """The files beside a robot of ros_control, which in ROS a launch file names."""
-    plugin = plugin_named(ROS_CONTROL)
-    if not any(plugin_named(tag.filename) is plugin for tag in robot.plugins):
-        return []
-    joints = [joint.name for joint in robot.joints if joint.type != "fixed"]
-    return files_for(Path(robot.origin.file), joints)
 
 
 def _place(robot: RobotDescription) -> Pose:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
-from pathlib import Path, PurePath
+from pathlib import PurePath
 from typing import TYPE_CHECKING
 
 from cartwheel.cli.commands.grouping import grouped
@@ -131,13 +131,12 @@ class Report:
         offers = (service.name for service in session.graph.services())
         if not any(offer.endswith("/controller_manager/load_controller") for offer in offers):
             return
-        from cartwheel.plugins.control.suggestion import files_for
+        from cartwheel.plugins.control.suggestion import suggested
 
         description = next(
             each.description for each in session.simulation.scene.models if each.name == name
         )
-        joints = [joint.name for joint in description.joints if joint.type != "fixed"]
-        files = files_for(Path(description.origin.file), joints)
+        files = suggested(description)
         self._line("control", "no controller runs: in ROS, launch files start them")
         words = " ".join(f"--controllers {file}" for file in files) or "--controllers FILE.yaml"
         self._line("try", words)

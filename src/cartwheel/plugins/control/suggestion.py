@@ -6,19 +6,47 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from cartwheel.description.model import PluginTag, RobotDescription
 from cartwheel.errors import CartwheelError
-from cartwheel.plugins.control.files import is_ros2, read_parameters, ros1_entries
+from cartwheel.plugins.catalogue import ROS_CONTROL, plugin_named
+from cartwheel.plugins.control.files import (
+    ControllerEntry,
+    controller_entries,
+    is_ros2,
+    read_parameters,
+    ros1_entries,
+    ros2_file,
+)
 
+_ROS2_CONTROL = "gz_ros2_control-system"
 _LEVELS = 4
 """Folders above the robot's file that are looked through."""
 _MOST = 400
 """Files that are looked at."""
 
 
-def files_for(robot: Path, joints: Sequence[str]) -> list[Path]:
+def suggested(robot: RobotDescription) -> list[Path]:
+    """The files beside a robot that has a manager of controllers and none to manage.
+
+    Of a manager that names files of its own, which are there, none.
+    """
+    joints = [joint.name for joint in robot.joints if joint.type != "fixed"]
+    managers = [tag for tag in robot.plugins if _manager(tag)]
+    if not managers or any(_has_files(tag) for tag in managers):
+        return []
+    ros2 = _manager(managers[0]) != ROS_CONTROL
+    return files_for(Path(robot.origin.file), joints, ros2=ros2)
+
+
+def files_for(robot: Path, joints: Sequence[str], *, ros2: bool = False) -> list[Path]:
     """YAML files whose controllers name a robot's joints, or tell of all joints.
 
     Looked for below folders named ``config`` in the robot's package and those beside it.
+
+    Args:
+        robot: Its file.
+        joints: That move.
+        ros2: Whether they are for ROS 2's nodes.
     """
     found = []
     for path in _candidates(robot):
@@ -26,15 +54,34 @@ def files_for(robot: Path, joints: Sequence[str]) -> list[Path]:
             content = read_parameters(path)
         except CartwheelError:
             continue
-        if is_ros2(content):
+        if is_ros2(content) != ros2:
             continue
-        entries = ros1_entries(content, str(path))
+        entries = _entries(content, str(path), ros2=ros2)
         words = {word for entry in entries for word in _words(entry.values)}
         named = any(joint in word for joint in joints for word in words)
         broadcasts = len(entries) == 1 and "joint_state" in entries[0].type
         if named or broadcasts:
             found.append(path)
     return found
+
+
+def _manager(tag: PluginTag) -> str:
+    """Of the two kinds of managers, by one of its names; empty for any other plugin."""
+    plugin = plugin_named(tag.filename)
+    for name in (ROS_CONTROL, _ROS2_CONTROL):
+        if plugin is not None and plugin is plugin_named(name):
+            return name
+    return ""
+
+
+def _has_files(tag: PluginTag) -> bool:
+    return any(Path(each.text.strip()).is_file() for each in tag.element.find_all("parameters"))
+
+
+def _entries(content: Mapping[str, Any], source: str, *, ros2: bool) -> list[ControllerEntry]:
+    if not ros2:
+        return ros1_entries(content, source)
+    return controller_entries(ros2_file([content], ""), "", source)
 
 
 def _candidates(robot: Path) -> Iterator[Path]:

@@ -1,0 +1,71 @@
+"""Which files are offered to a robot whose controllers nobody starts."""
+
+import pytest
+from tests.plugins.control.arms import ROS1, beam, robot, ros2_joint, ros2_plugin, transmission
+from tests.plugins.control.arms import ros2_system as system
+
+from cartwheel.description import load_robot
+from cartwheel.plugins.control.suggestion import suggested
+
+ROS1_FILE = """
+c:
+  type: position_controllers/JointPositionController
+  joint: beam_joint
+"""
+ROS2_FILE = """
+controller_manager:
+  ros__parameters:
+    c: {type: position_controllers/JointGroupPositionController}
+c:
+  ros__parameters:
+    joints: ["$(var prefix)beam_joint"]
+"""
+OTHERS = """
+controller_manager:
+  ros__parameters:
+    c: {type: position_controllers/JointGroupPositionController}
+c:
+  ros__parameters:
+    joints: [another]
+"""
+
+
+@pytest.fixture
+def workspace(tmp_path):
+    """A package with the robot, and one beside it with files of both ROS."""
+    for name in ("arm_description", "arm_bringup"):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "package.xml").write_text(f"<package><name>{name}</name></package>")
+    config = tmp_path / "arm_bringup" / "config"
+    config.mkdir()
+    for name, text in (("one", ROS1_FILE), ("two", ROS2_FILE), ("others", OTHERS)):
+        (config / f"{name}.yaml").write_text(text)
+    return tmp_path
+
+
+def names(workspace, text):
+    path = workspace / "arm_description" / "arm.urdf"
+    path.write_text(text)
+    return [file.name for file in suggested(load_robot(path))]
+
+
+def test_a_robot_of_ros_control_gets_the_file_of_its_joints(workspace):
+    text = robot(beam("beam", "world") + transmission("beam_joint", "Position"), ROS1)
+    assert names(workspace, text) == ["one.yaml"]
+
+
+@pytest.mark.parametrize("own", ["", "gone.yaml"])
+def test_so_does_one_of_ros2_control_that_names_no_file_or_one_that_is_not_there(workspace, own):
+    body = beam("beam", "world") + system(ros2_joint("beam_joint"))
+    assert names(workspace, robot(body, ros2_plugin(own))) == ["two.yaml"]
+
+
+def test_one_that_names_its_files_needs_no_others(workspace):
+    body = beam("beam", "world") + system(ros2_joint("beam_joint"))
+    own = workspace / "arm_bringup" / "config" / "two.yaml"
+    assert names(workspace, robot(body, ros2_plugin(own))) == []
+
+
+def test_without_a_manager_nothing_could_be_started(workspace):
+    body = beam("beam", "world") + system(ros2_joint("beam_joint"))
+    assert names(workspace, robot(body, "")) == []
