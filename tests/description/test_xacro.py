@@ -435,3 +435,46 @@ def test_an_attribute_set_to_a_number(folder):
 def test_an_expression_with_quotes_is_told_as_a_whole(folder):
     write("robot.xacro", """<a b="${missing['key'] + 'x'}"/>""")
     assert "when evaluating ${missing['key'] + 'x'}" in failure()
+
+
+def test_tags_without_prefix_are_taken_as_ros_did_until_melodic(folder):
+    write(
+        "macros.xacro",
+        """<macro name="ball" params="m r:=0.1"><link name="${m}" r="${r}"/></macro>
+<xacro:macro name="mount" params="n *at"><joint name="${n}"><insert_block name="at"/></joint>
+</xacro:macro>
+<xacro:macro name="camera" params="name"><never/></xacro:macro>""",
+        "",
+    )
+    write(
+        "robot.xacro",
+        """<include filename="macros.xacro"/>
+<property name="size" value="2"/><property name="mass" value="${2 * size}"/>
+<if value="${size == 2}"><ball m="${mass}"/></if><unless value="1"><ball m="no"/></unless>
+<ball m="5" r="1"/>
+<mount n="j"><origin xyz="1 2 3"/></mount>
+<camera name="c"/><include><uri>model://a</uri></include><ball mass="1"/>""",
+    )
+    expansion = expanded()
+    ball, other, mount, *plain = expansion.root.children
+    assert [ball.tag, dict(ball.attributes)] == ["link", {"name": "4", "r": "0.1"}]
+    assert dict(other.attributes) == {"name": "5", "r": "1"}
+    assert [mount.tag, *(each.tag for each in mount.children)] == ["joint", "origin"]
+    # Nothing else has the name of a macro's, or its parameters.
+    assert [each.tag for each in plain] == ["camera", "include", "ball"]
+    told = [str(each) for each in expansion.diagnostics]
+    assert "robot.xacro:3: warning: <property> is taken as <xacro:property>" in told[1]
+    assert told[1].endswith("(and 1 more in this file)")
+    # Of calls, the first of each macro.
+    assert sum("<ball> is taken as <xacro:ball>" in each for each in told) == 1
+    assert len(told) == 8
+
+
+def test_what_a_macro_makes_may_have_its_own_name(folder):
+    write(
+        "robot.xacro",
+        """<xacro:macro name="part" params="n:=1"><part n="${n}"/></xacro:macro>
+<xacro:part n="2"/>""",
+    )
+    (part,) = expanded().root.children
+    assert (part.tag, part.attributes["n"]) == ("part", "2")

@@ -37,6 +37,18 @@ def far_below(high, *, tilt=0.0, fov=1.04, width=320, height=240):
         return np.where(sink > 0, high / sink, np.inf)
 
 
+def test_a_sensor_without_a_lens_has_sdf_s_own(make):
+    bare = kinect()
+    begin, end = bare.index("<camera name"), bare.index("</camera>") + len("</camera>")
+    world = make.world(make.sdf(bare[:begin] + bare[end:]), ground=None)
+    image = take(world, "/k/depth/image_raw")
+    assert (image.width, image.height) == (320, 240)
+    focal = take(world, "/k/depth/camera_info").k[0]
+    assert focal == pytest.approx(160 / math.tan(1.047 / 2), rel=1e-3)
+    (told,) = [each for each in world.diagnostics if "has no <camera>" in each.message]
+    assert told.severity == "warning"
+
+
 @pytest.mark.parametrize("distance", [0.5, 2.0, 4.9])
 def test_a_wall_has_one_depth_all_over(make, distance):
     """Along the optical axis, whatever the pixel's own ray is."""

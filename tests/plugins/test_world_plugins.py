@@ -95,11 +95,12 @@ def test_names_that_ros_does_not_know_make_topics_that_it_does():
 
 
 def test_a_sensor_that_lacks_something_costs_the_sensor():
-    sensor = '<link name="c"><sensor name="eye" type="camera"><topic>eye</topic></sensor></link>'
+    sensor = """<link name="c"><sensor name="nose" type="air_pressure"><air_pressure>
+      <reference_altitude>low</reference_altitude></air_pressure></sensor></link>"""
     session = Session(load_text(WORLD.format(sensor), file="w.world"))
     (told,) = [each for each in session.diagnostics if each.severity == "error"]
-    assert 'sensor "eye" is left out' in told.message
-    assert "has no <camera>" in told.message
+    assert 'sensor "nose" is left out' in told.message
+    assert "<reference_altitude> is not a number" in told.message
     session.close()
 
 

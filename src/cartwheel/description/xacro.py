@@ -26,6 +26,7 @@ from cartwheel.description import xml
 from cartwheel.description.installed import source_of
 from cartwheel.description.packages import Packages
 from cartwheel.description.xacro_errors import Failure, explain
+from cartwheel.description.xacro_unprefixed import PREFIX, call_prefixed, prefixed
 from cartwheel.description.xml import Node
 from cartwheel.errors import (
     CartwheelError,
@@ -39,7 +40,6 @@ from cartwheel.errors import (
 MAX_ELEMENTS = 100_000
 """Elements that macros may make: some fifty times what the largest robots have."""
 
-PREFIX = "xacro:"
 _NAME = "_cartwheel_xacro"
 
 _lock = threading.RLock()
@@ -171,6 +171,12 @@ class _Run:
         if diagnostic not in self.diagnostics:
             self.diagnostics.append(diagnostic)
 
+    def warn_at(self, message: str, element: _Element) -> None:
+        """Takes a warning of one element."""
+        self.diagnostics.append(
+            Diagnostic(severity="warning", message=message, origin=element.origin)
+        )
+
     def copy_body(self, body: _Element) -> _Element:
         """A macro's body for the call in progress, noted in all its elements."""
         call = self.calls[-1]
@@ -246,6 +252,7 @@ def _parse(content: bytes | str, file: str, run: _Run) -> _Document:
                 origin=root.origin,
             )
         )
+    prefixed(root, run.warn_at)
     return builder.document
 
 
@@ -460,7 +467,11 @@ def _bind(module: ModuleType, run: _Run) -> None:
 
     def handle_macro_call(node: _Element, macros: object, symbols: object) -> object:
         if not node.tagName.startswith(PREFIX):
-            return original.handle_macro_call(node, macros, symbols)
+            said = call_prefixed(node, macros, (call.tagName for call in run.calls))
+            if not said:
+                return original.handle_macro_call(node, macros, symbols)
+            if all(said != each.message for each in run.diagnostics):
+                run.warn_at(said, node)
         run.place, run.macros, run.symbols = node, macros, symbols
         if node.tagName == "xacro:call":
             return original.handle_macro_call(node, macros, symbols)

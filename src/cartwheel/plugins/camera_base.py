@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import Any, ClassVar, TypeVar
 
 from cartwheel.description.model import CameraIntrinsics
-from cartwheel.errors import Diagnostic, GraphError, PluginError, SimulationError
+from cartwheel.errors import Diagnostic, GraphError, SimulationError
 from cartwheel.plugins.base import Plugin
 from cartwheel.plugins.camera_depth import DepthOptions, Depths
 from cartwheel.plugins.camera_eye import Eye, EyeTopics
@@ -39,7 +39,13 @@ class CameraBase(Plugin[C]):
         sensor = self.sensor
         assert sensor is not None
         if not sensor.cameras:
-            raise PluginError(f'sensor "{sensor.name}" has no <camera>', origin=sensor.origin)
+            self.sensor = sensor = dataclasses.replace(sensor, cameras=(CameraIntrinsics(),))
+            lens = sensor.cameras[0]
+            self.warn(
+                f'sensor "{sensor.name}" has no <camera>: SDF\'s defaults count, {lens.width} x '
+                f"{lens.height} pixels, {lens.horizontal_fov:g} rad wide",
+                at=sensor.origin,
+            )
         if sensor.type in _WIDE:
             self.warn("a wide-angle lens is drawn as a pinhole")
         for camera in sensor.element.find_all("camera"):

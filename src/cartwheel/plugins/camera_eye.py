@@ -109,7 +109,7 @@ class Eye:
             plugin.reconfigure(
                 f"{topics.image}/compressedDepth", DEPTH_PARAMETERS, lambda _: None, preset=True
             )
-        if adjustable and topics.base:
+        if adjustable and topics.base.strip("/"):
             plugin.reconfigure(
                 topics.base,
                 (_RATE,),

@@ -604,10 +604,6 @@ ENDS = "<parent>a</parent><child>b</child>"
 @pytest.mark.parametrize(
     ("inside", "reason"),
     [
-        (BAD_JOINT.format("fixed", "<parent>aa</parent><child>b</child>"),
-         'm.sdf:3: joint "j": parent link "aa" does not exist'),
-        (BAD_JOINT.format("fixed", "<parent>a</parent><child>bb</child>"),
-         'child link "bb" does not exist'),
         (BAD_JOINT.format("ball", "<parent>a</parent><child>world</child>"), "Swap"),
         (BAD_JOINT.format("fixed", "<parent>a</parent><child>a</child>"), "to itself"),
         (BAD_JOINT.format("fixed", "<parent>a</parent>"), "has no <child>"),
@@ -689,13 +685,42 @@ def test_names_with_a_prefix_are_for_other_programs_and_told_once():
     ]
 
 
+@pytest.mark.parametrize(
+    ("ends", "missing"),
+    [
+        ("<parent>aa</parent><child>b</child>", 'parent link "aa"'),
+        ("<parent>a</parent><child>bb</child>", 'child link "bb"'),
+    ],
+)
+def test_a_joint_to_a_link_that_is_not_there_is_left_out(ends, missing):
+    found = robot(
+        BAD_JOINT.format("revolute", ends + "<axis><xyz>0 0 1</xyz></axis>")
+        + f'<joint name="k" type="fixed">{ENDS}</joint>'
+    )
+    assert [each.name for each in found.joints] == ["k"]
+    (told,) = found.diagnostics
+    assert (told.severity, told.origin.file, told.origin.line) == ("error", "m.sdf", 3)
+    assert f'joint "j": {missing} does not exist: the joint is left out.' in told.message
+
+
 def test_what_needs_a_missing_part_tells_of_the_missing_part():
     with pytest.raises(DescriptionError, match='"nothing_there" was not found') as caught:
         robot(
-            """<link name='a'/><include><uri>model://nothing_there</uri><name>n</name></include>
-            <joint name='j' type='fixed'><parent>a</parent><child>n::b</child></joint>"""
+            """<link name='a'><pose relative_to='n::b'>1 0 0 0 0 0</pose></link>
+            <include><uri>model://nothing_there</uri><name>n</name></include>"""
         )
-    assert 'child link "n::b" does not exist' in caught.value.hint
+    assert "n::b" in caught.value.hint
+
+
+def test_a_joint_to_a_missing_part_goes_with_it():
+    found = robot(
+        """<link name='a'/><include><uri>model://nothing_there</uri><name>n</name></include>
+        <joint name='j' type='fixed'><parent>a</parent><child>n::b</child></joint>"""
+    )
+    assert not [each for each in found.joints if each.name == "j"]
+    part, joint = (told.message for told in found.diagnostics)
+    assert '"nothing_there" was not found; it is left out.' in part
+    assert 'child link "n::b" does not exist: the joint is left out.' in joint
 
 
 def test_a_missing_part_of_a_model_costs_the_part():

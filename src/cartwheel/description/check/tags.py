@@ -50,6 +50,7 @@ _KINDS: tuple[tuple[str, str, str], ...] = (
     ("value-ignored", r"is below 0: the default counts|is not within 0 and 1|has the size"
      r"|is made \S+ mm thick|is left out", "a value that cannot count"),
     ("xacro-namespace", r"xmlns:xacro", "the declaration that ROS's own xacro wants is missing"),
+    ("xacro-prefix", r"is taken as <xacro:", "a tag of xacro's without its prefix"),
 )  # fmt: skip
 _IN_ROBOT = re.compile(r"<([^>]*)> in <robot> is not understood")
 _OF_URDF = (

@@ -12,6 +12,7 @@ from cartwheel.description.check.finding import Remark
 from cartwheel.description.check.rule import rule
 from cartwheel.description.check.subject import Subject
 from cartwheel.description.node import Node
+from cartwheel.description.xacro_unprefixed import PREFIX
 from cartwheel.errors import DescriptionError
 
 _WORD = re.compile(r"[A-Za-z_]\w*")
@@ -135,11 +136,12 @@ def _words(subject: Subject) -> set[str]:
                 if "$" in text:
                     for match in _EXPRESSION.finditer(text):
                         found.update(_WORD.findall(match[1] or match[2] or ""))
-            if node.tag in ("xacro:if", "xacro:unless"):
+            tag = node.tag.removeprefix(PREFIX)
+            if tag in ("if", "unless"):
                 found.update(_WORD.findall(node.attributes.get("value", "")))
-            elif node.tag == "xacro:insert_block":
+            elif tag == "insert_block":
                 found.add(nodes.name_of(node))
-            elif node.tag == "xacro:macro":
+            elif tag == "macro":
                 # A default such as ^ or ^|0 takes the property of the same name.
                 for word in node.attributes.get("params", "").split():
                     name, separator, default = word.partition(":=")
@@ -156,7 +158,9 @@ def _calls(subject: Subject) -> set[str]:
             if node.tag == "xacro:call":
                 found.update(_WORD.findall(node.attributes.get("macro", "")))
             elif _is_call(node):
-                found.add(node.tag.removeprefix("xacro:").rpartition(".")[2])
+                found.add(node.tag.removeprefix(PREFIX).rpartition(".")[2])
+            else:
+                found.add(node.tag)  # a call in the spelling without a prefix
     return found
 
 

@@ -30,6 +30,10 @@ _UNLIMITED = 1e15
 _WITHOUT_AXIS = ("fixed", "ball")
 
 
+class NoLinkError(DescriptionError):
+    """A joint names a link that is not there."""
+
+
 def add_joint(frames: Frames, node: Node, ctx: Context, joints: list[str]) -> str:
     """Adds a joint's frame; returns what it is called there.
 
@@ -38,6 +42,10 @@ def add_joint(frames: Frames, node: Node, ctx: Context, joints: list[str]) -> st
         node: The ``<joint>``.
         ctx: The document's.
         joints: The names of all joints: one may stand on the frame of another.
+
+    Raises:
+        NoLinkError: There is no such child.
+        DescriptionError: It is the world.
     """
     name = require_name(node)
     pose = node.child("pose")
@@ -53,9 +61,10 @@ def add_joint(frames: Frames, node: Node, ctx: Context, joints: list[str]) -> st
     if child == WORLD:
         raise node.fail(f'joint "{name}": the child cannot be the world', "Swap parent and child.")
     if not frames.has(child) and child not in joints:
-        raise node.fail(
+        raise NoLinkError(
             f'joint "{name}": child link "{child}" does not exist',
-            suggestion(child, frames.names()),
+            origin=node.origin,
+            hint=suggestion(child, frames.names()),
         )
     frames.add(
         "joint",
@@ -178,9 +187,10 @@ def _end(node: Node, tag: str, joint: str, frames: Frames) -> str:
     except DescriptionError as error:
         if frames.has(name):
             raise
-        raise part.fail(
+        raise NoLinkError(
             f'joint "{joint}": {tag} link "{name}" does not exist',
-            suggestion(name, frames.names()),
+            origin=part.origin,
+            hint=suggestion(name, frames.names()),
         ) from error
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Collection, Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 
 from cartwheel.description.model import Element, Joint, Link, PluginTag, RobotDescription, Sensor
@@ -20,6 +21,7 @@ from cartwheel.description.sdf.include import Included, NotThereError, open_incl
 from cartwheel.description.sdf.inertia import judged_inertia
 from cartwheel.description.sdf.joint import (
     GEARBOX,
+    NoLinkError,
     add_joint,
     read_joint,
     read_joint_sensors,
@@ -171,17 +173,21 @@ def read_model(node: Node, ctx: Context, included: Included | None = None, depth
     for each in node.all("frame"):
         _add(frames, "frame", each)
     later = [each.attributes.get("name", "") for each in node.all("joint")]
-    joint_nodes = [(each, add_joint(frames, each, ctx, later)) for each in node.all("joint")]
+    joint_nodes: list[tuple[Node, str]] = []
+    for each in node.all("joint"):
+        with _linked(each, ctx):
+            joint_nodes.append((each, add_joint(frames, each, ctx, later)))
     for known in frames.names():
         frames.pose(known, node.origin)  # a circle is told even where nobody needs the pose
     links = [read_link(each, ctx, frames) for each in link_nodes]
     joints: list[Joint] = []
     sensors: list[Sensor] = []
     for each, frame in joint_nodes:
-        joint = read_joint(each, ctx, frames, frame)
-        if joint is not None:
-            joints.append(joint)
-            sensors += read_joint_sensors(each, joint, frames)
+        with _linked(each, ctx):
+            joint = read_joint(each, ctx, frames, frame)
+            if joint is not None:
+                joints.append(joint)
+                sensors += read_joint_sensors(each, joint, frames)
     gears = [(each, frame) for each, frame in joint_nodes if each.get("type") == GEARBOX]
     joints = mesh_gears(gears, joints, ctx, frames)
     stated = included.pose if included is not None and included.pose else node.child("pose")
@@ -216,6 +222,20 @@ def read_model(node: Node, ctx: Context, included: Included | None = None, depth
         raise NoLinksError(f'model "{name}" has no links', origin=node.origin)
     _check_mimics(model)
     return model
+
+
+@contextmanager
+def _linked(node: Node, ctx: Context) -> Iterator[None]:
+    """Tells of a joint that names a link that is not there, and goes on without it.
+
+    Gazebo Classic, too, loads the rest.
+    """
+    try:
+        yield
+    except NoLinkError as missing:
+        node.mark()
+        hint = f" {missing.hint}" if missing.hint else ""
+        ctx.tell("error", f"{missing.message}: the joint is left out.{hint}", missing.origin)
 
 
 def _add(frames: Frames, kind: str, node: Node) -> None:

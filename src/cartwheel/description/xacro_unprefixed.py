@@ -1,0 +1,101 @@
+"""xacro's elements in the spelling without a prefix: as ROS took them until Melodic.
+
+Since Noetic they have no effect there, and whoever needs what they define is refused. Many a
+robot was published before.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Callable, Iterable
+from typing import Any
+
+PREFIX = "xacro:"
+_NEEDED = {
+    "property": ("name",),
+    "macro": ("name",),
+    "include": ("filename",),
+    "insert_block": ("name",),
+    "if": ("value",),
+    "unless": ("value",),
+    "arg": ("name", "default"),
+}
+"""Elements of xacro's own, with the attributes without which they are something else."""
+_OTHERS = frozenset(
+    ("robot", "link", "joint", "gazebo", "transmission", "material", "sensor", "plugin", "model",
+     "world", "include", "light", "frame", "inertial", "visual", "collision", "origin", "mass",
+     "inertia", "geometry", "box", "cylinder", "sphere", "capsule", "mesh", "color", "texture",
+     "parent", "child", "axis", "limit", "dynamics", "mimic", "calibration", "safety_controller",
+     "actuator", "param", "hardware", "hardwareInterface", "type", "pose", "size", "radius",
+     "length", "camera", "ray", "lidar", "imu", "gps", "contact", "surface", "friction",
+     "ros2_control", "state_interface", "command_interface")
+)  # fmt: skip
+"""What stands in a description in its own right, whatever macros are called."""
+
+
+def prefixed(root: Any, tell: Callable[[str, Any], None]) -> None:
+    """Gives xacro's own elements below a file's root their prefix.
+
+    Args:
+        root: The DOM's root element; changed.
+        tell: Takes a warning, with the element it is about: one for each tag.
+    """
+    found = [element for element in root.getElementsByTagName("*") if _is_xacro(element)]
+    count = Counter(element.tagName for element in found)
+    for tag, number in count.items():
+        first = next(element for element in found if element.tagName == tag)
+        more = f" (and {number - 1} more in this file)" if number > 1 else ""
+        tell(f"{_taken(tag)}{more}", first)
+    for element in found:
+        _rename(element)
+
+
+def call_prefixed(element: Any, macros: Any, within: Iterable[str]) -> str:
+    """Gives a call of a macro its prefix where an element without one can be nothing else.
+
+    Args:
+        element: Of the DOM, not evaluated yet.
+        macros: xacro's table of those that are defined.
+        within: The tags of the calls in progress: what a macro makes may have its own name.
+
+    Returns:
+        What to warn of; empty where it is no call, and nothing has changed.
+    """
+    tag = element.tagName
+    inside_of = {re.split(r"[:.]", call)[-1] for call in within}
+    if tag in _OTHERS or tag in inside_of or ":" in tag:
+        return ""
+    try:
+        macro = macros[tag]
+        given = set(element.attributes.keys())
+        needed = {name for name in macro.params if name not in macro.defaultmap}
+    except (KeyError, AttributeError):
+        return ""
+    blocks = sum(name.startswith("*") for name in needed)
+    needed = {name for name in needed if not name.startswith("*")}
+    inside = [child for child in element.childNodes if child.nodeType == child.ELEMENT_NODE]
+    if not needed <= given <= set(macro.params) or len(inside) != blocks:
+        return ""
+    _rename(element)
+    return _taken(tag)
+
+
+def _is_xacro(element: Any) -> bool:
+    needed = _NEEDED.get(element.tagName)
+    if needed is None or not all(element.hasAttribute(name) for name in needed):
+        return False
+    # An include of SDF has its <uri> inside.
+    inside = any(child.nodeType == child.ELEMENT_NODE for child in element.childNodes)
+    return not (inside and element.tagName == "include")
+
+
+def _rename(element: Any) -> None:
+    element.nodeName = element.tagName = PREFIX + element.tagName
+
+
+def _taken(tag: str) -> str:
+    return (
+        f"<{tag}> is taken as <{PREFIX}{tag}>, which ROS did until Melodic: "
+        f"since Noetic it does not. Write <{PREFIX}{tag}>"
+    )
