@@ -6,6 +6,7 @@ import math
 import numpy as np
 import pytest
 
+from cartwheel.description import load_text
 from cartwheel.description.model import Physics
 from cartwheel.geometry import Pose
 from cartwheel.world.bodies import _MOTOR_REFERENCE
@@ -223,3 +224,45 @@ def test_a_worlds_own_step_is_taken(make):
     from cartwheel.world.build import step_of
 
     assert step_of(description) == DEFAULT_STEP == 0.005
+
+
+DRAGGING = """<robot name="drag">
+<link name="base"><inertial><mass value="10"/>
+  <inertia ixx="0.1" ixy="0" ixz="0" iyy="0.2" iyz="0" izz="0.2"/></inertial>
+  <collision><geometry><box size="0.4 0.3 0.1"/></geometry></collision></link>
+<link name="caster"><inertial><mass value="0.5"/>
+  <inertia ixx="0.001" ixy="0" ixz="0" iyy="0.001" iyz="0" izz="0.001"/></inertial>
+  <collision><geometry><sphere radius="0.05"/></geometry></collision></link>
+<joint name="fixed" type="fixed"><origin xyz="0.14 0 -0.05"/>
+  <parent link="base"/><child link="caster"/></joint>
+{wheels}
+<gazebo><plugin name="drive" filename="libgazebo_ros_diff_drive.so">
+  <leftJoint>left_joint</leftJoint><rightJoint>right_joint</rightJoint>
+  <wheelSeparation>0.36</wheelSeparation><wheelDiameter>0.2</wheelDiameter>
+  <wheelTorque>20</wheelTorque></plugin></gazebo></robot>"""
+WHEEL = """<link name="{side}"><inertial><mass value="0.5"/>
+  <inertia ixx="0.002" ixy="0" ixz="0" iyy="0.003" iyz="0" izz="0.002"/></inertial>
+  <collision><origin rpy="1.5707963 0 0"/>
+  <geometry><cylinder radius="0.1" length="0.04"/></geometry></collision></link>
+<joint name="{side}_joint" type="continuous"><origin xyz="-0.12 {y} 0"/><axis xyz="0 1 0"/>
+  <parent link="base"/><child link="{side}"/></joint>"""
+
+
+@pytest.mark.parametrize("speed", [0.2, 1.0])
+def test_a_caster_that_drags_neither_hops_nor_brakes_its_robot(make, speed):
+    """Nearly half the weight lies on a ball that does not turn, at μ = 1.
+
+    The wheels carry more than half at the same μ: Coulomb's friction lets them drive on.
+    """
+    wheels = [WHEEL.format(side=side, y=y) for side, y in (("left", 0.18), ("right", -0.18))]
+    robot = load_text(DRAGGING.format(wheels="".join(wheels)), file="drag.urdf")
+    world = stand(make, robot, pose=Pose((0, 0, 0.1)))
+    world.publish("/cmd_vel", linear_x=speed)
+    world.run(4.0)
+    robot = world.model("drag")
+    before, pitches = robot.pose.x, []
+    for _ in range(20):
+        world.run(0.1)
+        pitches.append(robot.pose.rpy[1])
+    assert (robot.pose.x - before) / 2.0 == pytest.approx(speed, rel=0.06)
+    assert max(pitches) - min(pitches) < 0.02

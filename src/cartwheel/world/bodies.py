@@ -99,8 +99,17 @@ class BodyBuilder:
         links = {link.name: link for link in description.links}
         senses = bool(description.plugins) or any(link.sensors for link in description.links)
 
-        def grow(link: Link, parent: Any, pose: Pose, moves: bool, axle: Axle | None) -> None:
+        def grow(
+            link: Link,
+            parent: Any,
+            pose: Pose,
+            *,
+            moves: bool,
+            axle: Axle | None,
+            trunk: bool,
+        ) -> None:
             joint = inbound.get(link.name)
+            trunk = trunk and (joint is None or joint.type == "fixed")
             body = parent.add_body(name=scoped(entry.name, link.name), **pose_arguments(pose))
             bodies[link.name] = body
             roots = moves and joint is None
@@ -114,17 +123,19 @@ class BodyBuilder:
             # A tyre may be fixed to a hub.
             held = joint is not None and joint.type == "fixed" and axle is not None
             axle = axle.seen_from(pose) if held and axle is not None else axle_of(joint)
-            self._fill(entry, body, link, axle, moves=moves)
+            self._fill(entry, body, link, axle, moves=moves, trunk=trunk)
             for next_joint in children.get(link.name, ()):
                 child = links[next_joint.child]
-                grow(child, body, link.pose.inverse() @ child.pose, moves, axle)
+                there = link.pose.inverse() @ child.pose
+                grow(child, body, there, moves=moves, axle=axle, trunk=trunk)
 
         for link in description.links:
             if link.name in inbound and inbound[link.name].parent != "world":
                 continue
             anchor = inbound.get(link.name)
             free = anchor is None and not description.static and not link.kinematic
-            grow(link, self._spec.worldbody, entry.pose @ link.pose, free, None)
+            there = entry.pose @ link.pose
+            grow(link, self._spec.worldbody, there, moves=free, axle=None, trunk=free)
             if free:
                 bodies[link.name].add_freejoint(name=scoped(entry.name, link.name))
         lost = [link for link in description.links if link.name not in bodies]
@@ -145,7 +156,14 @@ class BodyBuilder:
             self._add_camera(entry, bodies[camera.link], camera)
 
     def _fill(
-        self, entry: ModelEntry, body: Any, link: Link, axle: Axle | None, *, moves: bool
+        self,
+        entry: ModelEntry,
+        body: Any,
+        link: Link,
+        axle: Axle | None,
+        *,
+        moves: bool,
+        trunk: bool,
     ) -> None:
         if link.inertial is not None:
             _set_inertial(body, link.inertial)
@@ -194,6 +212,7 @@ class BodyBuilder:
                         model=entry.name,
                         moves=moves,
                         rolls=axle is not None,
+                        trunk=trunk,
                         friction=friction,
                         reference=reference,
                         surface=collision.surface,

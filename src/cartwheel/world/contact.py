@@ -32,6 +32,10 @@ IMPEDANCE = (0.95, 0.99, 0.0005, 0.5, 2.0)
 """MuJoCo's solimp: how much of the constraint is kept at and beyond 0.5 mm of depth."""
 FRICTION_TIME_CONSTANT = 0.03
 """s; in which a slip that the friction can hold dies out. Below mu g T/2 friction is viscous."""
+TRAILING_TIME_CONSTANT = 0.4
+"""s; the same of what a robot on wheels drags along, such as a caster that does not turn.
+
+Its wheels keep it from creeping, and friction that stops it at once throws it up."""
 TORSION = 0.005
 """m; MuJoCo's own, which no contact of three dimensions looks at."""
 NO_BOUNCE = 1e5
@@ -53,6 +57,8 @@ class BuiltSurface:
     """Whether any joint lies between it and the world."""
     rolls: bool
     """Whether it is a wheel."""
+    trunk: bool
+    """Whether it is of the model's root, or fixed to it, and nothing holds that."""
     friction: tuple[float, float, float]
     reference: tuple[float, float]
     surface: Surface

@@ -80,7 +80,8 @@ def stated_pairs(
     In MuJoCo's convex contact model a sliding body is lifted: one that slides at v hovers at
     mu v b/k, with b the damping of friction and k the stiffness of the normal, and skips. Only
     a pair stated by itself can have a b of its own; what slides, slides on what stands.
-    A wheel keeps the hard one: in a turn at rate ω it slips sideways by ω v/b.
+    A wheel keeps the hard one: in a turn at rate ω it slips sideways by ω v/b. What the
+    trunk of a robot on wheels drags along is led by them, and is softer still.
 
     Each pair is looked at in each step, near or far: a world with more than `MOST_PAIRS` states
     those of its largest floors, and what slides on something smaller is lifted.
@@ -91,6 +92,7 @@ def stated_pairs(
     """
     surfaces = list(surfaces)
     special = any(map(_special, surfaces))
+    wheeled = {each.model for each in surfaces if each.rolls}
     movers = [each for each in surfaces if each.moves and (special or not each.rolls)]
     standing = [each for each in surfaces if not each.moves]
     if movers and len(movers) * len(standing) > MOST_PAIRS:
@@ -99,7 +101,8 @@ def stated_pairs(
     count = 0
     for mover in movers:
         for still in standing:
-            if (pair := _pair(still, mover, joined)) is not None:
+            trails = mover.trunk and mover.model in wheeled
+            if (pair := _pair(still, mover, joined, trails)) is not None:
                 count += 1
                 yield pair
     for index, first in enumerate(movers if special else ()):
@@ -119,7 +122,10 @@ def _special(surface: BuiltSurface) -> bool:
 
 
 def _pair(
-    first: BuiltSurface, second: BuiltSurface, joined: Collection[frozenset[str]]
+    first: BuiltSurface,
+    second: BuiltSurface,
+    joined: Collection[frozenset[str]],
+    trails: bool = False,
 ) -> Pair | None:
     if joined and frozenset(each.geom.parent.name for each in (first, second)) in joined:
         return None
@@ -135,13 +141,14 @@ def _pair(
     slides = not first.moves and not second.rolls
     if mu1 == mu2 and not torsion and not slides:
         return None
+    time = contact.TRAILING_TIME_CONSTANT if trails else contact.FRICTION_TIME_CONSTANT
     return Pair(
         first=first,
         second=second,
         friction=(max(mu1, mu2), min(mu1, mu2)),
         torsion=torsion,
         reference=rules.reference,
-        friction_time=contact.FRICTION_TIME_CONSTANT if slides else None,
+        friction_time=time if slides else None,
         alignment=_alignment(first, second, across=mu2 > mu1) if mu1 != mu2 else None,
     )
 
