@@ -439,7 +439,8 @@ def test_a_model_that_needs_a_missing_part_is_left_out():
     found = world(
         box("a")
         + """<model name="cart"><link name="base"><pose relative_to="n::b">0 0 1 0 0 0</pose></link>
-        <include><uri>nothing_there</uri><name>n</name></include></model><model name="shelf"><include><uri>nothing_there</uri>
+        <include><uri>nothing_there</uri><name>n</name></include></model><model name="shelf">
+        <include><uri>nothing_there</uri>
         </include></model><model name="on"><pose relative_to="shelf"/><link name="x"/></model>""",
         "1.9",
     )
