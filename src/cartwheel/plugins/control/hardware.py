@@ -3,21 +3,20 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from functools import cache, partial
 from typing import Any
 
 from cartwheel.description.model import Axis, Mimic, SoftLimits
 from cartwheel.errors import PluginError, UnknownNameError
 from cartwheel.plugins.base import Plugin
-from cartwheel.plugins.control.burden import burden
+from cartwheel.plugins.control.burden import burdens
 from cartwheel.plugins.control.interfaces import JointInterfaces
 from cartwheel.plugins.control.pid import Gains, Pid
 from cartwheel.plugins.control.settings import Settings
 from cartwheel.simulation.handles import JointHandle, MotorHandle
 from cartwheel.simulation.servo import ServoHandle
 
-_MEANT = 0.25
-"""Of what the weight asks for at most: an effort limit of less stands for none."""
 _STRONGEST = 1e5
 """N m or N of a joint that states no effort limit."""
 
@@ -31,6 +30,7 @@ class JointHardware:
         gains: An interface whose commands become efforts by a PID.
         limits: Parameters that go before the description's limits; with them, even if there are
             none, its soft limits count.
+        needs: What weight asks of the robot's joints at most, N m or N.
 
     Raises:
         PluginError: A limit is no number.
@@ -40,6 +40,7 @@ class JointHardware:
         self,
         plugin: Plugin[Any],
         interfaces: JointInterfaces,
+        needs: Callable[[], Mapping[str, float]],
         gains: tuple[str, Gains] | None = None,
         limits: Settings | None = None,
     ) -> None:
@@ -66,7 +67,7 @@ class JointHardware:
         self.motor: MotorHandle | None = None
         self.servo: ServoHandle | None = None
         self.pids = {gains[0]: Pid(gains[1])} if gains is not None else {}
-        strength = self._strength(plugin)
+        strength = self._strength(plugin, needs)
         if interfaces.commands == ("velocity",) and not self.pids:
             self.motor = part.velocity_motor(name, max_effort=strength, origin=origin)
         elif interfaces.commands:
@@ -87,12 +88,12 @@ class JointHardware:
             leader, multiplier = interfaces.mimic
             part.mimic(name, Mimic(joint=leader, multiplier=multiplier), origin=origin)
 
-    def _strength(self, plugin: Plugin[Any]) -> float:
+    def _strength(self, plugin: Plugin[Any], needs: Callable[[], Mapping[str, float]]) -> float:
         """N m or N with which a position or velocity is held, at most."""
         limit, commands = self.effort_limit, self.interfaces.commands
         if "position" in commands and "position" not in self.pids and limit < math.inf:
-            need = burden(plugin.part.description, self.name)
-            if limit < _MEANT * need:
+            need = needs().get(self.name, 0.0)
+            if limit < need:
                 held, unit = 2 * need, "N" if self.type == "prismatic" else "N m"
                 plugin.warn(
                     f'joint "{self.name}": its effort limit of {limit:g} {unit} cannot bear what '
@@ -289,10 +290,12 @@ class Hardware:
     ) -> None:
         self._description = plugin.part.description
         self._tags = "no <ros2_control>" if limits is None else "no <transmission>"
+        needs = cache(partial(burdens, self._description))
         self._joints = {
             each.name: JointHardware(
                 plugin,
                 each,
+                needs,
                 gains.get(each.name),
                 limits.section(each.name) if limits is not None else None,
             )
