@@ -49,6 +49,34 @@ def test_joints_begin_where_their_initial_values_say(bench, tmp_path):
     assert made.position("a_joint") == pytest.approx(0.7, abs=0.01)
 
 
+def test_a_type_below_a_further_level_of_parameters_is_found(bench, tmp_path):
+    """ROS 2 does not find it there: the launch file of such a robot gives it to the spawner."""
+    file = tmp_path / "own.yaml"
+    kind = "effort_controllers/JointGroupPositionController"
+    content = {
+        "controller_manager": {"ros__parameters": {"lead": {"ros__parameters": {"type": kind}}}},
+        "lead": {"ros__parameters": {
+            "joints": ["a_joint"], "gains": {"a_joint": {"p": 200.0, "i": 0.0, "d": 20.0}},
+        }},
+    }  # fmt: skip
+    file.write_text(yaml.safe_dump(content))
+    tags = system(ros2_joint("a_joint", "effort"))
+    made = bench(robot(beam("a", "world", axis="0 0 1") + tags, ros2_plugin(file)))
+    assert made.warnings == []
+    made.world.run(0.05)
+    made.publish("/lead/commands", "std_msgs/msg/Float64MultiArray", data=[0.4])
+    made.world.run(3.0)
+    assert made.position("a_joint") == pytest.approx(0.4, abs=0.01)
+
+
+def test_a_file_without_a_type_says_that_it_starts_nothing(bench, tmp_path):
+    file = tmp_path / "own.yaml"
+    file.write_text(yaml.safe_dump({"lead": {"ros__parameters": {"joints": ["a_joint"]}}}))
+    tags = system(ros2_joint("a_joint"))
+    made = bench(robot(beam("a", "world") + tags, ros2_plugin(file)))
+    assert made.warnings == [f"{file} states the type of no controller: none starts"]
+
+
 def test_a_joint_follows_another_as_its_parameters_say(bench, tmp_path):
     follower = """<joint name="b_joint"><param name="mimic">a_joint</param>
       <param name="multiplier">-0.5</param><state_interface name="position"/></joint>"""

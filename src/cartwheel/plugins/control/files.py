@@ -276,10 +276,17 @@ def controller_entries(found: Ros2File, namespace: str, source: str) -> list[Con
 
 
 def controller_entry(found: Ros2File, name: str, namespace: str, source: str) -> ControllerEntry:
-    """A controller by its name; its type is empty where nothing states it."""
+    """A controller by its name; its type is empty where nothing states it.
+
+    Some files state it below a further ``ros__parameters``: ROS 2 does not find it there, and
+    their launch files give it to the spawner.
+    """
     own = found.nodes.get(name, {})
     listed = Settings(found.manager, "controller_manager", source).raw(name)
     listed = listed if isinstance(listed, Mapping) else {}
+    deeper = listed.get(_ROS2)
+    if isinstance(deeper, Mapping):
+        listed = {**deeper, **listed}
     kind = listed.get("type") if isinstance(listed.get("type"), str) else own.get("type")
     values = _copy(found.shared)
     merge(values, _copy(own))

@@ -161,8 +161,11 @@ class JointGroup(Controller):
         self._joints: list[JointHardware] = [self.claim(name, interface) for name in names]
         self._pids: list[Pid] = []
         if self.type == "effort_controllers/JointGroupPositionController":
-            self._pids = [Pid(Gains.read(settings.section(f"{name}/pid"))) for name in names]
-            for name in names:
+            # ROS 2's files have them where trajectory controllers do.
+            form = "gains/{}" if self.rig.ros2 and settings.raw("gains") else "{}/pid"
+            found = [Gains.read(settings.section(form.format(name))) for name in names]
+            self._pids = [Pid(gains) for gains in found]
+            for name in ("gains", *names):
                 settings.ignore(name)
         self._commands: list[float] | None = None
         topic = "commands" if self.rig.ros2 else "command"

@@ -108,6 +108,8 @@ class Ros2Control(ControlPlugin):
                     at=sensor.origin,
                 )
         entries = controller_entries(found, self.namespace, source)
+        if paths and not entries and not found.elsewhere:
+            self.warn(f"{source} states the type of no controller: none starts")
         hardware = Hardware(self, joints, _gains(joints, found.nodes))
         hardware.holds = config.hold_joints
         rig = Rig(
