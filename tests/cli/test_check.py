@@ -30,6 +30,11 @@ KEYS = {
 }  # fmt: skip
 
 
+SYSTEM = GOOD.replace(
+    "</robot>", '<gazebo><plugin filename="{}-sensors-system" name="s"/></gazebo></robot>'
+)
+
+
 @pytest.fixture
 def checked(program, tmp_path):
     def run(text, *options, status):
@@ -178,3 +183,9 @@ def test_a_file_of_controllers_that_is_named_is_checked_too(checked, tmp_path):
     (kind,) = (each for each in found if each["rule"] == "controller-type-unknown")
     assert (kind["file"], kind["line"], kind["place"]) == (str(path), 2, "line")
     assert kind["instead"] == "type: position_controllers/JointPositionController"
+
+
+@pytest.mark.parametrize("system", ["gz-sim", "libignition-gazebo6"])
+def test_systems_that_need_no_plugin_here_are_no_note(checked, system):
+    assert checked(SYSTEM.format(system), status=0).endswith("bar.urdf: nothing found\n")
+    assert "[plugin-unknown]" in checked(SYSTEM.format("other"), status=0)

@@ -94,6 +94,14 @@ def test_an_accessor_that_counts_numbers_instead_of_points_is_read(tmp_path):
     assert points(part) == [(0, 0, 0), (0, 1, 0), (1, 0, 0)]
 
 
+def test_a_name_may_hold_what_xml_forbids(tmp_path):
+    nodes = '<node id="<STL>" name=\'<STL "a">\'><instance_geometry url="#g"/></node>'
+    (part,) = load(tmp_path, document(nodes=nodes))
+    assert part.name == '<STL "a">'
+    with pytest.raises(MeshError, match="malformed XML"):
+        load(tmp_path, document(nodes=nodes.replace("url=", "<url=")))
+
+
 def test_nodes_place_their_geometry(tmp_path):
     # Outer: 90 degrees about z, then 10 along the turned x, which is y. Inner: twice as large.
     nodes = """<node id="outer"><rotate>0 0 1 90</rotate><translate>10 0 0</translate>

@@ -256,12 +256,13 @@ def _filenames() -> tuple[str, ...]:
 
 
 def _judge(tag: PluginTag, _sensor: Sensor | None) -> Iterable[Diagnostic] | None:
-    from cartwheel.plugins.catalogue import plugin_named
+    from cartwheel.plugins.catalogue import plugin_named, short_name
     from cartwheel.plugins.parameters import read
+    from cartwheel.plugins.world_plugins import BUILT_IN
 
     plugin = plugin_named(tag.filename)
     if plugin is None:
-        return None
+        return () if short_name(tag.filename) in BUILT_IN else None
     try:
         _, diagnostics = read(plugin.parameters, tag.element)
     except PluginError as error:

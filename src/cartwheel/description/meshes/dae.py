@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 import xml.etree.ElementTree as ET
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -20,6 +21,8 @@ MAX_DEPTH = 100
 MAX_INSTANCES = 20_000
 """More nodes than any robot's part has: nodes that name each other multiply without end."""
 
+_VALUE = re.compile(rb"""(?<==)"[^"]*"|(?<==)'[^']*'""")
+"""Of an attribute."""
 _SURFACES = ("triangles", "polylist", "polygons", "tristrips", "trifans")
 _NO_SURFACES = ("lines", "linestrips")
 
@@ -38,7 +41,7 @@ def read_dae(path: Path, data: bytes, notes: list[str]) -> list[Submesh]:
     if b"<!ENTITY" in data:
         raise ValueError("declares entities, which no mesh needs")
     try:
-        root = ET.fromstring(data)  # noqa: S314 - entities are refused above
+        root = _parsed(data)
     except ET.ParseError as error:
         raise ValueError(f"is malformed XML: {error}") from None
     for element in root.iter():
@@ -46,6 +49,17 @@ def read_dae(path: Path, data: bytes, notes: list[str]) -> list[Submesh]:
     if root.tag != "COLLADA":
         raise ValueError(f"is no COLLADA file: its root is <{root.tag}>")
     return _Scene(path, root, notes).submeshes()
+
+
+def _parsed(data: bytes) -> ET.Element:
+    """The tree; some exporters put ``<`` into names, which Gazebo's reader takes as it is."""
+    try:
+        return ET.fromstring(data)  # noqa: S314 - entities are refused by the caller
+    except ET.ParseError:
+        mended = _VALUE.sub(lambda match: match[0].replace(b"<", b"&lt;"), data)
+        if mended == data:
+            raise
+        return ET.fromstring(mended)  # noqa: S314
 
 
 class _Scene:
