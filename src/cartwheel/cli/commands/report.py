@@ -20,7 +20,7 @@ from cartwheel.control.registry import Running
 from cartwheel.plugins.control.files import ControllerFiles
 
 if TYPE_CHECKING:
-    from cartwheel.description.model import WorldDescription
+    from cartwheel.description.model import RobotDescription, WorldDescription
     from cartwheel.errors import Diagnostic
     from cartwheel.session import Session
 
@@ -128,18 +128,30 @@ class Report:
 
     def _controllers(self, session: Session, name: str) -> None:
         """How to start a robot's controllers, which in ROS a launch file does."""
-        offers = (service.name for service in session.graph.services())
-        if not any(offer.endswith("/controller_manager/load_controller") for offer in offers):
-            return
-        from cartwheel.plugins.control.suggestion import suggested
-
         description = next(
             each.description for each in session.simulation.scene.models if each.name == name
         )
+        offers = (service.name for service in session.graph.services())
+        if not any(offer.endswith("/controller_manager/load_controller") for offer in offers):
+            if not description.plugins:
+                self._no_manager(description)
+            return
+        from cartwheel.plugins.control.suggestion import suggested
+
         files = suggested(description)
         self._line("control", "no controller runs: in ROS, launch files start them")
         words = " ".join(f"--controllers {file}" for file in files) or "--controllers FILE.yaml"
         self._line("try", words)
+
+    def _no_manager(self, description: RobotDescription) -> None:
+        """What a robot lacks whose joints wait for controllers, and that has no plugin at all."""
+        tag, plugin = "<ros2_control>", "gz_ros2_control-system"
+        if not description.ros2_control:
+            tag, plugin = "<transmission>", "libgazebo_ros_control.so"
+            if not description.transmissions:
+                return
+        self._line("control", f"no plugin reads its {tag} tags, so nothing drives the joints")
+        self._line("try", f'<gazebo><plugin filename="{plugin}" name="control">…')
 
     def _inhabitants(self, session: Session, name: str | None) -> str:
         others = [model for model in session.simulation.models if model != name]
