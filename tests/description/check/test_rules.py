@@ -50,7 +50,7 @@ WITH_ADVICE = {
     "negative": ("inertia-impossible", [('ixx="0.001"', 'ixx="-0.001"')], 'ixx="-0.001"',
         '<inertia ixx="0.00104"'),
     "mass 0": ("mass-not-positive", [('<mass value="0.3"/>', '<mass value="0"/>')],
-        'mass value="0"', 'value="0.1"'),
+        'mass value="0"', 'value="0.289"'),  # 0.00208 kg m² of all axes, by 0.0072 a kilogram
     "mass below 0": ("mass-not-positive", [('<mass value="0.3"/>', '<mass value="-0.3"/>')],
         'mass value="-0.3"', 'value="0.3"'),
     "inertia large": ("inertia-unlike-geometry", [('ixx="0.001" iyy="0.001" izz="0.00008"',
@@ -74,6 +74,34 @@ WITH_ADVICE = {
         "wheelDiameter", "<wheelDiameter>0.16</wheelDiameter>"),
     "axis backwards": ("wheel-axes", [('<child link="right_wheel"/>\n    <axis xyz="0 1 0"/>',
         '<child link="right_wheel"/>\n    <axis xyz="0 -1 0"/>')], 'xyz="0 -1 0"', 'xyz="0 1 0"'),
+    "axis along": ("wheel-axes", [('<child link="right_wheel"/>\n    <axis xyz="0 1 0"/>',
+        '<child link="right_wheel"/>\n    <axis xyz="1 0 0"/>')], 'xyz="1 0 0"', 'xyz="0 1 0"'),
+    "no axis": ("wheel-axes", [('<child link="right_wheel"/>\n    <axis xyz="0 1 0"/>',
+        '<child link="right_wheel"/>')], 'name="right_wheel_joint"', '<axis xyz="0 1 0"/>'),
+    "lying wheel": ("wheel-not-round", [('rpy="1.5707963 0 0"/>\n      <geometry>\n        '
+        '<cylinder radius="0.08" length="0.04"/>\n      </geometry>\n    </collision>',
+        'rpy="0 0 0"/>\n      <geometry>\n        <cylinder radius="0.08" length="0.04"/>\n'
+        '      </geometry>\n    </collision>')], 'origin rpy="0 0 0"/>', 'rpy="1.5708 0 0"'),
+    "lying wheel without an origin": ("wheel-not-round", [('<collision>\n      <origin '
+        'rpy="1.5707963 0 0"/>', '<collision>')], '<collision>\n      <geometry>\n        <cyl',
+        '<origin rpy="1.5708 0 0"/>'),
+    "a wheel without limits": ("limit-missing", [('name="left_wheel_joint" type="continuous"',
+        'name="left_wheel_joint" type="revolute"'), ('<limit effort="5" velocity="20"/>', "")],
+        'name="left_wheel_joint" type="rev', 'type="continuous"'),
+    "odd degrees": ("limit-degrees", [('lower="-1" upper="1"', 'lower="-100" upper="20"')],
+        'lower="-100"', 'lower="-1.74533" upper="0.349066"'),
+    "no torque": ("effort-zero", [("<wheelTorque>2<", "<wheelTorque>0<")], "<wheelTorque>",
+        "<wheelTorque>5</wheelTorque>"),
+    "no file name's end": ("plugin-unknown", [("libgazebo_ros_diff_drive.so",
+        "libgazebo_ros_diff_drive")], "gazebo_ros_diff_drive", 'filename="libgazebo_ros_diff_drive.so"'),
+    "no file name's begin": ("plugin-unknown", [("libgazebo_ros_diff_drive.so",
+        "gazebo_ros_diff_drive.so")], "gazebo_ros_diff_drive", 'filename="libgazebo_ros_diff_drive.so"'),
+    "a link without a name": ("name-missing", [('<link name="eye"/>', '<link name="eye"/>\n<link/>')],
+        "<link/>", 'name="new_link"'),
+    "a sensor without a name": ("name-missing", [('<sensor type="ray" name="lidar">',
+        '<sensor type="ray">')], '<sensor type="ray">', 'name="ray_sensor"'),
+    "a picture's format": ("image-format", [("<clip>", "<image>\n<format>R8B8G8</format></image><clip>")],
+        "R8B8G8", "<format>"),
     "no friction": ("wheel-frictionless", [("<mu1>1.0</mu1>\n    <mu2>1.0</mu2>",
         "<mu1>0</mu1>\n    <mu2>0</mu2>")], "<mu1>0</mu1>", "<mu1>1.0</mu1>"),
     "wheel without collision": ("wheel-no-collision", [(
@@ -218,6 +246,47 @@ def test_a_fault_is_found_with_a_hint(case, bench, spoil, line_of):
     if there is not None:
         assert found[0].origin.line == line_of(text, there)
     assert hint in found[0].hint
+
+
+def test_limits_of_many_turns_are_no_degrees(bench, spoil):
+    for limits in (
+        'lower="-6.28" upper="6.28"',
+        'lower="-100" upper="100"',
+        'lower="0" upper="25"',
+    ):
+        assert not bench.find(spoil(('lower="-1" upper="1"', limits)), "limit-degrees"), limits
+
+
+def test_a_file_of_new_gazebo_needs_no_prefix(bench, spoil):
+    for name in ("gz-sim-diff-drive-system", "gz_ros2_control-system"):
+        found = bench.find(spoil(("libgazebo_ros_imu.so", name)), "plugin-unknown")
+        assert [each.severity for each in found] == ["info"], name
+
+
+def test_what_follows_from_a_fault_is_not_told_as_well(bench, spoil):
+    """Where a joint's place cannot be read nobody knows where its link is."""
+
+    def rules(*changes):
+        return [finding.rule for finding in bench.report(spoil(*changes)).findings]
+
+    assert rules(('<origin xyz="0 0.2 0.08"/>', '<origin xyz="0, 0.2, 0.08"/>')) == ["unreadable"]
+    assert rules(('reference="caster_link"', 'reference="castor_link"')) == ["reference-unknown"]
+    assert rules(('<sphere radius="0.03"/>', '<sphere diameter="0.06"/>')) == ["unreadable"]
+    assert rules(('name="caster_joint"', 'name="eye_joint"')) == ["name-twice"]
+    box = '<box size="0.4 0.3 0.1"/>\n      </geometry>\n    </collision>'
+    assert rules((box, box.replace("<box size=", "<box sizes="))) == ["unreadable"]
+
+
+def test_a_speck_of_a_mesh_beside_its_collision_is_told(bench, spoil, take, tmp_path):
+    corners = [(0, 0, 0), (0.0004, 0, 0), (0, 0.0004, 0), (0, 0, 0.0004)]
+    faces = [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]
+    lines = [f"v {x} {y} {z}" for x, y, z in corners]
+    lines += ["f " + " ".join(str(i + 1) for i in face) for face in faces]
+    (tmp_path / "speck.obj").write_text("\n".join(lines) + "\n")
+    text = spoil(('<box size="0.4 0.3 0.1"/>', '<mesh filename="speck.obj"/>'))
+    (finding,) = bench.find(text, "shape-size")
+    assert finding.instead == 'scale="1000 1000 1000"'
+    assert not bench.find(take(text, finding), "shape-size")
 
 
 def test_a_robot_without_a_fault_gives_no_finding(bench, robot):

@@ -31,7 +31,7 @@ from cartwheel.description.check import (
 )
 from cartwheel.description.check.control_search import control_files
 from cartwheel.description.check.finding import Finding, Remark
-from cartwheel.description.check.mending import mend
+from cartwheel.description.check.mending import displaced, mend
 from cartwheel.description.check.rule import Rule
 from cartwheel.description.check.subject import PluginKnowledge, Robot, Subject
 from cartwheel.description.loading import Opened, open_description, understand
@@ -146,7 +146,8 @@ def _subject(opened: Opened, known: PluginKnowledge | None, given: Sequence[Path
     elif read is not None:
         described = (read,)
     root = opened.root if opened.root.tag == "robot" else None
-    robots = tuple(Robot(each, root, mended) for each in described)
+    lost = displaced(opened.root, tree) if root is not None else set()
+    robots = tuple(Robot(each, root, mended, lost) for each in described)
     search = known.controller_files if known is not None else None
     return Subject(
         root=opened.root,

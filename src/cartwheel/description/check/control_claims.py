@@ -37,7 +37,9 @@ _INTERFACES = {
     "PosVelJointInterface": ("position", "velocity"),
     "PosVelAccJointInterface": ("position", "velocity"),
 }
-_SIMULATED = re.compile(r"gazebo|gz_|ign_|sim|mock|fake|generic", re.IGNORECASE)
+_SIMULATED = re.compile(
+    r"(?i:gazebo|gz_ros2|ign_ros2|ignition|mock|fake|generic|simul)|Sim(System)?$"
+)
 """Hardware of ros2_control that is none: of a real robot the tags for it may be others."""
 _STANDARD_HARDWARE = ("gazebo_ros_control/DefaultRobotHWSim", "DefaultRobotHWSim", "")
 

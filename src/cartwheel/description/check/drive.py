@@ -2,19 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 
 from cartwheel.description.check import nodes, spelling
 from cartwheel.description.check.finding import Remark
 from cartwheel.description.check.rule import rule
-from cartwheel.description.check.solids import Floats, bounds
+from cartwheel.description.check.solids import Floats, Solid, bounds
 from cartwheel.description.check.subject import DRIVE_JOINT_TAGS, Drive, Robot, Subject
-from cartwheel.description.model import Element, Joint
-from cartwheel.geometry import Pose, rotate
+from cartwheel.description.model import Cylinder, Element, Joint
+from cartwheel.geometry import Pose, matrix_from_quat, rotate
 
 _DIRECTIONS = 32
+_CAMBER = 0.5
+"""Cosine: what is more askew is no wheel's axis."""
+_ROUND = 0.7
+"""The least width of a wheel, of its most."""
+_UPRIGHT = {"x": 'rpy="0 1.5708 0"', "y": 'rpy="1.5708 0 0"', "z": 'rpy="0 0 0"'}
+"""By the joint's axis, how a cylinder has to be turned."""
 
 
 @rule("drive-joint-unknown", "error", "a drive plugin names a joint that does not exist")
@@ -65,7 +71,9 @@ def drive_joint_fixed(subject: Subject) -> Iterator[Remark]:
 def wheels_swapped(subject: Subject) -> Iterator[Remark]:
     for robot, drive, left, right in _pairs(subject):
         poses = [wheel_place(robot, joint) for joint in (left, right)]
-        element = _parameter(drive, ("leftJoint", "left_joint", "left_wheel_joint_name"))
+        element = _parameter(
+            drive, ("leftJoint", "left_joint", "left_wheel_joint_name", "leftFrontJoint")
+        )
         across = poses[0].y - poses[1].y
         # With the wheels beside each other x is forward, else nobody can tell the sides.
         if element is None or abs(poses[0].x - poses[1].x) > 0.1 * abs(across) or across >= 0:
@@ -98,12 +106,17 @@ def wheel_axes(subject: Subject) -> Iterator[Remark]:
             )
             for joint, pose in zip((left, right), poses, strict=True)
         ]
-        for joint, sense in zip((left, right), senses, strict=True):
-            if sense > -0.5:
+        for joint, pose, sense in zip((left, right), poses, senses, strict=True):
+            if sense > -_CAMBER:
+                axis = nodes.child(robot.joint_node(joint.name), "axis")
+                stated = nodes.numbers(nodes.text_of(axis, "xyz"), 3)
+                turns = joint.type != "fixed" and (stated is None or any(stated))
+                if sense < _CAMBER and turns:
+                    yield _not_across(robot, joint, pose, across / wide)
                 continue
             node = nodes.child(robot.joint_node(joint.name), "axis")
             xyz = " ".join(nodes.short(-value + 0.0) for value in joint.axis.xyz)
-            both = all(each < -0.5 for each in senses)
+            both = all(each < -_CAMBER for each in senses)
             yield Remark(
                 message=f'the wheel of joint "{joint.name}" turns backwards when the drive wants '
                 "to go forward: its axis points to the robot's right"
@@ -115,28 +128,86 @@ def wheel_axes(subject: Subject) -> Iterator[Remark]:
             )
 
 
+def _not_across(robot: Robot, joint: Joint, pose: Pose, across: Floats) -> Remark:
+    """A wheel whose axis is not that of the axle; without a tag it is x."""
+    written = robot.joint_node(joint.name)
+    node = nodes.child(written, "axis")
+    left = across if across[1] >= 0 else -across
+    own = matrix_from_quat(pose.orientation).T @ left
+    xyz = " ".join(nodes.short(round(float(value), 3) + 0.0) for value in own)
+    stated = "" if node is not None else ", which counts where no <axis> is written,"
+    text = f'xyz="{xyz}"'
+    return Remark(
+        message=f'the wheel of joint "{joint.name}" cannot roll ahead: its axis '
+        f'"{" ".join(nodes.short(value) for value in joint.axis.xyz)}"{stated} does not lie '
+        "along the axle",
+        origin=node.origin if node is not None else joint.origin,
+        instead="" if written is None else text if node is not None else f"<axis {text}/>",
+        place="" if written is None else "attribute" if node is not None else "inside",
+        mark="xyz" if node is not None else f'name="{joint.name}"',
+    )
+
+
+@rule("wheel-not-round", "warning", "a driven wheel that is not round about its axis")
+def wheel_not_round(subject: Subject) -> Iterator[Remark]:
+    for robot in subject.robots:
+        for joint in wheel_joints(robot):
+            link = robot.links[joint.child]
+            along = rotate(wheel_place(robot, joint).orientation, joint.axis.xyz)
+            widths = _widths(robot, joint, robot.collisions)
+            # Of an axis that is wrong itself it is told elsewhere.
+            if widths is None or abs(along[1]) < _CAMBER or not robot.whole(link.name):
+                continue
+            if widths.min() >= _ROUND * widths.max():
+                continue
+            collision, text = link.collisions[0] if link.collisions else None, ""
+            node = robot.node_at(collision.origin) if collision is not None else None
+            origin = nodes.child(node, "origin")
+            if collision is not None and isinstance(collision.shape, Cylinder):
+                text = _UPRIGHT.get(
+                    max("xyz", key=lambda a: abs(joint.axis.xyz["xyz".index(a)])), ""
+                )
+            alone = node is not None and bool(text) and len(link.collisions) == 1
+            yield Remark(
+                message=f'the collision of the driven wheel "{link.name}" is {widths.max():.3g} m '
+                f"one way and {widths.min():.3g} m the other across its axis: it cannot roll",
+                origin=origin.origin
+                if origin is not None
+                else (collision.origin if collision is not None else link.origin),
+                instead="" if not alone else text if origin is not None else f"<origin {text}/>",
+                place="" if not alone else "attribute" if origin is not None else "inside",
+                mark="rpy" if origin is not None else "",
+                hint="A cylinder's own axis is z: turn it to that of the joint." if text else "",
+            )
+
+
 def wheel_radius(robot: Robot, joint: Joint) -> float | None:
     """Half the width of a wheel's collision, or else its visual, across its axis, m.
 
     What is fixed to the wheel is part of it: a tyre may be another link than the hub.
     """
-    link = robot.links.get(joint.child)
-    if link is None:
+    if joint.child not in robot.links:
         return None
-    here = (link.pose @ joint.pose).inverse()
-    axis = np.array(joint.axis.xyz)
     for kind in (robot.collisions, robot.visuals):
-        clouds = [
-            solid.placed(here @ robot.links[name].pose)
-            for name in wheel_links(robot, joint)
-            for solid in kind[name]
-        ]
-        if clouds:
-            points = np.concatenate(clouds)
-            # Half its width, not its reach: a wheel may be a millimetre off its axis.
-            sideways = _across(axis)
-            return float(np.ptp(points @ sideways.T, axis=0).max()) / 2
+        widths = _widths(robot, joint, kind)
+        if widths is not None:
+            return float(widths.max()) / 2
     return None
+
+
+def _widths(robot: Robot, joint: Joint, kind: Mapping[str, list[Solid]]) -> Floats | None:
+    """Of a wheel in directions all around its axis, m; None where it has no such geometry."""
+    here = (robot.links[joint.child].pose @ joint.pose).inverse()
+    clouds = [
+        solid.placed(here @ robot.links[name].pose)
+        for name in wheel_links(robot, joint)
+        for solid in kind[name]
+    ]
+    if not clouds:
+        return None
+    # Half its width, not its reach: a wheel may be a millimetre off its axis.
+    sideways = _across(np.array(joint.axis.xyz))
+    return np.asarray(np.ptp(np.concatenate(clouds) @ sideways.T, axis=0))
 
 
 def _across(axis: Floats) -> Floats:
@@ -184,19 +255,14 @@ def _drives(subject: Subject) -> Iterator[tuple[Robot, Drive]]:
 
 
 def _pairs(subject: Subject) -> Iterator[tuple[Robot, Drive, Joint, Joint]]:
-    """Drives with two wheels; a skid's effective separation is a matter of its tyres."""
+    """The two first wheels of each drive; of a differential's with more tags, each pair."""
     for robot, drive in _drives(subject):
-        if "skid" in drive.tag.filename or len(drive.left) != len(drive.right):
+        if len(drive.left) != len(drive.right):
             continue
         for names in zip(drive.left, drive.right, strict=True):
             left, right = (robot.joints.get(name) for name in names)
-            if (
-                left is None
-                or right is None
-                or left is right
-                or left.child not in robot.links
-                or right.child not in robot.links
-            ):
+            ends = {left.child, right.child} if left is not None and right is not None else set()
+            if left is None or right is None or left is right or not ends <= robot.placed:
                 continue
             yield robot, drive, left, right
             if len(drive.left) > 1:
@@ -208,4 +274,5 @@ RULES = (
     drive_joint_fixed,
     wheels_swapped,
     wheel_axes,
+    wheel_not_round,
 )

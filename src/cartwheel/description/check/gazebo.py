@@ -20,8 +20,8 @@ _JOINT_TAGS = ("jointName", "joint_name")
 def contact_collision_unknown(subject: Subject) -> Iterator[Remark]:
     for robot, sensor, asked in _watched(subject):
         name = asked.text.strip()
-        if robot.incomplete:
-            continue  # it may be that of a mesh that is missing
+        if robot.incomplete or robot.mended or not robot.is_placed:
+            continue  # it may be that of a mesh that is missing, or of what cannot be read
         if name.rpartition("::")[2] in _spellings(robot):
             continue
         known = {one for names in _gazebo_names(robot).values() for one in names}
@@ -47,7 +47,7 @@ def contact_never_fires(subject: Subject) -> Iterator[Remark]:
         if _LUMP in name or any(name in names for names in _gazebo_names(robot).values()):
             continue
         target = _spellings(robot).get(name)
-        if target is None:
+        if target is None or not robot.is_placed:
             continue
         link, index = target
         root = _lump_root(robot, link)

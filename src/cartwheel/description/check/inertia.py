@@ -107,7 +107,7 @@ def mass_not_positive(subject: Subject) -> Iterator[Remark]:
             message=f'link "{nodes.name_of(link)}" has the mass {mass:g}: '
             "Gazebo drops such a link, and all that it carries",
             origin=place.origin,
-            instead=f'value="{nodes.short(-mass) if mass < 0 else "0.1"}"',
+            instead=f'value="{nodes.short(-mass) if mass < 0 else _mass_of(subject, link)}"',
             place="attribute",
             mark="value",
             hint="" if mass < 0 else "Write the mass that it has, in kg.",
@@ -323,6 +323,16 @@ def _shape_inertia(robot: Robot, link: Link) -> Inertial | None:
             return found
     box = bounds(robot.rigid_cloud(link.name))
     return None if box is None else _box_inertia(box, link.origin)
+
+
+def _mass_of(subject: Subject, link: Node) -> str:
+    """What gives the inertia that is written with the link's geometry, kg; 0.1 without any."""
+    moments = moments_of(nodes.child(link, "inertial") or link)
+    like = _sketch(subject, nodes.name_of(link))
+    whole = sum((like.ixx, like.iyy, like.izz)) if like is not None else 0.0
+    if like is None or moments is None or whole <= 0 or sum(moments) <= 0:
+        return "0.1"
+    return f"{sum(moments) * like.mass / whole:.3g}"
 
 
 def _sketch(subject: Subject, link: str) -> Inertial | None:

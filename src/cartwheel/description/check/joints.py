@@ -17,23 +17,30 @@ _LIMITED = ("revolute", "prismatic")
 _GRAVITY = 9.8
 """m/s²."""
 _LEAST_EFFORT = 10.0
-_DEGREES = frozenset(
-    {30.0, 45.0, 60.0, 90.0, 120.0, 135.0, 150.0, 160.0, 170.0, 180.0, 270.0, 360.0}
-)
+_TORQUES = ("wheelTorque", "max_wheel_torque")
+_LEAST_DEGREES, _MOST_DEGREES = 30.0, 360.0
+_ENDLESS = frozenset({50.0, 100.0, 200.0, 300.0})
+"""rad, by which a joint that turns without end is given limits all the same."""
 
 
 @rule("limit-missing", "error", "a revolute or prismatic joint has no <limit>: ROS refuses it")
 def limit_missing(subject: Subject) -> Iterator[Remark]:
+    wheels = {name for robot in subject.robots for drive in robot.drives for name in drive.joints}
     for joint, kind in _joints(subject):
         if kind in _LIMITED and nodes.child(joint, "limit") is None:
             span = "1.5708" if kind == "revolute" else "0.1"
+            rolls = kind == "revolute" and nodes.name_of(joint) in wheels
             yield Remark(
                 message=f'the {kind} joint "{nodes.name_of(joint)}" has no <limit>: '
                 "ROS refuses the whole robot",
                 origin=joint.origin,
-                instead=f'<limit lower="-{span}" upper="{span}" effort="10" velocity="3"/>',
-                place="inside",
-                hint='Write its own range, or, where it turns without end, type="continuous".'
+                instead='type="continuous"'
+                if rolls
+                else f'<limit lower="-{span}" upper="{span}" effort="10" velocity="3"/>',
+                place="attribute" if rolls else "inside",
+                hint="It is a wheel that turns without end."
+                if rolls
+                else 'Write its own range, or, where it turns without end, type="continuous".'
                 if kind == "revolute"
                 else "Write its own range.",
             )
@@ -76,6 +83,7 @@ def limit_zero(subject: Subject) -> Iterator[Remark]:
 
 @rule("effort-zero", "warning", "a driven joint's effort or velocity limit is zero")
 def effort_zero(subject: Subject) -> Iterator[Remark]:
+    yield from _torque_zero(subject)
     movers = {name: robot for robot in subject.robots for name in robot.driven}
     for joint, kind in _joints(subject):
         limit = nodes.child(joint, "limit")
@@ -105,6 +113,21 @@ def effort_zero(subject: Subject) -> Iterator[Remark]:
                 mark="velocity",
                 hint="Write how fast its motor can be.",
             )
+
+
+def _torque_zero(subject: Subject) -> Iterator[Remark]:
+    for robot in subject.robots:
+        for drive in robot.drives:
+            for element in drive.tag.element.children:
+                if element.tag in _TORQUES and nodes.number(element.text) == 0.0:
+                    yield Remark(
+                        message=f"<{element.tag}> is 0 N m: the wheels do not move",
+                        origin=element.origin,
+                        instead=nodes.written(element.tag, {}, "5"),
+                        place="element",
+                        mark=element.text.strip(),
+                        hint="Write what its motors can do.",
+                    )
 
 
 def _holding(robot: Robot, name: str, *, slides: bool) -> float:
@@ -147,12 +170,13 @@ def limit_incomplete(subject: Subject) -> Iterator[Remark]:
 
 @rule("axis-zero", "error", "a joint's axis has length 0")
 def axis_zero(subject: Subject) -> Iterator[Remark]:
+    wheels = {name for robot in subject.robots for drive in robot.drives for name in drive.joints}
     for joint, axis, xyz in _axes(subject):
         if math.hypot(*xyz) < 1e-6:
             yield Remark(
                 message=f'the axis of the joint "{nodes.name_of(joint)}" has length 0',
                 origin=axis.origin,
-                instead='xyz="0 0 1"',
+                instead='xyz="0 1 0"' if nodes.name_of(joint) in wheels else 'xyz="0 0 1"',
                 place="attribute",
                 mark="xyz",
             )
@@ -184,7 +208,7 @@ def limit_degrees(subject: Subject) -> Iterator[Remark]:
             continue
         values = {what: nodes.number(limit.attributes.get(what)) for what in ("lower", "upper")}
         stated = [abs(value) for value in values.values() if value]
-        if stated and all(value in _DEGREES for value in stated):
+        if _are_degrees(stated):
             radians = {
                 what: nodes.short(math.radians(value)) for what, value in values.items() if value
             }
@@ -197,6 +221,15 @@ def limit_degrees(subject: Subject) -> Iterator[Remark]:
                 place="element",
                 mark="lower" if values["lower"] else "upper",
             )
+
+
+def _are_degrees(stated: list[float]) -> bool:
+    """Whether absolute values other than 0 are such as people write in degrees."""
+    if not stated or (len(set(stated)) == 1 and stated[0] in _ENDLESS):
+        return False
+    return all(value % 5 == 0 and value <= _MOST_DEGREES for value in stated) and (
+        max(stated) >= _LEAST_DEGREES
+    )
 
 
 def _zero_in_sdf(subject: Subject, wheels: set[str]) -> Iterator[Remark]:
@@ -214,7 +247,7 @@ def _zero_in_sdf(subject: Subject, wheels: set[str]) -> Iterator[Remark]:
 def _degrees_in_sdf(subject: Subject) -> Iterator[Remark]:
     for joint, axis, lower, upper in _ranges_in_sdf(subject):
         stated = [abs(value) for value in (lower, upper) if value]
-        if stated and all(value in _DEGREES for value in stated):
+        if _are_degrees(stated):
             limit = {"lower": math.radians(lower), "upper": math.radians(upper)}
             inner = "".join(f"<{tag}>{nodes.short(value)}</{tag}>" for tag, value in limit.items())
             yield Remark(

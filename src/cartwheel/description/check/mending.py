@@ -38,6 +38,21 @@ def mend(root: Node) -> set[str]:
     return {name for node in nodes.children(root, "link") if (name := _mend_inertia(node))}
 
 
+def displaced(root: Node, mended: Node) -> set[str]:
+    """The links whose joint is not what its author wrote, or has lost its place."""
+    kept, written = _places(mended), _places(root)
+    moved = {key for key, had in written.items() if kept.get(key) is not had}
+    return {key[2] for key in moved | (kept.keys() - written.keys())}
+
+
+def _places(root: Node) -> dict[tuple[str, str, str], bool]:
+    """Of each joint, by name, parent and child, whether it states a place."""
+    return {
+        (nodes.name_of(joint), *ends(joint)): nodes.child(joint, "origin") is not None
+        for joint in nodes.children(root, "joint")
+    }
+
+
 def _drop_second(root: Node, tag: str) -> None:
     seen: set[str] = set()
     for node in nodes.children(root, tag):

@@ -145,6 +145,8 @@ def shape_size(subject: Subject) -> Iterator[Remark]:
         for solid in solids:
             others = second if largest[solid.link] == first else first
             factor = _factor(solid, usual, others, reach)
+            if factor is None and _is_lost(robot, solid):
+                factor = 1000.0
             if factor is not None and (len(largest) > 2 or solid.extent > HUGE):
                 yield _remark(robot, solid, factor, usual)
 
@@ -201,6 +203,14 @@ def _factor(solid: Solid, usual: float, others: float, reach: float) -> float | 
     if mesh and extent < min(usual / DWARF, 0.001) and usual > 0.01 and reach < 10:
         return 1000.0
     return None
+
+
+def _is_lost(robot: Robot, solid: Solid) -> bool:
+    """Whether a mesh is all that is seen of a link, and a speck beside its collision."""
+    seen, felt = robot.visuals[solid.link], robot.collisions[solid.link]
+    if not felt or all(one is not solid for one in seen) or not isinstance(solid.part.shape, Mesh):
+        return False
+    return max(one.extent for one in seen) < max(one.extent for one in felt) / 200
 
 
 def _reach(robot: Robot) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 
 from cartwheel.description.check import frames, nodes
@@ -20,6 +21,7 @@ _GAZEBO = frozenset({
     "elevator", "harness", "wheel_slip", "projector", "video", "template",
 })  # fmt: skip
 """What ``libgazebo_ros_<name>.so`` can be; some resemble each other."""
+_CLASSIC = re.compile(r"(?:lib)?(gazebo_ros_\w+)(?:\.so)?")
 
 
 @rule("plugin-unknown", "info", "a plugin that is not simulated here, or a misspelt one")
@@ -29,6 +31,17 @@ def plugin_unknown(subject: Subject) -> Iterator[Remark]:
         return
     for robot in subject.robots:
         for tag, sensor in robot.plugins():
+            if (own := _plain_file(tag.filename)) != tag.filename:
+                yield Remark(
+                    severity="warning",
+                    message=f'Gazebo looks for a file "{tag.filename}", and the plugin\'s is '
+                    f'"{own}": there it does not load',
+                    origin=tag.origin,
+                    instead=f'filename="{own}"',
+                    place="attribute",
+                    mark=tag.filename,
+                )
+                continue
             if knowledge.judge(tag, sensor) is not None:
                 continue
             # Only a spelling error has a likely meant name: other plugins share most of theirs.
@@ -82,6 +95,12 @@ def plugin_obsolete(subject: Subject) -> Iterator[Remark]:
                     place="element",
                     hint="Swap the names of the two joints.",
                 )
+
+
+def _plain_file(name: str) -> str:
+    """The file of one of Gazebo Classic's plugins for ROS, which its name must be as it is."""
+    match = _CLASSIC.fullmatch(name)
+    return name if match is None else f"lib{match[1]}.so"
 
 
 def _remark(tag: PluginTag, diagnostic: Diagnostic) -> Remark:

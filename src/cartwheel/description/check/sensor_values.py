@@ -20,6 +20,14 @@ TYPES = (
     "wireless_receiver", "wireless_transmitter",
 )  # fmt: skip
 """Of SDF 1.11 and before."""
+FORMATS = (
+    "R8G8B8", "B8G8R8", "L8", "L16", "R16G16B16", "BAYER_RGGB8", "BAYER_BGGR8", "BAYER_GBRG8",
+    "BAYER_GRBG8", "R_FLOAT16", "R_FLOAT32", "RGB_FLOAT16", "RGB_FLOAT32", "RGB_INT8", "RGB_INT16",
+    "RGB_INT32", "BGR_INT8", "BGR_INT16", "BGR_INT32", "L_INT8", "L_INT16", "RGB8", "BGR8", "MONO8",
+    "MONO16", "RGB16", "UNKNOWN_PIXEL_FORMAT", "RGBA_INT8", "BGRA_INT8", "FLOAT32", "32FC1",
+)  # fmt: skip
+"""Of SDF and of its reader in Gazebo."""
+_LISTED = 9
 _TURN = 2 * math.pi + 0.01
 
 
@@ -49,6 +57,25 @@ def sensor_range(subject: Subject) -> Iterator[Remark]:
                 yield from _span(element)
             elif element.tag == "image":
                 yield from _counts(element, ("width", "height"), "a picture without pixels")
+
+
+@rule("image-format", "warning", "a format of images that does not exist")
+def image_format(subject: Subject) -> Iterator[Remark]:
+    for _, sensor in _sensors(subject):
+        for element in _below(sensor.element):
+            image = element.find("format") if element.tag == "image" else None
+            name = image.text.strip() if image is not None else ""
+            if image is None or not name or name.upper() in FORMATS:
+                continue
+            near = spelling.meant(name, FORMATS, parts=False) or "R8G8B8"
+            yield Remark(
+                message=f'there is no image format "{name}": the pictures are R8G8B8',
+                origin=image.origin,
+                instead=nodes.written("format", {}, near),
+                place="element",
+                mark=name,
+                hint=f"There are: {', '.join(FORMATS[:_LISTED])}, ….",
+            )
 
 
 def _arc(element: Element) -> Iterator[Remark]:
@@ -127,4 +154,4 @@ def _sensors(subject: Subject) -> Iterator[tuple[Robot, Sensor]]:
             yield robot, sensor
 
 
-RULES = (sensor_type_unknown, sensor_range)
+RULES = (sensor_type_unknown, sensor_range, image_format)

@@ -27,6 +27,8 @@ _GRID = 9
 @rule("view-blocked", "warning", "a camera or lidar looks into the robot's own housing")
 def view_blocked(subject: Subject) -> Iterator[Remark]:
     for robot in subject.robots:
+        if not robot.is_placed:
+            continue
         for link, sensor in robot.sensors():
             for view in _views(sensor):
                 block = _blocked(robot, link.name, view)

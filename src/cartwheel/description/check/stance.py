@@ -55,7 +55,7 @@ def caster_friction(subject: Subject) -> Iterator[Remark]:
                 continue
             collision = link.collisions[0]
             mu = collision.surface.mu1
-            if mu is not None and mu <= 0.3:
+            if (mu is not None and mu <= 0.3) or _names_nothing(subject):
                 continue
             text = f'<gazebo reference="{link.name}"><mu1>0.0</mu1><mu2>0.0</mu2></gazebo>'
             yield Remark(
@@ -75,7 +75,7 @@ def wheel_no_collision(subject: Subject) -> Iterator[Remark]:
             link = robot.links[joint.child]
             if any(robot.links[name].collisions for name in wheel_links(robot, joint)):
                 continue
-            if not robot.whole(link.name):
+            if not robot.whole(link.name) or link.name in robot.mended:
                 continue
             radius = wheel_radius(robot, joint) or 0.1
             yield Remark(
@@ -128,7 +128,7 @@ def wheels_off_ground(subject: Subject) -> Iterator[Remark]:
         parts = {name for joint in joints for name in wheel_links(robot, joint)}
         heights = [lowest(robot, *wheel_links(robot, joint)) for joint in joints]
         wheels = [height for height in heights if height is not None]
-        if not wheels or robot.description.static:
+        if not wheels or robot.description.static or not robot.is_placed:
             continue
         bottom = min(wheels)
         radius = wheel_radius(robot, joints[0]) or 0.1
@@ -156,7 +156,7 @@ def collisions_overlap(subject: Subject) -> Iterator[Remark]:
             if (robot.description.self_collide if link.self_collide is None else link.self_collide)
             and link.collisions
         ]
-        if len(able) > 60 or robot.description.static:
+        if len(able) > 60 or robot.description.static or not robot.is_placed:
             continue
         clouds = {
             link.name: [hull(solid).placed(link.pose) for solid in robot.collisions[link.name]]
@@ -179,6 +179,16 @@ def collisions_overlap(subject: Subject) -> Iterator[Remark]:
                     origin=b.collisions[0].origin,
                     hint="Make one of them smaller, or leave out its <selfCollide>.",
                 )
+
+
+def _names_nothing(subject: Subject) -> bool:
+    """Whether a <gazebo> with a friction refers to nothing: it may be of any link."""
+    known = {nodes.name_of(node) for node in subject.root.children if node.tag in ("link", "joint")}
+    return any(
+        nodes.child(node, "mu1") is not None and nodes.text_of(node, "reference") not in known
+        for node in nodes.children(subject.root, "gazebo")
+        if nodes.text_of(node, "reference")
+    )
 
 
 def _collision_of(robot: Robot, link: Link) -> str:

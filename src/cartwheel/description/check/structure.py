@@ -35,6 +35,21 @@ def name_twice(subject: Subject) -> Iterator[Remark]:
             )
 
 
+@rule("name-missing", "error", "a link, joint or sensor without a name")
+def name_missing(subject: Subject) -> Iterator[Remark]:
+    parts = [*_parts(subject, "link"), *_parts(subject, "joint")]
+    sensors = [node for node in nodes.walk(subject.root) if node.tag == "sensor"]
+    for node in (*parts, *(each for each in sensors if each.children)):
+        if not nodes.name_of(node):
+            new = f"{nodes.text_of(node, 'type') or 'new'}_{node.tag}"
+            yield Remark(
+                message=f"this <{node.tag}> has no name: Gazebo and ROS refuse it",
+                origin=node.origin,
+                instead=f'name="{new}"',
+                place="attribute",
+            )
+
+
 @rule("joint-link-unknown", "error", "a joint's parent or child is no link")
 def joint_link_unknown(subject: Subject) -> Iterator[Remark]:
     known = link_names(subject)
@@ -266,6 +281,7 @@ def _parts(subject: Subject, tag: str) -> list[Node]:
 
 RULES = (
     name_twice,
+    name_missing,
     joint_link_unknown,
     joint_type_unknown,
     two_parents,

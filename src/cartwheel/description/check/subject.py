@@ -79,11 +79,16 @@ class Robot:
     Args:
         description: As it was read.
         root: The expanded ``<robot>``; None for a model of SDF.
-        mended: Links whose inertia is not the author's any more.
+        mended: Links of which something was cut out or replaced.
+        displaced: Links whose joint was: nobody knows where they are.
     """
 
     def __init__(
-        self, description: RobotDescription, root: Node | None, mended: Iterable[str] = ()
+        self,
+        description: RobotDescription,
+        root: Node | None,
+        mended: Iterable[str] = (),
+        displaced: Iterable[str] = (),
     ) -> None:
         self.description = description
         self.root = root
@@ -93,6 +98,7 @@ class Robot:
         self.inbound: dict[str, Joint] = {}
         for joint in description.joints:
             self.inbound.setdefault(joint.child, joint)
+        self._displaced = frozenset(displaced)
 
     @cached_property
     def collisions(self) -> dict[str, list[Solid]]:
@@ -117,6 +123,26 @@ class Robot:
                 if read < written:
                     found.add(link.name)
         return frozenset(found)
+
+    @cached_property
+    def placed(self) -> frozenset[str]:
+        """Links whose place is the author's."""
+        lost = set(self._displaced)
+        for link in self.links:
+            path = [link]
+            while path[-1] in self.inbound and path[-1] not in lost:
+                parent = self.inbound[path[-1]].parent
+                if parent in path:
+                    break
+                path.append(parent)
+            if path[-1] in lost:
+                lost.update(path)
+        return frozenset(self.links) - lost
+
+    @property
+    def is_placed(self) -> bool:
+        """Whether all of its links are where the author has them."""
+        return len(self.placed) == len(self.links)
 
     def whole(self, link: str) -> bool:
         """Whether all meshes of a link, and of what is fixed to it, are there."""

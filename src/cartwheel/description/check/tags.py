@@ -138,8 +138,9 @@ def _meant_by(subject: Subject, reference: str, why: str) -> str:
 
 def told(subject: Subject, name: str) -> Iterator[Remark]:
     """What the readers told that belongs to a rule."""
+    cut = {f'link "{link}" has no ' for robot in subject.robots for link in robot.mended}
     for diagnostic in _diagnostics(subject):
-        if _kind(diagnostic.message) == name:
+        if _kind(diagnostic.message) == name and not diagnostic.message.startswith(tuple(cut)):
             yield _remark(subject, diagnostic)
 
 

@@ -9,6 +9,7 @@ from cartwheel.description.check.drive import wheel_place, wheel_radius
 from cartwheel.description.check.finding import Remark
 from cartwheel.description.check.rule import rule
 from cartwheel.description.check.subject import Robot, Subject
+from cartwheel.description.check.units import FARTHEST
 from cartwheel.description.check.wheel_stated import Stated, stated
 
 TOLERANCE = 0.02
@@ -92,7 +93,7 @@ def _remark(one: Stated, real: float, why: str) -> Remark:
 
 
 def _differs(value: float, real: float, least: float) -> bool:
-    return real > 0 and abs(value - real) > max(TOLERANCE * real, least)
+    return 0 < real < FARTHEST and abs(value - real) > max(TOLERANCE * real, least)
 
 
 def _mean_between(one: Stated, axis: int) -> float:
@@ -105,7 +106,7 @@ def _mean(robot: Robot, names: tuple[str, ...], axis: int) -> float | None:
     places = [
         wheel_place(robot, joint).position[axis]
         for name in names
-        if (joint := robot.joints[name]).child in robot.links
+        if (joint := robot.joints[name]).child in robot.placed
     ]
     return sum(places) / len(places) if places else None
 

@@ -75,11 +75,13 @@ def read_camera(node: Node) -> CameraIntrinsics:
     far = clip.number_at("far", default.far) if clip is not None else default.far
     fov = node.number_at("horizontal_fov", default.horizontal_fov)
     if width < 1 or height < 1 or width * height > 100_000_000:
-        raise node.fail(f"an image of {width} x {height} pixels is impossible")
+        wrong = image.child("width" if width < 1 else "height") if image is not None else None
+        raise (wrong or node).fail(f"an image of {width} x {height} pixels is impossible")
     if not 0 < near < far:
-        raise node.fail(f"clip near {near} must be above 0 and below far {far}")
+        wrong = clip.child("near") if clip is not None else None
+        raise (wrong or node).fail(f"clip near {near} must be above 0 and below far {far}")
     if not 0 < fov < 2 * math.pi:
-        raise node.fail(
+        raise (node.child("horizontal_fov") or node).fail(
             f"horizontal_fov {fov} is no angle of view in radians",
             f"In degrees it would be {math.radians(fov):.4g}." if fov > 0 else None,
         )
