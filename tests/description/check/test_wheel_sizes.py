@@ -160,6 +160,16 @@ def test_a_size_that_is_not_written_is_the_plugins_default(told, take, name, tag
     assert told(take(text, finding)) == []
 
 
+def test_only_the_differential_drive_has_another_name_for_its_torque(bench):
+    torque = {"torque": 1}
+    for name in ("libgazebo_ros_kobuki.so", "libgazebo_ros_skid_steer_drive.so"):
+        text = car(plugin(name, **DRIVES[name], **torque))
+        assert not bench.find(text, "plugin-obsolete"), name
+        assert bench.find(text.replace("<torque>1<", "<torque>0<"), "effort-zero"), name
+    text = car(plugin("libgazebo_ros_diff_drive.so", **PAIRS, **torque))
+    assert bench.find(text, "plugin-obsolete")
+
+
 def test_a_pair_of_wheels_has_its_own_separation(told):
     pairs = (
         '<plugin name="p" filename="libgazebo_ros_diff_drive.so"><num_wheel_pairs>2'

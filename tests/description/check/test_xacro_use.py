@@ -79,3 +79,41 @@ def test_findings_of_a_macro_are_told_once_with_the_calls(bench):
     assert found[0].origin.line == 4
     assert found[0].origin.stack[0].endswith("xacro:part")
     assert [each[:8] for each in found[0].also] == ['link "b"', 'link "c"']
+
+
+def test_a_property_that_is_replaced_before_its_use_is_a_note(bench):
+    def found(between):
+        twice = (
+            f'<xacro:property name="w" value="1"/>\n{between}<xacro:property name="w" value="2"/>'
+        )
+        link = '<link name="l${w}"/>'
+        text = f"{HEAD}{twice}{link}</robot>"
+        return [f for f in bench.report(text, "x.xacro").findings if f.rule == "property-twice"]
+
+    (finding,) = found("")
+    assert (finding.severity, finding.origin.line) == ("info", 2)
+    assert finding.hint.startswith("The other is at ")
+    assert found('<xacro:property name="v" value="3"/>')
+    assert not found('<xacro:property name="v" value="${w}"/>')
+    assert not found('<link name="k${w}"/>')
+
+
+def test_a_parameter_that_nothing_uses_is_a_note(bench):
+    def found(params, call, inside='<link name="${side}"/>'):
+        macro = f'<xacro:macro name="wheel" params="{params}">\n{inside}</xacro:macro>\n'
+        text = f"{HEAD}{macro}<xacro:wheel {call}/></robot>"
+        return rules(bench, text).get("parameter-unused")
+
+    finding = found("side turn:=1", 'side="left"')
+    assert (finding.severity, finding.origin.line) == ("info", 2)
+    assert '"turn"' in finding.message
+    assert found("side", 'side="left"') is None
+    # What the macro calls may use it.
+    inner = '<xacro:macro name="n" params=""><link name="${side}"/></xacro:macro>'
+    assert found("side", 'side="left"', f"{inner}<xacro:n/>") is None
+
+
+def test_the_namespace_that_is_missing_is_written(bench, take):
+    text = '<robot name="r">\n<xacro:property name="w" value="1"/>\n<link name="l${w}"/></robot>'
+    (finding,) = bench.find(text, "xacro-namespace", "x.xacro")
+    assert not bench.find(take(text, finding), "xacro-namespace", "x.xacro")

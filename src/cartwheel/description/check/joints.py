@@ -119,7 +119,9 @@ def _torque_zero(subject: Subject) -> Iterator[Remark]:
     for robot in subject.robots:
         for drive in robot.drives:
             for element in drive.tag.element.children:
-                if element.tag in _TORQUES and nodes.number(element.text) == 0.0:
+                differential = "gazebo_ros_diff_drive" in drive.tag.filename
+                read = _TORQUES if differential else ("torque",)
+                if element.tag in read and nodes.number(element.text) == 0.0:
                     yield Remark(
                         message=f"<{element.tag}> is 0 N m: the wheels do not move",
                         origin=element.origin,

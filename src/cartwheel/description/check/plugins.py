@@ -76,6 +76,8 @@ def plugin_obsolete(subject: Subject) -> Iterator[Remark]:
     for robot in subject.robots:
         for drive in robot.drives:
             element = drive.tag.element
+            if "gazebo_ros_diff_drive" not in drive.tag.filename:
+                continue
             torque, legacy = element.find("torque"), element.find("legacyMode")
             known = any(element.find(name) for name in ("wheelTorque", "max_wheel_torque"))
             if torque is not None and not known:

@@ -66,6 +66,7 @@ _MISPLACED = re.compile(
 )
 _MEANT = re.compile(r"\.? Did you mean (?:<([^>]+)>|\"([^\"]+)\")\?")
 _REST = "reader"
+_NAMESPACE = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
 
 
 @rule("gazebo-ignores", "warning", "a tag that is read here, and that Gazebo ignores")
@@ -160,6 +161,10 @@ def _diagnostics(subject: Subject) -> Iterable[Diagnostic]:
 def _remark(subject: Subject, diagnostic: Diagnostic) -> Remark:
     match = _MEANT.search(diagnostic.message)
     message = diagnostic.message
+    if _NAMESPACE in message:
+        return Remark(
+            message=message, origin=diagnostic.origin, instead=_NAMESPACE, place="attribute"
+        )
     node = nodes.at(subject.root, diagnostic.origin) if diagnostic.origin is not None else None
     if match is not None and node is not None and (match[2] or "") in node.attributes:
         message = message[: match.start()]  # it is written already: not a misspelt one

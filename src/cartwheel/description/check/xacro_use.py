@@ -17,6 +17,7 @@ from cartwheel.errors import DescriptionError
 
 _WORD = re.compile(r"[A-Za-z_]\w*")
 _EXPRESSION = re.compile(r"\$\{([^}]*)\}|\$\(([^)]*)\)")
+_PARAMETER = re.compile(r"\*{0,2}([A-Za-z_]\w*)(?=:?=|$)")
 _SUFFIXES = (".xacro", ".urdf")
 MAX_FILES = 200
 
@@ -50,6 +51,54 @@ def property_unused(subject: Subject) -> Iterator[Remark]:
                     mark=f'name="{name}"',
                     hint="Use it where its value is written again, or remove it.",
                 )
+
+
+@rule("property-twice", "info", "a xacro property that the next ones replace before its use")
+def property_twice(subject: Subject) -> Iterator[Remark]:
+    for tree in _trees(subject):
+        for holder in nodes.walk(tree):
+            waiting: dict[str, Node] = {}
+            for node in holder.children:
+                if node.tag != "xacro:property":
+                    waiting.clear()  # it may use any of them
+                    continue
+                name, value = nodes.name_of(node), node.attributes.get("value")
+                for used in _WORD.findall(value or node.attributes.get("default", "")):
+                    waiting.pop(used, None)
+                if name in waiting and value is not None:
+                    first = waiting[name]
+                    yield Remark(
+                        message=f'the property "{name}" is set again before anything uses it: '
+                        f'"{first.attributes["value"]}" counts nowhere',
+                        origin=first.origin,
+                        mark=f'name="{name}"',
+                        hint=f"The other is at {node.origin}. Remove one of them.",
+                    )
+                if value is not None and not node.children:
+                    waiting[name] = node
+
+
+@rule("parameter-unused", "info", "a macro's parameter that changes nothing")
+def parameter_unused(subject: Subject) -> Iterator[Remark]:
+    used, called = _words(subject), _calls(subject)
+    for tree in _own_trees(subject):
+        for node in nodes.walk(tree):
+            if (
+                node.tag != "xacro:macro"
+                or nodes.name_of(node).removeprefix("xacro:") not in called
+            ):
+                continue
+            for word in node.attributes.get("params", "").split():
+                name = _PARAMETER.match(word)
+                # What a macro calls sees its parameters too: any use anywhere counts.
+                if name is not None and name[1] not in used:
+                    yield Remark(
+                        message=f'the parameter "{name[1]}" of the macro "{nodes.name_of(node)}" '
+                        "is not used: what calls give it changes nothing",
+                        origin=node.origin,
+                        mark="params",
+                        hint=f"Write ${{{name[1]}}} where it shall count, or remove it.",
+                    )
 
 
 @rule("macro-unused", "info", "a xacro macro that is never called")
@@ -175,4 +224,4 @@ def _is_call(node: Node) -> bool:
     return node.tag.startswith("xacro:") and node.tag not in _OWN
 
 
-RULES = (argument_unused, property_unused, macro_unused)
+RULES = (argument_unused, property_unused, property_twice, parameter_unused, macro_unused)
