@@ -139,7 +139,8 @@ def _subject(opened: Opened, known: PluginKnowledge | None, given: Sequence[Path
     mended: set[str] = set()
     if tree.tag == "robot":
         mended |= mend(tree)
-    read, failures = _read(opened, tree, mended)
+    cut: set[str] = set()
+    read, failures = _read(opened, tree, mended, cut)
     described: tuple[RobotDescription, ...] = ()
     if isinstance(read, WorldDescription):
         described = read.models
@@ -147,7 +148,9 @@ def _subject(opened: Opened, known: PluginKnowledge | None, given: Sequence[Path
         described = (read,)
     root = opened.root if opened.root.tag == "robot" else None
     lost = displaced(opened.root, tree) if root is not None else set()
-    robots = tuple(Robot(each, root, mended, lost) for each in described)
+    robots = tuple(
+        Robot(each, root, mended=mended | cut, cut=cut, displaced=lost) for each in described
+    )
     search = known.controller_files if known is not None else None
     return Subject(
         root=opened.root,
@@ -162,11 +165,18 @@ def _subject(opened: Opened, known: PluginKnowledge | None, given: Sequence[Path
 
 
 def _read(
-    opened: Opened, tree: Node, mended: set[str]
+    opened: Opened, tree: Node, mended: set[str], cut: set[str]
 ) -> tuple[RobotDescription | WorldDescription | None, list[Remark]]:
-    """Reads a tree, without what keeps it from being read."""
+    """Reads a tree, without what keeps it from being read.
+
+    Args:
+        opened: The description.
+        tree: Of it, from which parts are cut.
+        mended: Links whose inertia is replaced, added to.
+        cut: Links from which something is cut, added to.
+    """
     failures: list[Remark] = []
-    cut: set[int] = set()
+    holed: set[int] = set()
     while True:
         attempt = replace(opened, root=nodes.copy(tree))
         try:
@@ -174,16 +184,16 @@ def _read(
         except DescriptionError as error:
             node = nodes.at(tree, error.origin) if error.origin is not None else None
             # What lacks a part that was cut out before has nothing new to say.
-            if node is None or id(node) not in cut:
+            if node is None or id(node) not in holed:
                 failures.append(
                     Remark(message=error.message, origin=error.origin, hint=error.hint or "")
                 )
             parent = nodes.parent_of(tree, node) if node is not None else None
-            if node is None or parent is None or len(cut) >= MAX_FAILURES:
+            if node is None or parent is None or len(holed) >= MAX_FAILURES:
                 return None, failures
-            mended |= _links_around(tree, node)
+            cut |= _links_around(tree, node)
             parent.drop(node)
-            cut.add(id(parent))
+            holed.add(id(parent))
             if tree.tag == "robot":
                 mended |= mend(tree)
 

@@ -135,7 +135,9 @@ def _not_across(robot: Robot, joint: Joint, pose: Pose, across: Floats) -> Remar
     left = across if across[1] >= 0 else -across
     own = matrix_from_quat(pose.orientation).T @ left
     xyz = " ".join(nodes.short(round(float(value), 3) + 0.0) for value in own)
-    stated = "" if node is not None else ", which counts where no <axis> is written,"
+    stated = (
+        "" if node is not None or written is None else ", which counts where no <axis> is written,"
+    )
     text = f'xyz="{xyz}"'
     return Remark(
         message=f'the wheel of joint "{joint.name}" cannot roll ahead: its axis '

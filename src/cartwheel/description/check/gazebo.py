@@ -20,7 +20,7 @@ _JOINT_TAGS = ("jointName", "joint_name")
 def contact_collision_unknown(subject: Subject) -> Iterator[Remark]:
     for robot, sensor, asked in _watched(subject):
         name = asked.text.strip()
-        if robot.incomplete or robot.mended or not robot.is_placed:
+        if robot.incomplete or sensor.link in robot.cut or not robot.is_placed:
             continue  # it may be that of a mesh that is missing, or of what cannot be read
         if name.rpartition("::")[2] in _spellings(robot):
             continue

@@ -75,7 +75,7 @@ def wheel_no_collision(subject: Subject) -> Iterator[Remark]:
             link = robot.links[joint.child]
             if any(robot.links[name].collisions for name in wheel_links(robot, joint)):
                 continue
-            if not robot.whole(link.name) or link.name in robot.mended:
+            if not robot.whole(link.name) or link.name in robot.cut:
                 continue
             radius = wheel_radius(robot, joint) or 0.1
             yield Remark(

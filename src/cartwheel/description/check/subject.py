@@ -79,7 +79,8 @@ class Robot:
     Args:
         description: As it was read.
         root: The expanded ``<robot>``; None for a model of SDF.
-        mended: Links of which something was cut out or replaced.
+        mended: Links whose inertia is not the author's any more.
+        cut: Links of which something could not be read.
         displaced: Links whose joint was: nobody knows where they are.
     """
 
@@ -87,12 +88,15 @@ class Robot:
         self,
         description: RobotDescription,
         root: Node | None,
+        *,
         mended: Iterable[str] = (),
+        cut: Iterable[str] = (),
         displaced: Iterable[str] = (),
     ) -> None:
         self.description = description
         self.root = root
         self.mended = frozenset(mended)
+        self.cut = frozenset(cut)
         self.links = {link.name: link for link in description.links}
         self.joints = {joint.name: joint for joint in description.joints}
         self.inbound: dict[str, Joint] = {}

@@ -139,9 +139,9 @@ def _meant_by(subject: Subject, reference: str, why: str) -> str:
 
 def told(subject: Subject, name: str) -> Iterator[Remark]:
     """What the readers told that belongs to a rule."""
-    cut = {f'link "{link}" has no ' for robot in subject.robots for link in robot.mended}
+    holed = {f'link "{link}" has no ' for robot in subject.robots for link in robot.cut}
     for diagnostic in _diagnostics(subject):
-        if _kind(diagnostic.message) == name and not diagnostic.message.startswith(tuple(cut)):
+        if _kind(diagnostic.message) == name and not diagnostic.message.startswith(tuple(holed)):
             yield _remark(subject, diagnostic)
 
 
