@@ -42,9 +42,7 @@ def add_joint(spec: mujoco.MjSpec, entry: ModelEntry, body: Any, joint: Joint) -
                 made.limited = mujoco.mjtLimited.mjLIMITED_FALSE
             made.type = _KIND.mjJNT_SLIDE if joint.type == "prismatic" else _KIND.mjJNT_HINGE
         case "ball":
-            made = body.add_joint(name=name, type=_KIND.mjJNT_BALL, pos=pos)
-            made.damping = [joint.axis.damping, 0, 0]
-            made.frictionloss = joint.axis.friction
+            body.add_joint(name=name, type=_KIND.mjJNT_BALL, pos=pos)
         case "universal":
             _add_axis(body, name, joint, joint.axis)
             _add_axis(body, f"{name}::axis2", joint, joint.axis2 or Axis(xyz=(1.0, 0.0, 0.0)))

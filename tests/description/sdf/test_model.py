@@ -426,6 +426,14 @@ def test_joint_types(written, kind):
         assert found.axis2.xyz == (0, 1, 0)
 
 
+def test_a_ball_turns_freely_whatever_its_axis_says():
+    axis = "<axis><xyz>0 0 1</xyz><dynamics><damping>10</damping></dynamics></axis>"
+    found = robot(BAD_JOINT.format("ball", ENDS + axis))
+    assert found.joint("j").axis == m.Axis()
+    (told,) = found.diagnostics
+    assert told.message == 'joint "j": a ball joint needs no <axis>, which has no effect'
+
+
 def test_a_joint_without_an_axis_turns_about_z():
     found = robot(BAD_JOINT.format("revolute", ENDS))
     assert found.joint("j").axis.xyz == (0, 0, 1)

@@ -117,7 +117,10 @@ def read_joint(node: Node, ctx: Context, frames: Frames, frame: str) -> Joint | 
     if axis is not None:
         first = _axis(axis, name, ctx, frames, in_model)
         if kind in _WITHOUT_AXIS:
-            ctx.tell("info", f'joint "{name}": a {written} joint needs no <axis>', axis.origin)
+            # Nor does Gazebo heed it: a ball with damping there turns freely.
+            first = Axis()
+            told = f'joint "{name}": a {written} joint needs no <axis>, which has no effect'
+            ctx.tell("info", told, axis.origin)
     second = None
     if kind == "universal":
         if axis2 is None:
