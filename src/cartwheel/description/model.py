@@ -320,6 +320,10 @@ class Light:
     """Constant, linear, quadratic."""
     spot_angle: float = 1.0
     """Outer angle, rad."""
+    spot_inner: float = 0.0
+    """Angle within which a spot is as bright as in its middle, rad."""
+    spot_falloff: float = 0.0
+    """How steeply it fades from there to its edge: the exponent of the way left; 0 is not."""
     cast_shadows: bool = True
     origin: Origin
 

@@ -35,4 +35,5 @@ def adjust(engine: Engine, world: WorldDescription) -> bool:
 
 def _kept(light: Light) -> tuple[object, ...]:
     """What of a light is compiled in."""
-    return light.name, light.type, light.range, light.spot_angle
+    spot = (light.spot_angle, light.spot_inner, light.spot_falloff)
+    return light.name, light.type, light.range, *spot

@@ -23,6 +23,10 @@ DEFAULT_STEP = 0.005
 
 _MOST_AMBIENT = 0.4
 """SDF's default. New Gazebo's worlds state 1, which its renderer dims; here no shade were left."""
+_CELLS = 100
+"""On each side of a plane's middle; the engine draws no more."""
+_LEAST_CELL = 0.2
+"""m."""
 _SHORTEST = 0.01
 """m, at which a turning body's speed is judged where it has no shape."""
 
@@ -91,6 +95,7 @@ def build(world: WorldDescription, entries: Iterable[ModelEntry], *, xml: bool =
         for option in (spec.option, model.opt):
             option.enableflags &= ~mujoco.mjtEnableBit.mjENBL_SLEEP.value
     _judge_without_rotors(model)
+    _divide_floors(model)
     for index, coefficient in chains.apply(model).items():
         # For the text alone: the compiled model has it.
         made = spec.joint(model.joint(index).name)
@@ -112,6 +117,18 @@ def _judge_without_rotors(model: mujoco.MjModel) -> None:
     masses = model.dof_M0[model.dof_M0 < ROTOR_INERTIA / 2]
     if len(masses):
         model.stat.meaninertia = max(float(masses.mean()), 1e-9)
+
+
+def _divide_floors(model: mujoco.MjModel) -> None:
+    """Draws planes in many cells where lamps shine: light is computed at their corners.
+
+    The sun shines alike everywhere, so that one cell does for it.
+    """
+    if (model.light_type == mujoco.mjtLightType.mjLIGHT_DIRECTIONAL).all():
+        return
+    planes = model.geom_type == mujoco.mjtGeom.mjGEOM_PLANE
+    half = model.geom_size[planes, :2].max(axis=1)
+    model.geom_size[planes, 2] = np.maximum(half / _CELLS, _LEAST_CELL)
 
 
 def _felt(entries: Iterable[ModelEntry]) -> Iterator[str]:

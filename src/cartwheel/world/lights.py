@@ -14,6 +14,9 @@ _KIND = mujoco.mjtLightType
 _ALL_AROUND = 180.0
 """Degrees; a point light is a spot without an edge, since the renderer passes over the others."""
 
+_STEEPEST = 128.0
+"""OpenGL's largest exponent of a spot."""
+
 
 def shine(light: Light) -> dict[str, tuple[float, float, float]]:
     """What of a light may change in a compiled model: fields of MuJoCo's ``light_…``."""
@@ -42,5 +45,18 @@ def add_light(body: Any, name: str, light: Light) -> None:
         specular=[0, 0, 0],
         **{field: list(value) for field, value in shine(light).items()},
         cutoff=math.degrees(light.spot_angle) / 2 if light.type == "spot" else _ALL_AROUND,
+        exponent=_exponent(light),
         castshadow=False,
     )
+
+
+def _exponent(light: Light) -> float:
+    """Of the cosine of the angle off a spot's axis, by which OpenGL's spots fade.
+
+    One that is as bright as the description has it half-way between both of its edges.
+    """
+    inner, outer = (min(angle, math.pi) / 4 for angle in (light.spot_inner, light.spot_angle))
+    middle = math.cos(inner + outer)
+    if light.spot_falloff <= 0 or inner >= outer or not 0 < middle < 1:
+        return 0.0
+    return min(light.spot_falloff * math.log(0.5) / math.log(middle), _STEEPEST)

@@ -98,14 +98,15 @@ def test_lights():
         <specular>0.1 0.1 0.1 1</specular><direction>0 0 -1</direction>
         <attenuation><range>20</range><constant>0.5</constant><linear>0.01</linear>
           <quadratic>0.001</quadratic></attenuation>
-        <spot><inner_angle>0.1</inner_angle><outer_angle>0.5</outer_angle></spot>
+        <spot><inner_angle>0.1</inner_angle><outer_angle>0.5</outer_angle><falloff>2</falloff></spot>
         <cast_shadows>1</cast_shadows></light>"""
     )
     (lamp,) = found.lights
     assert lamp == m.Light(
         name="lamp", type="spot", pose=lamp.pose, diffuse=(1, 1, 0.5, 1),
         specular=(0.1, 0.1, 0.1, 1), direction=(0, 0, -1), range=20,
-        attenuation=(0.5, 0.01, 0.001), spot_angle=0.5, cast_shadows=True, origin=lamp.origin,
+        attenuation=(0.5, 0.01, 0.001), spot_angle=0.5, spot_inner=0.1, spot_falloff=2,
+        cast_shadows=True, origin=lamp.origin,
     )  # fmt: skip
     assert lamp.pose.position == (0, 0, 3)
     with pytest.raises(DescriptionError, match='light type "sun"'):

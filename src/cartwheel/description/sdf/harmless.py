@@ -73,8 +73,6 @@ HARMLESS: dict[tuple[str, str], str] = {
     ("scene", "origin_visual"): _WINDOW,
     ("scene", "shadow_caster_material_name"): "no shadows are drawn",
     ("scene", "sky"): "the background has one colour",
-    ("spot", "falloff"): "a spot's cone has one edge, the outer angle",
-    ("spot", "inner_angle"): "a spot's cone has one edge, the outer angle",
     ("state", "iterations"): _TIME,
     ("state", "real_time"): _TIME,
     ("state", "sim_time"): _TIME,

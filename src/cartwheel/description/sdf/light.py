@@ -50,6 +50,8 @@ def read_light(node: Node, pose: Pose) -> Light:
             node.number_at("attenuation/quadratic", default.attenuation[2]),
         ),
         spot_angle=node.number_at("spot/outer_angle", default.spot_angle),
+        spot_inner=node.number_at("spot/inner_angle", default.spot_inner),
+        spot_falloff=node.number_at("spot/falloff", default.spot_falloff),
         cast_shadows=node.boolean_at("cast_shadows", kind == "directional"),
         origin=node.origin,
     )
