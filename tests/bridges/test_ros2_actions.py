@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import itertools
 from collections.abc import Iterator
 from pathlib import Path
@@ -15,6 +16,7 @@ from tests.plugins.control.arms import beam, robot, ros2_joint, ros2_parameters,
 from tests.plugins.control.arms import ros2_system as system
 
 from cartwheel.description import load_text
+from cartwheel.messages import decode_cdr
 from cartwheel.session import Session
 
 pytestmark = pytest.mark.skipif(bool(REASON), reason=REASON)
@@ -105,6 +107,78 @@ def result(peer: Peer, identity: Any, name: str = ARM, kind: str = TRAJECTORY) -
 def cancel(peer: Peer, identity: Any = None, name: str = ARM) -> Any:
     info = {"goal_id": identity} if identity else {}
     return peer.call(f"{name}/_action/cancel_goal", CANCEL, {"goal_info": info})
+
+
+def nodes(peer: Peer) -> dict[str, set[bytes]]:
+    """The endpoints of each node as ``ros_discovery_info`` last told them."""
+    name = "rmw_dds_common/msg/ParticipantEntitiesInfo"
+    data = [
+        bytes.fromhex(line[3])
+        for line in peer.lines[:]
+        if line[0] == "DATA" and line[1] == "ros_discovery_info"
+    ]
+    return {
+        f"{node.node_namespace.rstrip('/')}/{node.node_name}": {
+            gid.data.tobytes() for gid in (*node.reader_gid_seq, *node.writer_gid_seq)
+        }
+        for node in (decode_cdr(data[-1], name).node_entities_info_seq if data else ())
+    }
+
+
+def test_controllers_and_their_manager_are_nodes(bridged: Ros2Bridged) -> None:
+    package = "rcl_interfaces/srv"
+    with contextlib.closing(Peer(DOMAIN + 5)) as peer:
+        peer.tell(
+            "sub", "ros_discovery_info", "rmw_dds_common::msg::dds_::ParticipantEntitiesInfo_", 1, 1
+        )
+        own = {"/gazebo", "/controller_manager", "/arm_controller", "/gripper"}
+        wait_for(lambda: nodes(peer).keys() == own, "the nodes")
+
+        def topics(node: str) -> set[str]:
+            known = {
+                one.endpoint.guid: one.endpoint.topic
+                for one in bridged.bridge.middleware._endpoints  # type: ignore[attr-defined]
+            }
+            return {known[guid] for guid in nodes(peer)[node] if guid in known}
+
+        def has(node: str, *names: str) -> None:
+            """Waits until a node has some endpoints."""
+            look = bridged.bridge._loop.call
+            wait_for(lambda: look(lambda: topics(node)).result() >= set(names), f"those of {node}")
+
+        has(
+            "/arm_controller",
+            "rt/arm_controller/joint_trajectory",
+            "rt/arm_controller/controller_state",
+            f"rt{ARM}/_action/feedback",
+            f"rq{ARM}/_action/send_goalRequest",
+            "rr/arm_controller/get_parametersReply",
+        )
+        has("/controller_manager", "rq/controller_manager/list_controllersRequest")
+        has("/gazebo", "rt/clock", "rr/gazebo/get_parametersReply")
+        others = bridged.bridge._loop.call(lambda: topics("/gazebo")).result()
+        assert not [name for name in others if "arm_controller" in name]
+
+        def call(node: str, kind: str, **fields: Any) -> Any:
+            name = "".join(f"_{letter.lower()}" if letter.isupper() else letter for letter in kind)
+            return peer.call(f"{node}/{name.strip('_')}", f"{package}/{kind}", fields)
+
+        names = call("/arm_controller", "ListParameters").result.names
+        assert names == ["command_interfaces", "joints", "state_interfaces", "type", "use_sim_time"]
+        joints, kind, nothing = call(
+            "/arm_controller", "GetParameters", names=["joints", "type", "none"]
+        ).values
+        assert (joints.type, joints.string_array_value) == (9, list(JOINTS))
+        assert kind.string_value == "joint_trajectory_controller/JointTrajectoryController"
+        assert nothing.type == 0
+        (refused,) = call(
+            "/arm_controller",
+            "SetParameters",
+            parameters=[{"name": "type", "value": {"type": 4, "string_value": "x"}}],
+        ).results
+        assert (refused.successful, "read-only" in refused.reason) == (False, True)
+        managed = call("/controller_manager", "GetParameters", names=["gripper.type"]).values
+        assert managed[0].string_value == "position_controllers/GripperActionController"
 
 
 def position(bridged: Ros2Bridged, joint: str) -> float:

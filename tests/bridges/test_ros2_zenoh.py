@@ -89,6 +89,37 @@ def test_tokens_tell_of_the_node_and_its_endpoints(session: Any) -> None:
     subscriber.undeclare()
 
 
+def test_a_node_of_its_own_is_told_of_while_it_has_something(
+    bridged: Ros2Bridged, session: Any
+) -> None:
+    tokens: set[str] = set()
+
+    def seen(sample: Any) -> None:
+        there = sample.kind == zenoh.SampleKind.PUT
+        (tokens.add if there else tokens.discard)(str(sample.key_expr).split("/", 3)[3])
+
+    subscriber = session.liveliness().declare_subscriber(
+        "@ros2_lv/7/*/*/*/*/%/%left/arm/**", seen, history=True
+    )
+    bridged.graph.nodes["test/arm"] = "/left/arm"
+    publisher = bridged.graph.advertise("/left/said", "std_msgs/msg/String", node="test/arm")
+    heard = bridged.graph.subscribe(
+        "/left/heard", lambda _: None, type_name="std_msgs/msg/String", node="test/arm"
+    )
+    wait_for(lambda: len(tokens) == 3, "a node, what it publishes and what it reads")
+    numbers = {token.split("/")[0] for token in tokens}
+    (number,) = numbers
+    assert number != "0"
+    assert f"{number}/{number}/NN/%/%left/arm" in tokens
+    ends = {token.split("/", 2)[2].partition("/std_msgs")[0] for token in tokens}
+    assert {"MP/%/%left/arm/%left%said", "MS/%/%left/arm/%left%heard"} < ends
+    publisher.close()
+    wait_for(lambda: len(tokens) == 2, "that it publishes no longer")
+    heard.close()
+    wait_for(lambda: not tokens, "the end of the node")
+    subscriber.undeclare()
+
+
 def test_topics_are_read_lazily_and_attachments_count(bridged: Ros2Bridged, session: Any) -> None:
     assert not bridged.wanted("/odom")
     samples: list[tuple[bytes, bytes]] = []

@@ -163,6 +163,8 @@ class Graph:
         self.joint_inputs = JointInputs(self._inputs_changed)
         self.cdr = CdrCache()
         """Packs messages for all wires, each once."""
+        self.nodes: dict[str, str] = {}
+        """ROS 2's names of those nodes of ours that are nodes of their own there."""
         self.static_transforms: Any = None
         """See `StaticTransforms`, which puts itself here."""
         self.changed: int = 0

@@ -228,3 +228,36 @@ def test_hardware_is_listed_and_taken_away(arm):
         target_state={"id": 3},
     )
     assert (nobody.ok, nobody.state.label) == (False, "unknown")
+
+
+def parameters(made, node, kind, **fields):
+    name = {
+        "GetParameters": "get_parameters",
+        "SetParametersAtomically": "set_parameters_atomically",
+        "ListParameters": "list_parameters",
+        "DescribeParameters": "describe_parameters",
+    }[kind]
+    request = from_dict(f"rcl_interfaces/srv/{kind}_Request", fields)
+    return made.world.graph.service(f"{node}/{name}").handler(request)
+
+
+def test_nodes_have_what_files_state_as_parameters(arm):
+    names = ["update_rate", "group.type", "none"]
+    rate, kind, nothing = parameters(arm, MANAGER, "GetParameters", names=names).values
+    assert (rate.integer_value, kind.string_value, nothing.type) == (100, GROUP["type"], 0)
+    assert arm.world.graph.nodes["arm/group"] == "/group"
+    told = parameters(arm, "/group", "ListParameters").result.names
+    assert told == ["joints", "type", "use_sim_time"]
+    (joints,) = parameters(arm, "/group", "GetParameters", names=["joints"]).values
+    assert joints.string_array_value == GROUP["joints"]
+    (described,) = parameters(arm, "/group", "DescribeParameters", names=["joints"]).descriptors
+    assert (described.type, described.read_only) == (STRINGS, True)
+    wanted = [{"name": name, "value": {"type": STRING, "string_value": "x"}} for name in "ab"]
+    refused = parameters(arm, "/group", "SetParametersAtomically", parameters=wanted).result
+    assert (refused.successful, "not been declared" in refused.reason) == (False, True)
+    assert parameters(arm, MANAGER, "SetParametersAtomically", parameters=wanted).result.successful
+    assert parameters(arm, MANAGER, "GetParameters", names=["b"]).values[0].string_value == "x"
+    assert switch(arm, stop=["group"]).ok
+    assert named(arm, "unload_controller", "group")
+    assert "arm/group" not in arm.world.graph.nodes
+    assert not [one for one in arm.world.graph.services() if one.name.startswith("/group/")]

@@ -53,6 +53,7 @@ class OfferedAction:
         loop: The bridge's.
         middleware: Where it is offered.
         tell: Takes a warning.
+        node: See `Middleware.publish`.
     """
 
     def __init__(
@@ -63,8 +64,10 @@ class OfferedAction:
         loop: Loop,
         middleware: Middleware,
         tell: Callable[[str], None],
+        node: str,
     ) -> None:
         self.action = action
+        self.node = node
         self._graph = graph
         self._loop = loop
         self._tell = tell
@@ -80,10 +83,14 @@ class OfferedAction:
             "get_result": f"{kind}_GetResult",
         }
         self._status = middleware.publish(
-            f"{base}/status", ros2_type(_STATUS), LATCHED, lambda _: None
+            f"{base}/status", ros2_type(_STATUS), LATCHED, lambda _: None, node=node
         )
         self._feedback = middleware.publish(
-            f"{base}/feedback", ros2_type(f"{kind}_FeedbackMessage"), DEFAULT, self._found_readers
+            f"{base}/feedback",
+            ros2_type(f"{kind}_FeedbackMessage"),
+            DEFAULT,
+            self._found_readers,
+            node=node,
         )
         self._services = [
             middleware.serve(
@@ -92,6 +99,7 @@ class OfferedAction:
                 self._answer(name, handler),
                 fits=request_check(ros2_service(self._types[name])),
                 depth=CALLS,
+                node=node,
             )
             for name, handler in (
                 ("send_goal", self._send_goal),

@@ -4,26 +4,23 @@ from __future__ import annotations
 
 import functools
 import re
-import threading
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any, Literal
 
 from cartwheel.bridges.loop import Loop
-from cartwheel.bridges.mirror import Arrivals, asked, survey
+from cartwheel.bridges.mirror import BRIDGES, ONLOOKERS, Arrivals, asked, survey
 from cartwheel.bridges.ros2.actions import OfferedAction
 from cartwheel.bridges.ros2.log import Log
 from cartwheel.bridges.ros2.middleware import (
-    CALLS,
     DEFAULT,
     PARAMETER_CALLS,
     Closable,
     Middleware,
     Outlet,
-    Reply,
     profile_of,
-    request_check,
 )
 from cartwheel.bridges.ros2.parameters import NodeParameters, Parameter
+from cartwheel.bridges.ros2.services import Services
 from cartwheel.bridges.ros2.type_descriptions import TYPE as DESCRIPTION
 from cartwheel.bridges.ros2.type_descriptions import get_type_description
 from cartwheel.bridges.tap import Tap
@@ -36,15 +33,13 @@ from cartwheel.errors import (
     one_line,
 )
 from cartwheel.graph import Action, Graph, Service, TopicInfo
-from cartwheel.messages import decode_cdr, encode_cdr, service_classes, zero
+from cartwheel.messages import decode_cdr
 from cartwheel.messages.ros2_types import is_ros1_only, ros2_service, ros2_type
 
 READER = "ros2"
 """Our name in the graph."""
 Rmw = Literal["dds", "zenoh"]
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*\Z")
-_MOST_CALLS = 32
-"""At a time."""
 _TOLD = 500
 """Different warnings; they name nodes, of which any number may come."""
 _CLOSING = 10.0
@@ -103,7 +98,7 @@ class Ros2Bridge:
         self._theirs: frozenset[str] = frozenset()
         self._due = False
         self._closed = False
-        self._calls = 0
+        self._offers = Services(self._loop, self.middleware, self._warn)
 
     @property
     def description(self) -> str:
@@ -166,9 +161,9 @@ class Ros2Bridge:
         self.middleware.start()
         self._log.begin(self.middleware)
         self._parameters.begin(
-            self.middleware, functools.partial(self._offer, depth=PARAMETER_CALLS)
+            self.middleware, functools.partial(self._offers.offer, depth=PARAMETER_CALLS)
         )
-        self._offer(f"{self.name}/get_type_description", DESCRIPTION, get_type_description)
+        self._offers.offer(f"{self.name}/get_type_description", DESCRIPTION, get_type_description)
         self._look_at_parameters()
 
     def _look_at_parameters(self) -> None:
@@ -201,7 +196,7 @@ class Ros2Bridge:
         known = self._publications
         for name, publication in list(known.items()):
             info = sent.get(name)
-            if info is None or (info.type, info.qos) != (publication.type, publication.qos):
+            if info is None or self._as_told(info) != publication.told:
                 known.pop(name).close()
         for name, info in sent.items():
             if name not in known:
@@ -210,7 +205,7 @@ class Ros2Bridge:
     def _mirror_subscriptions(self, read: Mapping[str, TopicInfo]) -> None:
         known = self._subscriptions
         for name, subscription in list(known.items()):
-            if name not in read or read[name].type != subscription.type:
+            if name not in read or self._as_heard(read[name]) != subscription.told:
                 known.pop(name).inlet.close()
         for name, info in read.items():
             if name not in known:
@@ -219,17 +214,20 @@ class Ros2Bridge:
     def _mirror_services(self, offered: Mapping[str, Service]) -> None:
         known = self._services
         for name, service in list(known.items()):
-            if name not in offered or offered[name].type != service.type:
+            one = offered.get(name)
+            if one is None or (one.type, self._node_of(one.node)) != service.told:
                 known.pop(name).closable.close()
         for name, one in offered.items():
             if name not in known:
+                node = self._node_of(one.node)
                 known[name] = _Offered(
-                    one.type,
-                    self._offer(
+                    (one.type, node),
+                    self._offers.offer(
                         name,
                         one.type,
                         functools.partial(asked, self._graph, name),
                         threaded=True,
+                        node=node,
                     ),
                 )
 
@@ -241,71 +239,26 @@ class Ros2Bridge:
         for name, one in offered.items():
             if name not in known:
                 known[name] = OfferedAction(
-                    self._graph, one, loop=self._loop, middleware=self.middleware, tell=self._warn
+                    self._graph,
+                    one,
+                    loop=self._loop,
+                    middleware=self.middleware,
+                    tell=self._warn,
+                    node=self._node_of(one.node),
                 )
 
-    def _offer(
-        self,
-        name: str,
-        type_name: str,
-        handler: Callable[[Any], Any],
-        *,
-        threaded: bool = False,
-        depth: int = CALLS,
-    ) -> Closable:
-        """Offers a service whose handler may take long, if it is `threaded`."""
-        type_ = ros2_service(type_name)
+    def _node_of(self, node: str) -> str:
+        """The node of ROS 2 that one of the graph's is; empty for the main one."""
+        return self._graph.nodes.get(node, "")
 
-        def answer(data: bytes, reply: Reply) -> None:
-            try:
-                request = decode_cdr(data, type_.request)
-            except GraphError as error:
-                self._warn(f"{name} was called with nonsense: {error}")
-                return
-            if threaded:
-                self._in_thread(lambda: respond(request, reply), name)
-            else:
-                respond(request, reply)
+    def _as_told(self, info: TopicInfo) -> tuple[str, str, str]:
+        """What others know of a topic that is published here: type, kind of QoS, node."""
+        return info.type, info.qos, self._node_of(info.publishers[0])
 
-        def respond(request: Any, reply: Reply) -> None:
-            try:
-                response = handler(request)
-                data = encode_cdr(response)
-            except CartwheelError as error:
-                data = encode_cdr(self._failure(name, type_name, str(error)))
-            except Exception as error:  # noqa: BLE001 - who asks waits for an answer
-                text = f"{type(error).__name__}: {error}"
-                data = encode_cdr(self._failure(name, type_name, text))
-            self._loop.post(lambda: reply(data))
-
-        return self.middleware.serve(name, type_, answer, fits=request_check(type_), depth=depth)
-
-    def _in_thread(self, function: Callable[[], None], name: str) -> None:
-        if self._calls >= _MOST_CALLS:
-            self._warn(f"more than {_MOST_CALLS} calls at a time: one of {name} is not answered")
-            return
-        self._calls += 1
-
-        def run() -> None:
-            try:
-                function()
-            finally:
-                self._loop.post(done)
-
-        def done() -> None:
-            self._calls -= 1
-
-        threading.Thread(target=run, name=f"ros2 call {name}", daemon=True).start()
-
-    def _failure(self, name: str, type_name: str, text: str) -> Any:
-        """ROS 2 knows no errors of services: where the response can say it, it does."""
-        response = zero(service_classes(type_name)[1].__msgtype__)
-        for field in ("status_message", "message"):
-            if isinstance(getattr(response, field, None), str):
-                setattr(response, field, text)
-                return response
-        self._warn(f"{name} failed: {text}")
-        return response
+    def _as_heard(self, info: TopicInfo) -> tuple[str, str]:
+        """What others know of a topic that is read here: type, node."""
+        readers = (name for name in info.subscribers if name not in BRIDGES | ONLOOKERS)
+        return info.type, self._node_of(next(readers, ""))
 
     # -- what the user should know
 
@@ -342,8 +295,8 @@ class _Publication:
     """A topic from the graph to ROS."""
 
     def __init__(self, bridge: Ros2Bridge, info: TopicInfo) -> None:
-        self.type = info.type
-        self.qos = info.qos
+        self.told = bridge._as_told(info)
+        """As others know it: what it was when this was made."""
         self._bridge = bridge
         self._name = info.name
         self._faulty = False
@@ -360,7 +313,11 @@ class _Publication:
         )
         self._outlet: Outlet | None = None
         self._outlet = bridge.middleware.publish(
-            info.name, ros2_type(info.type), profile_of(info.name, info.qos), self._found_readers
+            info.name,
+            ros2_type(info.type),
+            profile_of(info.name, info.qos),
+            self._found_readers,
+            node=self.told[2],
         )
 
     def close(self) -> None:
@@ -389,11 +346,12 @@ class _Subscription:
     """A topic from ROS to the graph."""
 
     def __init__(self, bridge: Ros2Bridge, info: TopicInfo) -> None:
-        self.type = info.type
+        self.type, node = self.told = bridge._as_heard(info)
+        """As others know it: what it was when this was made."""
         self._bridge = bridge
         self._name = info.name
         self.inlet = bridge.middleware.subscribe(
-            info.name, ros2_type(info.type), DEFAULT, self._take
+            info.name, ros2_type(info.type), DEFAULT, self._take, node=node
         )
 
     def _take(self, data: bytes) -> None:
@@ -408,8 +366,9 @@ class _Subscription:
 class _Offered:
     """A service of the graph."""
 
-    def __init__(self, type_name: str, closable: Closable) -> None:
-        self.type = type_name
+    def __init__(self, told: tuple[str, str], closable: Closable) -> None:
+        self.told = told
+        """Its type and node, as others know them."""
         self.closable = closable
 
 

@@ -7,7 +7,7 @@ rmw_cyclonedds.
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -53,20 +53,20 @@ class Dds:
     ) -> None:
         self.loop = loop
         self._tell = tell
-        self._node = node
-        self._namespace = namespace
+        self._name = f"{namespace.rstrip('/')}/{node}"
         self._domain = domain_id()
         self._reach = Reach.of()
         self.participant = Participant(
             loop,
             domain=self._domain,
             reach=self._reach,
-            name=f"{namespace.rstrip('/')}/{node}",
+            name=self._name,
             user_data=b"enclave=/;",
             tell=tell,
         )
         self.on_others: Callable[[], None] = lambda: None
-        self._endpoints: list[Writer | Reader] = []
+        self._endpoints: dict[Writer | Reader, str] = {}
+        """With their nodes."""
         self._info: Writer | None = None
         self._due = False
         self._closed = False
@@ -96,7 +96,13 @@ class Dds:
         self.participant.close()
 
     def publish(
-        self, topic: str, type_: Ros2Type, profile: Profile, on_readers: Callable[[bool], None]
+        self,
+        topic: str,
+        type_: Ros2Type,
+        profile: Profile,
+        on_readers: Callable[[bool], None],
+        *,
+        node: str = "",
     ) -> _Outlet:
         """See `Middleware`."""
         writer = self.participant.writer(
@@ -114,11 +120,17 @@ class Dds:
         )
         if writer.proxies:
             on_readers(True)
-        self._add(writer)
+        self._add(node, writer)
         return _Outlet(self, writer)
 
     def subscribe(
-        self, topic: str, type_: Ros2Type, profile: Profile, take: Callable[[bytes], None]
+        self,
+        topic: str,
+        type_: Ros2Type,
+        profile: Profile,
+        take: Callable[[bytes], None],
+        *,
+        node: str = "",
     ) -> _Inlet:
         """See `Middleware`."""
         reader = self.participant.reader(
@@ -128,7 +140,7 @@ class Dds:
             lambda taken: take(taken.payload),
             user_data=_hash(type_.hash),
         )
-        self._add(reader)
+        self._add(node, reader)
         return _Inlet(self, reader)
 
     def serve(
@@ -139,10 +151,11 @@ class Dds:
         *,
         fits: Callable[[bytes], bool],
         depth: int,
+        node: str = "",
     ) -> _Service:
         """See `Middleware`."""
         qos = EndpointQos(depth=max(depth, _CALLS))
-        return _Service(self, name, type_, answer=answer, fits=fits, qos=qos)
+        return _Service(self, name, type_, answer=answer, fits=fits, qos=qos, node=node)
 
     def topics_of_others(self) -> set[str]:
         """See `Middleware`."""
@@ -157,14 +170,13 @@ class Dds:
     def _found_others(self) -> None:
         self.on_others()
 
-    def _add(self, *endpoints: Writer | Reader) -> None:
-        self._endpoints += endpoints
+    def _add(self, node: str, *endpoints: Writer | Reader) -> None:
+        self._endpoints.update(dict.fromkeys(endpoints, node or self._name))
         self._changed()
 
     def _remove(self, *endpoints: Writer | Reader) -> None:
         for endpoint in endpoints:
-            if endpoint in self._endpoints:
-                self._endpoints.remove(endpoint)
+            if self._endpoints.pop(endpoint, None) is not None:
                 self.participant.remove(endpoint)
         self._changed()
 
@@ -174,23 +186,16 @@ class Dds:
             self.loop.after(_SOON, self._tell_entities)
 
     def _tell_entities(self) -> None:
-        """What belongs to the node, for ``ros2 node info``."""
+        """What belongs to which node, for ``ros2 node info``."""
         self._due = False
         if self._info is None or self._closed:
             return
-        node = message_class("rmw_dds_common/msg/NodeEntitiesInfo")(
-            node_namespace=self._namespace,
-            node_name=self._node,
-            reader_gid_seq=[
-                _gid(one.endpoint.guid) for one in self._endpoints if isinstance(one, Reader)
-            ],
-            writer_gid_seq=[
-                _gid(one.endpoint.guid) for one in self._endpoints if isinstance(one, Writer)
-            ],
-        )
+        nodes: dict[str, list[Writer | Reader]] = {self._name: []}
+        for endpoint, node in self._endpoints.items():
+            nodes.setdefault(node, []).append(endpoint)
         info = message_class(_ENTITIES)(
             gid=_gid(self.participant.prefix + discovery.PARTICIPANT),
-            node_entities_info_seq=[node],
+            node_entities_info_seq=[_node_info(*each) for each in nodes.items()],
         )
         self._info.write(encode_cdr(info))
 
@@ -240,6 +245,7 @@ class _Service:
         answer: Answer,
         fits: Callable[[bytes], bool],
         qos: EndpointQos,
+        node: str,
     ) -> None:
         self._dds = dds
         self._loop = dds.loop
@@ -253,7 +259,7 @@ class _Service:
         self._reader = dds.participant.reader(
             f"rq{name}Request", type_.dds_request, qos, self._take, user_data=user_data
         )
-        dds._add(self._writer, self._reader)
+        dds._add(node, self._writer, self._reader)
 
     def close(self) -> None:
         self._dds._remove(self._writer, self._reader)
@@ -299,6 +305,16 @@ def _qos(profile: Profile) -> EndpointQos:
 
 def _hash(value: str) -> bytes:
     return f"typehash={value};".encode()
+
+
+def _node_info(node: str, endpoints: Sequence[Writer | Reader]) -> object:
+    namespace, _, name = node.rpartition("/")
+    return message_class("rmw_dds_common/msg/NodeEntitiesInfo")(
+        node_namespace=namespace or "/",
+        node_name=name,
+        reader_gid_seq=[_gid(one.endpoint.guid) for one in endpoints if isinstance(one, Reader)],
+        writer_gid_seq=[_gid(one.endpoint.guid) for one in endpoints if isinstance(one, Writer)],
+    )
 
 
 def _gid(guid: Guid) -> object:

@@ -86,14 +86,34 @@ class Middleware(Protocol):
         """Leaves."""
 
     def publish(
-        self, topic: str, type_: Ros2Type, profile: Profile, on_readers: Callable[[bool], None]
+        self,
+        topic: str,
+        type_: Ros2Type,
+        profile: Profile,
+        on_readers: Callable[[bool], None],
+        *,
+        node: str = "",
     ) -> Outlet:
-        """Offers a topic; `on_readers` is told when the first reader comes and the last goes."""
+        """Offers a topic.
+
+        Args:
+            topic: Its name.
+            type_: Its type.
+            profile: How it is sent.
+            on_readers: Told when the first reader comes and the last goes.
+            node: The node whose it is, with its namespace; the main one where it is empty.
+        """
 
     def subscribe(
-        self, topic: str, type_: Ros2Type, profile: Profile, take: Callable[[bytes], None]
+        self,
+        topic: str,
+        type_: Ros2Type,
+        profile: Profile,
+        take: Callable[[bytes], None],
+        *,
+        node: str = "",
     ) -> Closable:
-        """Reads a topic."""
+        """Reads a topic; see `publish`."""
 
     def serve(
         self,
@@ -103,6 +123,7 @@ class Middleware(Protocol):
         *,
         fits: Callable[[bytes], bool],
         depth: int,
+        node: str = "",
     ) -> Closable:
         """Offers a service.
 
@@ -112,6 +133,7 @@ class Middleware(Protocol):
             answer: Takes requests.
             fits: Tells whether bytes can be a request.
             depth: Requests, and responses, that are kept.
+            node: See `publish`.
         """
 
     def topics_of_others(self) -> set[str]:

@@ -11,6 +11,13 @@ import numpy as np
 from cartwheel.bridges.ros2.middleware import Closable, Middleware, Outlet, profile_of
 from cartwheel.errors import CartwheelError
 from cartwheel.messages import encode_cdr, message_class, service_classes, stamp, zero
+from cartwheel.messages.parameters import (
+    FIELDS,
+    NOT_SET,
+    listed,
+    parameter_type,
+    parameter_value,
+)
 from cartwheel.messages.ros2_types import ros2_type
 
 Value = bool | int | float | str
@@ -18,10 +25,7 @@ Offer = Callable[[str, str, Callable[[Any], Any]], Closable]
 """Offers a service: name, type, handler."""
 
 EVENTS, EVENT = "/parameter_events", "rcl_interfaces/msg/ParameterEvent"
-_TYPES: dict[type, int] = {bool: 1, int: 2, float: 3, str: 4}
-_FIELDS = {1: "bool_value", 2: "integer_value", 3: "double_value", 4: "string_value"}
 _NAMES = {1: "bool", 2: "integer", 3: "double", 4: "string"}
-_NOT_SET = 0
 _SETTLING = 50
 """Looks that a value may take to hold after it was set: the simulation may be busy."""
 
@@ -87,7 +91,9 @@ class NodeParameters:
                 continue
             self._told[name] = value
             changed.append(
-                message_class("rcl_interfaces/msg/Parameter")(name=name, value=_value(value))
+                message_class("rcl_interfaces/msg/Parameter")(
+                    name=name, value=parameter_value(value)
+                )
             )
         if changed:
             self._tell(changed)
@@ -99,7 +105,7 @@ class NodeParameters:
             descriptor.name = name
             known = self._parameters.get(name)
             if known is not None:
-                descriptor.type = _type_of(known.get())
+                descriptor.type = parameter_type(known.get())
                 descriptor.description = known.description
                 descriptor.read_only = known.set is None
             descriptors.append(descriptor)
@@ -107,31 +113,20 @@ class NodeParameters:
 
     def _types(self, request: Any) -> Any:
         types = [
-            _type_of(self._parameters[name].get()) if name in self._parameters else _NOT_SET
+            parameter_type(self._parameters[name].get()) if name in self._parameters else NOT_SET
             for name in request.names
         ]
         return _response("GetParameterTypes", types=np.array(types, np.uint8))
 
     def _get(self, request: Any) -> Any:
         values = [
-            _value(self._parameters[name].get() if name in self._parameters else None)
+            parameter_value(self._parameters[name].get() if name in self._parameters else None)
             for name in request.names
         ]
         return _response("GetParameters", values=values)
 
     def _list(self, request: Any) -> Any:
-        prefixes, depth = list(request.prefixes), int(request.depth)
-        names, folders = [], set()
-        for name in sorted(self._parameters):
-            rest = _below(name, prefixes)
-            if rest is None or (depth and rest.count(".") >= depth):
-                continue
-            names.append(name)
-            if "." in name:
-                folders.add(name.rpartition(".")[0])
-        result = message_class("rcl_interfaces/msg/ListParametersResult")(
-            names=names, prefixes=sorted(folders)
-        )
+        result = listed(self._parameters, list(request.prefixes), int(request.depth))
         return _response("ListParameters", result=result)
 
     def _set(self, request: Any) -> Any:
@@ -167,9 +162,9 @@ class NodeParameters:
             raise CartwheelError(f'parameter "{given.name}" has not been declared')
         if known.set is None:
             raise CartwheelError(f'parameter "{given.name}" is read-only')
-        wanted, found = _type_of(known.get()), int(given.value.type)
+        wanted, found = parameter_type(known.get()), int(given.value.type)
         if found == wanted:
-            return known, getattr(given.value, _FIELDS[found])
+            return known, getattr(given.value, FIELDS[found])
         if (wanted, found) == (3, 2):
             # What a shell's 2 is meant to be.
             return known, float(given.value.integer_value)
@@ -183,30 +178,6 @@ class NodeParameters:
         event.node = self._node
         event.changed_parameters = list(changed)
         self._events.send(encode_cdr(event))
-
-
-def _below(name: str, prefixes: Sequence[str]) -> str | None:
-    """What of a name comes below one of the prefixes; all of it where there are none."""
-    if not prefixes:
-        return name
-    for prefix in prefixes:
-        if name == prefix:
-            return ""
-        if name.startswith(f"{prefix}."):
-            return name[len(prefix) + 1 :]
-    return None
-
-
-def _type_of(value: Value) -> int:
-    return _TYPES[type(value)]
-
-
-def _value(value: Value | None) -> Any:
-    made = zero("rcl_interfaces/msg/ParameterValue")
-    if value is not None:
-        made.type = _type_of(value)
-        setattr(made, _FIELDS[made.type], value)
-    return made
 
 
 def _response(name: str, **fields: Any) -> Any:

@@ -6,7 +6,6 @@ Source: rmw_zenoh's design document.
 from __future__ import annotations
 
 import contextlib
-import hashlib
 import itertools
 import json
 import os
@@ -20,6 +19,7 @@ from typing import Any
 from cartwheel.bridges.loop import Loop
 from cartwheel.bridges.ros2.middleware import Answer, Profile
 from cartwheel.bridges.ros2.rtps.network import Reach, domain_id
+from cartwheel.bridges.ros2.zenoh_tokens import NodeToken, Token
 from cartwheel.errors import CartwheelError
 from cartwheel.messages.ros2_types import Ros2Service, Ros2Type
 
@@ -58,13 +58,16 @@ class Zenoh:
         self._zenoh = zenoh
         self.loop = loop
         self._node = node
-        self._namespace = namespace
+        self._name = f"{namespace.rstrip('/')}/{node}"
         self._tell = tell
         self._domain = domain_id()
         self._reach = Reach.of()
         self._is_router = False
         self._session: Any = None
         self._zid = ""
+        self._lead = ""
+        """Of all tokens' keys."""
+        self._nodes: dict[str, NodeToken] = {}
         self._entities = itertools.count(1)
         self._kept: list[Any] = []
         self._callers: list[threading.Thread] = []
@@ -91,8 +94,10 @@ class Zenoh:
         except zenoh.ZError as error:
             raise CartwheelError(f"no Zenoh session can be opened: {error}") from None
         self._zid = str(self._session.zid())
-        node = f"@ros2_lv/{self._domain}/{self._zid}/0/0/NN/%/{self._mangled_node}"
-        self._kept.append(self._session.liveliness().declare_token(node))
+        self._lead = f"@ros2_lv/{self._domain}/{self._zid}"
+        # It is there without any endpoint.
+        self._nodes[self._name] = main = NodeToken(self._session, self._lead, 0, self._name)
+        main.enter()
         with self.calling():
             self._kept.append(
                 self._session.liveliness().declare_subscriber(
@@ -120,13 +125,25 @@ class Zenoh:
         self._callers = [each for each in self._callers if each.is_alive()] + begun
 
     def publish(
-        self, topic: str, type_: Ros2Type, profile: Profile, on_readers: Callable[[bool], None]
+        self,
+        topic: str,
+        type_: Ros2Type,
+        profile: Profile,
+        on_readers: Callable[[bool], None],
+        *,
+        node: str = "",
     ) -> _Outlet:
         """See `Middleware`."""
-        return _Outlet(self, topic, type_, profile, on_readers)
+        return _Outlet(self, topic, type_, profile, on_readers, node=node)
 
     def subscribe(
-        self, topic: str, type_: Ros2Type, profile: Profile, take: Callable[[bytes], None]
+        self,
+        topic: str,
+        type_: Ros2Type,
+        profile: Profile,
+        take: Callable[[bytes], None],
+        *,
+        node: str = "",
     ) -> _Declared:
         """See `Middleware`."""
 
@@ -134,7 +151,7 @@ class Zenoh:
             data = sample.payload.to_bytes()
             self.loop.post(lambda: take(data))
 
-        token, _ = self.token("MS", topic, type_.dds, type_.hash, profile)
+        token = self.token("MS", topic, type_.dds, type_.hash, profile, node=node)
         key = self.key(topic, type_.dds, type_.hash)
         with self.calling():
             if profile.transient_local:
@@ -159,10 +176,11 @@ class Zenoh:
         *,
         fits: Callable[[bytes], bool],
         depth: int,
+        node: str = "",
     ) -> _Service:
         """See `Middleware`."""
         del fits
-        return _Service(self, name, type_, answer, Profile(depth=depth))
+        return _Service(self, name, type_, answer, Profile(depth=depth), node=node)
 
     def topics_of_others(self) -> set[str]:
         """See `Middleware`."""
@@ -170,24 +188,25 @@ class Zenoh:
 
     # -- names
 
-    @property
-    def _mangled_node(self) -> str:
-        return f"{_mangled(self._namespace)}/{self._node}"
-
     def key(self, name: str, dds: str, hash_: str) -> str:
         """Under which a topic's or service's data goes."""
         return f"{self._domain}/{name.strip('/')}/{dds}/{hash_}"
 
     def token(
-        self, kind: str, name: str, dds: str, hash_: str, profile: Profile
-    ) -> tuple[Any, bytes]:
-        """Tells others of an endpoint; its token, and what it is known by."""
-        key = (
-            f"@ros2_lv/{self._domain}/{self._zid}/0/{next(self._entities)}/{kind}/%/"
-            f"{self._mangled_node}/{_mangled(name)}/{dds}/{hash_}/{_qos(profile)}"
+        self, kind: str, name: str, dds: str, hash_: str, profile: Profile, *, node: str
+    ) -> Token:
+        """Tells others of an endpoint, and of its node where it is the first of that."""
+        node = node or self._name
+        if node not in self._nodes:
+            self._nodes[node] = NodeToken(self._session, self._lead, next(self._entities), node)
+        return Token(
+            self._nodes[node],
+            next(self._entities),
+            kind=kind,
+            name=name,
+            type_=(dds, hash_),
+            profile=profile,
         )
-        identity = hashlib.md5(key.encode(), usedforsecurity=False).digest()
-        return self._session.liveliness().declare_token(key), identity
 
     def _seen(self, sample: Any) -> None:
         """A token came or went; on one of Zenoh's threads."""
@@ -275,10 +294,12 @@ class _Outlet:
         type_: Ros2Type,
         profile: Profile,
         on_readers: Callable[[bool], None],
+        *,
+        node: str,
     ) -> None:
         self._loop = zenoh.loop
         self._numbers = itertools.count(1)
-        self._token, self._identity = zenoh.token("MP", topic, type_.dds, type_.hash, profile)
+        self._token = zenoh.token("MP", topic, type_.dds, type_.hash, profile, node=node)
         key = zenoh.key(topic, type_.dds, type_.hash)
         api, session = zenoh._zenoh, zenoh._session
         # Nobody can make us wait: what a reader does not take is dropped.
@@ -319,7 +340,7 @@ class _Outlet:
     def send(self, payload: bytes) -> None:
         if not self._closed:
             stamp = struct.pack("<qqB", next(self._numbers), time.time_ns(), 16)
-            self._publisher.put(payload, attachment=stamp + self._identity)
+            self._publisher.put(payload, attachment=stamp + self._token.identity)
 
     def close(self) -> None:
         self._closed = True
@@ -331,11 +352,18 @@ class _Service:
     """A queryable."""
 
     def __init__(
-        self, zenoh: Zenoh, name: str, type_: Ros2Service, answer: Answer, profile: Profile
+        self,
+        zenoh: Zenoh,
+        name: str,
+        type_: Ros2Service,
+        answer: Answer,
+        profile: Profile,
+        *,
+        node: str,
     ) -> None:
         self._zenoh = zenoh
         self._answer = answer
-        self._token, _ = zenoh.token("SS", name, type_.dds, type_.hash, profile)
+        self._token = zenoh.token("SS", name, type_.dds, type_.hash, profile, node=node)
         with zenoh.calling():
             self._queryable = zenoh._session.declare_queryable(
                 zenoh.key(name, type_.dds, type_.hash), self._asked, complete=True
@@ -363,17 +391,6 @@ class _Service:
             query.drop()
 
         self._answer(data, reply)
-
-
-def _mangled(name: str) -> str:
-    return name.replace("/", "%") or "%"
-
-
-def _qos(profile: Profile) -> str:
-    """A profile as rmw_zenoh writes it: what is as usual is left out."""
-    reliability = "" if profile.reliable else "2"
-    durability = "1" if profile.transient_local else ""
-    return f"{reliability}:{durability}:,{profile.depth}:,:,:,,"
 
 
 def _answers(port: int) -> bool:

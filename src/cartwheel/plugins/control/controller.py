@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, ClassVar, Protocol
 
 from cartwheel.description.model import Sensor
-from cartwheel.errors import CartwheelError, Diagnostic, Origin
+from cartwheel.errors import CartwheelError, Diagnostic, GraphError, Origin
 from cartwheel.graph import Graph, JointInput, Publisher, Qos, Service, resolve_name
 from cartwheel.messages import message_class
 from cartwheel.plugins.base import Plugin
 from cartwheel.plugins.control.chaining import Reference
 from cartwheel.plugins.control.hardware import Hardware, JointHardware
+from cartwheel.plugins.control.ros2_parameters import ParameterServices
 from cartwheel.plugins.control.settings import Settings
 from cartwheel.plugins.ft_sensor import JointLoad
 from cartwheel.plugins.inertial_unit import InertialUnit
@@ -109,11 +111,16 @@ class Controller:
         """What other controllers may command of it."""
         self._open: list[Closable | Service] = []
         self._input: JointInput | None = None
+        if rig.ros2:
+            self.graph.nodes[self.node] = resolve_name(name, rig.namespace)
         try:
             self.configure(settings)
         except CartwheelError:
             Controller.close(self)
             raise
+        if rig.ros2:
+            values = {**settings.flat(), "type": type_name, "use_sim_time": True}
+            ParameterServices(self._offer_parameters, self.graph.nodes[self.node], values)
 
     def configure(self, settings: Settings) -> None:
         """Reads parameters, claims joints, advertises and subscribes.
@@ -166,6 +173,7 @@ class Controller:
 
     def close(self) -> None:
         """It is unloaded: takes everything off the graph."""
+        self.graph.nodes.pop(self.node, None)
         self._leave_joints()
         for item in self._open:
             if isinstance(item, Service):
@@ -277,6 +285,11 @@ class Controller:
     def keep(self, closable: Closable) -> None:
         """Closes it with the controller."""
         self._open.append(closable)
+
+    def _offer_parameters(self, name: str, type_name: str, handler: Callable[[Any], Any]) -> None:
+        """A service of its parameters; left to another robot's controller of the same name."""
+        with contextlib.suppress(GraphError):
+            self._open.append(self.graph.serve(name, type_name, handler, node=self.node))
 
     def serve(self, name: str, type_name: str, handler: Callable[[Any], Any]) -> None:
         """A service that closes with the controller."""

@@ -1,65 +1,119 @@
-"""The parameters that ROS 2's spawner sets on a controller manager."""
+"""The parameters of a controller manager and of its controllers, as their nodes have them."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from typing import Any
 
+import numpy as np
+
 from cartwheel.messages import message_class, zero
-from cartwheel.plugins.base import Plugin
+from cartwheel.messages.parameters import FIELDS, listed, parameter_value
 
 _PACKAGE = "rcl_interfaces"
-_FIELDS = {
-    1: "bool_value",
-    2: "integer_value",
-    3: "double_value",
-    4: "string_value",
-    5: "byte_array_value",
-    6: "bool_array_value",
-    7: "integer_array_value",
-    8: "double_array_value",
-    9: "string_array_value",
-}
-"""Where a value of each type stands. Source: rcl_interfaces, ParameterType."""
+Serve = Callable[[str, str, Callable[[Any], Any]], Any]
+"""Offers a service: name, type, handler."""
 
 
 class ParameterServices:
-    """Services to set and get parameters of any name, as the manager's node has them.
+    """The services by which a node's parameters are read, and with `open_` set.
 
     Args:
-        plugin: Whose services they are.
+        serve: Offers them.
         node: The node's name, with its namespace.
+        values: What cannot be set, by name with dots.
+        open_: Whether parameters of any other name may be set, as the spawner does.
     """
 
-    def __init__(self, plugin: Plugin[Any], node: str) -> None:
-        self._values: dict[str, Any] = {}
+    def __init__(
+        self, serve: Serve, node: str, values: Mapping[str, Any], *, open_: bool = False
+    ) -> None:
+        stated = {name: parameter_value(value) for name, value in values.items()}
+        self._stated = {name: value for name, value in stated.items() if value.type}
+        self._open = open_
+        self._set_values: dict[str, Any] = {}
         """``ParameterValue`` by name."""
         for name, kind, handler in (
-            ("set_parameters", "SetParameters", self._set),
+            ("describe_parameters", "DescribeParameters", self._describe),
+            ("get_parameter_types", "GetParameterTypes", self._types),
             ("get_parameters", "GetParameters", self._get),
+            ("list_parameters", "ListParameters", self._list),
+            ("set_parameters", "SetParameters", self._set),
+            ("set_parameters_atomically", "SetParametersAtomically", self._set_atomically),
         ):
-            plugin.serve(f"{node}/{name}", f"{_PACKAGE}/srv/{kind}", handler)
+            serve(f"{node}/{name}", f"{_PACKAGE}/srv/{kind}", handler)
 
     def below(self, name: str) -> dict[str, Any]:
-        """Plain values of all parameters below a name."""
+        """Plain values of all parameters below a name that were set."""
         prefix = f"{name}."
         return {
-            key.removeprefix(prefix): getattr(value, _FIELDS[value.type])
-            for key, value in self._values.items()
+            key.removeprefix(prefix): getattr(value, FIELDS[value.type])
+            for key, value in self._set_values.items()
             if key.startswith(prefix)
         }
 
+    def _value(self, name: str) -> Any:
+        value = self._set_values.get(name) or self._stated.get(name)
+        return zero(f"{_PACKAGE}/msg/ParameterValue") if value is None else value
+
+    def _refusal(self, name: str) -> str:
+        """Why a parameter cannot be set; nothing where it can."""
+        if self._open:
+            return ""
+        if name in self._stated:
+            return f'parameter "{name}" is read-only'
+        return f'parameter "{name}" has not been declared'
+
+    def _take(self, parameter: Any) -> None:
+        if parameter.value.type in FIELDS:
+            self._set_values[parameter.name] = parameter.value
+        else:
+            self._set_values.pop(parameter.name, None)
+
     def _set(self, request: Any) -> Any:
+        results = []
         for parameter in request.parameters:
-            if parameter.value.type in _FIELDS:
-                self._values[parameter.name] = parameter.value
-            else:
-                self._values.pop(parameter.name, None)
-        done = message_class(f"{_PACKAGE}/msg/SetParametersResult")
-        results = [done(successful=True, reason="") for _ in request.parameters]
-        return message_class(f"{_PACKAGE}/srv/SetParameters_Response")(results=results)
+            refusal = self._refusal(parameter.name)
+            if not refusal:
+                self._take(parameter)
+            results.append(_result(refusal))
+        return _response("SetParameters", results=results)
+
+    def _set_atomically(self, request: Any) -> Any:
+        refusals = [self._refusal(each.name) for each in request.parameters]
+        refusal = next(filter(None, refusals), "")
+        if not refusal:
+            for parameter in request.parameters:
+                self._take(parameter)
+        return _response("SetParametersAtomically", result=_result(refusal))
 
     def _get(self, request: Any) -> Any:
-        nothing = zero(f"{_PACKAGE}/msg/ParameterValue")
-        return message_class(f"{_PACKAGE}/srv/GetParameters_Response")(
-            values=[self._values.get(name, nothing) for name in request.names]
-        )
+        return _response("GetParameters", values=[self._value(name) for name in request.names])
+
+    def _types(self, request: Any) -> Any:
+        types = bytes(self._value(name).type for name in request.names)
+        return _response("GetParameterTypes", types=np.frombuffer(types, np.uint8))
+
+    def _list(self, request: Any) -> Any:
+        names = {*self._stated, *self._set_values}
+        result = listed(names, list(request.prefixes), int(request.depth))
+        return _response("ListParameters", result=result)
+
+    def _describe(self, request: Any) -> Any:
+        descriptors = []
+        for name in request.names:
+            made = zero(f"{_PACKAGE}/msg/ParameterDescriptor")
+            made.name, made.type = name, self._value(name).type
+            made.read_only = not self._open
+            descriptors.append(made)
+        return _response("DescribeParameters", descriptors=descriptors)
+
+
+def _result(refusal: str) -> Any:
+    return message_class(f"{_PACKAGE}/msg/SetParametersResult")(
+        successful=not refusal, reason=refusal
+    )
+
+
+def _response(kind: str, **fields: Any) -> Any:
+    return message_class(f"{_PACKAGE}/srv/{kind}_Response")(**fields)

@@ -62,7 +62,14 @@ class Ros2ManagerServices:
         self._name = name
         namespace = manager.rig.namespace.strip("/")
         prefix = f"/{namespace}/{name}" if namespace else f"/{name}"
-        self._parameters = ParameterServices(plugin, prefix)
+        plugin.graph.nodes[plugin.node] = prefix
+        stated = {f"{entry.name}.type": entry.type for entry in entries}
+        self._parameters = ParameterServices(
+            plugin.serve,
+            prefix,
+            {"update_rate": self._rate, "use_sim_time": True, **stated},
+            open_=True,
+        )
         handlers: dict[str, Callable[[Any], Any]] = {
             "ListControllers": self._list,
             "ListControllerTypes": self._types,

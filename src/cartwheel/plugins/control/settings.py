@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Iterator, Mapping, Sequence
+from operator import getitem
 from typing import Any
 
 from cartwheel.errors import PluginError, likely
@@ -127,6 +129,13 @@ class Settings:
             for name in _leaves(self._values)
             if not any(name == asked or name.startswith(f"{asked}/") for asked in self._asked)
         ]
+
+    def flat(self) -> dict[str, Any]:
+        """All values by the names that ROS 2 gives them, with dots; none of it counts as read."""
+        return {
+            name.replace("/", "."): functools.reduce(getitem, name.split("/"), self._values)
+            for name in _leaves(self._values)
+        }
 
     def ignore(self, *names: str) -> None:
         """Counts names as read: they have no meaning here and do no harm."""

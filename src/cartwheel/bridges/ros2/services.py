@@ -1,0 +1,107 @@
+"""Services on the wire: requests unpacked, handlers called, responses packed."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from typing import Any
+
+from cartwheel.bridges.loop import Loop
+from cartwheel.bridges.ros2.middleware import CALLS, Closable, Middleware, Reply, request_check
+from cartwheel.errors import CartwheelError, GraphError
+from cartwheel.messages import decode_cdr, encode_cdr, service_classes, zero
+from cartwheel.messages.ros2_types import ros2_service
+
+_MOST_CALLS = 32
+"""At a time."""
+
+
+class Services:
+    """Offers services; on the loop's thread.
+
+    Args:
+        loop: The bridge's.
+        middleware: Where they are offered.
+        tell: Takes a warning.
+    """
+
+    def __init__(self, loop: Loop, middleware: Middleware, tell: Callable[[str], None]) -> None:
+        self._loop = loop
+        self._middleware = middleware
+        self._tell = tell
+        self._calls = 0
+
+    def offer(
+        self,
+        name: str,
+        type_name: str,
+        handler: Callable[[Any], Any],
+        *,
+        threaded: bool = False,
+        depth: int = CALLS,
+        node: str = "",
+    ) -> Closable:
+        """Offers a service.
+
+        Args:
+            name: Of the service.
+            type_name: ``pkg/srv/Name``.
+            handler: Takes a request, gives the response or raises.
+            threaded: Whether it may take long, and has a thread of its own for each call.
+            depth: See `Middleware.serve`.
+            node: See `Middleware.publish`.
+        """
+        type_ = ros2_service(type_name)
+
+        def answer(data: bytes, reply: Reply) -> None:
+            try:
+                request = decode_cdr(data, type_.request)
+            except GraphError as error:
+                self._tell(f"{name} was called with nonsense: {error}")
+                return
+            if threaded:
+                self._in_thread(lambda: respond(request, reply), name)
+            else:
+                respond(request, reply)
+
+        def respond(request: Any, reply: Reply) -> None:
+            try:
+                response = handler(request)
+                data = encode_cdr(response)
+            except CartwheelError as error:
+                data = encode_cdr(self._failure(name, type_name, str(error)))
+            except Exception as error:  # noqa: BLE001 - who asks waits for an answer
+                text = f"{type(error).__name__}: {error}"
+                data = encode_cdr(self._failure(name, type_name, text))
+            self._loop.post(lambda: reply(data))
+
+        return self._middleware.serve(
+            name, type_, answer, fits=request_check(type_), depth=depth, node=node
+        )
+
+    def _in_thread(self, function: Callable[[], None], name: str) -> None:
+        if self._calls >= _MOST_CALLS:
+            self._tell(f"more than {_MOST_CALLS} calls at a time: one of {name} is not answered")
+            return
+        self._calls += 1
+
+        def run() -> None:
+            try:
+                function()
+            finally:
+                self._loop.post(done)
+
+        def done() -> None:
+            self._calls -= 1
+
+        threading.Thread(target=run, name=f"ros2 call {name}", daemon=True).start()
+
+    def _failure(self, name: str, type_name: str, text: str) -> Any:
+        """ROS 2 knows no errors of services: where the response can say it, it does."""
+        response = zero(service_classes(type_name)[1].__msgtype__)
+        for field in ("status_message", "message"):
+            if isinstance(getattr(response, field, None), str):
+                setattr(response, field, text)
+                return response
+        self._tell(f"{name} failed: {text}")
+        return response
