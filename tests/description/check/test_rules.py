@@ -229,6 +229,7 @@ WITHOUT_PLACE = {
     "misplaced": ("tag-misplaced", [("  <gazebo>\n", "  <gazebo>\n<mu1>1</mu1>")], "<mu1>1<", ""),
     "empty": ("tag-empty", [("<mu1>1.0</mu1>", "<kp></kp>")], "<kp>", ""),
     "below 0": ("value-ignored", [("<mu1>1.0</mu1>", "<mu1>-2</mu1>")], "<mu1>-2", ""),
+    "limit below 0": ("value-ignored", [('effort="5"', 'effort="-1"')], "<limit", ""),
     "materials differ": ("material-differs", [('<link name="base_footprint"/>',
         '<material name="blue">\n<color rgba="0 1 0 1"/>\n</material><link name="base_footprint"/>')],
         None, ""),

@@ -120,10 +120,12 @@ def test_visual_as_sdf_states_it():
     robot = load(
         on(
             "base",
-            "<visual><material><diffuse>1 0 0 1</diffuse></material>",
+            "<visual name='seen'><material><diffuse>1 0 0 1</diffuse></material>",
             "<transparency>0.5</transparency><cast_shadows>0</cast_shadows></visual>",
+            "<collision name='felt'><laser_retro>3</laser_retro></collision>",
         )
     )
+    assert told(robot) == []
     (visual,) = robot.link("base").visuals
     assert visual.material.diffuse == (1, 0, 0, 1)
     assert visual.transparency == 0.5

@@ -47,8 +47,8 @@ _KINDS: tuple[tuple[str, str, str], ...] = (
     ("tag-ignored", r"is not understood and is ignored|has no effect: |tag are ignored"
      r"|has no effect$|, on which .* would act",
      "a tag or attribute that nobody reads, a misspelt one mostly"),
-    ("value-ignored", r"is below 0: the default counts|is not within 0 and 1|has the size"
-     r"|is made \S+ mm thick|is left out", "a value that cannot count"),
+    ("value-ignored", r"is below 0: (the default counts|there is none)|is not within 0 and 1"
+     r"|has the size|is made \S+ mm thick|is left out", "a value that cannot count"),
     ("xacro-namespace", r"xmlns:xacro", "the declaration that ROS's own xacro wants is missing"),
     ("xacro-prefix", r"is taken as <xacro:", "a tag of xacro's without its prefix"),
 )  # fmt: skip

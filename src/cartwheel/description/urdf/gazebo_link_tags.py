@@ -144,9 +144,12 @@ def read_link_tags(node: Node, link: str, tags: LinkTags, ctx: UrdfContext) -> N
     material = node.child("material")
     if material is not None:
         tags.material = _material(material, sdf, ctx)
+    # SDF wants a name of both, which means nothing here: they are of all of the link's.
     for visual in node.all("visual"):
+        visual.get("name")
         _read_visual(visual, tags, sdf)
     for collision in node.all("collision"):
+        collision.get("name")
         _read_collision(collision, tags, sdf)
     seen = {sensor.name for sensor in tags.sensors}
     for sensor in node.all("sensor"):
