@@ -7,6 +7,7 @@ import math
 import pytest
 from PIL import Image
 
+from cartwheel.description import load_text
 from cartwheel.description import model as m
 from cartwheel.description.packages import Packages
 from cartwheel.description.sdf import read_sdf
@@ -521,6 +522,19 @@ def test_sensors_and_plugins():
     assert plugin.element.find("frameName").text == "eye"
     assert bump.collisions == ("c1", "c2")
     assert found.diagnostics == ()
+
+
+def test_a_gripper_is_told_as_idle_with_what_acts():
+    text = """<sdf version="1.7"><model name="m"><link name="a"/><gripper name="g"><grasp_check>
+      <attach_steps>20</attach_steps></grasp_check><gripper_link>a</gripper_link>
+      <palm_link>a</palm_link></gripper></model></sdf>"""
+    (told,) = load_text(text, file="gripper.sdf").diagnostics
+    assert told.severity == "warning"
+    assert told.message == (
+        "<gripper> has no effect: nothing is attached by touching it. "
+        "libgazebo_grasp_fix.so does that"
+    )
+    assert told.origin.line == 1
 
 
 def test_a_joint_s_sensor_is_carried_by_its_child():

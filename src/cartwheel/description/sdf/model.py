@@ -154,6 +154,14 @@ def read_model(node: Node, ctx: Context, included: Included | None = None, depth
     link_nodes = node.all("link")
     for link in link_nodes:
         _add(frames, "link", link)
+    for gripper in node.all("gripper"):
+        gripper.mark()
+        ctx.tell(
+            "warning",
+            "<gripper> has no effect: nothing is attached by touching it. "
+            "libgazebo_grasp_fix.so does that",
+            gripper.origin,
+        )
     nested = [read_model(each, ctx, depth=depth + 1) for each in node.all("model")]
     for each in node.all("include"):
         try:
