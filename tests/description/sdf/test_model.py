@@ -427,6 +427,18 @@ def test_joint_types(written, kind):
         assert found.axis2.xyz == (0, 1, 0)
 
 
+def test_images_beside_the_colour_are_notes(tmp_path):
+    Image.new("RGB", (2, 2)).save(tmp_path / "a.png")
+    inside = """<material><pbr><metal><albedo_map>a.png</albedo_map><roughness_map>r.png
+      </roughness_map><shine>1</shine></metal></pbr></material>"""
+    visual = f'<visual name="v"><geometry><sphere><radius>1</radius></sphere></geometry>{inside}'
+    found = robot(f'<link name="a">{visual}</visual></link>', folder=tmp_path)
+    assert [(each.severity, each.message.partition(" in ")[0]) for each in found.diagnostics] == [
+        ("info", "<roughness_map>"),
+        ("warning", "<shine>"),
+    ]
+
+
 def test_a_ball_turns_freely_whatever_its_axis_says():
     axis = "<axis><xyz>0 0 1</xyz><dynamics><damping>10</damping></dynamics></axis>"
     found = robot(BAD_JOINT.format("ball", ENDS + axis))

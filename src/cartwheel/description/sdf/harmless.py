@@ -12,6 +12,7 @@ _REST = "what rests costs next to nothing"
 _WIND = "there is no wind"
 _STOP = "stops are as hard as can be"
 _MEASURED = "it is measured: auto is true"
+_SURFACE = "of a physically based material only the colour image is drawn"
 _INERTIA = 'it counts in an <inertial auto="true">'
 
 HARMLESS: dict[tuple[str, str], str] = {
@@ -61,8 +62,8 @@ HARMLESS: dict[tuple[str, str], str] = {
     ("ode", "soft_erp"): _STIFFNESS,
     ("ode", "suspension"): "only a revolute2 has one",
     ("ode", "velocity"): "Gazebo does not read it either: a joint is driven by a plugin",
-    ("pbr", "metal"): "of a physically based material only the colour image is drawn",
-    ("pbr", "specular"): "of a physically based material only the colour image is drawn",
+    ("pbr", "metal"): _SURFACE,
+    ("pbr", "specular"): _SURFACE,
     ("physics", "bullet"): _ENGINE,
     ("physics", "dart"): _ENGINE,
     ("physics", "max_contacts"): "all contacts count",
@@ -84,5 +85,20 @@ HARMLESS: dict[tuple[str, str], str] = {
     ("visual", "meta"): "the viewer has no layers",
     ("visual", "visibility_flags"): "every camera sees every visual",
     ("world", "audio"): "nothing is heard",
+    **{
+        (workflow, tag): _SURFACE
+        for workflow, own in (
+            ("metal", ("metalness", "metalness_map", "roughness", "roughness_map")),
+            ("specular", ("glossiness", "glossiness_map", "specular_map")),
+        )
+        for tag in (
+            *own,
+            "ambient_occlusion_map",
+            "emissive_map",
+            "environment_map",
+            "light_map",
+            "normal_map",
+        )
+    },
 }
 """By an element's tag and its child's, or its attribute's name after an ``@``."""
