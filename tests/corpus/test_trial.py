@@ -76,6 +76,7 @@ def test_a_cart_stands_publishes_and_drives_as_it_is_told(tried):
     assert drive.topic == "/cmd_vel"
     assert abs(drive.error) < 0.02
     assert abs(drive.error_turn) < 0.05
+    assert not verdict.reasons
 
 
 def test_a_wheel_of_half_the_stated_diameter_drives_half_as_fast(tried):
@@ -84,6 +85,9 @@ def test_a_wheel_of_half_the_stated_diameter_drives_half_as_fast(tried):
     assert drive.error == pytest.approx(-0.5, abs=0.02)
     assert not drive.follows
     assert not verdict.good
+    (reason,) = verdict.reasons
+    assert "robot.urdf:1: warning: <wheelDiameter> is 0.2 m" in reason
+    assert "50% too slowly" in reason
 
 
 def test_what_is_top_heavy_tips(tried):

@@ -13,6 +13,7 @@ from cartwheel.api import Model, World
 from cartwheel.corpus import motion
 from cartwheel.corpus.verdict import Verdict
 from cartwheel.description import load_robot
+from cartwheel.description.check import RULES, check
 from cartwheel.description.check.solids import bounds, solid_of
 from cartwheel.description.model import RobotDescription
 from cartwheel.errors import CartwheelError
@@ -29,6 +30,10 @@ _LISTENING = 1.0
 _LONGEST = 5.0
 _HIGH = 5.0
 """m."""
+_OF_WHEELS = frozenset(
+    each.name for each in RULES if each.name.startswith(("drive", "wheel", "caster"))
+)
+"""Rules of `check` that tell why a base does not drive as it is told."""
 _NO_MESH = re.compile(r"the mesh|; a (visual|collision) of link")
 
 
@@ -75,6 +80,10 @@ def try_robot(
             )
             for found in _moved(verdict, world, model, robot, standing):
                 verdict = replace(found, diagnostics=world.diagnostics)
+        if not all(each.follows and each.turns for each in verdict.drives):
+            report = check(file, arguments=arguments or {}, package_path=package_path)
+            said = [each for each in report.findings if each.rule in _OF_WHEELS]
+            verdict = replace(verdict, reasons=tuple(str(each) for each in said))
     except CartwheelError as error:
         return replace(verdict, error=str(error))
     return verdict

@@ -80,6 +80,11 @@ class Drive:
         """Whether it went ahead as commanded."""
         return abs(self.error) <= TOLERANCE
 
+    @property
+    def turns(self) -> bool:
+        """Whether it turned as commanded where it stood, which not every base can."""
+        return abs(self.error_turn) <= TOLERANCE
+
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Reach:
@@ -129,6 +134,8 @@ class Verdict:
     silent: tuple[str, ...] = ()
     """Topics of those that carried nothing."""
     drives: tuple[Drive, ...] = ()
+    reasons: tuple[str, ...] = ()
+    """What the description says of its wheels that is not so, where it does not drive as told."""
     reaches: tuple[Reach, ...] = ()
     diagnostics: tuple[Diagnostic, ...] = ()
 

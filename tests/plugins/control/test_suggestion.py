@@ -69,3 +69,10 @@ def test_one_that_names_its_files_needs_no_others(workspace):
 def test_without_a_manager_nothing_could_be_started(workspace):
     body = beam("beam", "world") + system(ros2_joint("beam_joint"))
     assert names(workspace, robot(body, "")) == []
+
+
+def test_controllers_of_wheels_that_a_plugin_drives_would_hold_them(workspace):
+    drive = """<plugin name="d" filename="libgazebo_ros_diff_drive.so">
+      <leftJoint>beam_joint</leftJoint></plugin>"""
+    body = beam("beam", "world") + transmission("beam_joint", "Position")
+    assert names(workspace, robot(body, ROS1 + drive)) == []

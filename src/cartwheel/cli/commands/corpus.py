@@ -82,6 +82,7 @@ def as_mapping(verdict: Verdict) -> dict[str, Any]:
             }
             for each in verdict.drives
         ],
+        "reasons": list(verdict.reasons),
         "reaches": [
             {
                 "controller": each.controller,
@@ -126,6 +127,11 @@ def _show(verdicts: Sequence[Verdict], folders: Sequence[Path]) -> None:
     for verdict in failed:
         say(f"{paint(shown_path(verdict.file), 'bold')}: {paint('error:', 'red', 'bold')}")
         say(f"  {verdict.error}")
+    for verdict in verdicts:
+        if verdict.reasons:
+            say(f"\n{paint(shown_path(verdict.file), 'bold')} does not drive as it is told:")
+            for reason in verdict.reasons:
+                say(f"  {reason}")
     missing = sorted({name for verdict in verdicts for name in verdict.missing})
     if missing:
         say()

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from cartwheel.description.check.subject import DRIVE_JOINT_TAGS
 from cartwheel.description.model import PluginTag, RobotDescription
 from cartwheel.errors import CartwheelError
 from cartwheel.plugins.catalogue import ROS_CONTROL, plugin_named
@@ -28,9 +29,18 @@ _MOST = 400
 def suggested(robot: RobotDescription) -> list[Path]:
     """The files beside a robot that has a manager of controllers and none to manage.
 
-    Of a manager that names files of its own, which are there, none.
+    Of a manager that names files of its own, which are there, none. Nor what only names wheels that
+    a plugin drives: their controllers would hold them.
     """
-    joints = [joint.name for joint in robot.joints if joint.type != "fixed"]
+    driven = {
+        part.text.strip()
+        for tag in robot.plugins
+        for part in tag.element.children
+        if part.tag in DRIVE_JOINT_TAGS
+    }
+    joints = [
+        each.name for each in robot.joints if each.type != "fixed" and each.name not in driven
+    ]
     managers = [tag for tag in robot.plugins if _manager(tag)]
     if not managers or any(_has_files(tag) for tag in managers):
         return []
