@@ -16,10 +16,10 @@ from cartwheel.description import load_robot
 from cartwheel.description.check import RULES, check
 from cartwheel.description.check.solids import bounds, solid_of
 from cartwheel.description.model import RobotDescription
-from cartwheel.errors import CartwheelError
+from cartwheel.errors import CartwheelError, PluginError
 from cartwheel.geometry import Pose
 from cartwheel.plugins.catalogue import plugin_named, short_name
-from cartwheel.plugins.control.files import ControllerFiles
+from cartwheel.plugins.control.files import ControllerFiles, for_robot, read_parameters
 from cartwheel.plugins.control.suggestion import suggested
 from cartwheel.plugins.world_plugins import BUILT_IN
 
@@ -52,7 +52,7 @@ def try_robot(
         arguments: Of the xacro.
         package_path: Folders in which packages are looked for first.
         controllers: YAML files whose controllers start; None takes those beside the robot that
-            `cartwheel run` would name.
+            `cartwheel run` would name, but for what only a launch file could fill in.
         standing: s that it is left alone.
 
     Returns:
@@ -63,7 +63,7 @@ def try_robot(
         robot = load_robot(file, arguments=arguments or {}, package_path=package_path)
         verdict = _described(verdict, robot)
         if controllers is None:
-            controllers = suggested(robot)
+            controllers = [each for each in suggested(robot) if _is_complete(each, robot)]
         with World() as world:
             pose = _place(robot)
             # A ground_plane stands there already.
@@ -107,6 +107,15 @@ def _described(verdict: Verdict, robot: RobotDescription) -> Verdict:
         missing_meshes=sum(bool(_NO_MESH.search(each.message)) for each in robot.diagnostics),
         diagnostics=robot.diagnostics,
     )
+
+
+def _is_complete(path: Path, robot: RobotDescription) -> bool:
+    """Whether a file of controllers names no argument that only a launch file could fill in."""
+    try:
+        for_robot(read_parameters(path), path, robot)
+    except PluginError:
+        return False
+    return True
 
 
 def _place(robot: RobotDescription) -> Pose:

@@ -204,3 +204,23 @@ def test_ros2_control_starts_what_its_file_names(make, tmp_path):
     found = states.drain()
     assert len(found) == pytest.approx(300, abs=2)
     assert found[0].name == ["left_joint", "right_joint"]
+
+
+def test_wheels_that_two_controllers_want_go_to_the_base_s(make, tmp_path):
+    """A launch file would start the one or the other; the group is named first."""
+    content = {
+        "wheels": {
+            "type": "velocity_controllers/JointGroupVelocityController",
+            "joints": ["left_joint", "right_joint"],
+        },
+        "base": {
+            "type": "diff_drive_controller/DiffDriveController",
+            "left_wheel": "left_joint",
+            "right_wheel": "right_joint",
+        },
+    }
+    drive = Drive(make, tmp_path, cart(ROS1), content)
+    drive.go(3.0, linear=0.5)
+    assert drive.odometry().twist.twist.linear.x == pytest.approx(0.5, rel=0.02)
+    (told,) = [each for each in drive.world.diagnostics if "was not started" in each.message]
+    assert 'is commanded by "base"' in told.message

@@ -2,14 +2,26 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 from cartwheel.plugins.control.files import ControllerEntry
 
+_BASE = re.compile(r"(DriveController|SteeringController)$")
+_PLAIN = re.compile(
+    r"(Group\w*Controller|ForwardCommandController|Joint(Velocity|Effort)Controller)$"
+)
+
 
 def in_order(entries: Sequence[ControllerEntry]) -> list[ControllerEntry]:
-    """Controllers of a file so that each comes after those whose references it names."""
+    """Controllers of a file so that each comes after those whose references it names.
+
+    Of wheels that a base's controller and one of plain commands both want, as a choice for a
+    launch file, the base has them: what commands single joints comes last.
+    """
+    if any(_BASE.search(entry.type) for entry in entries):
+        entries = sorted(entries, key=lambda entry: bool(_PLAIN.search(entry.type)))
     names = {entry.name: entry for entry in entries}
     done: dict[str, ControllerEntry] = {}
 
