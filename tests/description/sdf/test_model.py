@@ -746,6 +746,21 @@ def test_what_needs_a_missing_part_tells_of_the_missing_part():
     assert "n::b" in caught.value.hint
 
 
+def test_a_second_collision_of_a_name_gets_another():
+    def part(tag, name):
+        return f'<{tag} name="{name}"><geometry><box/></geometry></{tag}>'
+
+    names = ["c", "c", "c_1"]
+    parts = [part("collision", name) for name in names] + [part("visual", "c")]
+    found = robot(f'<link name="a">{"".join(parts)}</link>')
+    (link,) = found.links
+    assert [each.name for each in link.collisions] == ["c", "c_2", "c_1"]
+    assert [each.name for each in link.visuals] == ["c"]
+    (told,) = [each for each in found.diagnostics if "the name of another" in each.message]
+    assert told.severity == "warning"
+    assert 'it is called "c_2" here' in told.message
+
+
 def test_a_joint_to_a_missing_part_goes_with_it():
     found = robot(
         """<link name='a'/><include><uri>model://nothing_there</uri><name>n</name></include>

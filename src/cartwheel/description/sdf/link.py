@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any
+import itertools
+from collections.abc import Callable, Iterable
+from dataclasses import replace
+from typing import Any, TypeVar
 
 from cartwheel.description.model import (
     Collision,
@@ -36,6 +38,8 @@ _WITHOUT_COUNTERPART = (
     "must_be_base_link", "enable_wind", "audio_sink", "audio_source", "projector", "battery",
     "particle_emitter",
 )  # fmt: skip
+
+P = TypeVar("P", Visual, Collision)
 
 
 def read_link(node: Node, ctx: Context, frames: Frames) -> Link:
@@ -79,8 +83,8 @@ def read_link(node: Node, ctx: Context, frames: Frames) -> Link:
     collisions = [_collision(each, ctx, place, directed) for each in node.all("collision")]
     sensors = [_sensor(each, name, place) for each in node.all("sensor")]
     lights = [_light(each, place) for each in node.all("light")]
-    check_unique("visual", [(v.name, v.origin) for v in visuals if v])
-    check_unique("collision", [(c.name, c.origin) for c in collisions if c])
+    visuals = _named_apart("visual", visuals, ctx)
+    collisions = _named_apart("collision", collisions, ctx)
     check_unique("sensor", [(s.name, s.origin) for s in sensors])
     for tag in _WITHOUT_COUNTERPART:
         for part in node.all(tag):
@@ -103,6 +107,34 @@ def read_link(node: Node, ctx: Context, frames: Frames) -> Link:
         angular_damping=decay.number_at("angular", 0.0) if decay is not None else 0.0,
         origin=node.origin,
     )
+
+
+def _named_apart(kind: str, parts: Iterable[P | None], ctx: Context) -> list[P | None]:
+    """Gives a visual or collision another name where one before it has its own.
+
+    Gazebo Classic takes both; the first keeps the name.
+    """
+    parts = list(parts)
+    taken = {part.name for part in parts if part is not None}
+    seen: set[str] = set()
+    found: list[P | None] = []
+    for part in parts:
+        mine = part
+        if part is not None and part.name in seen:
+            numbered = (f"{part.name}_{number}" for number in itertools.count(1))
+            name = next(each for each in numbered if each not in taken)
+            ctx.tell(
+                "warning",
+                f'{kind} "{part.name}" has the name of another of its link: '
+                f'it is called "{name}" here',
+                part.origin,
+            )
+            mine = replace(part, name=name)
+        if mine is not None:
+            seen.add(mine.name)
+            taken.add(mine.name)
+        found.append(mine)
+    return found
 
 
 Place = Callable[[Node], Pose]

@@ -233,6 +233,15 @@ def _primitive(node: Node, kind: str, link: str, ctx: UrdfContext) -> Shape | No
     shape: Shape
     if node.tag == "box":
         size = node.vec3_of("size")
+        if min(size) < 0:
+            # Gazebo Classic draws it, inside out, as large as it is without the sign.
+            ctx.tell(
+                "warning",
+                f'a box of link "{link}" has the negative size {_listed(size)}: '
+                "it counts without the sign",
+                node.origin,
+            )
+            size = (abs(size[0]), abs(size[1]), abs(size[2]))
         sizes: tuple[float, ...] = size
         shape = Box(size=size)
     elif node.tag == "sphere":
