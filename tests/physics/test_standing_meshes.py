@@ -1,9 +1,11 @@
 """Meshes that stand still collide with their surface: rooms have an inside, valleys a bottom."""
 
+import mujoco
 import numpy as np
 import pytest
 import trimesh
 
+from cartwheel.description.meshes.standing import standing_pieces
 from cartwheel.geometry import Pose
 
 
@@ -128,3 +130,55 @@ def test_a_flat_sheet_carries_what_lies_on_it(make, tmp_path):
     world = make.world(static_mesh(make, path), ball(make, 0.3, 0.2, 0.8), ground=None)
     world.run(2.0)
     assert world.session.simulation.pose("ball").position[2] == pytest.approx(0.6, abs=5e-3)
+
+
+def test_a_finely_meshed_ring_is_as_hollow_as_a_coarse_one(make, tmp_path):
+    """A tyre of 16,384 facets, each of which would be a slab, is made of fewer larger ones."""
+    path = tmp_path / "tyre.stl"
+    tyre = trimesh.creation.torus(0.5, 0.1, major_sections=128, minor_sections=64)
+    tyre.export(path)
+    world = make.world(static_mesh(make, path), ground=None)
+    assert not [d for d in world.session.diagnostics if "surface of a mesh" in d.message]
+    simulation = world.session.simulation
+    # Corners within 3 cm along each axis are one, in their middle.
+    off = 0.03 * np.sqrt(3)
+    geom = np.zeros(1, np.int32)
+
+    def reach(start, along):
+        return mujoco.mj_ray(
+            simulation.model, simulation.data, start, along, None, 1, -1, geom, None
+        )
+
+    # Off the seams between facets, through which a ray may slip.
+    for angle in 0.01 + np.linspace(0.0, 2 * np.pi, 48, endpoint=False):
+        out = np.array([np.cos(angle), np.sin(angle), 0.0])
+        assert reach(np.zeros(3), out) == pytest.approx(0.4, abs=off)
+        assert reach(0.5 * out + (0, 0, 1), np.array([0, 0, -1.0])) == pytest.approx(0.9, abs=off)
+    assert reach(np.array([0, 0, 1.0]), np.array([0, 0, -1.0])) == -1
+
+
+def test_a_small_part_is_its_hull():
+    washer = trimesh.creation.annulus(r_min=0.01, r_max=0.02, height=0.005, sections=24)
+    wheel = trimesh.creation.annulus(r_min=0.1, r_max=0.2, height=0.05, sections=24)
+    assert not standing_pieces(washer.vertices, washer.faces).pieces
+    assert len(standing_pieces(wheel.vertices, wheel.faces).pieces) >= 2 * 24
+
+
+def test_slabs_are_as_thick_as_half_of_the_wall_behind_each():
+    """A wall that is folded 119 times at 30°: 6 cm upright, 6 cm cos(30°) across each fold."""
+    x = 0.2 * np.arange(121)
+    z = 0.2 * np.tan(np.pi / 6) * (np.arange(121) % 2)
+    rows = [np.column_stack([x, 0 * x + y, z + up]) for up in (0.06, 0.0) for y in (0.0, 1.0)]
+    a, b, c, d = (121 * k + np.arange(120) for k in range(4))
+    sides = [(a, a + 1, b + 1, b), (d, d + 1, c + 1, c), (c, c + 1, a + 1, a), (b, b + 1, d + 1, d)]
+    quads = np.concatenate([np.column_stack(side) for side in sides])
+    quads = np.concatenate([quads, [(0, 121, 363, 242), (120, 362, 483, 241)]])
+    faces = np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
+    made = trimesh.Trimesh(np.concatenate(rows), faces, process=False)
+    assert made.is_watertight
+    found = standing_pieces(made.vertices, made.faces).pieces
+    long = [piece for piece in found if np.ptp(piece[:, 1]) == pytest.approx(1.0)]
+    normals = [(np.sin(a), 0.0, np.cos(a)) for a in (np.pi / 6, -np.pi / 6)]
+    depths = [min(np.ptp(piece @ np.array(n)) for n in normals) for piece in long]
+    half = 0.06 * np.cos(np.pi / 6) / 2
+    assert sum(abs(depth - half) < 1e-6 for depth in depths) == 2 * 120

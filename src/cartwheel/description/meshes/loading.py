@@ -98,7 +98,7 @@ def standing_parts(mesh: model.Mesh) -> Standing:
     return _standing(mesh, mesh.path.stat().st_mtime_ns)
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=1024)  # a furnished house has a hundred, and each spawn asks for all
 def _standing(mesh: model.Mesh, _mtime_ns: int) -> Standing:
     return standing_pieces(*convex_hull_input(load_mesh(mesh)))
 

@@ -24,6 +24,12 @@ _DENT = 0.01
 """m by which a part that counts as convex may be dented, and a patch that counts as flat bent."""
 _SAME_WAY = 0.9995
 """Cosine between the normals of neighbours in one patch."""
+_SMALL = 0.05
+"""m; a part no larger, as a bolt or a key of a keyboard, is its hull: its hollows hold nothing."""
+_FINE = 250
+"""Facets; a part of more is made coarser first."""
+_COARSE = (0.01, 0.02, 0.03)
+"""m within which its corners become one: the first that leaves no more facets, or the last."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -52,8 +58,8 @@ def standing_pieces(vertices: NDArray[np.floating], faces: NDArray[np.integer]) 
     hulls = 0
     for part in parts:
         slabs = None
-        if not _is_convex(points, part):
-            slabs = _slabs(points, part)
+        if np.ptp(points[np.unique(part)], axis=0).max() > _SMALL and not _is_convex(points, part):
+            slabs = _slabs(*_coarse(points, part))
             if slabs is None or len(pieces) + len(slabs) > MOST_PIECES:
                 slabs = None
                 hulls += 1
@@ -84,6 +90,33 @@ def _parts(faces: Faces, count: int) -> Iterator[Faces]:
     owner = label[faces[:, 0]]
     for each in np.unique(owner):
         yield faces[owner == each]
+
+
+def _coarse(points: Points, faces: Faces) -> tuple[Points, Faces]:
+    """A finely meshed surface with fewer facets, its corners in the middle of those they stand for.
+
+    A chair may have 30,000, each of which would be a slab.
+    """
+    for size in _COARSE:
+        if len(faces) <= _FINE:
+            break
+        points, faces = _merged(points, faces, size)
+    return points, faces
+
+
+def _merged(points: Points, faces: Faces, size: float) -> tuple[Points, Faces]:
+    """A surface with one corner in each cube of a size."""
+    used, place = np.unique(faces, return_inverse=True)
+    cells = np.floor(points[used] / size).astype(np.int64)
+    _, cell, count = np.unique(cells, axis=0, return_inverse=True, return_counts=True)
+    cell = cell.ravel()
+    middles = np.zeros((len(count), 3))
+    np.add.at(middles, cell, points[used])
+    middles /= count[:, None]
+    merged = cell[place.reshape(faces.shape)]
+    first = merged.argmin(axis=1)[:, None]
+    turned = np.take_along_axis(merged, (first + np.arange(3)) % 3, axis=1)
+    return middles, _sound(middles, np.unique(turned, axis=0))
 
 
 def _is_convex(points: Points, faces: Faces) -> bool:
@@ -129,19 +162,14 @@ def _slabs(points: Points, faces: Faces) -> list[Points] | None:
     fronts: list[Points] = []
     facing: list[Points] = []
     for patch in _patches(faces, normals, points):
-        normal = normals[patch].mean(axis=0)
-        normal /= np.linalg.norm(normal)
-        u = np.cross(normal, np.eye(3)[int(np.argmin(np.abs(normal)))])
-        u /= np.linalg.norm(u)
-        v = np.cross(normal, u)
-        flat = np.column_stack([points @ u, points @ v])
-        height = float((origins[patch] @ normal).mean())
-        for piece in fill(_rim(faces[patch], flat)):
-            if len(fronts) >= MOST_PIECES:
-                return None
-            outline = np.array(piece)
-            fronts.append(outline[:, :1] * u + outline[:, 1:] * v + height * normal)
-            facing.append(normal)
+        if len(patch) == 1:
+            outlines, normal = [points[faces[patch[0]]]], normals[patch[0]]
+        else:
+            outlines, normal = _outlines(points, faces[patch], normals[patch], origins[patch])
+        if len(fronts) + len(outlines) > MOST_PIECES:
+            return None
+        fronts += outlines
+        facing += [normal] * len(outlines)
     if not fronts:
         return []
     middles = np.array([front.mean(axis=0) for front in fronts])
@@ -154,6 +182,22 @@ def _slabs(points: Points, faces: Faces) -> list[Points] | None:
         back = middle + arms * np.maximum(0.2, 1 - thick / np.maximum(reach, 1e-9))
         slabs.append(np.concatenate([front, back - thick * normal]))
     return slabs
+
+
+def _outlines(
+    points: Points, faces: Faces, normals: Points, origins: Points
+) -> tuple[list[Points], Points]:
+    """The convex pieces of a flat patch, and its normal."""
+    normal = normals.mean(axis=0)
+    normal /= np.linalg.norm(normal)
+    u = np.cross(normal, np.eye(3)[int(np.argmin(np.abs(normal)))])
+    u /= np.linalg.norm(u)
+    v = np.cross(normal, u)
+    flat = np.column_stack([points @ u, points @ v])
+    height = float((origins @ normal).mean())
+    pieces = (np.array(piece) for piece in fill(_rim(faces, flat)))
+    found = [piece[:, :1] * u + piece[:, 1:] * v + height * normal for piece in pieces]
+    return found, normal
 
 
 def _patches(faces: Faces, normals: Points, points: Points) -> Iterator[NDArray[np.int64]]:
@@ -203,23 +247,39 @@ def _thicknesses(middles: Points, normals: Points, points: Points, faces: Faces)
     a, b, c = (points[faces[:, k]] for k in range(3))
     e1, e2 = b - a, c - a
     across = np.cross(e1, e2)
-    found = []
-    # Each ray against each triangle: Möller and Trumbore's test with the triple products of
-    # a triangle written out.
-    for start in range(0, len(middles), 64):
-        block = slice(start, start + 64)
+    lowest, highest = np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
+    found = np.full(len(middles), 2 * _THICKEST)
+    # Each ray against each triangle within its reach: Möller and Trumbore's test with the triple
+    # products of a triangle written out. Rays that are close together are looked at together.
+    for block in _near(middles):
+        low = middles[block].min(axis=0) - 2 * _THICKEST
+        high = middles[block].max(axis=0) + 2 * _THICKEST
+        near = np.flatnonzero((highest >= low).all(axis=1) & (lowest <= high).all(axis=1))
         along = -normals[block][:, None, :]
-        s = middles[block][:, None, :] - a[None]
+        s = middles[block][:, None, :] - a[near][None]
         turned = np.cross(s, along)
         with np.errstate(divide="ignore", invalid="ignore"):
-            area = -(along * across).sum(axis=2)
-            t = (s * across).sum(axis=2) / area
-            u = (e2 * turned).sum(axis=2) / area
-            v = -(e1 * turned).sum(axis=2) / area
+            area = -(along * across[near]).sum(axis=2)
+            t = (s * across[near]).sum(axis=2) / area
+            u = (e2[near] * turned).sum(axis=2) / area
+            v = -(e1[near] * turned).sum(axis=2) / area
             inside = (u >= 0) & (v >= 0) & (u + v <= 1)
         hit = (np.abs(area) > 1e-12) & inside & (t > 1e-4)
-        found.append(np.where(hit, t, 2 * _THICKEST).min(axis=1) / 2)
-    return np.asarray(np.clip(np.concatenate(found), _THINNEST, _THICKEST))
+        found[block] = np.where(hit, t, 2 * _THICKEST).min(axis=1, initial=2 * _THICKEST)
+    return np.asarray(np.clip(found / 2, _THINNEST, _THICKEST))
+
+
+def _near(points: Points) -> Iterator[NDArray[np.int64]]:
+    """Indices of up to 64 points that are close together, all points once: halved by extent."""
+    waiting = [np.arange(len(points))]
+    while waiting:
+        some = waiting.pop()
+        if len(some) <= 64:
+            yield some
+            continue
+        widest = int(np.ptp(points[some], axis=0).argmax())
+        some = some[np.argsort(points[some, widest], kind="stable")]
+        waiting += [some[: len(some) // 2], some[len(some) // 2 :]]
 
 
 def _is_solid(piece: Points) -> bool:
