@@ -68,6 +68,8 @@ class Packages:
         self.package_path = tuple(Path(path).expanduser().absolute() for path in package_path)
         self._environment = os.environ if environment is None else environment
         self._found: dict[str, Path | None] = {}
+        self._lacking: dict[str, str] = {}
+        """What was said of models that are not there: a world may ask for one a hundred times."""
 
     @property
     def folder(self) -> Path:
@@ -99,11 +101,9 @@ class Packages:
                     return folder / name
             if (found := self._known(name)) is not None:
                 return found
-        names = {entry.name for folder in self.model_folders() for entry in _folders(folder)}
-        near = numbers.likely(name, names)
-        hint = f'Did you mean "{near}"? ' if near else ""
-        hint += "Searched: " + _listed(self.model_folders())
-        hint += ". Add its folder to GAZEBO_MODEL_PATH or to the package path."
+        if name not in self._lacking:
+            self._lacking[name] = self._without_model(name)
+        hint = self._lacking[name]
         raise DescriptionError(f'the model "{name}" was not found', origin=origin, hint=hint)
 
     def resolve(
@@ -273,6 +273,13 @@ class Packages:
             f"Source its workspace, or add its folder to the package path."
             f" {advice(name, others, self._environment)}"
         )
+
+    def _without_model(self, name: str) -> str:
+        folders = self.model_folders()
+        near = numbers.likely(name, {entry.name for each in folders for entry in _folders(each)})
+        hint = f'Did you mean "{near}"? ' if near else ""
+        hint += "Searched: " + _listed(folders)
+        return hint + ". Add its folder to GAZEBO_MODEL_PATH or to the package path."
 
     def _known(self, name: str) -> Path | None:
         if name not in self._found:

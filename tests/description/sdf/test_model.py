@@ -447,6 +447,14 @@ def test_a_ball_turns_freely_whatever_its_axis_says():
     assert told.message == 'joint "j": a ball joint needs no <axis>, which has no effect'
 
 
+@pytest.mark.parametrize(("first", "second"), [("0 0 1", (0, 1, 0)), ("0 1 0", (1, 0, 0))])
+def test_a_universal_joint_without_a_second_axis_takes_y_where_it_can(first, second):
+    found = robot(BAD_JOINT.format("universal", f"{ENDS}<axis><xyz>{first}</xyz></axis>"))
+    assert found.joint("j").axis2.xyz == second
+    (told,) = found.diagnostics
+    assert "has no <axis2>" in told.message
+
+
 def test_a_joint_without_an_axis_turns_about_z():
     found = robot(BAD_JOINT.format("revolute", ENDS))
     assert found.joint("j").axis.xyz == (0, 0, 1)
@@ -642,7 +650,6 @@ ENDS = "<parent>a</parent><child>b</child>"
         (BAD_JOINT.format("fixed", "<parent>a</parent><child>a</child>"), "to itself"),
         (BAD_JOINT.format("fixed", "<parent>a</parent>"), "has no <child>"),
         (BAD_JOINT.format("revolut", ENDS), 'Did you mean "revolute"'),
-        (BAD_JOINT.format("universal", ENDS + "<axis/>"), "has no <axis2>"),
         (BAD_JOINT.format("revolute", ENDS + "<axis><xyz>0 0 0</xyz></axis>"), "no direction"),
         (BAD_JOINT.format("revolute", ENDS + "<axis><limit><lower>1</lower><upper>0</upper>"
          "</limit></axis>"), "lower limit 1 is above"),

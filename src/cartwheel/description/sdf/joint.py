@@ -28,6 +28,8 @@ GEARBOX = "gearbox"
 _UNLIMITED = 1e15
 """SDF's own default limits are ±1e16."""
 _WITHOUT_AXIS = ("fixed", "ball")
+_ALONG = 0.9
+"""Cosine from which on two axes are too near each other for a joint that turns about both."""
 
 
 class NoLinkError(DescriptionError):
@@ -123,9 +125,13 @@ def read_joint(node: Node, ctx: Context, frames: Frames, frame: str) -> Joint | 
             ctx.tell("info", told, axis.origin)
     second = None
     if kind == "universal":
-        if axis2 is None:
-            raise node.fail(f'joint "{name}" of type {written} has no <axis2>')
-        second = _axis(axis2, name, ctx, frames, in_model)
+        if axis2 is not None:
+            second = _axis(axis2, name, ctx, frames, in_model)
+        else:  # as in Gazebo's ODE
+            along_y = abs(first.xyz[1]) > _ALONG
+            second = Axis(xyz=(1.0, 0.0, 0.0) if along_y else (0.0, 1.0, 0.0))
+            taken = "x" if along_y else "y"
+            ctx.tell("warning", f'joint "{name}" has no <axis2>: {taken} is taken', node.origin)
     mimic = _mimic(axis) if axis is not None else None
     ode = node.find("physics/ode")
     cfm, erp, feedback, damper = None, None, False, False
