@@ -75,6 +75,7 @@ def _of(group: str, wires: Sequence[str], pairs: int, *, all_: bool = False) -> 
                 note=f"99 % within {part[int(len(part) * 0.99)]:.1f} ms; {len(part)} messages",
             )
     ratio = statistics.median(loud[1] / quiet[1] for quiet, loud in found["full"])
+    whole = statistics.median(loud[2] / quiet[2] for quiet, loud in found["full"])
     alone = statistics.median(quiet[1] for quiet, _ in found["full"])
     yield Figure(
         group=group,
@@ -83,7 +84,7 @@ def _of(group: str, wires: Sequence[str], pairs: int, *, all_: bool = False) -> 
         unit="% of that without",
         goal=100 - _SLOWER if all_ else None,
         better="more",
-        note=f"which is {alone:.0f} times real time",
+        note=f"which is {alone:.0f} times real time; {100 * whole:.0f} with the waits for a core",
     )
 
 
