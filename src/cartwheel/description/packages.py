@@ -70,6 +70,8 @@ class Packages:
         self._found: dict[str, Path | None] = {}
         self._lacking: dict[str, str] = {}
         """What was said of models that are not there: a world may ask for one a hundred times."""
+        self._hints: dict[str, str] = {}
+        """The same of packages."""
 
     @property
     def folder(self) -> Path:
@@ -263,6 +265,11 @@ class Packages:
         yield from self._ancestors()
 
     def _missing(self, name: str) -> str:
+        if name not in self._hints:
+            self._hints[name] = self._hint(name)
+        return self._hints[name]
+
+    def _hint(self, name: str) -> str:
         roots = [*self.package_path, *self._ancestors(), *self._environment_roots()]
         known = {found for root in (*roots, share() / "robots") for found in _names_in(root)}
         near = numbers.likely(name, known, 0.85)

@@ -7,6 +7,7 @@ from __future__ import annotations
 import pytest
 
 from cartwheel.description.check import RULES
+from cartwheel.description.check.spelling import meant
 
 LUMP = "base_footprint_fixed_joint_lump__base_link_collision"
 
@@ -278,6 +279,34 @@ def test_what_follows_from_a_fault_is_not_told_as_well(bench, spoil):
     assert rules((box, box.replace("<box size=", "<box sizes="))) == ["unreadable"]
 
 
+def test_a_robot_that_faces_the_other_way_is_right_in_all(bench, spoil):
+    swapped = [("<leftJoint>left", "<leftJoint>right"), ("<rightJoint>right", "<rightJoint>left")]
+    turned = [('xyz="0 1 0"', 'xyz="0 -1 0"')] * 2
+    found = {f.rule for f in bench.report(spoil(*swapped, *turned)).findings}
+    assert not found & {"wheels-swapped", "wheel-axes"}
+    assert bench.find(spoil(*swapped), "wheels-swapped")
+    assert len(bench.find(spoil(*turned), "wheel-axes")) == 2
+
+
+def test_an_angle_that_an_editor_let_run_is_none_in_degrees(bench, spoil):
+    for angles, count in (("0 0 6.597", 0), ("0 0 7", 1), ("0 0 57.3", 1), ("0 6.2831 0", 0)):
+        found = bench.find(spoil(('rpy="0 0 0"', f'rpy="{angles}"')), "angle-degrees")
+        assert len(found) == count, angles
+
+
+def test_a_long_body_is_no_giant(bench, spoil, tmp_path):
+    """A car of 12 m among parts of 0.4 m: with a thousandth of that it would be a speck."""
+    corners = [(0, 0, 0), (12, 0, 0), (0, 1, 0), (0, 0, 1)]
+    faces = [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]
+    lines = [f"v {x} {y} {z}" for x, y, z in corners]
+    lines += ["f " + " ".join(str(i + 1) for i in face) for face in faces]
+    (tmp_path / "car.obj").write_text("\n".join(lines) + "\n")
+    large = [("0.08", "1.3"), ("0.03 0.03 0.01", "1.5 1.5 1.5"), ("0.04 0.04 0.2", "1 1 2"),
+             ('<sphere radius="0.03"/>', '<sphere radius="0.8"/>')]  # fmt: skip
+    text = spoil(*large, ('<box size="0.4 0.3 0.1"/>', '<mesh filename="car.obj"/>'))
+    assert not bench.find(text.replace('radius="0.08"', 'radius="1.3"'), "shape-size")
+
+
 def test_a_speck_of_a_mesh_beside_its_collision_is_told(bench, spoil, take, tmp_path):
     corners = [(0, 0, 0), (0.0004, 0, 0), (0, 0.0004, 0), (0, 0, 0.0004)]
     faces = [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]
@@ -499,6 +528,14 @@ def test_a_name_is_proposed_only_where_it_was_surely_meant(bench, spoil):
         instead, hint = proposed(other)
         assert instead == "", other
         assert hint.startswith("The nearest are ")
+
+
+def test_another_word_is_no_slip():
+    assert meant("arm_lft_joint", ["arm_left_joint", "arm_right_joint"]) == "arm_left_joint"
+    assert meant("armleft_jiont", ["arm_left_joint"]) == "arm_left_joint"
+    for name, other in (("arm_l_joint", "arm_r_joint"), ("wheel_fl", "wheel_fr"),
+                        ("waffle_base.stl", "waffle_pi_base.stl")):  # fmt: skip
+        assert meant(name, [other]) == "", name
 
 
 def test_a_package_that_is_missing_is_told_once_with_the_one_that_was_meant(bench, spoil, tmp_path):

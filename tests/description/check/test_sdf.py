@@ -130,6 +130,37 @@ def test_a_joint_that_cannot_be_read_is_no_missing_one(bench):
     assert "revolut" in bench.find(text, "unreadable", "x.sdf")[0].message
 
 
+def test_attributes_of_urdf_are_written_as_elements(bench, take):
+    text = model().replace("<box><size>1 1 1</size></box>", '\n<box size="0.5 1 1"/>\n')
+    found = bench.find(text, "tag-ignored", "x.sdf")
+    assert [each.severity for each in found] == ["warning", "warning"]
+    for finding in found:
+        assert finding.instead == "<box><size>0.5 1 1</size></box>"
+        text = take(text, finding)
+    assert not bench.find(text, "tag-ignored", "x.sdf")
+
+
+def test_a_misspelt_end_of_a_joint_is_told_once_with_the_right_one(bench, take):
+    rules = {"unreadable", "value-ignored", "drive-joint-unknown"}
+    wheels = wheel("left", 0.15) + wheel("right", -0.15)
+    good = WHEELS.format(wheels=wheels, separation=0.3)
+    text = good.replace("<child>left_wheel<", "\n<child>left_whele<")
+    (finding,) = (f for f in bench.report(text, "x.sdf").findings if f.rule in rules)
+    assert finding.rule == "unreadable"
+    assert finding.instead == "<child>left_wheel</child>"
+    assert finding.origin.line == text[: text.index("<child>left_whele")].count("\n") + 1
+    mended = take(text, finding)
+    assert not [f for f in bench.report(mended, "x.sdf").findings if f.rule in rules]
+
+
+def test_what_a_missing_model_holds_nobody_knows(bench):
+    include = "<include><uri>model://nowhere</uri></include>"
+    text = WHEELS.format(wheels=include, separation=0.3).replace("diff_drive", "p3d")
+    text = text.replace("left_joint>", "joint_name>").replace("right_joint>", "joint_name>")
+    assert not bench.find(text, "plugin-joint-unknown", "x.sdf")
+    assert bench.find(text.replace(include, ""), "plugin-joint-unknown", "x.sdf")
+
+
 def test_a_model_of_a_world_that_cannot_be_read_is_told_as_such(bench):
     text = world(
         '<model name="a"><link name="b"><inertial><mass>-1</mass></inertial></link></model>\n'

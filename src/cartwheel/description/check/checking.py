@@ -61,6 +61,7 @@ RULES: tuple[Rule, ...] = (
 """All rules, by subject."""
 _PARTICULARS = re.compile(r'"[^"]*"|[-+]?\d[\d.e+-]*')
 """Names and numbers, in which findings of one line may differ."""
+_WITHOUT = re.compile(r"is left out|so it has no shape|SDF's default of")
 MAX_FAILURES = 30
 """After so many things that cannot be read the rest is hardly worth a look."""
 
@@ -147,6 +148,8 @@ def _subject(opened: Opened, known: PluginKnowledge | None, given: Sequence[Path
     elif read is not None:
         described = (read,)
     root = opened.root if opened.root.tag == "robot" else None
+    if root is None:
+        cut |= _left_out(opened.root, read)
     lost = displaced(opened.root, tree) if root is not None else set()
     robots = tuple(
         Robot(each, root, mended=mended | cut, cut=cut, displaced=lost) for each in described
@@ -196,6 +199,16 @@ def _read(
             holed.add(id(parent))
             if tree.tag == "robot":
                 mended |= mend(tree)
+
+
+def _left_out(root: Node, read: RobotDescription | WorldDescription | None) -> set[str]:
+    """The links of SDF that lack what its readers left out."""
+    links = set[str]()
+    for diagnostic in read.diagnostics if read is not None else ():
+        if _WITHOUT.search(diagnostic.message) and diagnostic.origin is not None:
+            node = nodes.at(root, diagnostic.origin)
+            links |= _links_around(root, node) if node is not None else set()
+    return links
 
 
 def _links_around(tree: Node, wanted: Node) -> set[str]:

@@ -128,7 +128,9 @@ def is_known(name: str, robot: Robot, subject: Subject) -> bool:
     """Whether a joint has that name, with or without its scope."""
     if name in robot.joint_names or name.rpartition("::")[2] in robot.joint_names:
         return True
-    return not subject.is_urdf and name.rpartition("::")[2] in subject.joints_written
+    if subject.is_urdf:
+        return False
+    return subject.lacks_models or name.rpartition("::")[2] in subject.joints_written
 
 
 RULES = (

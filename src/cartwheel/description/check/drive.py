@@ -30,6 +30,8 @@ def drive_joint_unknown(subject: Subject) -> Iterator[Remark]:
             name = element.text.strip()
             if element.tag not in DRIVE_JOINT_TAGS or name in robot.joints:
                 continue
+            if not subject.is_urdf and name in subject.joints_written:
+                continue  # it cannot be read, which is told there
             near = spelling.meant(name, robot.joints)
             yield Remark(
                 message=f'<{element.tag}> names "{name}", which is no joint: '
@@ -78,6 +80,8 @@ def wheels_swapped(subject: Subject) -> Iterator[Remark]:
         # With the wheels beside each other x is forward, else nobody can tell the sides.
         if element is None or abs(poses[0].x - poses[1].x) > 0.1 * abs(across) or across >= 0:
             continue
+        if all(sense < -_CAMBER for sense in _senses(robot, left, right)):
+            continue  # it faces the other way, and is right in all
         yield Remark(
             message=f'the left wheel\'s joint "{left.name}" is at y = {poses[0].y:.3g} m, right of '
             f'"{right.name}" at {poses[1].y:.3g} m: the robot turns the wrong way',
@@ -93,19 +97,11 @@ def wheels_swapped(subject: Subject) -> Iterator[Remark]:
 def wheel_axes(subject: Subject) -> Iterator[Remark]:
     for robot, _, left, right in _pairs(subject):
         poses = [wheel_place(robot, joint) for joint in (left, right)]
+        senses = _senses(robot, left, right)
+        if not senses or (poses[0].y < poses[1].y and all(each < -_CAMBER for each in senses)):
+            continue
         across = np.array(poses[0].position) - np.array(poses[1].position)
         wide = float(np.linalg.norm(across))
-        if wide < 1e-6 or abs(across[2]) > 0.2 * wide:
-            continue
-        senses = [
-            float(
-                np.dot(
-                    rotate(pose.orientation, joint.axis.xyz),
-                    (across / wide) * (1 if across[1] >= 0 else -1),
-                )
-            )
-            for joint, pose in zip((left, right), poses, strict=True)
-        ]
         for joint, pose, sense in zip((left, right), poses, senses, strict=True):
             if sense > -_CAMBER:
                 axis = nodes.child(robot.joint_node(joint.name), "axis")
@@ -126,6 +122,23 @@ def wheel_axes(subject: Subject) -> Iterator[Remark]:
                 place="attribute" if node is not None else "",
                 mark="xyz",
             )
+
+
+def _senses(robot: Robot, left: Joint, right: Joint) -> list[float]:
+    """How much each wheel's axis points along the axle to the robot's left, -1 to 1.
+
+    Nothing where nobody can tell.
+    """
+    poses = [wheel_place(robot, joint) for joint in (left, right)]
+    across = np.array(poses[0].position) - np.array(poses[1].position)
+    wide = float(np.linalg.norm(across))
+    if wide < 1e-6 or abs(across[2]) > 0.2 * wide:
+        return []
+    unit = across / wide * (1 if across[1] >= 0 else -1)
+    return [
+        float(np.dot(rotate(pose.orientation, joint.axis.xyz), unit))
+        for joint, pose in zip((left, right), poses, strict=True)
+    ]
 
 
 def _not_across(robot: Robot, joint: Joint, pose: Pose, across: Floats) -> Remark:
@@ -155,10 +168,9 @@ def wheel_not_round(subject: Subject) -> Iterator[Remark]:
     for robot in subject.robots:
         for joint in wheel_joints(robot):
             link = robot.links[joint.child]
-            along = rotate(wheel_place(robot, joint).orientation, joint.axis.xyz)
             widths = _widths(robot, joint, robot.collisions)
             # Of an axis that is wrong itself it is told elsewhere.
-            if widths is None or abs(along[1]) < _CAMBER or not robot.whole(link.name):
+            if widths is None or not is_across(robot, joint) or not robot.whole(link.name):
                 continue
             if widths.min() >= _ROUND * widths.max():
                 continue
@@ -218,6 +230,12 @@ def _across(axis: Floats) -> Floats:
     first /= np.linalg.norm(first)
     angles = np.linspace(0.0, np.pi, _DIRECTIONS, endpoint=False)[:, None]
     return np.asarray(np.cos(angles) * first + np.sin(angles) * np.cross(axis, first))
+
+
+def is_across(robot: Robot, joint: Joint) -> bool:
+    """Whether a wheel's axis points to a side of the robot."""
+    along = rotate(wheel_place(robot, joint).orientation, joint.axis.xyz)
+    return abs(along[1]) >= _CAMBER
 
 
 def wheel_links(robot: Robot, joint: Joint) -> list[str]:

@@ -165,6 +165,16 @@ def left_out(subject: Subject, *, missing: bool = False) -> Iterator[Remark]:
             uri = nodes.child(node, "uri") or (node if node and node.tag == "uri" else None)
             hint = match[2].strip()
             meant = _meant(subject, uri.text.strip(), uri, hint) if uri is not None else ""
+            if (end := _end_meant(node, diagnostic.message, hint)) is not None:
+                yield Remark(
+                    severity="error",
+                    message=match[1],
+                    origin=end.origin,
+                    instead=nodes.written(end.tag, {}, _DID_YOU_MEAN.match(hint)[1]),  # type: ignore[index]
+                    place="element",
+                    mark=end.text.strip(),
+                )
+                continue
             yield Remark(
                 severity=_severity(diagnostic.message),
                 message=match[1],
@@ -174,6 +184,18 @@ def left_out(subject: Subject, *, missing: bool = False) -> Iterator[Remark]:
                 hint=hint,
                 mark=nodes.text_of(node, "filename") if node is not None else "",
             )
+
+
+def _end_meant(joint: Node | None, message: str, hint: str) -> Node | None:
+    """The misspelt parent or child of a joint, where its name is surely meant for another."""
+    meant = _DID_YOU_MEAN.match(hint)
+    if joint is None or joint.tag != "joint" or meant is None:
+        return None
+    for end in joint.children:
+        name = end.text.strip()
+        if end.tag in ("parent", "child") and f'"{name}" does not exist' in message:
+            return end if spelling.meant(name, [meant[1]]) else None
+    return None
 
 
 def _severity(message: str) -> Severity:
@@ -197,7 +219,9 @@ def _factor(solid: Solid, usual: float, others: float, reach: float) -> float | 
     if extent > HUGE:
         return 0.001
     # Two wheels that are giants both are none beside each other, but beside the rest.
-    if (extent > 2.0 and extent > giant * others) or (extent > 10.0 and extent > 100 * usual):
+    alone = (extent > 2.0 and extent > giant * others) or (extent > 10.0 and extent > 100 * usual)
+    # A car's body is long, but would be no body any more with a thousandth of its length.
+    if alone and extent / 1000 > usual / 100:
         return 0.001
     # A tiny box or ball stands for nothing on purpose; a tiny mesh was scaled twice.
     if mesh and extent < min(usual / DWARF, 0.001) and usual > 0.01 and reach < 10:

@@ -12,6 +12,8 @@ from cartwheel.errors import Origin
 _LETTERS_AN_ERROR = 6
 """So many letters may hold one slip of the keyboard."""
 _MOST_ERRORS = 2
+_SHORTEST_WORD = 3
+"""Letters of a word that can hold a slip."""
 _SHORTEST = 4
 """Letters of a part that is enough to know the whole by."""
 _SHOWN = 4
@@ -43,6 +45,7 @@ def meant(name: str, known: Iterable[str], *, parts: bool = True) -> str:
         (errors, each)
         for each in names
         if re.findall(r"\d+", each) == digits
+        and _words_alike(name, each)
         and (errors := _errors(plain, _plain(each), allowed)) <= allowed
     )
     if slips and (len(slips) == 1 or slips[0][0] < slips[1][0]):
@@ -90,6 +93,22 @@ def misspelt(
         place="attribute" if near else "",
         mark=mark,
         hint="" if near else nearest(name, known),
+    )
+
+
+def _words_alike(name: str, other: str) -> bool:
+    """Whether no word of a name is another word: arm_l is no slip of arm_r, nor of arm_pi_r."""
+    ours, theirs = (re.findall(r"[0-9a-z]+", each.lower()) for each in (name, other))
+    if len(ours) != len(theirs):
+        # A separator too many or too few, and the letters nearly the same.
+        return len(_plain(name)) == len(_plain(other))
+    return all(
+        a == b
+        or (
+            min(len(a), len(b)) >= _SHORTEST_WORD
+            and _errors(a, b, _MOST_ERRORS) < max(len(a), len(b)) / 2
+        )
+        for a, b in zip(ours, theirs, strict=True)
     )
 
 

@@ -117,7 +117,7 @@ class Robot:
     @cached_property
     def incomplete(self) -> frozenset[str]:
         """Links of which a mesh is missing: what is measured on the rest says little."""
-        found = set()
+        found = set(self.cut)
         for node in nodes.children(self.root, "link"):
             link = self.links.get(nodes.name_of(node))
             if link is not None:
@@ -314,6 +314,12 @@ class Subject:
     def joints_written(self) -> frozenset[str]:
         """The names of all joints in the file, of those that could not be read as well."""
         return frozenset(nodes.name_of(n) for n in nodes.walk(self.root) if n.tag == "joint")
+
+    @cached_property
+    def lacks_models(self) -> bool:
+        """Whether a model that it includes is not there: nobody knows what that one holds."""
+        told = () if self.read is None else self.read.diagnostics
+        return any('the model "' in each.message and MISSING.search(each.message) for each in told)
 
     @property
     def step(self) -> float:

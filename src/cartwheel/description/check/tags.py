@@ -66,6 +66,7 @@ _MISPLACED = re.compile(
 )
 _MEANT = re.compile(r"\.? Did you mean (?:<([^>]+)>|\"([^\"]+)\")\?")
 _REST = "reader"
+_MOMENTS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 _NAMESPACE = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
 
 
@@ -141,6 +142,8 @@ def told(subject: Subject, name: str) -> Iterator[Remark]:
     """What the readers told that belongs to a rule."""
     holed = {f'link "{link}" has no ' for robot in subject.robots for link in robot.cut}
     for diagnostic in _diagnostics(subject):
+        if name == "value-ignored" and diagnostic.severity == "error":
+            continue  # what is left out because it cannot be read is told as such
         if _kind(diagnostic.message) == name and not diagnostic.message.startswith(tuple(holed)):
             yield _remark(subject, diagnostic)
 
@@ -161,6 +164,14 @@ def _diagnostics(subject: Subject) -> Iterable[Diagnostic]:
 def _remark(subject: Subject, diagnostic: Diagnostic) -> Remark:
     match = _MEANT.search(diagnostic.message)
     message = diagnostic.message
+    found = nodes.at(subject.root, diagnostic.origin) if diagnostic.origin is not None else None
+    if found is not None and (written := _from_urdf(subject, found, message)):
+        return Remark(
+            message=f"{message}: SDF writes elements where URDF has attributes",
+            origin=diagnostic.origin,
+            instead=written,
+            place="element",
+        )
     if _NAMESPACE in message:
         return Remark(
             message=message, origin=diagnostic.origin, instead=_NAMESPACE, place="attribute"
@@ -214,6 +225,19 @@ def _remark(subject: Subject, diagnostic: Diagnostic) -> Remark:
         instead=instead or (f"<{near}>" if match is not None and match[1] else near),
         place="element" if place == "element" else "attribute" if place else "",
     )
+
+
+def _from_urdf(subject: Subject, node: Node, message: str) -> str:
+    """What SDF writes for an element that has URDF's attributes; empty for any other."""
+    known = {"box": ("size",), "sphere": ("radius",), "cylinder": ("radius", "length"),
+             "axis": ("xyz",), "inertia": _MOMENTS}.get(node.tag, ())  # fmt: skip
+    attributes = {key: value for key, value in node.attributes.items() if key in known}
+    if subject.is_urdf or not message.startswith("the attribute") or node.children:
+        return ""
+    if node.tag == "mass" and "value" in node.attributes:
+        return nodes.written("mass", {}, node.attributes["value"].strip())
+    inner = "".join(nodes.written(key, {}, value.strip()) for key, value in attributes.items())
+    return nodes.written(node.tag, {}, inner) if inner else ""
 
 
 def _is_extension(message: str) -> bool:

@@ -11,6 +11,8 @@ from cartwheel.description.check.rule import rule
 from cartwheel.description.check.subject import Subject
 from cartwheel.description.node import Node
 
+_ADDED = 4 * math.pi
+"""rad: so far editors let angles run, past a turn."""
 FARTHEST = 100.0
 """m between a link and its parent."""
 
@@ -20,7 +22,7 @@ def angle_degrees(subject: Subject) -> Iterator[Remark]:
     for node in nodes.walk(subject.root):
         text, attribute = _angles(subject, node)
         values = nodes.numbers(text, 3)
-        if values is None or max(map(abs, values)) <= 2 * math.pi + 0.01:
+        if values is None or not any(map(_is_degrees, values)):
             continue
         radians = " ".join(
             nodes.short(math.radians(v) if abs(v) > 2 * math.pi + 0.01 or v == int(v) else v)
@@ -60,6 +62,11 @@ def place_millimetres(subject: Subject) -> Iterator[Remark]:
             place="attribute",
             mark="xyz",
         )
+
+
+def _is_degrees(value: float) -> bool:
+    """Whether an angle is more than a turn, and none that a program has added up."""
+    return abs(value) > 2 * math.pi + 0.01 and (abs(value) >= _ADDED or value == int(value))
 
 
 def _angles(subject: Subject, node: Node) -> tuple[str, bool]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from cartwheel.description.check import nodes
-from cartwheel.description.check.drive import wheel_place, wheel_radius
+from cartwheel.description.check.drive import is_across, wheel_place, wheel_radius
 from cartwheel.description.check.finding import Remark
 from cartwheel.description.check.rule import rule
 from cartwheel.description.check.subject import Robot, Subject
@@ -65,7 +65,7 @@ def wheel_diameter(subject: Subject) -> Iterator[Remark]:
         if wheel.child not in one.robot.links or not one.robot.whole(wheel.child):
             continue
         radius = wheel_radius(one.robot, wheel)
-        if radius is None:
+        if radius is None or not is_across(one.robot, wheel):
             continue
         real = radius if one.measure == "radius" else 2 * radius
         if _differs(one.value, real, _LEAST / 2):
