@@ -47,8 +47,11 @@ class Loop:
         self._inner.setblocking(False)
         self._outer.setblocking(False)
         self._woken = False
-        self._waking = threading.Lock()
-        """Held while `_outer` is written to or closed: its number may be another file's then."""
+        self._waking = threading.RLock()
+        """Held while `_outer` is written to or closed: its number may be another file's then.
+
+        A signal's handler may post while its thread does, so it can be taken twice.
+        """
         self._running = True
         self._selector.register(self._inner, READ, self._rouse)
         self._thread = threading.Thread(target=self._run, name=name, daemon=True)
