@@ -62,6 +62,8 @@ class World:
         world: ``empty``, another shipped world, a file, or a description.
         seed: Of all noise: the same seed and commands give the same bits.
         strict: Every warning about a file is an error.
+        lenient: Plugins that name what their model does not have are left out, and reported, as
+            in `cartwheel run`; else `spawn` refuses the model.
         bridge: Files of ros_gz_bridge, whose names topics have.
 
     Raises:
@@ -74,12 +76,13 @@ class World:
         *,
         seed: int = 0,
         strict: bool = False,
+        lenient: bool = False,
         bridge: Sequence[str | Path] = (),
     ) -> None:
         if not isinstance(world, WorldDescription):
             world = descriptions.load_world(world)
         files = [Path(file) for file in bridge]
-        self.session = Session(world, seed=seed, strict=strict, bridge=files)
+        self.session = Session(world, seed=seed, strict=strict, lenient=lenient, bridge=files)
         self.session.simulation.drain()  # this thread is the owner
 
     def __enter__(self) -> World:

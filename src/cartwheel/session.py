@@ -30,6 +30,8 @@ class Session:
         world: What stands in it from the start.
         seed: Of all noise.
         strict: Treat every warning about a file as an error.
+        lenient: Leave out, and report, plugins that name what their model does not have, as
+            Gazebo does; else such a model is refused.
         bridge: Files of ros_gz_bridge, whose names topics have.
 
     Raises:
@@ -42,6 +44,7 @@ class Session:
         *,
         seed: int = 0,
         strict: bool = False,
+        lenient: bool = False,
         bridge: Sequence[Path] = (),
     ) -> None:
         self.graph = Graph()
@@ -50,7 +53,7 @@ class Session:
         self.strict = strict
         self.simulation = Simulation(
             world,
-            attach=lambda part: attach(part, self.graph),
+            attach=lambda part: attach(part, self.graph, lenient=lenient),
             attach_world=lambda part: attach_world(part, self.graph),
             seed=seed,
         )

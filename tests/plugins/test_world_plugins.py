@@ -114,3 +114,15 @@ def test_a_nested_model_s_plugin_knows_its_own_joints():
     session = Session(load_text(text, file="w.world"))
     assert [each for each in session.diagnostics if each.severity == "error"] == []
     session.close()
+
+
+def test_a_plugin_that_names_what_is_not_there_costs_itself_where_that_is_wanted():
+    text = WORLD.format(DRIVE).replace('<world name="w">', "").replace("</world>", "")
+    empty = load_text('<sdf version="1.6"><world name="w"/></sdf>', file="w.world")
+    session = Session(empty, lenient=True)
+    session.spawn(load_text(text, file="r.sdf"))
+    (told,) = [each for each in session.diagnostics if each.severity == "error"]
+    assert "is left out" in told.message
+    assert '"right" does not exist' in told.message
+    assert told.origin is not None
+    session.close()

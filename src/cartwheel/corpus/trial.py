@@ -64,7 +64,7 @@ def try_robot(
         verdict = _described(verdict, robot)
         if controllers is None:
             controllers = [each for each in suggested(robot) if _is_complete(each, robot)]
-        with World() as world:
+        with World(lenient=True) as world:
             pose = _place(robot)
             # A ground_plane stands there already.
             name = f"{robot.name}_tried" if robot.name in world.models else robot.name

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator
-from typing import Literal
 
 from cartwheel.description.model import PluginTag, Sensor
-from cartwheel.errors import CartwheelError, Diagnostic, StaticModelError, likely
+from cartwheel.errors import CartwheelError, Diagnostic, StaticModelError, UnknownNameError, likely
 from cartwheel.graph import Graph
 from cartwheel.plugins.base import Plugin
 from cartwheel.plugins.catalogue import plugin_named, plugin_names, plugin_serving, short_name
@@ -16,13 +15,23 @@ from cartwheel.plugins.world_plugins import BUILT_IN
 from cartwheel.simulation import Part
 from cartwheel.simulation.resident import Behaviour
 
+_Faults = tuple[type[CartwheelError], ...]
+_ANY: _Faults = (CartwheelError,)
+_HARMLESS: _Faults = (StaticModelError,)
+"""Of which a plugin is left out wherever it is."""
 
-def attach(part: Part, graph: Graph) -> list[Behaviour]:
+
+def attach(part: Part, graph: Graph, *, lenient: bool = False) -> list[Behaviour]:
     """Makes the plugins of a model; what is not supported is reported, never passed over.
 
     A plugin that cannot be made is an error of the model. A system of new Gazebo that a world's
     model names costs itself alone, as there, and so does a sensor without a plugin: that is
     reported.
+
+    Args:
+        part: Of the model.
+        graph: Where plugins publish.
+        lenient: A plugin costs itself alone, too, where it names what the model does not have.
 
     Raises:
         CartwheelError: A plugin's parameters make no sense; those made before are closed.
@@ -32,10 +41,12 @@ def attach(part: Part, graph: Graph) -> list[Behaviour]:
     pairs: list[tuple[PluginTag, Sensor | None]] = [(tag, None) for tag in part.description.plugins]
     pairs += [(tag, sensor) for sensor in sensors for tag in sensor.plugins]
     systems = {short_name(tag.filename) for tag in (*part.world.plugins, *part.description.plugins)}
+    in_world = any(model is part.description for model in part.world.models)
+    more: _Faults = (UnknownNameError,) if lenient else ()
     try:
         for tag, sensor in pairs:
             plugin = plugin_named(tag.filename)
-            new = short_name(tag.filename).startswith("gz-sim-")
+            own_system = in_world and short_name(tag.filename).startswith("gz-sim-")
             if plugin is None and short_name(tag.filename) in BUILT_IN:
                 continue
             if plugin is None:
@@ -51,9 +62,8 @@ def attach(part: Part, graph: Graph) -> list[Behaviour]:
                     )
                 )
             else:
-                made += _made(
-                    part, graph, plugin, tag, sensor, lenient="in worlds" if new else "never"
-                )
+                forgiven = _ANY if own_system else (*_HARMLESS, *more)
+                made += _made(part, graph, plugin, tag, sensor, forgiven=forgiven)
         alone = [
             one
             for one in sensors
@@ -75,18 +85,13 @@ def _made(
     tag: PluginTag,
     sensor: Sensor | None,
     *,
-    lenient: Literal["never", "in worlds", "always"],
+    forgiven: _Faults,
 ) -> list[Plugin[object]]:
     """The plugin; none where it cannot be made and that is reported."""
     try:
         with part.undone_on_error():
             return [plugin(part, graph, tag, sensor)]
-    except CartwheelError as error:
-        if isinstance(error, StaticModelError):
-            lenient = "always"
-        own = any(model is part.description for model in part.world.models)
-        if lenient == "never" or (lenient == "in worlds" and not own):
-            raise
+    except forgiven as error:
         what = f'plugin "{tag.filename}"' if tag.filename else f'sensor "{tag.name}"'
         hint = f" {error.hint}" if error.hint else ""
         part.report(
@@ -108,7 +113,7 @@ def _serve(
         wanted = publishes(sensor, systems)
         if wanted and plugin is not None:
             tag = own_tag(sensor, tags_of(plugin.parameters))
-            yield from _made(part, graph, plugin, tag, sensor, lenient="always")
+            yield from _made(part, graph, plugin, tag, sensor, forgiven=_ANY)
             continue
         if sensor.plugins:
             # What is missing was told of the plugin.

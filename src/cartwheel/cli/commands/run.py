@@ -56,7 +56,13 @@ def simulate(options: Options) -> None:
     from cartwheel.control.server import ControlServer
     from cartwheel.session import Session
 
-    session = Session(world, seed=options.seed, strict=options.strict, bridge=options.bridge)
+    session = Session(
+        world,
+        seed=options.seed,
+        strict=options.strict,
+        lenient=not options.strict,
+        bridge=options.bridge,
+    )
     name = None
     if robot is None and options.controllers:
         raise CartwheelError(
