@@ -342,6 +342,17 @@ def test_a_place_that_takes_no_recording(tmp_path: Path, name: str, words: str) 
     assert (tmp_path / "there.mcap").read_text() == "mine"
 
 
+@pytest.mark.parametrize("overwrite", [False, True])
+def test_a_recording_without_a_name(tmp_path: Path, monkeypatch: Any, overwrite: bool) -> None:
+    monkeypatch.chdir(tmp_path)
+    with (
+        cw.World("empty") as world,
+        pytest.raises(RecordingError, match="needs a name"),
+        world.record("", overwrite=overwrite),
+    ):
+        pass
+
+
 def test_overwriting_takes_recordings_alone(tmp_path: Path) -> None:
     (tmp_path / "folder").mkdir()
     (tmp_path / "folder" / "letter.txt").write_text("mine")

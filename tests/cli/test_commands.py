@@ -141,6 +141,17 @@ def test_services(cart):
     assert 'has no field "x"' in done.stderr
 
 
+def test_what_is_told_of_a_spawned_file_has_its_place(cart, tmp_path):
+    file = tmp_path / "told.urdf"
+    file.write_text('''<robot name="told"><link name="a"><inertial><mass value="1"/>
+<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<gazebo><plugin name="p" filename="libnone.so"/></gazebo></robot>''')
+    done = cart("spawn", str(file), "-x", "-7")
+    assert f'warning: {file}:3: plugin "libnone.so" is not supported' in done.stderr
+    assert done.stderr.count("warning:") == 1
+    cart("delete", "told")
+
+
 def test_spawn_and_delete(cart):
     done = cart("spawn", "box_small", "-x", "5", "-y", "-2", "-z", "1", "--model", "my_box")
     assert done.stdout == "my_box\n"

@@ -169,8 +169,17 @@ class Operations:
         def spawn() -> Answer:
             before = len(self._session.diagnostics)
             name = self._session.spawn(description, name=wanted, pose=pose)
-            warnings = [str(d) for d in self._session.diagnostics[before:] if d.severity != "info"]
-            return {"name": name, "mass": description.mass, "warnings": warnings}
+            told = [
+                {
+                    "severity": each.severity,
+                    "message": each.message,
+                    "file": each.origin.file if each.origin else "",
+                    "line": each.origin.line if each.origin else 0,
+                }
+                for each in self._session.diagnostics[before:]
+                if each.severity != "info"
+            ]
+            return {"name": name, "mass": description.mass, "diagnostics": told}
 
         return self._on_simulation(spawn)
 

@@ -84,6 +84,7 @@ class Plugin(Generic[C]):
             self._frame_prefix = self.namespace
         self._remappings = _remappings(tag)
         self._open = contextlib.ExitStack()
+        self._crowded = False
         try:
             self.configure()
         except CartwheelError:
@@ -173,7 +174,10 @@ class Plugin(Generic[C]):
                 self.resolve(name), type_name, handler, node=self.node, threaded=threaded
             )
         except GraphError as error:
-            self.warn(f"{error.message}: give one of the two a namespace")
+            if not self._crowded:
+                # Who shares one name shares most, and the first tells what to do.
+                self._crowded = True
+                self.warn(f"{error.message}: give one of the two a namespace")
             return False
         self._open.callback(self.graph.withdraw, service)
         return True

@@ -53,6 +53,8 @@ def check_writable(path: Path, *, overwrite: bool) -> None:
     Raises:
         RecordingError: Something is there already, or the folder takes no file.
     """
+    if not path.name:
+        raise RecordingError("a recording needs a name", hint="Such as drive.mcap.")
     form_of(path)
     folder = path.parent
     if not folder.is_dir():

@@ -8,7 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from cartwheel.cli.commands.clients import connect
-from cartwheel.cli.console import note, print_warning, say, say_table
+from cartwheel.cli.commands.grouping import grouped
+from cartwheel.cli.console import note, print_diagnostic, say, say_table
+from cartwheel.errors import Diagnostic, Origin
 
 
 def spawn(
@@ -34,8 +36,16 @@ def spawn(
             model=model or "",
             **dict[str, Any](place),
         )
-    for warning in answer["warnings"]:
-        print_warning(warning)
+    told = [
+        Diagnostic(
+            severity=each["severity"],
+            message=each["message"],
+            origin=Origin(file=each["file"], line=each["line"]) if each["file"] else None,
+        )
+        for each in answer["diagnostics"]
+    ]
+    for diagnostic in grouped(told):
+        print_diagnostic(diagnostic)
     say(answer["name"])
 
 
