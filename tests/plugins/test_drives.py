@@ -10,6 +10,7 @@ import trimesh
 from cartwheel.description.model import Mesh
 from cartwheel.errors import PluginError
 from cartwheel.geometry import Pose, yaw_of
+from cartwheel.messages import to_dict
 
 RADIUS = 0.1
 START = Pose((0, 0, 0.002))
@@ -279,6 +280,79 @@ def test_tricycle_ramps_its_wheel_and_swings_its_fork(make, cart):
     assert angles == pytest.approx(np.minimum(0.5 * times, 0.6), abs=0.03)
     assert speeds == pytest.approx(np.minimum(2 * times, 4), abs=0.2)
     assert len(states[0].effort) == 4
+
+
+ROS2_TRICYCLE = """<steering_joint>front_steering</steering_joint>
+  <actuated_wheel_joint>front_joint</actuated_wheel_joint>
+  <encoder_wheel_left_joint>left_joint</encoder_wheel_left_joint>
+  <encoder_wheel_right_joint>right_joint</encoder_wheel_right_joint>"""
+
+
+def ros2_tricycle(tags=""):
+    return f"""<plugin name="drive" filename="libgazebo_ros_tricycle_drive.so">{ROS2_TRICYCLE}
+      {tags}</plugin>"""
+
+
+def test_every_tag_of_ros2s_tricycle_says_what_ros1s_does(make, cart):
+    """The same command gives the same messages, bit for bit."""
+    ros1 = tricycle("""<wheelAcceleration>2</wheelAcceleration>
+      <wheelDeceleration>3</wheelDeceleration>
+      <wheelSpeedTolerance>0.02</wheelSpeedTolerance><steeringSpeed>0.5</steeringSpeed>
+      <steeringAngleTolerance>0.02</steeringAngleTolerance><odometrySource>encoder</odometrySource>
+      <odometryFrame>map</odometryFrame><robotBaseFrame>left_wheel</robotBaseFrame>
+      <updateRate>50</updateRate><publishWheelTF>true</publishWheelTF>
+      <publishWheelJointState>true</publishWheelJointState>""")
+    ros2 = ros2_tricycle("""<ros/><actuated_wheel_diameter>0.2</actuated_wheel_diameter>
+      <encoder_wheel_diameter>0.2</encoder_wheel_diameter><wheel_separation>0.3</wheel_separation>
+      <max_wheel_torque>20</max_wheel_torque><max_wheel_acceleration>2</max_wheel_acceleration>
+      <max_wheel_deceleration>3</max_wheel_deceleration>
+      <max_wheel_speed_tolerance>0.02</max_wheel_speed_tolerance>
+      <max_steering_speed>0.5</max_steering_speed>
+      <max_steering_angle_tolerance>0.02</max_steering_angle_tolerance>
+      <odometry_source>0</odometry_source><odometry_frame>map</odometry_frame>
+      <robot_base_frame>left_wheel</robot_base_frame><update_rate>50</update_rate>
+      <publish_odom>true</publish_odom><publish_wheel_tf>true</publish_wheel_tf>
+      <publish_wheel_joint_state>true</publish_wheel_joint_state>""")
+    told = []
+    for plugin in (ros1, ros2):
+        world = spawn(make, cart(THREE, plugin, forks=("front",)))
+        boxes = [world.mailbox(topic, size=1000) for topic in ("/odom", "/tf", "/joint_states")]
+        world.publish("/cmd_vel", linear_x=0.4, angular_z=0.6)
+        world.run(1.0)
+        told.append([[to_dict(message) for message in box.drain()] for box in boxes])
+        assert not [d.message for d in world.diagnostics if "no effect" in d.message]
+    assert all(told[0])
+    assert told[0] == told[1]
+
+
+def test_ros2s_tricycle_tells_nothing_unless_it_is_asked(make, cart):
+    world = spawn(make, cart(THREE, ros2_tricycle(), forks=("front",)))
+    topics = {topic.name for topic in world.graph.topics()}
+    assert "/cmd_vel" in topics
+    assert not topics & {"/odom", "/tf", "/joint_states"}
+
+
+@pytest.mark.parametrize(
+    ("plugin", "torque"),
+    [
+        (ros2_tricycle("<publish_wheel_joint_state>1</publish_wheel_joint_state>"), 0.15),
+        (
+            tricycle("<publishWheelJointState>1</publishWheelJointState>").replace(
+                "<wheelTorque>20</wheelTorque>", ""
+            ),
+            5.0,
+        ),
+    ],
+    ids=["ROS 2", "ROS 1"],
+)
+def test_a_tricycle_that_states_no_torque_has_its_gazebos(make, cart, plugin, torque):
+    """Towards a speed that it cannot reach in that time the motor gives all it has."""
+    world = spawn(make, cart(THREE, plugin, forks=("front",)))
+    box = world.mailbox("/joint_states")
+    world.publish("/cmd_vel", linear_x=100.0)
+    world.run(0.05)
+    state = box.drain()[-1]
+    assert state.effort[state.name.index("front_joint")] == pytest.approx(torque, rel=1e-3)
 
 
 def test_a_fork_that_is_seldom_steered_stands_still(make, cart):

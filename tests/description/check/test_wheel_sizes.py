@@ -78,6 +78,12 @@ TRICYCLE = {
     "actuatedWheelDiameter": 2 * RADIUS, "encoderWheelDiameter": 2 * RADIUS,
     "encoderWheelSeparation": TRACK,
 }  # fmt: skip
+NEW_TRICYCLE = {
+    "steering_joint": "front_left_steer", "actuated_wheel_joint": "front_left_joint",
+    "encoder_wheel_left_joint": "rear_left_joint", "encoder_wheel_right_joint": "rear_right_joint",
+    "actuated_wheel_diameter": 2 * RADIUS, "encoder_wheel_diameter": 2 * RADIUS,
+    "wheel_separation": TRACK,
+}  # fmt: skip
 KOBUKI = {
     "left_wheel_joint_name": "rear_left_joint", "right_wheel_joint_name": "rear_right_joint",
     "wheel_separation": TRACK, "wheel_diameter": 2 * RADIUS,
@@ -101,6 +107,7 @@ DRIVES = {
     "libignition-gazebo-ackermann-steering-system.so": ACKERMANN,
     "gz-sim-mecanum-drive-system": MECANUM,
     "libgazebo_ros_tricycle_drive.so": TRICYCLE,
+    "gazebo_ros_tricycle_drive": NEW_TRICYCLE,
     "libgazebo_ros_kobuki.so": KOBUKI,
     "libdiffdrive_plugin_multi_wheel.so": MULTI,
     "libgazebo_ros_skid_steer_drive.so": SKID,
@@ -113,6 +120,7 @@ SIZES = {
     "wheel_base": "wheel-base", "wheelbase": "wheel-base", "wheel_radius": "wheel-diameter",
     "wheel_diameter": "wheel-diameter", "wheelDiameter": "wheel-diameter",
     "actuatedWheelDiameter": "wheel-diameter", "encoderWheelDiameter": "wheel-diameter",
+    "actuated_wheel_diameter": "wheel-diameter", "encoder_wheel_diameter": "wheel-diameter",
 }  # fmt: skip
 STATED = [(name, tag) for name, tags in DRIVES.items() for tag in tags if tag in SIZES]
 

@@ -56,6 +56,10 @@ _SIDES = (("leftJoint", "left_joint"), ("rightJoint", "right_joint"))
 _SEPARATION = ("wheelSeparation", "wheel_separation")
 _CORNERS = tuple(f"{corner}_joint" for corner in claimed.CORNERS)
 _SKID = ("leftFrontJoint", "leftRearJoint"), ("rightFrontJoint", "rightRearJoint")
+_ENCODERS = (
+    ("encoderWheelLeftJoint", "encoder_wheel_left_joint"),
+    ("encoderWheelRightJoint", "encoder_wheel_right_joint"),
+)
 _STEERING = ("left_steering_joint",), ("right_steering_joint",)
 
 _PLUGINS: Mapping[str, tuple[_Size, ...]] = {
@@ -90,16 +94,16 @@ _PLUGINS: Mapping[str, tuple[_Size, ...]] = {
     ),
     "gazebo_ros_tricycle_drive": (
         _Size(
-            measure="apart", tags=("encoderWheelSeparation",), first=("encoderWheelLeftJoint",),
-            second=("encoderWheelRightJoint",), default=0.5,
+            measure="apart", tags=("encoderWheelSeparation", "wheel_separation"),
+            first=_ENCODERS[0], second=_ENCODERS[1], default=0.5,
         ),
         _Size(
-            measure="diameter", tags=("encoderWheelDiameter",), first=("encoderWheelLeftJoint",),
-            default=0.15,
+            measure="diameter", tags=("encoderWheelDiameter", "encoder_wheel_diameter"),
+            first=_ENCODERS[0], default=0.15,
         ),
         _Size(
-            measure="diameter", tags=("actuatedWheelDiameter",), first=("actuatedWheelJoint",),
-            default=0.15,
+            measure="diameter", tags=("actuatedWheelDiameter", "actuated_wheel_diameter"),
+            first=("actuatedWheelJoint", "actuated_wheel_joint"), default=0.15,
         ),
     ),
     "gz-sim-ackermann-steering": (
