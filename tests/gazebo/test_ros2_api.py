@@ -212,3 +212,23 @@ def test_a_stopped_simulation_is_at_its_start_until_it_is_paused_or_plays(make):
     api.simulation.step(2)
     api.world.run(0.5)
     assert (state(), api.simulation.current_step) == (PAUSED, 2)
+
+
+@pytest.mark.parametrize(
+    ("prefix", "service", "fields"),
+    [
+        ("", "spawn_entity", lambda text: {"name": "arm", "xml": text}),
+        ("/gz_server", "spawn_entity", lambda text: {"entity_resource": {"resource_string": text}}),
+        ("/world/test", "create", lambda text: {"entity_factory": {"sdf": text}}),
+    ],
+)
+def test_what_is_spawned_without_a_namespace_is_at_the_root(make, prefix, service, fields):
+    """As a node of ROS 2 is: only a world's own models in ROS 1's spelling are under their name."""
+    plugin = '<plugin name="p" filename="libgazebo_ros_joint_state_publisher.so"/></model>'
+    text = f'<sdf version="1.6">{ARM.replace("</model>", plugin)}</sdf>'
+    api = Gazebo(make.world(), api=Ros2Api, prefix=prefix)
+    api(service, **fields(text))
+    assert "arm" in api.simulation.models
+    topics = {topic.name for topic in api.world.graph.topics()}
+    assert "/joint_states" in topics
+    assert "/arm/joint_states" not in topics

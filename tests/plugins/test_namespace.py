@@ -21,7 +21,7 @@ ROBOT = """<robot name="{name}"><link name="base"><inertial><mass value="1"/>
 @pytest.mark.parametrize(
     ("tag", "spawner", "drive", "imu"),
     [
-        ("", "", "/cmd_vel", "/imu"),
+        ("", "", "/two/cmd_vel", "/imu"),
         ("", "/", "/cmd_vel", "/imu"),
         ("", "/r1", "/r1/cmd_vel", "/r1/imu"),
         ("<robotNamespace>/</robotNamespace>", "/r1", "/cmd_vel", "/imu"),
@@ -94,6 +94,67 @@ def test_two_plugins_take_the_models_name_where_nobody_says_one(make, tag, spawn
     if spawner is not None:
         world.session.spawn(model, namespace=spawner)
     assert {states, imu} <= {topic.name for topic in world.graph.topics()}
+
+
+WHEELED = """<model name="two"><link name="base"/>{links}{joints}
+  <plugin name="p" filename="libgazebo_ros_{drive}.so">{tag}</plugin></model>"""
+ROS1_DRIVES = ("diff_drive", "tricycle_drive", "skid_steer_drive", "planar_move")
+JOINTS = {
+    "diff_drive": ("left_joint", "right_joint"),
+    "tricycle_drive": (
+        "front_steering_joint",
+        "front_wheel_joint",
+        "left_wheel_joint",
+        "right_wheel_joint",
+    ),
+    "skid_steer_drive": tuple(f"{s}_{e}_joint" for s in ("left", "right") for e in ("f", "r")),
+    "planar_move": (),
+}
+
+
+def wheeled(make, drive, tag):
+    """A model with the joints that a drive takes by itself, or is told here."""
+    mass = "<inertial><mass>1</mass></inertial>"
+    names = JOINTS[drive]
+    links = "".join(f'<link name="{name}_l">{mass}</link>' for name in names)
+    joints = "".join(
+        f'<joint name="{name}" type="continuous"><parent>base</parent><child>{name}_l</child>'
+        "<axis><xyz>0 1 0</xyz></axis></joint>"
+        for name in names
+    )
+    if drive == "skid_steer_drive":
+        told = ("leftFrontJoint", "leftRearJoint", "rightFrontJoint", "rightRearJoint")
+        tag += "".join(f"<{t}>{name}</{t}>" for t, name in zip(told, names, strict=True))
+    return make.sdf(WHEELED.format(drive=drive, tag=tag, links=links, joints=joints))
+
+
+@pytest.mark.parametrize(
+    ("drive", "tag", "spawner", "command"),
+    [
+        *((drive, "", None, "/two/cmd_vel") for drive in ROS1_DRIVES[:2]),
+        # The others' source has none for a default.
+        *((drive, "", None, "/cmd_vel") for drive in ROS1_DRIVES[2:]),
+        *((drive, "", "/", "/cmd_vel") for drive in ROS1_DRIVES),
+        *((drive, "", "/r1", "/r1/cmd_vel") for drive in ROS1_DRIVES),
+        *(
+            (drive, "<robotNamespace>a</robotNamespace>", None, "/a/cmd_vel")
+            for drive in ROS1_DRIVES
+        ),
+        *((drive, "<ros/>", None, "/cmd_vel") for drive in ROS1_DRIVES[:2]),
+        ("diff_drive", "<left_joint>left_joint</left_joint>", None, "/cmd_vel"),
+        ("tricycle_drive", "<publish_odom>1</publish_odom>", None, "/cmd_vel"),
+    ],
+)
+def test_two_of_gazebos_drives_take_the_name_of_a_worlds_own_model(
+    make, drive, tag, spawner, command
+):
+    """GazeboRos, which they are made with, takes it where neither tag nor spawner says one."""
+    model = wheeled(make, drive, tag)
+    world = make.world(*([model] if spawner is None else []))
+    if spawner is not None:
+        world.session.spawn(model, namespace=spawner)
+    (found,) = (topic.name for topic in world.graph.topics() if topic.name.endswith("cmd_vel"))
+    assert found == command
 
 
 def test_who_is_spawned_by_hand_has_no_namespace(make):

@@ -151,7 +151,8 @@ class Ros2Api:
             name=request.name,
             where=pose(request.initial_pose, "initial_pose"),
             reference_frame=request.reference_frame,
-            namespace=request.robot_namespace,
+            # Without one a node of ROS 2 is at the root, whatever its model is called.
+            namespace=request.robot_namespace or "/",
         )
         return Answer(f"SpawnEntity: Successfully spawned entity [{request.name}]")
 

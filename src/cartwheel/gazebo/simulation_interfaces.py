@@ -202,7 +202,7 @@ class SimulationInterfaces:
             name=name,
             where=where,
             reference_frame=request.initial_pose.header.frame_id,
-            namespace=request.entity_namespace,
+            namespace=request.entity_namespace or "/",
             rename=request.allow_renaming,
         )
 

@@ -66,7 +66,7 @@ class WorldServices:
                 name=name,
                 where=where,
                 reference_frame=asked.relative_to,
-                namespace="",
+                namespace="/",
                 rename=asked.allow_renaming,
             )
         return Answer()

@@ -110,7 +110,8 @@ class DiffDrive(WheelDrive):
     """Drives pairs of wheels by Twist, and tells where that took the robot.
 
     Each wheel is a velocity servo that gives at most `wheel_torque`; a command holds until
-    the next one. Source: gazebo_plugins, gazebo_ros_diff_drive.
+    the next one. In ROS 1's spelling, in a model of a world, its topics are under the model's
+    name where no ``<robotNamespace>`` is stated. Source: gazebo_plugins, gazebo_ros_diff_drive.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_diff_drive.so",)
@@ -132,8 +133,10 @@ class DiffDrive(WheelDrive):
             )
         self._take_wheels(self._wheel_pairs(), torque=config.wheel_torque)
         rate = config.update_rate
-        # ROS 2's plugin of the same name publishes only what it is told to.
+        # ROS 2's plugin of the same name publishes only what it is told to, under no model's name.
         ros2 = any(element.find(name) for name in ("left_joint", "right_joint", "ros"))
+        if not ros2:
+            self.under_model()
         told = not ros2 if config.publish_odom is None else config.publish_odom
         moved = not ros2 if config.publish_odom_tf is None else config.publish_odom_tf
         covariance = planar_covariance(

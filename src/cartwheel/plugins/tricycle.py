@@ -154,7 +154,8 @@ _ROS2 = {"ros"} | {name for name in tags_of(TricycleParameters) if name.islower(
 class TricycleDrive(SteeredDrive):
     """Drives and steers one wheel by Twist, and tells where that took the robot.
 
-    Source: gazebo_plugins, gazebo_ros_tricycle_drive.
+    In ROS 1's spelling, in a model of a world, its topics are under the model's name where no
+    ``<robotNamespace>`` is stated. Source: gazebo_plugins, gazebo_ros_tricycle_drive.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_tricycle_drive.so",)
@@ -165,8 +166,11 @@ class TricycleDrive(SteeredDrive):
     def configure(self) -> None:
         config: TricycleParameters = self.config
         origin, part = self.tag.origin, self.part
-        # ROS 2's plugin of the same name publishes only what it is told to, and is weaker.
+        # ROS 2's plugin of the same name publishes only what it is told to, and is weaker; its
+        # topics are under no model's name.
         ros2 = any(child.tag in _ROS2 for child in self.tag.element.children)
+        if not ros2:
+            self.under_model()
         told = not ros2 if config.publish_odom is None else config.publish_odom
         torque = config.wheel_torque
         if torque is None:
