@@ -55,6 +55,52 @@ def test_advice_is_written_as_sdf_has_it(bench):
     )
 
 
+URDF = """<robot name="r"><link name="base"><inertial><mass value="6"/>
+<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
+<collision><geometry><box size="1 1 1"/></geometry></collision></link><gazebo>
+{}</gazebo></robot>"""
+
+
+def inserted(extra="", **values):
+    """A URDF into which ``<gazebo>`` inserts the box from line 4 on."""
+    return URDF.format(BOX.format(**{**GOOD, **values}) + extra)
+
+
+def test_sdf_in_a_urdf_is_clean_where_it_is_good(bench):
+    assert bench.report(inserted(), "r.urdf").findings == ()
+    # SDF's 1 kg counts: Gazebo does not drop it, as it would a link of a URDF.
+    assert bench.report(inserted('<link name="bare"/>'), "r.urdf").findings == ()
+
+
+@pytest.mark.parametrize(
+    ("rule", "text", "line", "instead"),
+    [
+        ("inertia-impossible", inserted(izz="9"), 5, "<ixx>1</ixx>"),
+        ("inertia-unlike-geometry", inserted(i="100", izz="100"), 6, "<ixx>1</ixx>"),
+        ("mass-grams", inserted(mass="60000", i="1e4", izz="1e4"), 5, "<mass>60</mass>"),
+        (
+            "file-missing",
+            inserted(
+                '<link name="l"><visual name="v"><geometry><mesh>\n<uri>model://nothing/a.dae</uri>'
+                "</mesh></geometry></visual></link>"
+            ),
+            10,
+            "",
+        ),
+        (
+            "unreadable",
+            inserted('<joint name="j" type="ball"><parent>bass</parent><child>box</child></joint>'),
+            10,
+            "",
+        ),
+    ],
+)
+def test_sdf_in_a_urdf_has_its_findings_and_its_words(bench, rule, text, line, instead):
+    (found,) = bench.find(text, rule, "r.urdf")
+    assert found.origin.line == line
+    assert instead in found.instead
+
+
 def test_degrees_that_say_so_are_none(bench):
     text = model(yaw="90").replace("<pose>", '<pose degrees="true">')
     assert not bench.find(text, "angle-degrees", "m.sdf")

@@ -47,8 +47,7 @@ _KEYS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 @rule("inertia-impossible", "warning", "an inertia that no body can have")
 def inertia_impossible(subject: Subject) -> Iterator[Remark]:
     yield from (each for each in subject.failures if IMPOSSIBLE.search(each.message))
-    if not subject.is_urdf:
-        yield from _impossible_in_sdf(subject)
+    yield from _impossible_in_sdf(subject)
     held = _held(subject)
     for link, inertial in _inertials(subject):
         tensor = nodes.child(inertial, "inertia")
@@ -80,6 +79,8 @@ def _impossible_in_sdf(subject: Subject) -> Iterator[Remark]:
     for diagnostic in subject.read.diagnostics if subject.read is not None else ():
         match = _OF_LINK.match(diagnostic.message)
         if match is None or not IMPOSSIBLE.search(diagnostic.message):
+            continue
+        if diagnostic.severity == "error" or not subject.in_sdf(diagnostic.origin):
             continue
         robot, link = links.get(match[1], (None, None))
         like = _shape_inertia(robot, link) if robot is not None and link is not None else None
@@ -119,8 +120,12 @@ def inertia_missing(subject: Subject) -> Iterator[Remark]:
     if not subject.is_urdf:
         return
     for robot in subject.robots:
-        for root, group in robot.rigid_groups.items():
-            if root == "world" or root in robot.mended or robot.description.static:
+        if robot.description.static:
+            continue
+        for root, parts in robot.rigid_groups.items():
+            # A link of SDF has 1 kg where it states nothing.
+            group = [name for name in parts if name not in robot.in_sdf]
+            if root == "world" or root in robot.mended or root in robot.in_sdf:
                 continue
             if any(_stated(robot.links[name]) for name in group):
                 continue
@@ -161,7 +166,8 @@ def inertia_unlike_geometry(subject: Subject) -> Iterator[Remark]:
         stated = sum(inertial.diagonal) / 2
         largest = inertial.mass * float(corner @ corner)
         like = _shape_inertia(robot, link)
-        advice = _inertia_text(like, inertial.mass, sdf=not subject.is_urdf)
+        in_sdf = link.name in robot.in_sdf
+        advice = _inertia_text(like, inertial.mass, sdf=in_sdf)
         if stated > TOO_LARGE * largest:
             yield Remark(
                 severity=None if _matters(robot, link, stated) else "info",
@@ -170,7 +176,7 @@ def inertia_unlike_geometry(subject: Subject) -> Iterator[Remark]:
                 f"geometry ({_gyration(stated, inertial.mass)} away on average)",
                 origin=_inertia_origin(robot, inertial),
                 instead=advice,
-                place="element" if subject.is_urdf else "",
+                place="" if in_sdf else "element",
             )
             continue
         if not solids or like is None:
@@ -185,7 +191,7 @@ def inertia_unlike_geometry(subject: Subject) -> Iterator[Remark]:
                 f"within {_gyration(stated, inertial.mass)} of its centre",
                 origin=_inertia_origin(robot, inertial),
                 instead=advice,
-                place="element" if subject.is_urdf else "",
+                place="" if in_sdf else "element",
             )
 
 
@@ -203,16 +209,15 @@ def mass_outside(subject: Subject) -> Iterator[Remark]:
         if away > max(OUTSIDE * across, 0.005):
             middle = (box[0] + box[1]) / 2
             xyz = " ".join(nodes.short(round(float(value), 6)) for value in middle)
+            in_sdf = link.name in robot.in_sdf
             node = robot.node_at(inertial.origin)
             origin = nodes.child(node, "origin")
             yield Remark(
                 message=f'the centre of mass of link "{link.name}" lies {away:.3g} m outside its '
                 f"geometry, which is {across:.3g} m across",
                 origin=origin.origin if origin is not None else inertial.origin,
-                instead=f'<origin xyz="{xyz}"/>'
-                if subject.is_urdf
-                else f"<pose>{xyz} 0 0 0</pose>",
-                place="" if not subject.is_urdf else "element" if origin is not None else "inside",
+                instead=f"<pose>{xyz} 0 0 0</pose>" if in_sdf else f'<origin xyz="{xyz}"/>',
+                place="" if in_sdf else "element" if origin is not None else "inside",
                 hint="That is the middle of its geometry.",
                 mark="xyz",
             )
@@ -229,7 +234,7 @@ def mass_grams(subject: Subject) -> Iterator[Remark]:
         if density < DENSEST:
             continue
         in_grams = density / 1000 > _FOAM
-        node = nodes.child(robot.node_at(inertial.origin), "mass")
+        node = _urdf_mass(robot, link, inertial)
         yield Remark(
             message=f'link "{link.name}" weighs {inertial.mass:g} kg in a box of '
             f"{' x '.join(f'{1000 * value:.3g}' for value in box[1] - box[0])} mm: "
@@ -248,7 +253,7 @@ def mass_grams(subject: Subject) -> Iterator[Remark]:
 def mass_absurd(subject: Subject) -> Iterator[Remark]:
     for robot, link, inertial in _judged(subject):
         if inertial.mass > 100_000:
-            node = nodes.child(robot.node_at(inertial.origin), "mass")
+            node = _urdf_mass(robot, link, inertial)
             yield Remark(
                 message=f'link "{link.name}" weighs {inertial.mass:g} kg',
                 origin=node.origin if node is not None else inertial.origin,
@@ -395,6 +400,13 @@ def _inertial_text(like: Inertial | None, mass: float) -> str:
         f'<inertial><origin xyz="{xyz}"/><mass value="{mass:g}"/>'
         f"{_inertia_text(like, mass)}</inertial>"
     )
+
+
+def _urdf_mass(robot: Robot, link: Link, inertial: Inertial) -> Node | None:
+    """The ``<mass value>`` of a link; None for one of SDF."""
+    if link.name in robot.in_sdf:
+        return None
+    return nodes.child(robot.node_at(inertial.origin), "mass")
 
 
 def _inertia_origin(robot: Robot, inertial: Inertial) -> Origin:

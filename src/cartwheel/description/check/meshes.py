@@ -71,8 +71,10 @@ def file_missing(subject: Subject) -> Iterator[Remark]:
 
 def _absent(subject: Subject) -> Iterator[Remark]:
     yield from (each for each in subject.failures if MISSING.search(each.message))
+    for remark in left_out(subject, missing=True):
+        if subject.in_sdf(remark.origin):
+            yield remark
     if not subject.is_urdf:
-        yield from left_out(subject, missing=True)
         return
     for node in nodes.walk(subject.root):
         uri = nodes.text_of(node, "filename")

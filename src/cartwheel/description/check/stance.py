@@ -85,9 +85,9 @@ def wheel_no_collision(subject: Subject) -> Iterator[Remark]:
                 instead='<collision><origin rpy="1.5708 0 0"/><geometry>'
                 f'<cylinder radius="{radius:.4g}" length="{radius / 2:.4g}"/>'
                 "</geometry></collision>"
-                if subject.is_urdf
+                if link.name not in robot.in_sdf
                 else "",
-                place="inside" if subject.is_urdf else "",
+                place="inside" if link.name not in robot.in_sdf else "",
                 mark=f'name="{link.name}"',
             )
 

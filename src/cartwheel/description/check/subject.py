@@ -115,6 +115,11 @@ class Robot:
         return {link.name: self._solids(link, visual=True) for link in self.description.links}
 
     @cached_property
+    def in_sdf(self) -> frozenset[str]:
+        """The links that are written in SDF's words: all of a model, or those in a <gazebo>."""
+        return frozenset(self.links) - set(map(nodes.name_of, nodes.children(self.root, "link")))
+
+    @cached_property
     def incomplete(self) -> frozenset[str]:
         """Links of which a mesh is missing: what is measured on the rest says little."""
         found = set(self.cut)
@@ -309,6 +314,17 @@ class Subject:
     def is_urdf(self) -> bool:
         """Whether it is a URDF, or a xacro of one."""
         return self.root.tag == "robot"
+
+    def in_sdf(self, origin: Origin | None) -> bool:
+        """Whether an element of that very place is written in SDF's words."""
+        return not self.is_urdf or id(origin) in self._inserted
+
+    @cached_property
+    def _inserted(self) -> frozenset[int]:
+        """Of the places in a ``<gazebo>`` that refers to nothing."""
+        tags = nodes.children(self.root, "gazebo")
+        whole = [tag for tag in tags if not nodes.text_of(tag, "reference")]
+        return frozenset(id(node.origin) for tag in whole for node in nodes.walk(tag))
 
     @cached_property
     def joints_written(self) -> frozenset[str]:

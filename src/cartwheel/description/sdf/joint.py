@@ -54,7 +54,7 @@ def add_joint(frames: Frames, node: Node, ctx: Context, joints: list[str]) -> st
     frame = name
     if frames.kind_of(name) not in (None, "joint"):
         # Until 1.6 a joint could be called as its link, which many a file still does.
-        frame = f"__joint__{name}"
+        frame = joint_frame(name)
         if ctx.version >= (1, 7):
             ctx.tell("warning", f'joint "{name}" has the name of a link or frame too', node.origin)
     child = node.require_child("child").text.strip()
@@ -77,6 +77,11 @@ def add_joint(frames: Frames, node: Node, ctx: Context, joints: list[str]) -> st
         origin=node.origin,
     )
     return frame
+
+
+def joint_frame(name: str) -> str:
+    """What the frame of a joint is called that has the name of a link or frame."""
+    return f"__joint__{name}"
 
 
 def read_joint(node: Node, ctx: Context, frames: Frames, frame: str) -> Joint | None:

@@ -18,7 +18,6 @@ from cartwheel.description.sdf.frames import MODEL, WORLD, Frames
 from cartwheel.description.sdf.gearbox import mesh_gears
 from cartwheel.description.sdf.harmless import HARMLESS
 from cartwheel.description.sdf.include import Included, NotThereError, open_include
-from cartwheel.description.sdf.inertia import judged_inertia
 from cartwheel.description.sdf.joint import (
     GEARBOX,
     NoLinkError,
@@ -27,6 +26,7 @@ from cartwheel.description.sdf.joint import (
     read_joint_sensors,
 )
 from cartwheel.description.sdf.link import read_link
+from cartwheel.description.sdf.parts import add_frame, attach, check_mimic, judge, left_out
 from cartwheel.description.sdf.sensors import read_plugins
 from cartwheel.description.xml import Node, unread
 from cartwheel.errors import DescriptionError, Origin, suggestion
@@ -67,14 +67,7 @@ class Model:
         Raises:
             DescriptionError: a link that moves has an inertia that no body has.
         """
-        if self.static:
-            # It has no use for a mass, and many a file states a wrong one.
-            self.links = [
-                replace(link, inertial=None) if link.inertial and link.inertial.mass <= 0 else link
-                for link in self.links
-            ]
-        else:
-            self._judge_inertia(ctx)
+        self.links = judge(self.links, self.joints, ctx, static=self.static)
         return RobotDescription(
             name=self.name,
             links=tuple(self.links),
@@ -89,18 +82,6 @@ class Model:
             text=text or self.text,
             origin=self.origin,
         )
-
-    def _judge_inertia(self, ctx: Context) -> None:
-        fixed = {
-            end
-            for joint in self.joints
-            if joint.type == "fixed"
-            for end in (joint.parent, joint.child)
-        }
-        self.links = [
-            replace(link, inertial=judged_inertia(link, rigid=link.name in fixed, ctx=ctx))
-            for link in self.links
-        ]
 
 
 def name_apart(models: Iterable[Model], ctx: Context) -> None:
@@ -153,7 +134,7 @@ def read_model(node: Node, ctx: Context, included: Included | None = None, depth
     frames = Frames("model", name)
     link_nodes = node.all("link")
     for link in link_nodes:
-        _add(frames, "link", link)
+        add_frame(frames, "link", link)
     for gripper in node.all("gripper"):
         gripper.mark()
         ctx.tell(
@@ -179,7 +160,7 @@ def read_model(node: Node, ctx: Context, included: Included | None = None, depth
         _add_nested(frames, inner)
     _set_canonical(node, frames, link_nodes, nested)
     for each in node.all("frame"):
-        _add(frames, "frame", each)
+        add_frame(frames, "frame", each)
     later = [each.attributes.get("name", "") for each in node.all("joint")]
     joint_nodes: list[tuple[Node, str]] = []
     for each in node.all("joint"):
@@ -225,10 +206,12 @@ def read_model(node: Node, ctx: Context, included: Included | None = None, depth
         _flatten(model, inner)
         if inner.static and not model.static:
             _hold(model, inner)
-    _attach(model, sensors)
+    attach(model.links, sensors)
     if not model.links and not model.static:
         raise NoLinksError(f'model "{name}" has no links', origin=node.origin)
-    _check_mimics(model)
+    names = [joint.name for joint in model.joints]
+    for joint in model.joints:
+        check_mimic(joint, names)
     return model
 
 
@@ -241,21 +224,7 @@ def _linked(node: Node, ctx: Context) -> Iterator[None]:
     try:
         yield
     except NoLinkError as missing:
-        node.mark()
-        hint = f" {missing.hint}" if missing.hint else ""
-        ctx.tell("error", f"{missing.message}: the joint is left out.{hint}", missing.origin)
-
-
-def _add(frames: Frames, kind: str, node: Node) -> None:
-    pose = node.child("pose")
-    frames.add(
-        kind,
-        require_name(node),
-        read_pose(pose),
-        relative_to=reference_of(pose),
-        attached_to=(node.get("attached_to") or "").strip() if kind == "frame" else "",
-        origin=node.origin,
-    )
+        left_out(node, missing, ctx)
 
 
 def _add_nested(frames: Frames, inner: Model) -> None:
@@ -382,22 +351,3 @@ def _renamed(element: Element, names: Collection[str], prefix: str) -> Element:
         text=prefix + element.text if own else element.text,
         children=tuple(_renamed(child, names, prefix) for child in element.children),
     )
-
-
-def _attach(model: Model, sensors: list[Sensor]) -> None:
-    """Gives the sensors of joints to the links that carry them, nested ones included."""
-    for sensor in sensors:
-        index = next(i for i, link in enumerate(model.links) if link.name == sensor.link)
-        link = model.links[index]
-        model.links[index] = replace(link, sensors=(*link.sensors, sensor))
-
-
-def _check_mimics(model: Model) -> None:
-    names = [joint.name for joint in model.joints]
-    for joint in model.joints:
-        if joint.mimic is not None and joint.mimic.joint not in names:
-            raise DescriptionError(
-                f'joint "{joint.name}" mimics "{joint.mimic.joint}", which does not exist',
-                origin=joint.origin,
-                hint=suggestion(joint.mimic.joint, names),
-            )

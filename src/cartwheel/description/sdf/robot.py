@@ -5,13 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 
 from cartwheel.description.sdf.context import read_pose, reference_of
-from cartwheel.description.sdf.frames import Frames
 from cartwheel.description.sdf.include import Included
 from cartwheel.description.sdf.model import Model
+from cartwheel.description.sdf.parts import frames_of
 from cartwheel.description.urdf import read_urdf
 from cartwheel.description.xml import needs_xacro, read_bytes
 from cartwheel.description.xml_text import write_xml
-from cartwheel.geometry import Pose
 
 
 def read_robot(included: Included) -> Model:
@@ -32,13 +31,7 @@ def read_robot(included: Included) -> Model:
     robot = read_urdf(root, ctx.packages)
     ctx.diagnostics.extend(robot.diagnostics)
     name = included.name or robot.name
-    frames = Frames("model", name)
-    frames.default_link = robot.canonical_link
-    for link in robot.links:
-        frames.add("link", link.name, link.pose, origin=link.origin)
-    for joint in robot.joints:
-        if frames.kind_of(joint.name) is None:  # a URDF's joint may have a link's name
-            frames.add("joint", joint.name, Pose(), attached_to=joint.child, origin=joint.origin)
+    frames = frames_of(name, robot.canonical_link, robot.links, robot.joints)
     return Model(
         name=name,
         frames=frames,

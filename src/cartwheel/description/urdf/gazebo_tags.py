@@ -10,6 +10,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from cartwheel.description.model import Joint, Link, PluginTag
+from cartwheel.description.sdf.inserting import INSERTED
 from cartwheel.description.sdf.sensors import read_plugin, read_sensor
 from cartwheel.description.urdf.gazebo_link_tags import LINK_TAGS, LinkTags, read_link_tags
 from cartwheel.description.urdf.link import UrdfContext
@@ -24,17 +25,14 @@ JOINT_TAGS = (
 _OF_JOINTS = "force_torque"
 """The type of the sensors that joints have."""
 _WITH_PARTS = ("sensor", "plugin", "light", "visual", "collision")
-ROBOT_TAGS = ("plugin", "static", "self_collide", "selfCollide")
+ROBOT_TAGS = ("plugin", "static", "self_collide", "selfCollide", *INSERTED)
 
 _ROBOT_IDLE = {
     "gripper": "nothing is attached by touching it",
     "allow_auto_disable": "bodies that rest always cost next to nothing",
     "enable_wind": "there is no wind",
     "pose": "where a robot stands is said when it is spawned",
-    "link": "a link of SDF inside a URDF is not built",
-    "joint": "a joint of SDF inside a URDF is not built",
     "model": "a model inside a URDF is not built",
-    "frame": "frames of SDF are not kept",
     "verbose": "it never had one",
 }
 
@@ -47,6 +45,8 @@ class GazeboTags:
     joints: dict[str, dict[str, Any]] = field(default_factory=dict)
     """The fields of `Joint` and, under ``axis``, of `Axis` that they state."""
     robot_plugins: list[PluginTag] = field(default_factory=list)
+    inserted: list[Node] = field(default_factory=list)
+    """Links, joints and frames of SDF that go into the model."""
     static: bool = False
     self_collide: bool = False
 
@@ -123,7 +123,7 @@ def _settle(node: Node, ctx: UrdfContext) -> None:
     Tags such as ``<mu1></mu1>``, which a macro's empty parameter leaves, are taken out.
     """
     for child in list(node.children):
-        if child.text or child.children:
+        if child.text or child.children or child.tag in INSERTED:
             continue
         if child.attributes.get("value", "").strip() and child.tag not in _WITH_PARTS:
             child.text = (child.get("value") or "").strip()
@@ -137,6 +137,8 @@ def _read_robot_tags(node: Node, tags: GazeboTags, ctx: UrdfContext) -> None:
     tags.static = node.boolean_at("static", tags.static)
     tags.self_collide = node.boolean_at("self_collide", tags.self_collide)
     tags.self_collide = node.boolean_at("selfCollide", tags.self_collide)
+    inserted = {id(part) for tag in INSERTED for part in node.all(tag)}
+    tags.inserted.extend(child for child in node.children if id(child) in inserted)
     _tell_idle(node, _ROBOT_IDLE, ctx)
     for child in node.children:
         if child.tag in ROBOT_TAGS or child.tag in _ROBOT_IDLE:

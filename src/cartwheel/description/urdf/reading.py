@@ -12,6 +12,7 @@ from dataclasses import replace
 from cartwheel.description.model import Inertial, Link, RobotDescription
 from cartwheel.description.packages import Packages
 from cartwheel.description.sdf.harmless import HARMLESS as HARMLESS_IN_SDF
+from cartwheel.description.sdf.inserting import insert
 from cartwheel.description.urdf.collision_names import check_contact_sensors, name_collisions
 from cartwheel.description.urdf.estimate import with_masses
 from cartwheel.description.urdf.gazebo_tags import GazeboTags, read_gazebo_tags
@@ -80,6 +81,17 @@ def read_urdf(
     ctx.diagnostics.extend(check_contact_sensors(links))
     links = _without_world(links, tree, ctx)
     links = list(with_masses(links, tree, ctx, static=tags.static))
+    canonical_link = links[0].name if tree.root == WORLD else tree.root
+    links, joints, told = insert(
+        tags.inserted,
+        links,
+        joints,
+        packages,
+        name=name,
+        canonical_link=canonical_link,
+        static=tags.static,
+    )
+    ctx.diagnostics.extend(told)
     if not tags.static and tree.root != WORLD:
         _tell_untouchable(links, ctx)
 
@@ -94,7 +106,7 @@ def read_urdf(
         plugins=tags.plugins,
         static=tags.static,
         self_collide=tags.self_collide,
-        canonical_link=links[0].name if tree.root == WORLD else tree.root,
+        canonical_link=canonical_link,
         transmissions=transmissions,
         ros2_control=ros2_control,
         diagnostics=distinct(ctx.diagnostics),

@@ -1,0 +1,111 @@
+"""What a ``<model>`` and SDF inserted into a URDF share: how their parts come together."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Sequence
+from dataclasses import replace
+
+from cartwheel.description.model import Joint, Link, Sensor
+from cartwheel.description.sdf.context import Context, read_pose, reference_of, require_name
+from cartwheel.description.sdf.frames import Frames
+from cartwheel.description.sdf.inertia import judged_inertia
+from cartwheel.description.sdf.joint import joint_frame
+from cartwheel.description.xml import Node
+from cartwheel.errors import DescriptionError, suggestion
+
+
+def frames_of(
+    name: str, canonical_link: str, links: Iterable[Link], joints: Iterable[Joint]
+) -> Frames:
+    """The frames of a URDF, by the names of its links and joints.
+
+    Args:
+        name: The robot's.
+        canonical_link: The link that its own frame is attached to.
+        links: With their poses in the robot's frame.
+        joints: One may have a link's name.
+    """
+    frames = Frames("model", name)
+    frames.default_link = canonical_link
+    for link in links:
+        frames.add("link", link.name, link.pose, origin=link.origin)
+    for joint in joints:
+        taken = frames.kind_of(joint.name) is not None
+        frames.add(
+            "joint",
+            joint_frame(joint.name) if taken else joint.name,
+            joint.pose,
+            attached_to=joint.child,
+            origin=joint.origin,
+        )
+    return frames
+
+
+def add_frame(frames: Frames, kind: str, node: Node) -> None:
+    """Adds a ``<link>`` or ``<frame>``.
+
+    Raises:
+        DescriptionError: it has no name, or one that is taken.
+    """
+    pose = node.child("pose")
+    frames.add(
+        kind,
+        require_name(node),
+        read_pose(pose),
+        relative_to=reference_of(pose),
+        attached_to=(node.get("attached_to") or "").strip() if kind == "frame" else "",
+        origin=node.origin,
+    )
+
+
+def left_out(node: Node, error: DescriptionError, ctx: Context) -> None:
+    """Tells of an element that does not make sense: it costs itself, and the rest goes on."""
+    node.mark()
+    hint = f" {error.hint}" if error.hint else ""
+    ctx.tell("error", f"{error.message}: the {node.tag} is left out.{hint}", error.origin)
+
+
+def attach(links: list[Link], sensors: Iterable[Sensor]) -> None:
+    """Gives the sensors of joints to the links that carry them, in place."""
+    for sensor in sensors:
+        index = next(i for i, link in enumerate(links) if link.name == sensor.link)
+        link = links[index]
+        links[index] = replace(link, sensors=(*link.sensors, sensor))
+
+
+def judge(
+    links: Sequence[Link], joints: Iterable[Joint], ctx: Context, *, static: bool
+) -> list[Link]:
+    """The links with masses that bodies can have.
+
+    Args:
+        links: Of one model.
+        joints: All of that model.
+        ctx: Takes the diagnostics.
+        static: Whether it is static: it has no use for a mass, and many a file states a wrong one.
+
+    Raises:
+        DescriptionError: a link that moves has an inertia that no body has.
+    """
+    if static:
+        return [
+            replace(link, inertial=None) if link.inertial and link.inertial.mass <= 0 else link
+            for link in links
+        ]
+    fixed = {
+        end for joint in joints if joint.type == "fixed" for end in (joint.parent, joint.child)
+    }
+    return [
+        replace(link, inertial=judged_inertia(link, rigid=link.name in fixed, ctx=ctx))
+        for link in links
+    ]
+
+
+def check_mimic(joint: Joint, names: Collection[str]) -> None:
+    """Refuses a joint that mimics one that is not there."""
+    if joint.mimic is not None and joint.mimic.joint not in names:
+        raise DescriptionError(
+            f'joint "{joint.name}" mimics "{joint.mimic.joint}", which does not exist',
+            origin=joint.origin,
+            hint=suggestion(joint.mimic.joint, names),
+        )
