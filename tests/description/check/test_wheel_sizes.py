@@ -36,11 +36,11 @@ WHEEL = (
 )
 
 
-def car(plugin=""):
+def car(plugin="", base=BASE):
     """Front wheels on forks, rear ones on the body."""
     parts = [link("base_link")]
     for name, (ahead, left) in CORNERS.items():
-        x, y = ahead * BASE / 2, left * TRACK / 2
+        x, y = ahead * base / 2, left * TRACK / 2
         parent, place = "base_link", f"{x} {y} 0"
         if ahead > 0:
             fork = f"{name}_fork"
@@ -176,6 +176,23 @@ def test_only_the_differential_drive_has_another_name_for_its_torque(bench):
         assert bench.find(text.replace("<torque>1<", "<torque>0<"), "effort-zero"), name
     text = car(plugin("libgazebo_ros_diff_drive.so", **PAIRS, **torque))
     assert bench.find(text, "plugin-obsolete")
+
+
+@pytest.mark.parametrize("base", [0.1, TRACK, BASE])
+def test_skidding_wheels_may_be_said_to_be_as_far_apart_as_friction_asks(told, base):
+    """t (1 + (b/t)²) turns it rightly, and a quarter more is granted; the least is 2.5 t."""
+    name = "libgazebo_ros_skid_steer_drive.so"
+    most = max(2.5 * TRACK, 1.25 * TRACK * (1 + (base / TRACK) ** 2))
+
+    def said(apart):
+        return told(car(plugin(name, **{**SKID, "wheelSeparation": apart}), base))
+
+    for fine in (TRACK, 0.999 * most):
+        assert said(fine) == []
+    for wrong in (0.9 * TRACK, 1.001 * most):
+        (finding,) = said(wrong)
+        assert finding.rule == "wheel-separation"
+        assert finding.instead == f"<wheelSeparation>{TRACK:g}</wheelSeparation>"
 
 
 def test_a_pair_of_wheels_has_its_own_separation(told):

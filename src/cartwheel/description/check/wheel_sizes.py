@@ -17,7 +17,10 @@ TOLERANCE = 0.02
 _LEAST = 0.001
 """m, of a distance; half of it of a wheel."""
 WIDEST_SKID = 2.5
-"""Times the track: what skidding wheels are told to be apart so that odometry comes right."""
+"""Times the track: what skidding wheels are told to be apart so that odometry comes right.
+
+Of a robot not longer than wide; see `_widest`.
+"""
 
 
 @rule("wheel-separation", "warning", "a stated wheel separation is not that of the joints")
@@ -28,7 +31,7 @@ def wheel_separation(subject: Subject) -> Iterator[Remark]:
         apart = _mean_between(one, 1)
         if one.measure == "reach":
             apart = (apart + _mean_between(one, 0)) / 2
-        if one.skids and apart <= one.value <= WIDEST_SKID * apart:
+        if one.skids and apart <= one.value <= _widest(one, apart):
             continue
         if _differs(one.value, apart, _LEAST):
             far = "far" if one.value > apart else "little"
@@ -94,6 +97,25 @@ def _remark(one: Stated, real: float, why: str) -> Remark:
 
 def _differs(value: float, real: float, least: float) -> bool:
     return 0 < real < FARTHEST and abs(value - real) > max(TOLERANCE * real, least)
+
+
+def _widest(one: Stated, track: float) -> float:
+    """The most that skidding wheels are rightly said to be apart, m.
+
+    Four wheels that turn on the spot, u the speed of their rims: each slides t/2 - u along and
+    b/2 across, at a turning of 1. Friction against that turns the robot no further where
+    t/2 (t/2 - u) + b/2 b/2 = 0, so that 2 u = t (1 + (b/t)²), which is 2 t where it is as long
+    as wide. What is longer is granted as much beyond that as `WIDEST_SKID` is.
+    """
+    along = [
+        wheel_place(one.robot, joint).position[0]
+        for name in one.first + one.second
+        if (joint := one.robot.joints[name]).child in one.robot.placed
+    ]
+    if not along or track <= 0:
+        return 0.0
+    base = max(along) - min(along)
+    return WIDEST_SKID * track * max(1.0, (1 + (base / track) ** 2) / 2)
 
 
 def _mean_between(one: Stated, axis: int) -> float:
