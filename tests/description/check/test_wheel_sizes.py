@@ -195,6 +195,27 @@ def test_skidding_wheels_may_be_said_to_be_as_far_apart_as_friction_asks(told, b
         assert finding.instead == f"<wheelSeparation>{TRACK:g}</wheelSeparation>"
 
 
+def test_wheels_that_stand_beside_their_joints_may_be_stated_either_way(told):
+    """The tyres of the rear axle are 0.05 m further out than their joints."""
+    drive = {**REAR, "wheel_diameter": 2 * RADIUS}
+
+    def said(separation):
+        text = car(plugin("libgazebo_ros_diff_drive.so", **drive, wheel_separation=separation))
+        for name, left in (("rear_left", 0.05), ("rear_right", -0.05)):
+            start = text.index(f'<link name="{name}_wheel"')
+            text = text[:start] + text[start:].replace(
+                '<origin rpy="1.5707963 0 0"/>',
+                f'<origin xyz="0 {left} 0" rpy="1.5707963 0 0"/>',
+                1,
+            )
+        return told(text)
+
+    assert said(TRACK) == []
+    assert said(TRACK + 0.1) == []
+    (finding,) = said(TRACK + 0.3)
+    assert finding.instead == f"<wheel_separation>{TRACK + 0.1:g}</wheel_separation>"
+
+
 def test_a_pair_of_wheels_has_its_own_separation(told):
     pairs = (
         '<plugin name="p" filename="libgazebo_ros_diff_drive.so"><num_wheel_pairs>2'

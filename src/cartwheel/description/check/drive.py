@@ -209,19 +209,37 @@ def wheel_radius(robot: Robot, joint: Joint) -> float | None:
     return None
 
 
+def wheel_middle(robot: Robot, joint: Joint) -> tuple[float, float, float]:
+    """The middle of a wheel's width in the model's frame, m: its joint may be beside it."""
+    place, axis = wheel_place(robot, joint), np.array(joint.axis.xyz)
+    for kind in (robot.collisions, robot.visuals):
+        cloud = _cloud(robot, joint, kind)
+        if cloud is not None:
+            along = cloud @ axis
+            x, y, z = (axis * (along.min() + along.max()) / 2 / (axis @ axis or 1.0)).tolist()
+            return (place @ Pose((x, y, z))).position
+    return place.position
+
+
 def _widths(robot: Robot, joint: Joint, kind: Mapping[str, list[Solid]]) -> Floats | None:
     """Of a wheel in directions all around its axis, m; None where it has no such geometry."""
-    here = (robot.links[joint.child].pose @ joint.pose).inverse()
+    cloud = _cloud(robot, joint, kind)
+    if cloud is None:
+        return None
+    # Half its width, not its reach: a wheel may be a millimetre off its axis.
+    sideways = _across(np.array(joint.axis.xyz))
+    return np.asarray(np.ptp(cloud @ sideways.T, axis=0))
+
+
+def _cloud(robot: Robot, joint: Joint, kind: Mapping[str, list[Solid]]) -> Floats | None:
+    """Points of a wheel in its joint's frame, shape (n, 3), m; None without such geometry."""
+    here = wheel_place(robot, joint).inverse()
     clouds = [
         solid.placed(here @ robot.links[name].pose)
         for name in wheel_links(robot, joint)
         for solid in kind[name]
     ]
-    if not clouds:
-        return None
-    # Half its width, not its reach: a wheel may be a millimetre off its axis.
-    sideways = _across(np.array(joint.axis.xyz))
-    return np.asarray(np.ptp(np.concatenate(clouds) @ sideways.T, axis=0))
+    return np.concatenate(clouds) if clouds else None
 
 
 def _across(axis: Floats) -> Floats:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from cartwheel.description.check import nodes
-from cartwheel.description.check.drive import is_across, wheel_place, wheel_radius
+from cartwheel.description.check.drive import is_across, wheel_middle, wheel_place, wheel_radius
 from cartwheel.description.check.finding import Remark
 from cartwheel.description.check.rule import rule
 from cartwheel.description.check.subject import Robot, Subject
@@ -28,12 +28,13 @@ def wheel_separation(subject: Subject) -> Iterator[Remark]:
     for one in stated(subject):
         if one.measure not in ("apart", "reach"):
             continue
-        apart = _mean_between(one, 1)
+        apart, joints = (_mean_between(one, 1, middles=middles) for middles in (True, False))
         if one.measure == "reach":
-            apart = (apart + _mean_between(one, 0)) / 2
-        if one.skids and apart <= one.value <= _widest(one, apart):
+            apart, joints = ((each + _mean_between(one, 0)) / 2 for each in (apart, joints))
+        if one.skids and min(apart, joints) <= one.value <= _widest(one, apart):
             continue
-        if _differs(one.value, apart, _LEAST):
+        # A wheel may stand beside its joint; who states the distance of the joints meant it.
+        if _differs(one.value, apart, _LEAST) and _differs(one.value, joints, _LEAST):
             far = "far" if one.value > apart else "little"
             said = "the wheels are" if one.measure == "apart" else "half of base and track is"
             yield _remark(
@@ -118,15 +119,15 @@ def _widest(one: Stated, track: float) -> float:
     return WIDEST_SKID * track * max(1.0, (1 + (base / track) ** 2) / 2)
 
 
-def _mean_between(one: Stated, axis: int) -> float:
-    """Between the means of the two sets of joints along an axis of the robot, m."""
-    first, second = (_mean(one.robot, names, axis) for names in (one.first, one.second))
+def _mean_between(one: Stated, axis: int, *, middles: bool = False) -> float:
+    """Between the means of two sets of joints, or of wheels, along an axis of the robot, m."""
+    first, second = (_mean(one.robot, names, axis, middles) for names in (one.first, one.second))
     return 0.0 if first is None or second is None else abs(first - second)
 
 
-def _mean(robot: Robot, names: tuple[str, ...], axis: int) -> float | None:
+def _mean(robot: Robot, names: tuple[str, ...], axis: int, middles: bool) -> float | None:
     places = [
-        wheel_place(robot, joint).position[axis]
+        (wheel_middle(robot, joint) if middles else wheel_place(robot, joint).position)[axis]
         for name in names
         if (joint := robot.joints[name]).child in robot.placed
     ]
