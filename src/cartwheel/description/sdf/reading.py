@@ -15,7 +15,8 @@ from cartwheel.description.model import RobotDescription, WorldDescription
 from cartwheel.description.packages import Packages
 from cartwheel.description.sdf.context import NEWEST, Context, read_version
 from cartwheel.description.sdf.harmless import HARMLESS
-from cartwheel.description.sdf.model import Model, read_model
+from cartwheel.description.sdf.model import read_model
+from cartwheel.description.sdf.unplaced import Model
 from cartwheel.description.sdf.world import read_world
 from cartwheel.description.xml import Node, unread
 from cartwheel.errors import DescriptionError, Diagnostic

@@ -18,15 +18,10 @@ from cartwheel.description.sdf.frames import WORLD, Frames
 from cartwheel.description.sdf.harmless import HARMLESS
 from cartwheel.description.sdf.include import Included, NotThereError, open_include
 from cartwheel.description.sdf.light import read_light
-from cartwheel.description.sdf.model import (
-    Model,
-    NoLinksError,
-    name_apart,
-    read_included,
-    read_model,
-)
+from cartwheel.description.sdf.model import NoLinksError, read_included, read_model
 from cartwheel.description.sdf.sensors import read_plugins
 from cartwheel.description.sdf.state import apply_state
+from cartwheel.description.sdf.unplaced import Model, name_apart
 from cartwheel.description.sdf.world_joints import join_models
 from cartwheel.description.xml import Node, to_element, unread
 from cartwheel.errors import DescriptionError

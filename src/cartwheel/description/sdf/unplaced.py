@@ -1,0 +1,77 @@
+"""Models that were read and stand nowhere yet."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+
+from cartwheel.description.model import Element, Joint, Link, PluginTag, RobotDescription
+from cartwheel.description.sdf.context import Context
+from cartwheel.description.sdf.frames import Frames
+from cartwheel.description.sdf.parts import judge
+from cartwheel.errors import Origin
+from cartwheel.geometry import Pose
+
+
+@dataclass(slots=True)
+class Model:
+    """A model before it is placed."""
+
+    name: str
+    frames: Frames
+    links: list[Link]
+    joints: list[Joint]
+    plugins: list[PluginTag]
+    static: bool
+    self_collide: bool
+    pose: Pose
+    """Relative to `relative_to`, the placement frame already taken into account."""
+    relative_to: str
+    origin: Origin
+    merge: bool = False
+    nested: list[Model] = field(default_factory=list)
+    transmissions: tuple[Element, ...] = ()
+    """Of a URDF, as what follows."""
+    ros2_control: tuple[Element, ...] = ()
+    text: str = ""
+
+    def describe(self, pose: Pose, ctx: Context, text: str = "") -> RobotDescription:
+        """The model as one robot, placed in the world.
+
+        Raises:
+            DescriptionError: a link that moves has an inertia that no body has.
+        """
+        self.links = judge(self.links, self.joints, ctx, static=self.static)
+        return RobotDescription(
+            name=self.name,
+            links=tuple(self.links),
+            joints=tuple(self.joints),
+            plugins=tuple(self.plugins),
+            static=self.static,
+            self_collide=self.self_collide,
+            pose=pose,
+            canonical_link=self.frames.link_of("", self.origin) if self.links else "",
+            transmissions=self.transmissions,
+            ros2_control=self.ros2_control,
+            text=text or self.text,
+            origin=self.origin,
+        )
+
+
+def name_apart(models: Iterable[Model], ctx: Context) -> None:
+    """Gives models another name where one before them has their own, as Gazebo Classic does."""
+    models = list(models)
+    taken = {model.name for model in models}
+    numbers: dict[str, Iterator[int]] = {}
+    for model in models:
+        name = model.name
+        if name not in numbers:
+            numbers[name] = itertools.count(1)
+            continue
+        model.name = next(free for i in numbers[name] if (free := f"{name}_{i}") not in taken)
+        ctx.tell(
+            "warning",
+            f'model "{name}" has the name of another model: it is called "{model.name}" here',
+            model.origin,
+        )
