@@ -266,3 +266,35 @@ def test_a_caster_that_drags_neither_hops_nor_brakes_its_robot(make, speed):
         pitches.append(robot.pose.rpy[1])
     assert (robot.pose.x - before) / 2.0 == pytest.approx(speed, rel=0.06)
     assert max(pitches) - min(pitches) < 0.02
+
+
+TURNING = """<robot name="slab">
+<link name="trunk"><inertial><mass value="2"/>
+  <inertia ixx="0.02" ixy="0" ixz="0" iyy="0.02" iyz="0" izz="0.02"/></inertial>
+  <collision><geometry><box size="0.4 0.4 0.1"/></geometry></collision></link>
+<link name="disc"><inertial><mass value="0.05"/>
+  <inertia ixx="1e-4" ixy="0" ixz="0" iyy="1e-4" iyz="0" izz="1e-4"/></inertial>
+  <collision><origin rpy="{rpy}"/>
+  <geometry><cylinder radius="0.1" length="0.01"/></geometry></collision></link>
+<joint name="spin" type="continuous"><origin xyz="{xyz}"/><axis xyz="{axis}"/>
+  <parent link="trunk"/><child link="disc"/></joint></robot>"""
+
+
+@pytest.mark.parametrize(
+    ("xyz", "axis", "rpy"),
+    [("0 0 0.1", "0 0 1", "0 0 0"), ("0 0 0.4", "0 1 0", "1.5707963 0 0")],
+    ids=["rotor", "wrist"],
+)
+def test_a_trunk_without_wheels_beside_it_slides_as_coulomb_says(make, xyz, axis, rpy):
+    """Struck at μ = 1: it is sped up by F / m - g, and stopped by g."""
+    robot = load_text(TURNING.format(xyz=xyz, axis=axis, rpy=rpy), file="slab.urdf")
+    world = stand(make, robot, pose=Pose((0, 0, 0.05)))
+    before = world.model("slab").pose.x
+    mass, force, seconds, gravity = 2.05, 205.0, 0.01, 9.8
+    world.session.simulation.forces.wrench(
+        "slab", "trunk", force=(force, 0, 0), torque=(0, 0, 0), duration_ns=int(seconds * 1e9)
+    )
+    world.run(1.0)
+    speed = (force / mass - gravity) * seconds
+    way = speed * seconds / 2 + speed**2 / (2 * gravity)
+    assert world.model("slab").pose.x - before == pytest.approx(way, rel=0.1)

@@ -43,7 +43,7 @@ from cartwheel.world.entry import (
 )
 from cartwheel.world.lights import add_light
 from cartwheel.world.shapes import Assets, pose_arguments, solids
-from cartwheel.world.tyres import Axle, axle_of, tyre
+from cartwheel.world.tyres import Axle, axle_of, lowest, tread_of, tyre
 from cartwheel.world.visuals import add_visual
 
 COLLISION_GROUP = 4
@@ -178,6 +178,11 @@ class BodyBuilder:
         for collision in link.collisions:
             name = scoped(entry.name, link.name, collision.name)
             shape, place = tyre(collision, axle)
+            there = link.pose @ place
+            tread = None
+            if axle is not None:
+                tread = tread_of(shape, there, axle.seen_from(link.pose.inverse()))
+            bottom = lowest(shape, there) if trunk else None
             if isinstance(shape, Plane) and not entry.description.static:
                 raise WorldError(
                     f'collision "{collision.name}": an endless plane must be static',
@@ -212,7 +217,8 @@ class BodyBuilder:
                         model=entry.name,
                         moves=moves,
                         rolls=axle is not None,
-                        trunk=trunk,
+                        tread=tread,
+                        bottom=bottom,
                         friction=friction,
                         reference=reference,
                         surface=collision.surface,

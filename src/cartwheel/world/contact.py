@@ -19,6 +19,7 @@ from typing import Any
 
 from cartwheel.description.model import Surface
 from cartwheel.geometry import Vec3
+from cartwheel.world.tyres import Tread
 
 DEFAULT_MU = 1.0
 """Where a description states none, as in Gazebo."""
@@ -33,7 +34,7 @@ IMPEDANCE = (0.95, 0.99, 0.0005, 0.5, 2.0)
 FRICTION_TIME_CONSTANT = 0.03
 """s; in which a slip that the friction can hold dies out. Below mu g T/2 friction is viscous."""
 TRAILING_TIME_CONSTANT = 0.4
-"""s; the same of what a robot on wheels drags along, such as a caster that does not turn.
+"""s; the same of what a robot drags along on its wheels' ground, as a caster that does not turn.
 
 Its wheels keep it from creeping, and friction that stops it at once throws it up."""
 TORSION = 0.005
@@ -57,8 +58,10 @@ class BuiltSurface:
     """Whether any joint lies between it and the world."""
     rolls: bool
     """Whether it is a wheel."""
-    trunk: bool
-    """Whether it is of the model's root, or fixed to it, and nothing holds that."""
+    tread: Tread | None
+    """Of a wheel that may roll on the ground."""
+    bottom: float | None
+    """How low it reaches in its model, where it is fixed to its root and nothing holds that; m."""
     friction: tuple[float, float, float]
     reference: tuple[float, float]
     surface: Surface

@@ -8,7 +8,7 @@ turning on the spot.
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -17,6 +17,7 @@ import mujoco
 from cartwheel.geometry import Vec3
 from cartwheel.world import contact
 from cartwheel.world.contact import BuiltSurface
+from cartwheel.world.tyres import Tread
 
 MOST_PAIRS = 500
 """Pairs with parameters of their own; each costs 6 ns a step."""
@@ -81,7 +82,7 @@ def stated_pairs(
     mu v b/k, with b the damping of friction and k the stiffness of the normal, and skips. Only
     a pair stated by itself can have a b of its own; what slides, slides on what stands.
     A wheel keeps the hard one: in a turn at rate ω it slips sideways by ω v/b. What the
-    trunk of a robot on wheels drags along is led by them, and is softer still.
+    trunk of a robot drags along where its wheels roll is led by them, and is softer still.
 
     Each pair is looked at in each step, near or far: a world with more than `MOST_PAIRS` states
     those of its largest floors, and what slides on something smaller is lifted.
@@ -92,7 +93,10 @@ def stated_pairs(
     """
     surfaces = list(surfaces)
     special = any(map(_special, surfaces))
-    wheeled = {each.model for each in surfaces if each.rolls}
+    treads: dict[str, list[Tread]] = {}
+    for each in surfaces:
+        if each.tread is not None:
+            treads.setdefault(each.model, []).append(each.tread)
     movers = [each for each in surfaces if each.moves and (special or not each.rolls)]
     standing = [each for each in surfaces if not each.moves]
     if movers and len(movers) * len(standing) > MOST_PAIRS:
@@ -101,7 +105,7 @@ def stated_pairs(
     count = 0
     for mover in movers:
         for still in standing:
-            trails = mover.trunk and mover.model in wheeled
+            trails = _trails(mover, treads.get(mover.model, ()))
             if (pair := _pair(still, mover, joined, trails)) is not None:
                 count += 1
                 yield pair
@@ -114,6 +118,12 @@ def stated_pairs(
                 if pair is not None:
                     count += 1
                     yield pair
+
+
+def _trails(mover: BuiltSurface, treads: Sequence[Tread]) -> bool:
+    """Whether it touches the ground beside wheels: about as low as they are."""
+    bottom = mover.bottom
+    return bottom is not None and any(abs(bottom - each.bottom) < each.radius for each in treads)
 
 
 def _special(surface: BuiltSurface) -> bool:

@@ -14,7 +14,18 @@ from dataclasses import dataclass
 import numpy as np
 
 from cartwheel.description.meshes import MeshError, convex_hull_input, load_mesh
-from cartwheel.description.model import Collision, Cylinder, Ellipsoid, Joint, Mesh, Shape
+from cartwheel.description.model import (
+    Box,
+    Capsule,
+    Collision,
+    Cone,
+    Cylinder,
+    Ellipsoid,
+    Joint,
+    Mesh,
+    Shape,
+    Sphere,
+)
 from cartwheel.geometry import Pose, Vec3, matrix_from_quat, quat_between, rotate
 
 _ROUND = 0.96
@@ -25,6 +36,8 @@ _DIRECTIONS = 72
 _CENTRED, _ALONG = 0.1, 0.999
 """Of a cylinder's radius that it may lie off the axis, and the cosine between the two: wheels
 that are drawn a little askew are wheels, and stay askew."""
+_LEVEL = 0.5
+"""Cosine between an axle and the vertical from which on nothing rolls: rotors, lasers, turrets."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,6 +77,59 @@ def tyre(collision: Collision, axle: Axle | None) -> tuple[Shape, Pose]:
     if axle is not None and isinstance(shape, Mesh):
         return _round_mesh(shape, pose, axle) or (shape, pose)
     return shape, pose
+
+
+@dataclass(frozen=True, slots=True)
+class Tread:
+    """Where a wheel may touch the ground, in its model; m."""
+
+    bottom: float
+    radius: float
+
+
+def tread_of(shape: Shape, pose: Pose, axle: Axle) -> Tread | None:
+    """A wheel's tread; None for what turns without end and rolls on nothing.
+
+    Args:
+        shape: That collides, as `tyre` has it.
+        pose: Its in the model, and so are the axle's.
+        axle: What it turns about.
+    """
+    match shape:
+        case Ellipsoid(radii=radii):
+            radius = max(radii)
+        case Sphere(radius=radius):
+            pass
+        case _:
+            return None
+    if abs(axle.axis[2]) > _LEVEL:
+        return None
+    return Tread(pose.position[2] - radius, radius)
+
+
+def lowest(shape: Shape, pose: Pose) -> float:
+    """How low a shape reaches at a pose, m; infinite where its mesh cannot be read."""
+    down = matrix_from_quat(pose.orientation)[2]
+    match shape:
+        case Box(size=size):
+            depth = float(np.abs(down) @ np.array(size)) / 2
+        case Sphere(radius=radius):
+            depth = radius
+        case Ellipsoid(radii=radii):
+            depth = float(np.linalg.norm(down * np.array(radii)))
+        case Capsule(radius=radius, length=length):
+            depth = radius + abs(float(down[2])) * length / 2
+        case Cylinder(radius=radius, length=length) | Cone(radius=radius, length=length):
+            depth = radius * math.hypot(*down[:2]) + abs(float(down[2])) * length / 2
+        case Mesh():
+            try:
+                points, _ = convex_hull_input(load_mesh(shape))
+            except MeshError:
+                return math.inf  # told where the shape is made
+            depth = -float((points @ down).min()) if len(points) else -math.inf
+        case _:
+            return math.inf
+    return pose.position[2] - depth
 
 
 def _on(axle: Axle, shape: Cylinder, pose: Pose) -> bool:
