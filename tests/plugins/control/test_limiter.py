@@ -65,3 +65,17 @@ def test_ros2_slows_by_a_limit_of_its_own():
 def test_limits_that_make_no_sense(values, text):
     with pytest.raises(PluginError, match=text):
         Limiter.read(Settings(values, "c"))
+
+
+@pytest.mark.parametrize(
+    ("parameters", "limited"),
+    [
+        ({"max_jerk": 0.0, "min_jerk": 0.0}, False),
+        ({"max_jerk": 0.0, "has_jerk_limits": True}, True),
+        ({"max_acceleration": 0.0}, False),
+        ({"max_velocity": 0.0}, True),
+    ],
+)
+def test_a_limit_of_zero_that_would_let_nothing_move_is_none(parameters, limited):
+    limiter = Limiter.read(Settings(parameters, "c"))
+    assert (limiter.limit(1.0, 0.0, 0.0, 0.1) == 0.0) == limited

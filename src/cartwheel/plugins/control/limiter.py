@@ -81,4 +81,7 @@ def _pair(settings: Settings, kind: str) -> tuple[float, float] | None:
         low = -high
     if low > high:
         raise settings.error(f'"min_{kind}" {low:g} is above "max_{kind}" {high:g}')
+    if stated is None and low == high == 0 and kind != "velocity":
+        # Written for releases that ask for has_…_limits too; obeyed, nothing would ever move.
+        return None
     return low, high
