@@ -11,7 +11,7 @@ from cartwheel.api import Model, World
 from cartwheel.corpus.verdict import Drive, Reach, Stand
 from cartwheel.description.model import Joint, RobotDescription
 from cartwheel.geometry import Pose, rotate
-from cartwheel.graph import JointInput, TopicInfo
+from cartwheel.graph import TWIST_STAMPED, JointInput, TopicInfo
 from cartwheel.simulation.clock import NANOSECONDS
 
 VELOCITY, TURN = 0.2, 0.4
@@ -21,8 +21,6 @@ _SPEED_UP = 4.0
 _MEASURED = 2.0
 _RATE = 20.0
 """Hz of commands."""
-_STAMPED = "geometry_msgs/msg/TwistStamped"
-_TWISTS = ("geometry_msgs/msg/Twist", _STAMPED)
 _STEP, _SLIDE = 0.2, 0.02
 """rad and m by which a joint is moved."""
 _TRAJECTORY = 2.0
@@ -64,7 +62,7 @@ def stand(world: World, model: Model, description: RobotDescription, seconds: fl
 def drives(world: World, model: Model) -> Iterator[Drive]:
     """Drives by each topic that takes velocities, ahead and around, each from the start."""
     for info in world.graph.topics():
-        if info.type not in _TWISTS or not info.subscribers:
+        if not info.drives:
             continue
         ahead, _ = _driven(world, model, info, (VELOCITY, 0.0))
         _, turn = _driven(world, model, info, (0.0, TURN))
@@ -122,7 +120,7 @@ def _drive_on(world: World, topic: TopicInfo, command: tuple[float, float], seco
     twist = {"linear": {"x": command[0]}, "angular": {"z": command[1]}}
     for _ in range(round(seconds * _RATE)):
         said: dict[str, Any] = twist
-        if topic.type == _STAMPED:
+        if topic.type == TWIST_STAMPED:
             now, rest = divmod(world.session.simulation.time_ns, NANOSECONDS)
             said = {"header": {"stamp": {"sec": now, "nanosec": rest}}, "twist": twist}
         world.publish(topic.name, said)

@@ -3,6 +3,8 @@
 from cartwheel.graph.action import Action, ActionListener, Goal, GoalState
 from cartwheel.graph.actionlib import ActionTopics
 from cartwheel.graph.graph import (
+    TWIST,
+    TWIST_STAMPED,
     Callback,
     Graph,
     Publisher,
@@ -19,6 +21,8 @@ from cartwheel.graph.reconfigure import ReconfigureParameter, ReconfigureServer,
 from cartwheel.graph.transforms import StaticTransforms
 
 __all__ = [
+    "TWIST",
+    "TWIST_STAMPED",
     "Action",
     "ActionListener",
     "ActionTopics",

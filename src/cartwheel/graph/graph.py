@@ -24,6 +24,8 @@ from cartwheel.messages import CdrCache
 Callback = Callable[[Any], None]
 Handler = Callable[[Any], Any]
 Qos = Literal["default", "sensor", "latched"]
+TWIST = "geometry_msgs/msg/Twist"
+TWIST_STAMPED = "geometry_msgs/msg/TwistStamped"
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -39,6 +41,11 @@ class TopicInfo:
     qos: Qos
     dropped: tuple[int, ...] = ()
     """How many messages each of the subscribers has missed, as far as it counts them."""
+
+    @property
+    def drives(self) -> bool:
+        """Whether somebody takes velocities there, stamped or not."""
+        return self.type in (TWIST, TWIST_STAMPED) and bool(self.subscribers)
 
     @property
     def readers(self) -> tuple[str, ...]:

@@ -177,8 +177,7 @@ class Report:
 
     def _try(self, session: Session) -> None:
         topics = session.graph.topics()
-        twists = ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
-        if any(t.type in twists and t.subscribers for t in topics):
+        if any(topic.drives for topic in topics):
             self._line("try", "cartwheel teleop")
         published = [topic.name for topic in topics if topic.publishers]
         for wanted in ("odom", "imu", "image", "clock"):

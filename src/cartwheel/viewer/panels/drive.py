@@ -13,14 +13,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from cartwheel.graph import TopicInfo
+from cartwheel.graph import TWIST, TWIST_STAMPED, TopicInfo
 from cartwheel.messages import header, message_class
 from cartwheel.viewer.panels.base import Panel
 from cartwheel.viewer.stage import Stage
 from cartwheel.viewer.teleop import MOVES, Teleop
 
-TWIST = "geometry_msgs/msg/Twist"
-STAMPED = "geometry_msgs/msg/TwistStamped"
 _ALL = "all that listen"
 _NONE = "nothing listens"
 _LABELS = {
@@ -64,8 +62,7 @@ class DrivePanel(Panel):
         self._pad.content = self._html()
 
     def show_topics(self, topics: Sequence[TopicInfo]) -> None:
-        kinds = (TWIST, STAMPED)
-        drivable = {t.name: t.type for t in topics if t.type in kinds and t.subscribers}
+        drivable = {topic.name: topic.type for topic in topics if topic.drives}
         if drivable == self._drivable:
             return
         self._drivable = drivable
@@ -90,10 +87,10 @@ class DrivePanel(Panel):
             kind = self._drivable.get(topic)
             if kind == TWIST:
                 self.graph.publish(topic, TWIST, twist)
-            elif kind == STAMPED:
+            elif kind == TWIST_STAMPED:
                 # Without a time it is of now: this thread may not ask the simulation for it.
-                message: Any = message_class(STAMPED)(header=header(0, ""), twist=twist)
-                self.graph.publish(topic, STAMPED, message)
+                message: Any = message_class(TWIST_STAMPED)(header=header(0, ""), twist=twist)
+                self.graph.publish(topic, TWIST_STAMPED, message)
 
     def _html(self) -> str:
         teleop = self._teleop
