@@ -63,6 +63,23 @@ def test_what_is_not_said_of_reliability_depends_on_the_side() -> None:
     assert not discovery.decode_endpoint(bare, writer=False).qos.reliable
 
 
+def test_what_a_reader_asks_for_beyond_what_is_offered_has_ros_name() -> None:
+    offered = EndpointQos(reliable=False)
+    assert offered.misfit(EndpointQos(reliable=False)) == ""
+    assert offered.misfit(EndpointQos()) == "RELIABILITY"
+    assert EndpointQos().misfit(EndpointQos(transient_local=True)) == "DURABILITY"
+    whole = discovery.encode_endpoint(endpoint(OURS + READER))
+    # A deadline of half a second, before all others; then by-topic liveliness of one second.
+    strict = whole[:4] + b"\x23\x00\x08\x00\0\0\0\0\0\0\0\x80" + whole[4:]
+    asked = discovery.decode_endpoint(strict, writer=False).qos
+    assert (asked.deadline, EndpointQos().misfit(asked)) == (0.5, "DEADLINE")
+    at = whole.index(b"\x1b\x00\x0c\x00")
+    shown = whole[:at] + b"\x1b\x00\x0c\x00\2\0\0\0\1\0\0\0\0\0\0\0" + whole[at + 16 :]
+    asked = discovery.decode_endpoint(shown, writer=False).qos
+    assert (asked.liveliness, asked.lease) == (2, 1.0)
+    assert EndpointQos().misfit(asked) == "LIVELINESS"
+
+
 @pytest.mark.parametrize("loss", [0.0, 0.3])
 @pytest.mark.parametrize("size", [10, 150_000])
 def test_reliable_samples_arrive_in_order_over_a_network_that_loses(loss: float, size: int) -> None:

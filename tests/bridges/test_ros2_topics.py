@@ -160,6 +160,19 @@ def test_who_asks_for_more_than_is_offered_gets_nothing(bridged: Ros2Bridged, pe
     peer.subscribe("/clock", CLOCK)
     wait_for(lambda: len(peer.received("/clock")) > 50, "the clock")
     assert not peer.received(CAMERA)
+    assert told(bridged, f"reads {CAMERA} and asks for more than is offered (RELIABILITY)")
+
+
+def test_who_takes_a_topic_for_another_type_is_told(bridged: Ros2Bridged, peer: Peer) -> None:
+    peer.subscribe("/odom", CLOCK)
+    peer.publish("/part2_cmr/cmd_vel", CLOCK, {})
+    wait_for(lambda: told(bridged, f"/odom as {CLOCK}, which here is {ODOMETRY}"), "the reader")
+    wait_for(lambda: told(bridged, f"cmd_vel as {CLOCK}, which here is {TWIST}"), "the writer")
+
+
+def told(bridged: Ros2Bridged, text: str) -> bool:
+    """Whether the user has read that."""
+    return any(text in each.message for each in bridged.reports[:])
 
 
 def test_static_transforms_reach_who_comes_late(bridged: Ros2Bridged, peer: Peer) -> None:

@@ -14,7 +14,7 @@ import numpy as np
 from cartwheel.bridges.loop import Loop
 from cartwheel.bridges.ros2.middleware import Answer, Profile
 from cartwheel.bridges.ros2.rtps import discovery, wire
-from cartwheel.bridges.ros2.rtps.discovery import EndpointQos
+from cartwheel.bridges.ros2.rtps.discovery import Endpoint, EndpointQos
 from cartwheel.bridges.ros2.rtps.network import Reach, domain_id
 from cartwheel.bridges.ros2.rtps.participant import Participant
 from cartwheel.bridges.ros2.rtps.reader import Reader, Taken
@@ -80,6 +80,7 @@ class Dds:
     def start(self) -> None:
         """Joins."""
         self.participant.on_endpoints = self._found_others
+        self.participant.on_misfit = self._found_misfit
         self.participant.start()
         type_ = ros2_type(_ENTITIES)
         self._info = self.participant.writer(
@@ -169,6 +170,27 @@ class Dds:
 
     def _found_others(self) -> None:
         self.on_others()
+
+    def _found_misfit(self, ours: Endpoint, other: Endpoint, policy: str) -> None:
+        """What nodes of ROS warn of as well: somebody wonders why nothing comes."""
+        kind, slash, name = ours.topic.partition("/")
+        if kind == "rt":
+            does, then = (
+                ("reads", "it gets nothing")
+                if ours.is_writer
+                else ("publishes", "nothing of it arrives")
+            )
+        elif kind == "rq":
+            name, does, then = name.removesuffix("Request"), "calls", "it is not answered"
+        else:
+            return
+        if not policy:
+            why = f"as {_plain(other.type)}, which here is {_plain(ours.type)}"
+        elif ours.is_writer:
+            why = f"and asks for more than is offered ({policy})"
+        else:
+            why = f"and offers less than is asked for ({policy})"
+        self._tell(f"a node {does} {slash}{name} {why}: {then}")
 
     def _add(self, node: str, *endpoints: Writer | Reader) -> None:
         self._endpoints.update(dict.fromkeys(endpoints, node or self._name))
@@ -301,6 +323,11 @@ def _qos(profile: Profile) -> EndpointQos:
         transient_local=profile.transient_local,
         depth=profile.depth,
     )
+
+
+def _plain(dds: str) -> str:
+    """A type's name as ROS spells it; whatever else another one says is cut short."""
+    return dds.replace("::dds_::", "::").replace("::", "/").removesuffix("_")[:100]
 
 
 def _hash(value: str) -> bytes:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import struct
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -17,12 +18,14 @@ ENDPOINTS = 0x3F
 
 _SENTINEL, _LEASE, _TOPIC, _TYPE = 0x01, 0x02, 0x05, 0x07
 _DOMAIN, _VERSION, _VENDOR, _RELIABILITY, _LIVELINESS = 0x0F, 0x15, 0x16, 0x1A, 0x1B
+_DEADLINE = 0x23
 _DURABILITY, _USER_DATA, _USER_LOCATOR, _META_LOCATOR = 0x1D, 0x2C, 0x31, 0x32
 _ENDPOINT_LOCATOR, _HISTORY, _PARTICIPANT_GUID, _ENDPOINTS = 0x2F, 0x40, 0x50, 0x58
 _ENDPOINT_GUID, _ENTITY_NAME, _KEY_HASH, _STATUS, _REPRESENTATION = 0x5A, 0x62, 0x70, 0x71, 0x73
 RELATED, RELATED_FASTDDS = 0x0083, 0x800F
 """Which sample another one answers: the standard's parameter, and Fast DDS's own."""
-_FOREVER = struct.pack("<iI", 0x7FFFFFFF, 0xFFFFFFFF)
+_FOREVER_SECONDS = 0x7FFFFFFF
+_FOREVER = struct.pack("<iI", _FOREVER_SECONDS, 0xFFFFFFFF)
 _UDP4 = 1
 
 Address = tuple[str, int]
@@ -36,6 +39,22 @@ class EndpointQos:
     transient_local: bool = False
     depth: int = 10
     """Samples kept of each writer."""
+    deadline: float = math.inf
+    """s that at most pass between two samples."""
+    liveliness: int = 0
+    """By what a writer shows that it is there: 0 is that its participant is."""
+    lease: float = math.inf
+    """s after which a writer that does not show it is taken for gone."""
+
+    def misfit(self, asked: EndpointQos) -> str:
+        """The policy in which a reader asks for more than is offered here; empty where none."""
+        asks_for_more = {
+            "RELIABILITY": asked.reliable and not self.reliable,
+            "DURABILITY": asked.transient_local and not self.transient_local,
+            "DEADLINE": self.deadline > asked.deadline,
+            "LIVELINESS": self.liveliness < asked.liveliness or self.lease > asked.lease,
+        }
+        return next((policy for policy, more in asks_for_more.items() if more), "")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -49,6 +68,11 @@ class Endpoint:
     user_data: bytes = b""
     locators: tuple[Address, ...] = ()
     """Its own, where it does not share the participant's."""
+
+    @property
+    def is_writer(self) -> bool:
+        """Whether it is no reader; told by the last byte's lower bits."""
+        return self.guid[15] & 0x3F in (0x02, 0x03)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -181,10 +205,7 @@ def decode_participant(payload: bytes) -> ParticipantData:
     found = _decode(payload)
     order = _order(payload)
     guid = _first(found, _PARTICIPANT_GUID, 16)
-    lease = 100.0
-    if _LEASE in found and len(found[_LEASE][0]) >= 8:
-        seconds, fraction = struct.unpack_from(f"{order}iI", found[_LEASE][0])
-        lease = seconds + fraction / 2**32
+    lease = _duration(found[_LEASE][0], order) if _LEASE in found else 100.0
     return ParticipantData(
         prefix=guid[:12],
         meta=_locators(found.get(_META_LOCATOR, []), order),
@@ -211,8 +232,13 @@ def decode_endpoint(payload: bytes, *, writer: bool) -> Endpoint:
     try:
         kinds = [
             struct.unpack_from(f"{order}I", found[name][0])[0] if name in found else default
-            for name, default in ((_RELIABILITY, 2 if writer else 1), (_DURABILITY, 0))
+            for name, default in (
+                (_RELIABILITY, 2 if writer else 1),
+                (_DURABILITY, 0),
+                (_LIVELINESS, 0),
+            )
         ]
+        liveliness = found.get(_LIVELINESS, [b""])[0]
         topic, type_ = (_text(_first(found, name, 5), order) for name in (_TOPIC, _TYPE))
     except (struct.error, UnicodeDecodeError) as error:
         raise MalformedError(str(error)) from None
@@ -222,7 +248,13 @@ def decode_endpoint(payload: bytes, *, writer: bool) -> Endpoint:
         guid=_first(found, _ENDPOINT_GUID, 16),
         topic=topic,
         type=type_,
-        qos=EndpointQos(reliable=kinds[0] >= 2, transient_local=kinds[1] >= 1),
+        qos=EndpointQos(
+            reliable=kinds[0] >= 2,
+            transient_local=kinds[1] >= 1,
+            deadline=_duration(found.get(_DEADLINE, [b""])[0], order),
+            liveliness=kinds[2],
+            lease=_duration(liveliness[4:], order),
+        ),
         user_data=user_data[4 : 4 + length],
         locators=_locators(found.get(_ENDPOINT_LOCATOR, []), order),
     )
@@ -256,6 +288,14 @@ def _first(found: dict[int, list[bytes]], name: int, length: int) -> bytes:
         raise MalformedError(f"parameter {name:#x} is missing")
     value = found[name][0]
     return value[:16] if name in (_ENDPOINT_GUID, _PARTICIPANT_GUID) else value
+
+
+def _duration(value: bytes, order: str) -> float:
+    """In s; without end where nothing is said."""
+    if len(value) < 8:
+        return math.inf
+    seconds, fraction = struct.unpack_from(f"{order}iI", value)
+    return math.inf if seconds >= _FOREVER_SECONDS else seconds + fraction / 2**32
 
 
 def _text(value: bytes, order: str) -> str:

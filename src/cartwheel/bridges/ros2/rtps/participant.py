@@ -81,6 +81,8 @@ class Participant:
         )
         self.on_endpoints: Callable[[], None] = lambda: None
         """Told when others' writers or readers come or go."""
+        self.on_misfit: Callable[[Endpoint, Endpoint, str], None] = lambda *_: None
+        """Told of two that do not fit, ours first, and the policy; empty where types differ."""
         self._data = ParticipantData(
             prefix=self.prefix,
             meta=self._network.locators,
@@ -396,20 +398,22 @@ class Participant:
         self.on_endpoints()
 
     def _match_reader(self, writer: Writer, other: Endpoint, remote: _Remote) -> None:
-        if self._fit(writer.endpoint, other, offered=writer.endpoint.qos, asked=other.qos):
+        offered = writer.endpoint
+        if self._fit(offered, other, offered.qos.misfit(other.qos)):
             writer.match(other, self._address(other, remote))
 
     def _match_writer(self, reader: Reader, other: Endpoint, remote: _Remote) -> None:
-        if self._fit(reader.endpoint, other, offered=other.qos, asked=reader.endpoint.qos):
+        asked = reader.endpoint
+        if self._fit(asked, other, other.qos.misfit(asked.qos)):
             reader.match(other, self._address(other, remote))
 
     def _address(self, endpoint: Endpoint, remote: _Remote) -> Address:
         return self._nearest(endpoint.locators or remote.data.user, remote.address[0])
 
-    @staticmethod
-    def _fit(ours: Endpoint, other: Endpoint, *, offered: EndpointQos, asked: EndpointQos) -> bool:
-        if not ours.topic or (ours.topic, ours.type) != (other.topic, other.type):
+    def _fit(self, ours: Endpoint, other: Endpoint, policy: str) -> bool:
+        if not ours.topic or ours.topic != other.topic:
             return False
-        return (offered.reliable or not asked.reliable) and (
-            offered.transient_local or not asked.transient_local
-        )
+        if ours.type != other.type or policy:
+            self.on_misfit(ours, other, policy)
+            return False
+        return True
