@@ -2,7 +2,8 @@
 //   sub TOPIC TYPE RELIABLE TRANSIENT   prints "DATA TOPIC SIZE HEX" for each sample
 //   pub TOPIC TYPE HEX                  publishes that sample 20 times a second, reliably
 //   quiet TOPIC                         stops publishing
-//   call SERVICE TYPE HEX               calls a service as rmw_fastrtps does; prints "REPLY SERVICE HEX"
+//   call SERVICE TYPE HEX [DATA DATA]   calls a service as rmw_fastrtps does; prints "REPLY SERVICE HEX".
+//                                       The user data is that of the writer and of the reader.
 //   freeze                              reads nothing more, as a stopped debugger would
 // Others' endpoints are printed as "WRITER|READER TOPIC TYPE RELIABLE DURABILITY USER_DATA".
 #include <atomic>
@@ -123,16 +124,19 @@ static Topic* topic_of(const std::string& name, const std::string& type) {
   return participant->create_topic(name, type, TOPIC_QOS_DEFAULT);
 }
 
-static DataWriter* writer_of(const std::string& name, const std::string& type) {
+static DataWriter* writer_of(const std::string& name, const std::string& type, const std::string& data = "") {
   auto qos = DATAWRITER_QOS_DEFAULT;
+  qos.user_data().assign(data.begin(), data.end());
   qos.reliability().kind = RELIABLE_RELIABILITY_QOS;
   qos.history().depth = 10;
   qos.endpoint().history_memory_policy = eprosima::fastrtps::rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
   return publisher->create_datawriter(topic_of(name, type), qos);
 }
 
-static DataReader* reader_of(const std::string& name, const std::string& type, bool reliable, bool transient) {
+static DataReader* reader_of(const std::string& name, const std::string& type, bool reliable, bool transient,
+                             const std::string& data = "") {
   auto qos = DATAREADER_QOS_DEFAULT;
+  qos.user_data().assign(data.begin(), data.end());
   qos.reliability().kind = reliable ? RELIABLE_RELIABILITY_QOS : BEST_EFFORT_RELIABILITY_QOS;
   if (transient) qos.durability().kind = TRANSIENT_LOCAL_DURABILITY_QOS;
   qos.history().depth = 200;
@@ -140,9 +144,10 @@ static DataReader* reader_of(const std::string& name, const std::string& type, b
   return subscriber->create_datareader(topic_of(name, type), qos);
 }
 
-static void call(const std::string& service, const std::string& type, const Raw& request) {
-  auto reader = reader_of("rr" + service + "Reply", type + "Response_", true, false);
-  auto writer = writer_of("rq" + service + "Request", type + "Request_");
+static void call(const std::string& service, const std::string& type, const Raw& request,
+                 const std::string& asks, const std::string& takes) {
+  auto reader = reader_of("rr" + service + "Reply", type + "Response_", true, false, takes);
+  auto writer = writer_of("rq" + service + "Request", type + "Request_", asks);
   SubscriptionMatchedStatus in;
   PublicationMatchedStatus outgoing;
   for (int i = 0; i < 1000; i++) {
@@ -218,8 +223,9 @@ int main(int, char** argv) {
       publisher->delete_datawriter(writers[name].first);
       writers.erase(name);
     } else if (what == "call") {
-      words >> data;
-      call(name, type, Raw{unhex(data)});
+      std::string asks, takes;
+      words >> data >> asks >> takes;
+      call(name, type, Raw{unhex(data)}, asks, takes);
     } else if (what == "freeze") {
       frozen = true;
     }

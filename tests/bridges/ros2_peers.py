@@ -82,12 +82,16 @@ class Peer:
         data = encode_cdr(from_dict(type_name, values))
         self.tell("pub", f"rt{topic}", dds_name(ros2_name(type_name)), data.hex())
 
-    def call(self, service: str, type_name: str, values: dict[str, Any]) -> Any:
-        """Calls a service and waits for its response."""
+    def call(
+        self, service: str, type_name: str, values: dict[str, Any], *, hashes: bool = False
+    ) -> Any:
+        """Calls a service and waits for its response; on demand with the types' hashes told."""
         type_ = ros2_service(type_name)
         data = encode_cdr(from_dict(type_.request, values))
         before = len(self.lines)
-        self.tell("call", service, type_.dds, data.hex())
+        parts = (type_.request_hash, type_.response_hash) if hashes else ()
+        told = [f"typehash={each};" for each in parts]
+        self.tell("call", service, type_.dds, data.hex(), *told)
         answer = wait_for(
             lambda: [
                 line

@@ -48,7 +48,7 @@ def test_endpoints_are_read_as_they_were_written() -> None:
                 guid=OURS + WRITER,
                 topic="rt/odom",
                 type="nav_msgs::msg::dds_::Odometry_",
-                qos=EndpointQos(reliable=reliable, transient_local=stays),
+                qos=EndpointQos(reliable=reliable, transient_local=stays, lifespan=10.25),
                 user_data=b"typehash=RIHS01_0;",
             )
             assert discovery.decode_endpoint(discovery.encode_endpoint(made), writer=True) == made
@@ -193,6 +193,25 @@ def test_what_the_system_does_not_take_is_counted_where_nobody_asks_again(size: 
     writer.unmatch(THEIRS + b"\0\0\2\4")
     writer.write(payload)
     assert told == [2]
+
+
+def test_who_comes_late_gets_what_is_not_too_old() -> None:
+    sent: list[bytes] = []
+    now = [0]
+    writer = Writer(
+        endpoint(OURS + WRITER, transient_local=True, lifespan=10.0),
+        lambda parts, _: not sent.append(b"".join(parts)),  # type: ignore[func-returns-value]
+        clock=lambda: now[0],
+    )
+    for second in (0, 5, 12):
+        now[0] = second * 1_000_000_000
+        writer.write(bytes([0, 1, 0, 0, second, 0, 0, 0]))
+    writer.match(endpoint(THEIRS + READER, transient_local=True), HERE)
+    contents = [each.content for data in sent for each in wire.read(memoryview(data))]
+    got = [each.payload[4] for each in contents if isinstance(each, wire.Data)]
+    assert got == [5, 12]
+    (told,) = (each for each in contents if isinstance(each, wire.Heartbeat))
+    assert (told.first, told.last) == (2, 3)
 
 
 def test_a_response_goes_to_whom_it_is_for_and_others_do_not_wait_for_it() -> None:

@@ -268,6 +268,31 @@ def test_entities_come_and_go_by_simulation_interfaces(bridged: Ros2Bridged, pee
     assert {0, 1, 10, 11, 20, 31, 32} <= set(features.features.tolist())
 
 
+def test_who_has_the_first_simulation_interfaces_is_answered_in_them(
+    bridged: Ros2Bridged, peer: Peer
+) -> None:
+    """Jazzy and Kilted have other requests and responses under the same names."""
+    older = "simulation_interfaces_v1/srv"
+    request = {"entity": "rosbots", "state": {"pose": {"position": {"x": 3.0, "z": 0.1}}}}
+    values = (f"{older}/SetEntityState", request)
+    assert peer.call("/gz_server/set_entity_state", *values, hashes=True).result.result == 1
+    state = peer.call(
+        "/gz_server/get_entity_state",
+        "simulation_interfaces/srv/GetEntityState",
+        {"entity": "rosbots"},
+        hashes=True,
+    ).state
+    assert state.pose.position.x == pytest.approx(3.0, abs=0.1)
+    # Requests for it are the same in both versions.
+    for name, field in (
+        (f"{older}/GetSpawnables", "uri"),
+        ("simulation_interfaces/srv/GetSpawnables", ""),
+    ):
+        told = peer.call("/gz_server/get_spawnables", name, {}, hashes=True).spawnables
+        uris = [getattr(each, field) if field else each.entity_resource.uri for each in told]
+        assert any(uri.endswith("/rosbots.xacro") for uri in uris)
+
+
 def test_parameters_are_listed_described_got_and_set(bridged: Ros2Bridged, peer: Peer) -> None:
     package = "rcl_interfaces/srv"
     events = "rcl_interfaces/msg/ParameterEvent"

@@ -204,6 +204,17 @@ def test_services_answer_with_what_was_asked_by(bridged: Ros2Bridged, session: A
     bridged.simulation.post(bridged.simulation.resume)
 
 
+@pytest.mark.parametrize("package", ["simulation_interfaces", "simulation_interfaces_v1"])
+def test_each_release_finds_the_service_by_its_own_hash(session: Any, package: str) -> None:
+    type_ = ros2_service(f"{package}/srv/GetSpawnables")
+    key = f"7/gz_server/get_spawnables/{type_.dds}/{type_.hash}"
+    attachment = struct.pack("<qqB", 1, 5, 16) + bytes(16)
+    request = encode_cdr(from_dict(type_.request, {}))
+    (reply,) = session.get(key, payload=request, attachment=attachment, timeout=20.0)
+    response = decode_cdr(reply.ok.payload.to_bytes(), type_.response)
+    assert any(each.spawn_bounds is not None for each in response.spawnables)
+
+
 def test_an_action_is_followed_to_its_end(bridged: Ros2Bridged, session: Any) -> None:
     """A goal is accepted at once, and the answer with its result waits until it is there."""
     kind = "control_msgs_ros2/action/GripperCommand"

@@ -8,11 +8,19 @@ import pytest
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from cartwheel.errors import UnknownNameError
-from cartwheel.messages import message_class, service_classes
+from cartwheel.messages import (
+    decode_cdr,
+    encode_cdr,
+    from_dict,
+    message_class,
+    service_classes,
+    to_dict,
+)
 from cartwheel.messages.ros1 import ros1_service
 from cartwheel.messages.ros2 import ros2_definition
 from cartwheel.messages.ros2_types import dds_name, ros2_service, ros2_type
 from cartwheel.messages.store import ROS2_DEFINITIONS, definitions, parsed_definitions
+from cartwheel.messages.versions import older_versions
 
 MESSAGES = {
     "std_msgs/msg/String": "df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18",
@@ -185,3 +193,39 @@ def test_a_hash_is_that_of_the_real_names() -> None:
     assert listed.response_hash == plain.hash_rihs01(
         "controller_manager_msgs/srv/ListControllers_Response"
     )
+
+
+@pytest.mark.parametrize(
+    ("name", "digest"),
+    [
+        ("GetSpawnables", "3bc0266bf8236058ff589c44512e013afe4f295427c39d44cff363d1c956bf36"),
+        ("LoadWorld", "f210682338f195f6f06191b46b20ec4992bddf485d33e2cffab2dd15341b4e3e"),
+        ("SetEntityState", "ca210e7d2b66629ae133c8e1edf5246e618106d75c78ed0556c0e7a33c59ee5e"),
+        ("SpawnEntity", "d4c086345d4194a5fc4c9ae45095736ca4062b5cdac4d06a42dec93d683e03cf"),
+    ],
+)
+def test_the_version_that_jazzy_has_is_known_by_its_hash(name: str, digest: str) -> None:
+    """Digests are those of the package for Jazzy, 1.5.1, as rosidl made them."""
+    newest = ros2_service(f"simulation_interfaces/srv/{name}")
+    (older,) = older_versions(f"simulation_interfaces/srv/{name}")
+    assert older.type.hash == f"RIHS01_{digest}" != newest.hash
+    assert (older.type.name, older.type.dds) == (newest.name, newest.dds)
+
+
+def test_what_jazzy_asks_for_and_is_answered_has_the_newest_form() -> None:
+    package = "simulation_interfaces"
+    (older,) = older_versions(f"{package}/srv/SpawnEntity")
+    request = older.request(from_dict(older.type.request, {"name": "a", "resource_string": "<a/>"}))
+    assert to_dict(request)["entity_resource"] == {"uri": "", "resource_string": "<a/>"}
+    (older,) = older_versions(f"{package}/srv/SetEntityState")
+    request = older.request(from_dict(older.type.request, {"entity": "a"}))
+    assert (request.set_pose, request.set_twist, request.set_acceleration) == (True, True, False)
+    (older,) = older_versions(f"{package}/srv/GetSpawnables")
+    newest = from_dict(
+        f"{package}/srv/GetSpawnables_Response",
+        {"spawnables": [{"entity_resource": {"uri": "a"}, "description": "b"}]},
+    )
+    response = decode_cdr(encode_cdr(older.response(newest)), older.type.response)
+    (spawnable,) = to_dict(response)["spawnables"]
+    assert (spawnable["uri"], spawnable["description"]) == ("a", "b")
+    assert older_versions("std_srvs/srv/Empty") == ()

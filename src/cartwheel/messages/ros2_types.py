@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from cartwheel.errors import UnknownNameError
-from cartwheel.messages.store import TWIN, service_classes, service_name, store, type_name
+from cartwheel.messages.store import FIRST, TWIN, service_classes, service_name, store, type_name
 
 _ROS1_ONLY = frozenset(
     {
@@ -98,7 +98,7 @@ def ros2_service(name: str) -> Ros2Service:
         raise UnknownNameError("ROS 2 service type", name, ())
     request, response = (each.__msgtype__ for each in service_classes(full))
     real = ros2_name(full)
-    made = _hash_store()
+    made = _hash_store(first=_is_first(full))
     if real not in made.fielddefs:
         made.fielddefs |= _whole(real)
     return Ros2Service(
@@ -145,7 +145,7 @@ def fields_of(name: str) -> list[tuple[str, Any]]:
 def ros2_name(name: str) -> str:
     """ROS 2's name of a type of the graph: that of a package with a twin is its own again."""
     package, slash, rest = name.partition("/")
-    return f"{package.removesuffix(TWIN)}{slash}{rest}"
+    return f"{package.removesuffix(TWIN).removesuffix(FIRST)}{slash}{rest}"
 
 
 def twin_name(name: str) -> str:
@@ -165,16 +165,37 @@ def dds_name(name: str) -> str:
     return f"{package}::{kind}::dds_::{last}_"
 
 
+def _is_first(name: str) -> bool:
+    """Whether a type of the graph is the first version of one that has two."""
+    return name.partition("/")[0].endswith(FIRST)
+
+
+def _hash_store(*, first: bool = False) -> Any:
+    return _hash_stores()[first]
+
+
 @functools.cache
-def _hash_store() -> Any:
-    """ROS 2's types alone, by ROS 2's names, as it hashes them: with ``uint8`` for ``char``."""
+def _hash_stores() -> tuple[Any, Any]:
+    """Without first versions of types, and with them."""
+    return _made_hash_store(first=False), _made_hash_store(first=True)
+
+
+def _made_hash_store(*, first: bool) -> Any:
+    """ROS 2's types alone, by ROS 2's names, as it hashes them: with ``uint8`` for ``char``.
+
+    Args:
+        first: Whether types that have two versions are there in the first one.
+    """
     from rosbags.typesys import Stores, get_typestore
 
     made = get_typestore(Stores.ROS2_JAZZY)
     made.fielddefs = {
         ros2_name(name): (constants, [(field, _hashed(kind)) for field, kind in fields])
-        for name, (constants, fields) in store().fielddefs.items()
-        if not is_ros1_only(name)
+        # The first versions come last, in the others' place.
+        for name, (constants, fields) in sorted(
+            store().fielddefs.items(), key=lambda item: _is_first(item[0])
+        )
+        if not is_ros1_only(name) and (first or not _is_first(name))
     }
     return made
 

@@ -3,7 +3,8 @@
 A definition is the text of ROS 1 and ROS 2 alike: the ROS 1 bridge reads the same files
 into its own store, where they have the md5 sums that ROS 1 nodes expect. Types that only
 ROS 2 has are in a folder of their own, which ROS 1's store does not see. Some packages have
-different types of the same names in ROS 1 and ROS 2: here ROS 2's have a package of their own.
+different types of the same names in ROS 1 and ROS 2: here ROS 2's have a package of their own, and
+so have types of older releases of ROS 2.
 """
 
 from __future__ import annotations
@@ -26,6 +27,8 @@ SEPARATOR = "---\n"
 
 TWIN = "_ros2"
 """Ends the name that a package has here where ROS 1 has another of that name."""
+FIRST = "_v1"
+"""Ends the name of a package that holds the first version of types that have two in ROS 2."""
 
 _GOAL_ID = "unique_identifier_msgs/UUID goal_id\n"
 

@@ -19,7 +19,7 @@ from cartwheel.bridges.ros2.middleware import (
     Answer,
     Middleware,
     Reply,
-    request_check,
+    Served,
 )
 from cartwheel.errors import GraphError
 from cartwheel.graph import Action, Goal, GoalState, Graph
@@ -95,9 +95,7 @@ class OfferedAction:
         self._services = [
             middleware.serve(
                 f"{base}/{name}",
-                ros2_service(self._types[name]),
-                self._answer(name, handler),
-                fits=request_check(ros2_service(self._types[name])),
+                (Served(ros2_service(self._types[name]), self._answer(name, handler)),),
                 depth=CALLS,
                 node=node,
             )

@@ -6,22 +6,24 @@ rmw_cyclonedds.
 
 from __future__ import annotations
 
+import math
 import os
+import re
 from collections.abc import Callable, Sequence
 
 import numpy as np
 
 from cartwheel.bridges.loop import Loop
-from cartwheel.bridges.ros2.middleware import Answer, Profile
+from cartwheel.bridges.ros2.middleware import Profile, Served
 from cartwheel.bridges.ros2.rtps import discovery, wire
 from cartwheel.bridges.ros2.rtps.discovery import Endpoint, EndpointQos
 from cartwheel.bridges.ros2.rtps.network import Reach, domain_id
 from cartwheel.bridges.ros2.rtps.participant import Participant
 from cartwheel.bridges.ros2.rtps.reader import Reader, Taken
-from cartwheel.bridges.ros2.rtps.wire import Guid
-from cartwheel.bridges.ros2.rtps.writer import Writer
+from cartwheel.bridges.ros2.rtps.wire import Guid, Prefix
+from cartwheel.bridges.ros2.rtps.writer import ReaderProxy, Writer
 from cartwheel.messages import encode_cdr, message_class
-from cartwheel.messages.ros2_types import Ros2Service, Ros2Type, ros2_type
+from cartwheel.messages.ros2_types import Ros2Type, ros2_type
 
 _NODES = "ros_discovery_info"
 _ENTITIES = "rmw_dds_common/msg/ParticipantEntitiesInfo"
@@ -31,6 +33,7 @@ _HEADER = 16
 """Bytes before a request's and a response's fields in rmw_cyclonedds: who asks, and which."""
 _PATIENCE, _PAUSE = 2.0, 0.02
 """s that a response waits for the reader of it to be found."""
+_HASH = re.compile(rb"typehash=(\w+)", re.ASCII)
 _CALLS = 100
 """Responses that are kept at least: who asks much must not lose any."""
 
@@ -144,19 +147,10 @@ class Dds:
         self._add(node, reader)
         return _Inlet(self, reader)
 
-    def serve(
-        self,
-        name: str,
-        type_: Ros2Service,
-        answer: Answer,
-        *,
-        fits: Callable[[bytes], bool],
-        depth: int,
-        node: str = "",
-    ) -> _Service:
+    def serve(self, name: str, served: Sequence[Served], *, depth: int, node: str = "") -> _Service:
         """See `Middleware`."""
         qos = EndpointQos(depth=max(depth, _CALLS))
-        return _Service(self, name, type_, answer=answer, fits=fits, qos=qos, node=node)
+        return _Service(self, name, served, qos=qos, node=node)
 
     def topics_of_others(self) -> set[str]:
         """See `Middleware`."""
@@ -262,17 +256,15 @@ class _Service:
         self,
         dds: Dds,
         name: str,
-        type_: Ros2Service,
+        served: Sequence[Served],
         *,
-        answer: Answer,
-        fits: Callable[[bytes], bool],
         qos: EndpointQos,
         node: str,
     ) -> None:
         self._dds = dds
         self._loop = dds.loop
-        self._answer = answer
-        self._fits = fits
+        self._served = served
+        type_ = served[0].type
         identity = ".".join(f"{byte:02x}" for byte in os.urandom(16))
         user_data = f"serviceid={identity};".encode() + _hash(type_.hash)
         self._writer = dds.participant.writer(
@@ -286,13 +278,22 @@ class _Service:
     def close(self) -> None:
         self._dds._remove(self._writer, self._reader)
 
-    def _take(self, taken: Taken) -> None:
+    def _take(self, taken: Taken, patience: float = _PATIENCE) -> None:
+        readers = self._readers_of(taken.writer[:12])
+        served = self._versions_of(taken.writer, readers)
+        if len(served) > 1 and not readers and patience > 0:
+            # The reader of the response tells which one it is, and may be found later.
+            self._loop.after(_PAUSE, lambda: self._take(taken, patience - _PAUSE))
+            return
+        self._answer(taken, served[0])
+
+    def _answer(self, taken: Taken, served: Served) -> None:
         payload = taken.payload
         related = taken.inline.get(discovery.RELATED) or taken.inline.get(discovery.RELATED_FASTDDS)
         bare = payload[:4] + payload[4 + _HEADER :]
         # Some tell it in both ways, so that the fields themselves must say which one it is.
         within = len(payload) >= 4 + _HEADER and (
-            taken.vendor == wire.CYCLONE or (not self._fits(payload) and self._fits(bare))
+            taken.vendor == wire.CYCLONE or (not served.fits(payload) and served.fits(bare))
         )
         head = b""
         if within:
@@ -307,10 +308,26 @@ class _Service:
             data = response[:4] + head + response[4:]
             self._send(data, inline, taken.writer[:12], _PATIENCE)
 
-        self._answer(payload, reply)
+        served.answer(payload, reply)
+
+    def _readers_of(self, prefix: Prefix) -> list[ReaderProxy]:
+        """A participant's readers of responses."""
+        return [one for guid, one in self._writer.proxies.items() if guid[:12] == prefix]
+
+    def _versions_of(self, writer: Guid, readers: Sequence[ReaderProxy]) -> Sequence[Served]:
+        """What an asker may have for the type, by the hashes that its endpoints tell.
+
+        They are those of the request and the response, which may be the same in two versions.
+        """
+        if len(self._served) == 1 or writer not in self._reader.proxies:
+            return self._served[:1]
+        told = [self._reader.proxies[writer].user_data, *(each.user_data for each in readers)]
+        hashes = {found[1].decode() for data in told if (found := _HASH.search(data))}
+        fitting = [each for each in self._served if all(map(each.is_of, hashes))]
+        return fitting or self._served[:1]
 
     def _send(self, data: bytes, inline: bytes, to: bytes, patience: float) -> None:
-        if any(guid[:12] == to for guid in self._writer.proxies) or patience <= 0:
+        if self._readers_of(to) or patience <= 0:
             self._writer.write(data, inline=inline, to=to)
         else:
             # The reader of the response may be found after the writer of the request.
@@ -322,6 +339,7 @@ def _qos(profile: Profile) -> EndpointQos:
         reliable=profile.reliable,
         transient_local=profile.transient_local,
         depth=profile.depth,
+        lifespan=profile.lifespan or math.inf,
     )
 
 

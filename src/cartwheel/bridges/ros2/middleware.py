@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -24,6 +24,8 @@ class Profile:
     reliable: bool = True
     transient_local: bool = False
     depth: int = 10
+    lifespan: int = 0
+    """s after which a message is none any more; 0 is never."""
 
 
 LATCHED = Profile(transient_local=True, depth=1)
@@ -35,7 +37,7 @@ _BY_TOPIC = {
     "/tf": Profile(depth=100),
     "/tf_static": LATCHED,
     "/robot_description": LATCHED,
-    "/rosout": Profile(transient_local=True, depth=1000),
+    "/rosout": Profile(transient_local=True, depth=1000, lifespan=10),
     "/parameter_events": Profile(depth=1000),
 }
 
@@ -49,6 +51,26 @@ def profile_of(topic: str, qos: Qos) -> Profile:
     if found is not None:
         return found
     return {"latched": LATCHED, "sensor": SENSOR, "default": DEFAULT}[qos]
+
+
+@dataclass(frozen=True, slots=True)
+class Served:
+    """A version of a service's type with what answers those who have it."""
+
+    type: Ros2Service
+    answer: Answer
+
+    def fits(self, data: bytes) -> bool:
+        """Whether bytes can be a request."""
+        try:
+            again = encode_cdr(decode_cdr(data, self.type.request))
+        except GraphError:
+            return False
+        return data[:4] != b"\0\1\0\0" or (data.startswith(again) and len(data) - len(again) < 4)
+
+    def is_of(self, hash_: str) -> bool:
+        """Whether that is the hash of the type, or of a part of it: others tell either."""
+        return hash_ in (self.type.hash, self.type.request_hash, self.type.response_hash)
 
 
 class Outlet(Protocol):
@@ -115,23 +137,12 @@ class Middleware(Protocol):
     ) -> Closable:
         """Reads a topic; see `publish`."""
 
-    def serve(
-        self,
-        name: str,
-        type_: Ros2Service,
-        answer: Answer,
-        *,
-        fits: Callable[[bytes], bool],
-        depth: int,
-        node: str = "",
-    ) -> Closable:
+    def serve(self, name: str, served: Sequence[Served], *, depth: int, node: str = "") -> Closable:
         """Offers a service.
 
         Args:
             name: Of the service.
-            type_: Its type.
-            answer: Takes requests.
-            fits: Tells whether bytes can be a request.
+            served: Its type with what answers; then older versions that others may have.
             depth: Requests, and responses, that are kept.
             node: See `publish`.
         """
@@ -141,16 +152,3 @@ class Middleware(Protocol):
 
     on_others: Callable[[], None]
     """Told when what other nodes offer has changed."""
-
-
-def request_check(type_: Ros2Service) -> Callable[[bytes], bool]:
-    """What tells whether bytes can be a service's request."""
-
-    def fits(data: bytes) -> bool:
-        try:
-            again = encode_cdr(decode_cdr(data, type_.request))
-        except GraphError:
-            return False
-        return data[:4] != b"\0\1\0\0" or (data.startswith(again) and len(data) - len(again) < 4)
-
-    return fits

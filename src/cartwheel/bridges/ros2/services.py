@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import functools
 import threading
 from collections.abc import Callable
 from typing import Any
 
 from cartwheel.bridges.loop import Loop
-from cartwheel.bridges.ros2.middleware import CALLS, Closable, Middleware, Reply, request_check
+from cartwheel.bridges.ros2.middleware import CALLS, Closable, Middleware, Reply, Served
 from cartwheel.errors import CartwheelError, GraphError
-from cartwheel.messages import decode_cdr, encode_cdr, service_classes, zero
-from cartwheel.messages.ros2_types import ros2_service
+from cartwheel.messages import decode_cdr, encode_cdr, zero
+from cartwheel.messages.ros2_types import Ros2Service, ros2_service
+from cartwheel.messages.versions import OlderService, older_versions
 
 _MOST_CALLS = 32
 """At a time."""
@@ -51,8 +53,24 @@ class Services:
             depth: See `Middleware.serve`.
             node: See `Middleware.publish`.
         """
-        type_ = ros2_service(type_name)
+        served = functools.partial(self._served, name, threaded=threaded)
+        versions = (
+            served(ros2_service(type_name), handler),
+            *(
+                served(older.type, _for_older(older, handler))
+                for older in older_versions(type_name)
+            ),
+        )
+        return self._middleware.serve(name, versions, depth=depth, node=node)
 
+    def _served(
+        self,
+        name: str,
+        type_: Ros2Service,
+        handler: Callable[[Any], Any],
+        *,
+        threaded: bool,
+    ) -> Served:
         def answer(data: bytes, reply: Reply) -> None:
             try:
                 request = decode_cdr(data, type_.request)
@@ -69,15 +87,13 @@ class Services:
                 response = handler(request)
                 data = encode_cdr(response)
             except CartwheelError as error:
-                data = encode_cdr(self._failure(name, type_name, str(error)))
+                data = encode_cdr(self._failure(name, type_, str(error)))
             except Exception as error:  # noqa: BLE001 - who asks waits for an answer
                 text = f"{type(error).__name__}: {error}"
-                data = encode_cdr(self._failure(name, type_name, text))
+                data = encode_cdr(self._failure(name, type_, text))
             self._loop.post(lambda: reply(data))
 
-        return self._middleware.serve(
-            name, type_, answer, fits=request_check(type_), depth=depth, node=node
-        )
+        return Served(type_, answer)
 
     def _in_thread(self, function: Callable[[], None], name: str) -> None:
         if self._calls >= _MOST_CALLS:
@@ -96,12 +112,16 @@ class Services:
 
         threading.Thread(target=run, name=f"ros2 call {name}", daemon=True).start()
 
-    def _failure(self, name: str, type_name: str, text: str) -> Any:
+    def _failure(self, name: str, type_: Ros2Service, text: str) -> Any:
         """ROS 2 knows no errors of services: where the response can say it, it does."""
-        response = zero(service_classes(type_name)[1].__msgtype__)
+        response = zero(type_.response)
         for field in ("status_message", "message"):
             if isinstance(getattr(response, field, None), str):
                 setattr(response, field, text)
                 return response
         self._tell(f"{name} failed: {text}")
         return response
+
+
+def _for_older(older: OlderService, handler: Callable[[Any], Any]) -> Callable[[Any], Any]:
+    return lambda request: older.response(handler(older.request(request)))

@@ -6,6 +6,7 @@ Source: rmw_zenoh's design document.
 from __future__ import annotations
 
 import contextlib
+import functools
 import itertools
 import json
 import os
@@ -13,15 +14,15 @@ import socket
 import struct
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 from cartwheel.bridges.loop import Loop
-from cartwheel.bridges.ros2.middleware import Answer, Profile
+from cartwheel.bridges.ros2.middleware import Answer, Profile, Served
 from cartwheel.bridges.ros2.rtps.network import Reach, domain_id
 from cartwheel.bridges.ros2.zenoh_tokens import NodeToken, Token
 from cartwheel.errors import CartwheelError
-from cartwheel.messages.ros2_types import Ros2Service, Ros2Type
+from cartwheel.messages.ros2_types import Ros2Type
 
 PORT = 7447
 """Where a Zenoh router is looked for, and opened where there is none."""
@@ -168,19 +169,9 @@ class Zenoh:
                 )
         return _Declared(token, subscriber)
 
-    def serve(
-        self,
-        name: str,
-        type_: Ros2Service,
-        answer: Answer,
-        *,
-        fits: Callable[[bytes], bool],
-        depth: int,
-        node: str = "",
-    ) -> _Service:
+    def serve(self, name: str, served: Sequence[Served], *, depth: int, node: str = "") -> _Service:
         """See `Middleware`."""
-        del fits
-        return _Service(self, name, type_, answer, Profile(depth=depth), node=node)
+        return _Service(self, name, served, Profile(depth=depth), node=node)
 
     def topics_of_others(self) -> set[str]:
         """See `Middleware`."""
@@ -349,37 +340,37 @@ class _Outlet:
 
 
 class _Service:
-    """A queryable."""
+    """A queryable for each version of the type, whose hash is in the key; one token."""
 
     def __init__(
-        self,
-        zenoh: Zenoh,
-        name: str,
-        type_: Ros2Service,
-        answer: Answer,
-        profile: Profile,
-        *,
-        node: str,
+        self, zenoh: Zenoh, name: str, served: Sequence[Served], profile: Profile, *, node: str
     ) -> None:
         self._zenoh = zenoh
-        self._answer = answer
-        self._token = zenoh.token("SS", name, type_.dds, type_.hash, profile, node=node)
+        newest = served[0].type
+        self._token = zenoh.token("SS", name, newest.dds, newest.hash, profile, node=node)
         with zenoh.calling():
-            self._queryable = zenoh._session.declare_queryable(
-                zenoh.key(name, type_.dds, type_.hash), self._asked, complete=True
-            )
+            self._queryables = [
+                zenoh._session.declare_queryable(
+                    zenoh.key(name, one.type.dds, one.type.hash),
+                    functools.partial(self._asked, one.answer),
+                    complete=True,
+                )
+                for one in served
+            ]
 
     def close(self) -> None:
-        self._queryable.undeclare()
+        for queryable in self._queryables:
+            queryable.undeclare()
         self._token.undeclare()
 
-    def _asked(self, query: Any) -> None:
+    def _asked(self, answer: Answer, query: Any) -> None:
         """On one of Zenoh's threads."""
         data = query.payload.to_bytes() if query.payload is not None else b""
         stamp = query.attachment.to_bytes() if query.attachment is not None else b""
-        self._zenoh.loop.post(lambda: self._take(query, data, stamp))
+        self._zenoh.loop.post(lambda: self._take(answer, query, data, stamp))
 
-    def _take(self, query: Any, data: bytes, stamp: bytes) -> None:
+    @staticmethod
+    def _take(answer: Answer, query: Any, data: bytes, stamp: bytes) -> None:
         if len(stamp) < 16:
             query.drop()
             return
@@ -390,7 +381,7 @@ class _Service:
             query.reply(query.key_expr, response, attachment=attachment)
             query.drop()
 
-        self._answer(data, reply)
+        answer(data, reply)
 
 
 def _answers(port: int) -> bool:

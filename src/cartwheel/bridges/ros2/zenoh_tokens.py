@@ -95,4 +95,5 @@ def _qos(profile: Profile) -> str:
     """A profile as rmw_zenoh writes it: what is as usual is left out."""
     reliability = "" if profile.reliable else "2"
     durability = "1" if profile.transient_local else ""
-    return f"{reliability}:{durability}:,{profile.depth}:,:,:,,"
+    lifespan = f"{profile.lifespan},0" if profile.lifespan else ","
+    return f"{reliability}:{durability}:,{profile.depth}:,:{lifespan}:,,"

@@ -18,7 +18,7 @@ ENDPOINTS = 0x3F
 
 _SENTINEL, _LEASE, _TOPIC, _TYPE = 0x01, 0x02, 0x05, 0x07
 _DOMAIN, _VERSION, _VENDOR, _RELIABILITY, _LIVELINESS = 0x0F, 0x15, 0x16, 0x1A, 0x1B
-_DEADLINE = 0x23
+_DEADLINE, _LIFESPAN = 0x23, 0x2B
 _DURABILITY, _USER_DATA, _USER_LOCATOR, _META_LOCATOR = 0x1D, 0x2C, 0x31, 0x32
 _ENDPOINT_LOCATOR, _HISTORY, _PARTICIPANT_GUID, _ENDPOINTS = 0x2F, 0x40, 0x50, 0x58
 _ENDPOINT_GUID, _ENTITY_NAME, _KEY_HASH, _STATUS, _REPRESENTATION = 0x5A, 0x62, 0x70, 0x71, 0x73
@@ -45,6 +45,8 @@ class EndpointQos:
     """By what a writer shows that it is there: 0 is that its participant is."""
     lease: float = math.inf
     """s after which a writer that does not show it is taken for gone."""
+    lifespan: float = math.inf
+    """s after which a sample is worth nothing any more."""
 
     def misfit(self, asked: EndpointQos) -> str:
         """The policy in which a reader asks for more than is offered here; empty where none."""
@@ -102,7 +104,7 @@ def encode_participant(data: ParticipantData, *, domain: int) -> bytes:
         (_DOMAIN, struct.pack("<I", domain)),
         *((_META_LOCATOR, _locator(address)) for address in data.meta),
         *((_USER_LOCATOR, _locator(address)) for address in data.user),
-        (_LEASE, struct.pack("<iI", int(data.lease), 0)),
+        (_LEASE, _seconds(data.lease)),
         (_ENDPOINTS, struct.pack("<I", ENDPOINTS)),
         (_ENTITY_NAME, _string(data.name)),
         (_USER_DATA, _octets(data.user_data)),
@@ -114,6 +116,7 @@ def encode_endpoint(data: Endpoint) -> bytes:
     qos = data.qos
     # Reliability's 1 and 2 are the wire's; so is the time a writer may wait, which it never does.
     reliability = struct.pack("<IiI", 2 if qos.reliable else 1, 0, 0x19999999)
+    lifespan = () if math.isinf(qos.lifespan) else ((_LIFESPAN, _seconds(qos.lifespan)),)
     return _list(
         (_ENDPOINT_GUID, data.guid),
         (_PARTICIPANT_GUID, data.guid[:12] + PARTICIPANT),
@@ -125,6 +128,7 @@ def encode_endpoint(data: Endpoint) -> bytes:
         (_DURABILITY, struct.pack("<I", int(qos.transient_local))),
         (_HISTORY, struct.pack("<II", 0, qos.depth)),
         (_LIVELINESS, struct.pack("<I", 0) + _FOREVER),
+        *lifespan,
         (_REPRESENTATION, struct.pack("<IhH", 1, 0, 0)),
         (_USER_DATA, _octets(data.user_data)),
     )
@@ -166,6 +170,11 @@ def _parameters(pairs: Iterable[tuple[int, bytes]]) -> bytes:
 def _string(text: str) -> bytes:
     data = text.encode() + b"\0"
     return struct.pack("<I", len(data)) + data
+
+
+def _seconds(value: float) -> bytes:
+    whole = int(value)
+    return struct.pack("<iI", whole, int((value - whole) * 2**32))
 
 
 def _octets(data: bytes) -> bytes:
@@ -254,6 +263,7 @@ def decode_endpoint(payload: bytes, *, writer: bool) -> Endpoint:
             deadline=_duration(found.get(_DEADLINE, [b""])[0], order),
             liveliness=kinds[2],
             lease=_duration(liveliness[4:], order),
+            lifespan=_duration(found.get(_LIFESPAN, [b""])[0], order),
         ),
         user_data=user_data[4 : 4 + length],
         locators=_locators(found.get(_ENDPOINT_LOCATOR, []), order),

@@ -60,6 +60,7 @@ class WriterProxy:
 
     def __init__(self, endpoint: Endpoint, address: Address, *, reliable: bool) -> None:
         self.guid = endpoint.guid
+        self.user_data = endpoint.user_data
         self.reliable = reliable
         self.address = address
         self.next = 1

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections import OrderedDict
 from collections.abc import Callable, Sequence
@@ -36,6 +37,8 @@ class Sample:
     """The only participant it is for."""
     written: bytes
     """Its timestamp's submessage."""
+    at: int
+    """The same in ns."""
     keyed: bool = False
 
 
@@ -44,6 +47,7 @@ class ReaderProxy:
 
     def __init__(self, endpoint: Endpoint, address: Address, *, start: int) -> None:
         self.guid = endpoint.guid
+        self.user_data = endpoint.user_data
         self.reliable = endpoint.qos.reliable
         self.address = address
         self.start = start
@@ -107,6 +111,7 @@ class Writer:
             known.address = address
             return
         qos = self.endpoint.qos
+        self._expire()
         history = qos.transient_local and endpoint.qos.transient_local
         first = next(iter(self._kept), self._last + 1)
         proxy = ReaderProxy(endpoint, address, start=first if history else self._last + 1)
@@ -150,7 +155,7 @@ class Writer:
         payload += b"\0" * (-len(payload) % 4)
         now = self._clock()
         stamp = wire.timestamp(now // 10**9, (now % 10**9 << 32) // 10**9)
-        sample = Sample(payload, inline, to, stamp, keyed)
+        sample = Sample(payload, inline, to, stamp, now, keyed)
         self._last += 1
         if self._keeps and (self.proxies or self.endpoint.qos.transient_local):
             self._keep(self._last, sample)
@@ -248,8 +253,19 @@ class Writer:
         while len(self._kept) > self.endpoint.qos.depth or (
             self._kept_bytes > _KEPT_BYTES and len(self._kept) > 1
         ):
-            _, oldest = self._kept.popitem(last=False)
-            self._kept_bytes -= len(oldest.payload)
+            self._forget_oldest()
+
+    def _forget_oldest(self) -> None:
+        _, oldest = self._kept.popitem(last=False)
+        self._kept_bytes -= len(oldest.payload)
+
+    def _expire(self) -> None:
+        """Forgets what is too old to be worth anything."""
+        lifespan = self.endpoint.qos.lifespan
+        while self._kept and lifespan < math.inf:
+            if self._clock() - next(iter(self._kept.values())).at <= lifespan * 1e9:
+                break
+            self._forget_oldest()
 
     # -- datagrams
 
