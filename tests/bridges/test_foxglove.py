@@ -207,8 +207,23 @@ def test_a_client_drives(served: Served, client: Client, encoding: str) -> None:
     until(moved, "the cart to drive")
 
 
-@pytest.mark.parametrize(
+def test_a_client_that_knows_twist_alone_drives_what_wants_a_stamp(
+    served: Served, client: Client
+) -> None:
+    heard: list[Any] = []
+    served.graph.subscribe("/stamped", heard.append, type_name="geometry_msgs/msg/TwistStamped")
+    client.wait("advertise", lambda e: any(c["topic"] == "/stamped" for c in e["channels"]))
+    twist = encode_cdr(from_dict("geometry_msgs/msg/Twist", {"linear": {"x": 0.5}}))
+    client.send("publish", twist, topic="/stamped", type="geometry_msgs/Twist", encoding="cdr")
+    until(lambda: heard, "the command")
+    assert (heard[0].__msgtype__, heard[0].twist.linear.x) == (
+        "geometry_msgs/msg/TwistStamped",
+        0.5,
+    )
+
+
     ("topic", "kind", "data", "words"),
+@pytest.mark.parametrize(
     [
         (CMD, "geometry_msgs/Twist", b"junk", "no geometry_msgs"),
         (CMD, "sensor_msgs/Imu", encode_cdr(from_dict("sensor_msgs/msg/Imu", {})), "has type"),

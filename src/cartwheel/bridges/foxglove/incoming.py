@@ -8,7 +8,7 @@ from typing import Any
 
 from cartwheel.bridges.mirror import asked
 from cartwheel.errors import CartwheelError, GraphError
-from cartwheel.graph import Graph, Service
+from cartwheel.graph import TWIST, TWIST_STAMPED, Graph, Service
 from cartwheel.messages import (
     decode_cdr,
     encode_cdr,
@@ -78,10 +78,14 @@ class Incoming:
             self._tell("the simulation does not keep up with what clients send: it is dropped")
             return
         try:
-            if topic not in {info.name for info in self._graph.topics()}:
+            types = {info.name: info.type for info in self._graph.topics()}
+            if topic not in types:
                 self._tell(f"nobody reads {topic}: what a client sends there is lost")
                 return
             message = decode(data, encoding, kind)
+            if (kind, types[topic]) == (TWIST, TWIST_STAMPED):
+                # Clients that drive robots know Twist alone.
+                kind, message = TWIST_STAMPED, from_dict(TWIST_STAMPED, {"twist": to_dict(message)})
             self._waiting += 1
             self._graph.publish(topic, kind, message)
             self._graph.post(self._taken)
