@@ -89,9 +89,9 @@ class Client:
                 assert left > 0, f"no {event}: {kinds[-30:]}, {self.faults()}"
                 self._come.wait(left)
 
-    def of(self, event: str) -> list[dict[str, Any]]:
+    def of(self, *events: str) -> list[dict[str, Any]]:
         with self._come:
-            return [e for e in self.events if e["event"] == event]
+            return [e for e in self.events if e["event"] in events]
 
     def faults(self) -> list[Any]:
         return [e for e in self.events if e["event"] in ("fault", "error", "status", "failure")]

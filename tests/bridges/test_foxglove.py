@@ -21,7 +21,7 @@ from websockets.sync.client import connect
 from cartwheel.bridges.foxglove import FoxgloveBridge
 from cartwheel.cli.commands.foxglove import Assets, SimulationControls
 from cartwheel.description import load_robot, load_text, load_world
-from cartwheel.errors import CartwheelError
+from cartwheel.errors import CartwheelError, Diagnostic, Origin
 from cartwheel.messages import decode_cdr, encode_cdr, from_dict, service_classes
 from cartwheel.plugins.robot_descriptions import RobotDescriptions
 from cartwheel.session import Session
@@ -95,6 +95,7 @@ def until(condition: Any, what: str) -> None:
 
 def test_every_topic_has_a_channel(served: Served, client: Client) -> None:
     names = {topic.name: topic.type for topic in served.graph.topics()}
+    names["/rosout"] = "rcl_interfaces/msg/Log"
     found: dict[str, Any] = {}
 
     def all_there() -> bool:
@@ -222,8 +223,8 @@ def test_a_client_that_knows_twist_alone_drives_what_wants_a_stamp(
     )
 
 
-    ("topic", "kind", "data", "words"),
 @pytest.mark.parametrize(
+    ("topic", "kind", "data", "words"),
     [
         (CMD, "geometry_msgs/Twist", b"junk", "no geometry_msgs"),
         (CMD, "sensor_msgs/Imu", encode_cdr(from_dict("sensor_msgs/msg/Imu", {})), "has type"),
@@ -313,6 +314,19 @@ def test_time_is_the_simulations(served: Served, client: Client) -> None:
     assert 0 <= times[0] < times[-1] <= served.simulation.time_ns
 
 
+def test_messages_come_close_to_the_time_told(served: Served, client: Client) -> None:
+    """Lichtblick takes the last time it was told for that of a message, and plots by it."""
+    client.subscribe("/odom")
+    client.wait("message", count=200)
+    told, off = None, []
+    for event in client.of("time", "message"):
+        if event["event"] == "time":
+            told = event["time"]
+        elif told is not None:
+            off.append(abs(event["time"] - told))
+    assert sorted(off)[len(off) // 2] <= 30 * 10**6
+
+
 def test_playback_control(folder: Path) -> None:
     def request(command: int, speed: float, seek: int | None = None) -> bytes:
         head = struct.pack("<BBfBQ", 3, command, speed, seek is not None, seek or 0)
@@ -370,6 +384,28 @@ def test_meshes_and_nothing_else(served: Served, client: Client) -> None:
     for number in range(1, len(wanted)):
         answer = client.wait("asset", lambda e, n=number: e["requestId"] == n)
         assert answer["status"] != 0 and not answer["data"], wanted[number]
+
+
+def test_what_is_said_comes_as_rosout(served: Served, client: Client, folder: Path) -> None:
+    origin = Origin(file="a.xacro", line=7)
+    served.bridge.log(Diagnostic(severity="warning", message="before", origin=origin))
+    client.subscribe("/rosout")
+    first = client.wait("message")["message"]
+    assert (first["level"], first["msg"]) == (30, "before")
+    assert (first["file"], first["line"]) == ("a.xacro", 7)
+    other = Client(served.bridge.url, folder)
+    other.subscribe("/rosout")
+    other.subscribe("/robot_description")  # What comes of it, comes after that.
+    other.wait("message", lambda e: e["topic"] == "/robot_description")
+    # No second channel of that name, and no line twice.
+    served.graph.subscribe("/rosout", print, type_name="rcl_interfaces/msg/Log")
+    served.bridge.log(Diagnostic(severity="error", message="after"))
+    for each in (client, other):
+        each.wait("message", lambda e: e["message"].get("msg") == "after")
+        channels = [c for e in each.of("advertise") for c in e["channels"]]
+        assert [c["topic"] for c in channels].count("/rosout") == 1
+        each.close()
+    assert [e["message"]["msg"] for e in client.of("message")] == ["before", "after"]
 
 
 def test_a_frozen_client_stalls_nobody(served: Served, folder: Path) -> None:

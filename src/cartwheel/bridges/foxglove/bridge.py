@@ -13,6 +13,8 @@ from typing import Any
 from cartwheel.bridges.foxglove.controls import Controls
 from cartwheel.bridges.foxglove.incoming import ENCODINGS, Incoming, offered
 from cartwheel.bridges.foxglove.listener import Listener, playback_state
+from cartwheel.bridges.foxglove.log import TOPIC as LOG
+from cartwheel.bridges.foxglove.log import Log
 from cartwheel.bridges.foxglove.publication import READER, Publication
 from cartwheel.bridges.foxglove.values import PAUSED, SPEED, Values
 from cartwheel.bridges.mirror import offered_by_others
@@ -24,7 +26,9 @@ PORT = 8765
 BACKLOG = 256
 """Messages that may wait for a client; the oldest is dropped then."""
 _TIME_RATE = 10.0
-"""Hz of wall time at which clients are told the time."""
+"""Hz of wall time at which clients are told the time, at least."""
+_FINE_TIME_RATE = 50.0
+"""The same at most, while messages go to them."""
 _STRING = "std_msgs/msg/String"
 _TOLD = 500
 _SLOW = logging.getLogger("foxglove.websocket.connected_client.send_lossy")
@@ -77,7 +81,7 @@ class FoxgloveBridge:
         self._server: Any = None
         self._context: Any = None
         self._publications: dict[str, Publication] = {}
-        self._by_channel: dict[int, Publication] = {}
+        self._by_channel: dict[int, Publication | Log] = {}
         self._services: dict[str, Service] = {}
         self._descriptions: dict[str, str] = {}
         self._watched: dict[str, Subscription] = {}
@@ -85,6 +89,9 @@ class FoxgloveBridge:
         self._pending: set[str] = set()
         self._surveying = False
         self._is_new = Once(_TOLD)
+        self._told_ns = -1
+        self._fine_due = 0.0
+        self._log: Log | None = None
         self._shown: tuple[bool, float | None] | None = None
         """Whether time is held and its pace, as clients were last told."""
         self._closed = False
@@ -154,6 +161,8 @@ class FoxgloveBridge:
                 f"the Foxglove server cannot listen on {self._host}:{self._port}: {error}",
                 hint="Choose another port with --foxglove-port.",
             ) from error
+        self._log = Log(context=self._context, time_ns=lambda: self._controls.time_ns)
+        self._by_channel[self._log.channel.id()] = self._log
         self._mirror()
         self._graph.on_change.append(self._changed)
         self._thread.start()
@@ -173,8 +182,14 @@ class FoxgloveBridge:
             subscription.close()
         for publication in self._publications.values():
             publication.close()
+        if self._log is not None:
+            self._log.close()
         if self._server is not None:
             self._server.stop()
+
+    def log(self, diagnostic: Diagnostic) -> None:
+        """Says something on ``/rosout``; from any thread."""
+        self._jobs.put(lambda: self._log.write(diagnostic) if self._log else None)
 
     # -- from other threads
 
@@ -221,6 +236,7 @@ class FoxgloveBridge:
 
     def _tell_time(self) -> None:
         state = self._controls.state()
+        self._told_ns = state.time_ns
         self._server.broadcast_time(state.time_ns)
         # Others hold time as well, or set its pace: what clients show must follow.
         shown = (state.paused, state.speed)
@@ -234,12 +250,21 @@ class FoxgloveBridge:
         self._pending.discard(topic)
         publication = self._publications.get(topic)
         if publication is not None:
+            self._tell_fine_time()
             publication.send()
+
+    def _tell_fine_time(self) -> None:
+        """Tells it before messages go: some clients take the last time told for a message's."""
+        time_ns, now = self._controls.time_ns, time.monotonic()
+        if time_ns != self._told_ns and now >= self._fine_due:
+            self._told_ns, self._fine_due = time_ns, now + 1.0 / _FINE_TIME_RATE
+            self._server.broadcast_time(time_ns)
 
     def _mirror(self) -> None:
         """Makes the server offer what the graph does."""
         self._surveying = False
         topics = offered_by_others(self._graph, READER)
+        topics.pop(LOG, None)  # It is ours.
         services = {service.name: service for service in self._graph.services()}
         self._mirror_topics(topics)
         self._mirror_descriptions(topics)

@@ -1,0 +1,76 @@
+"""``/rosout``: what the simulation has to say, for clients' panels of logs."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable
+from typing import Any
+
+from cartwheel.errors import Diagnostic
+from cartwheel.messages import encode_cdr, message_class, stamp
+from cartwheel.messages.ros2 import ros2_definition
+from cartwheel.messages.ros2_types import ros2_name
+
+TOPIC, TYPE = "/rosout", "rcl_interfaces/msg/Log"
+NODE = "cartwheel"
+_LEVELS = {"info": 20, "warning": 30, "error": 40}
+_KEPT = 100
+"""Lines."""
+
+
+class Log:
+    """A channel of diagnostics; on the bridge's thread.
+
+    The first client hears what was said before it came. One that joins others does not: a
+    channel's messages go to all of its readers, who would have each line twice.
+
+    Args:
+        context: foxglove's, of the server.
+        time_ns: Simulation time.
+    """
+
+    def __init__(self, *, context: Any, time_ns: Callable[[], int]) -> None:
+        import foxglove
+
+        self._time_ns = time_ns
+        schema = foxglove.Schema(
+            name=ros2_name(TYPE), encoding="ros2msg", data=ros2_definition(TYPE).encode()
+        )
+        self.channel = foxglove.Channel(
+            TOPIC, message_encoding="cdr", schema=schema, context=context
+        )
+        self._said: deque[tuple[int, bytes]] = deque(maxlen=_KEPT)
+        self._readers = 0
+
+    def join(self) -> None:
+        """A client reads it from now on."""
+        self._readers += 1
+        if self._readers == 1:
+            for time_ns, data in self._said:
+                self.channel.log(data, log_time=time_ns)
+
+    def leave(self) -> None:
+        """A client reads it no longer."""
+        self._readers = max(0, self._readers - 1)
+
+    def write(self, diagnostic: Diagnostic) -> None:
+        """Says something."""
+        time_ns = self._time_ns()
+        origin = diagnostic.origin
+        message: Any = message_class(TYPE)(
+            stamp=stamp(time_ns),
+            level=_LEVELS[diagnostic.severity],
+            name=NODE,
+            msg=diagnostic.message,
+            file=origin.file if origin else "",
+            function="",
+            line=origin.line if origin else 0,
+        )
+        data = encode_cdr(message)
+        self._said.append((time_ns, data))
+        if self._readers:
+            self.channel.log(data, log_time=time_ns)
+
+    def close(self) -> None:
+        """Takes the channel off the wire."""
+        self.channel.close()
