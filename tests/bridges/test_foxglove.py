@@ -460,6 +460,11 @@ def test_without_the_extra(monkeypatch: pytest.MonkeyPatch) -> None:
     session.close()
 
 
+def publishers(event: dict[str, Any], topic: str) -> list[str]:
+    topics = event["graph"]["publishedTopics"]
+    return [name for one in topics if one["name"] == topic for name in one["publisherIds"]]
+
+
 def test_the_command_serves(folder: Path) -> None:
     process = subprocess.Popen(
         [PROGRAM, "run", "--headless", "--foxglove", "--foxglove-port", "0"],
@@ -472,6 +477,12 @@ def test_the_command_serves(folder: Path) -> None:
         client = Client(line.split()[1], folder)
         client.subscribe("/odom")
         client.wait("message")
+        # Nobody else would offer what Gazebo and robot_state_publisher do.
+        client.wait("services", lambda e: any(s["name"] == "/spawn_entity" for s in e["services"]))
+        client.do("graph")
+        client.wait("graph", lambda e: "robot_state_publisher" in publishers(e, "/tf"))
+        client.subscribe("/rosout")
+        client.wait("message", lambda e: e["topic"] == "/rosout")
         client.close()
     finally:
         process.terminate()

@@ -16,14 +16,21 @@ from rosbags.rosbag1 import Writer as Bag1Writer
 from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin
 from rosbags.rosbag2 import Writer as Bag2Writer
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
-from tests.bridges.test_recording import HAS_ROSBAG, PROGRAM, PYTHON, drive, run_program
+from tests.bridges.test_recording import (
+    HAS_ROSBAG,
+    PROGRAM,
+    PYTHON,
+    drive,
+    read_with_mcap,
+    run_program,
+)
 
 from cartwheel.bridges.recording.decoding import decoder
 from cartwheel.bridges.recording.encoding import codec
 from cartwheel.bridges.recording.opening import open_recording
 from cartwheel.bridges.recording.reading import RecordedTopic
 from cartwheel.errors import RecordingError
-from cartwheel.messages import encode_cdr, zero
+from cartwheel.messages import decode_cdr, encode_cdr, zero
 
 COUNT = 200
 STORE = get_typestore(Stores.ROS2_JAZZY)
@@ -297,3 +304,33 @@ def test_a_type_that_ros1_and_ros2_have_differently_is_read_as_each_has_it() -> 
         again = decoder(topic)(encode_cdr(message))
         assert again.__msgtype__ == mine
         assert getattr(again, field).positions.tolist() == [0.5]
+
+
+ARM = """<robot name="arm">
+  <link name="base"/>
+  <link name="upper"><inertial><mass value="1"/>
+    <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+  <link name="tip"/>
+  <joint name="shoulder" type="continuous">
+    <parent link="base"/><child link="upper"/><axis xyz="0 1 0"/></joint>
+  <joint name="glue" type="fixed">
+    <parent link="upper"/><child link="tip"/><origin xyz="0.4 0 0"/></joint>
+</robot>"""
+
+
+def test_a_file_tells_where_links_are_that_no_plugin_tells(tmp_path: Path) -> None:
+    (tmp_path / "arm.urdf").write_text(ARM)
+    run_program(
+        *("run", "arm.urdf", "--headless", "--speed", "max", "--for", "1", "--record", "a.mcap"),
+        folder=tmp_path,
+    )
+    found = read_with_mcap(tmp_path / "a.mcap")
+    links = {
+        topic: {
+            one.child_frame_id
+            for _, data in found[topic]
+            for one in decode_cdr(data, "tf2_msgs/msg/TFMessage").transforms
+        }
+        for topic in ("/tf", "/tf_static")
+    }
+    assert links == {"/tf": {"upper"}, "/tf_static": {"tip"}}

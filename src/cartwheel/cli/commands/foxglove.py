@@ -38,6 +38,7 @@ def shown_by_foxglove(
         CartwheelError: The extra is missing, or the port is taken.
     """
     from cartwheel.bridges.foxglove import FoxgloveBridge
+    from cartwheel.gazebo.ros2_api import Ros2Api
 
     simulation = session.simulation
     end_ns = None if options.seconds is None else round(options.seconds * 1e9)
@@ -52,7 +53,13 @@ def shown_by_foxglove(
         report=simulation.report,
     )
     with interrupts.finally_do(bridge.close):
+        if options.ros1_node is None and options.ros2_node is None:
+            # Where a run is no part of ROS, nobody else offers what Gazebo does.
+            Ros2Api(session, package_path=options.package_path).start()
         bridge.start()
+        for diagnostic in simulation.engine.diagnostics:
+            bridge.log(diagnostic)
+        simulation.engine.on_diagnostic.append(bridge.log)
         report.foxglove(bridge.url)
         yield
 

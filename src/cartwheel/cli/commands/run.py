@@ -157,13 +157,19 @@ def _shown_by_foxglove(session: Session, options: Options, report: Report) -> It
 
 @contextlib.contextmanager
 def _described(session: Session, options: Options) -> Iterator[RobotDescriptions | None]:
-    """Publishes what the robots are, where somebody shows them elsewhere."""
+    """Publishes what the robots are, and where their links, where somebody shows them elsewhere."""
     if not options.record and options.foxglove_port is None and options.ros2_node is None:
         yield None
         return
     from cartwheel.plugins.robot_descriptions import RobotDescriptions
 
-    yield RobotDescriptions(session.simulation, session.graph)
+    descriptions = RobotDescriptions(session.simulation, session.graph)
+    if options.ros1_node is None and options.ros2_node is None:
+        # In ROS that may be another node's, so it is for those who are a part of it to say.
+        from cartwheel.gazebo.robot_states import RobotStates
+
+        RobotStates(session.simulation, session.graph, descriptions)
+    yield descriptions
 
 
 def _read(
