@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 import random
 import resource
 import socket
 import struct
+import time
 from collections.abc import Iterator
 
 import pytest
@@ -91,6 +93,46 @@ def test_noise_is_counted_and_passed_over(bridged: Ros2Bridged, sender: socket.s
     settle(bridged)
     assert participant.malformed > before
     assert not [each for each in bridged.reports if "fault" in each.message]
+
+
+def test_who_may_not_have_listened_yet_is_told_again_until_it_answers(
+    bridged: Ros2Bridged, sender: socket.socket
+) -> None:
+    """Fast DDS announces itself some time before it takes what is sent to it."""
+    answers = {}
+    for number in (1, 2):
+        prefix = b"\x01\x05" + bytes(9) + bytes([number])
+        sender.send(announcement(prefix, sender.getsockname()[1]))
+        if number == 2:
+            has_none = wire.acknack(
+                reader=discovery.PUBLICATIONS_READER,
+                writer=discovery.PUBLICATIONS_WRITER,
+                base=1,
+                missing=(),
+                count=1,
+                final=True,
+            )
+            sender.send(wire.message(prefix, has_none))
+        answers[number] = greetings(sender, 0.5)
+        bridged.bridge._loop.call(
+            lambda prefix=prefix: dds_of(bridged).participant._lose(prefix)
+        ).result(120)
+    # A periodic one may be among them.
+    assert answers[1] >= 4
+    assert answers[2] <= 2
+
+
+def greetings(sock: socket.socket, seconds: float) -> int:
+    """How often a participant says that it is there."""
+    end = time.monotonic() + seconds
+    found = 0
+    while (left := end - time.monotonic()) > 0:
+        sock.settimeout(left)
+        with contextlib.suppress(TimeoutError):
+            for each in wire.read(memoryview(sock.recv(65536))):
+                data = each.content
+                found += isinstance(data, wire.Data) and data.writer == discovery.SPDP_WRITER
+    return found
 
 
 def test_participants_without_number_are_bounded(

@@ -214,6 +214,26 @@ def test_who_comes_late_gets_what_is_not_too_old() -> None:
     assert (told.first, told.last) == (2, 3)
 
 
+def test_who_comes_late_is_reminded_until_it_answers() -> None:
+    """It may hear of the writer only after what was sent at once."""
+    sent: list[bytes] = []
+    writer = Writer(
+        endpoint(OURS + WRITER, transient_local=True),
+        lambda parts, _: not sent.append(b"".join(parts)),  # type: ignore[func-returns-value]
+    )
+    writer.write(bytes([0, 1, 0, 0, 1, 0, 0, 0]))
+    writer.match(endpoint(THEIRS + READER, transient_local=True), HERE)
+    sent.clear()
+    now = time.monotonic()
+    for passed in (0.5, 1.0, 5.0):
+        writer.remind(now + passed)
+    assert len(sent) == 3
+    writer.take_acknack(THEIRS + READER, wire.Acknack(READER, WRITER, 2, (), 1, final=True))
+    sent.clear()
+    writer.remind(now + 100.0)
+    assert not sent
+
+
 def test_a_response_goes_to_whom_it_is_for_and_others_do_not_wait_for_it() -> None:
     sent: list[bytes] = []
     writer = Writer(endpoint(OURS + WRITER), lambda parts, _: sent.append(b"".join(parts)))

@@ -26,6 +26,8 @@ from cartwheel.bridges.ros2.rtps.writer import Writer
 
 _ANNOUNCE_FIRST, _ANNOUNCE = (0.0, 0.1, 0.3, 0.6, 1.0), 3.0
 """s after the start, and between further announcements."""
+_AGAIN = (0.05, 0.1, 0.2, 0.4, 0.8)
+"""s after which one who is new is told of us again: its program may hear us before it listens."""
 _TICK = 0.05
 _PARTICIPANTS = 256
 _ENDPOINTS = 2000
@@ -42,6 +44,8 @@ class _Remote:
     data: ParticipantData
     address: Address
     heard: float
+    knows_us: bool = False
+    """Whether it has answered."""
     writers: dict[Guid, Endpoint] = field(default_factory=dict)
     readers: dict[Guid, Endpoint] = field(default_factory=dict)
 
@@ -278,6 +282,8 @@ class Participant:
             writer = self._writers.get(content.writer)
             if writer is None:
                 return
+            if remote is not None:
+                remote.knows_us = True
             if isinstance(content, wire.Acknack):
                 writer.take_acknack(received.prefix + content.reader, content)
             else:
@@ -327,6 +333,12 @@ class Participant:
         # Before what follows, so that it knows whose that is.
         self._send((self._announcement,), remote.address)
         self._greet(remote)
+        for wait in _AGAIN:
+            self._loop.after(wait, lambda: self._tell_again(remote))
+
+    def _tell_again(self, remote: _Remote) -> None:
+        if not remote.knows_us and self._remotes.get(remote.data.prefix) is remote:
+            self._send((self._announcement,), remote.address)
 
     def _greet(self, remote: _Remote) -> None:
         """Connects the endpoints by which both tell of their endpoints."""

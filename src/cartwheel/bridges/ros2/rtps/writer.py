@@ -123,6 +123,8 @@ class Writer:
                 self._send_sample(number, sample, proxy, endpoint.guid[12:])
         if proxy.reliable:
             self._heartbeat(proxy, final=False)
+            # It may not know of us yet.
+            proxy.remind_at = time.monotonic() + proxy.patience
         if len(self.proxies) == 1:
             self.on_readers()
 
