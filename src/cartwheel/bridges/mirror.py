@@ -6,8 +6,9 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import Any
 
+from cartwheel.bridges.bridged import BridgedGraph
 from cartwheel.errors import CartwheelError, GraphError
-from cartwheel.graph import Graph, TopicInfo
+from cartwheel.graph import TopicInfo
 
 BRIDGES = frozenset({"ros1", "ros2"})
 """What bridges are called as nodes of the graph."""
@@ -56,7 +57,7 @@ def survey(
     return found
 
 
-def offered_by_others(graph: Graph, reader: str) -> dict[str, TopicInfo]:
+def offered_by_others(graph: BridgedGraph, reader: str) -> dict[str, TopicInfo]:
     """Topics by name, but for those that none but `reader` still reads."""
     return {
         info.name: info
@@ -65,7 +66,7 @@ def offered_by_others(graph: Graph, reader: str) -> dict[str, TopicInfo]:
     }
 
 
-def asked(graph: Graph, service: str, request: Any) -> Any:
+def asked(graph: BridgedGraph, service: str, request: Any) -> Any:
     """The response of a service; from any thread but the simulation's, which is waited for.
 
     Raises:
@@ -87,7 +88,7 @@ class Arrivals:
         tell: Takes a warning.
     """
 
-    def __init__(self, graph: Graph, tell: Callable[[str], None]) -> None:
+    def __init__(self, graph: BridgedGraph, tell: Callable[[str], None]) -> None:
         self._graph = graph
         self._tell = tell
         self._under_way: dict[int, Any] = {}

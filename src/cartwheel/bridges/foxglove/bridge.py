@@ -10,6 +10,7 @@ import time
 from collections.abc import Callable
 from typing import Any
 
+from cartwheel.bridges.bridged import BridgedGraph, BridgedSubscription
 from cartwheel.bridges.foxglove.controls import Controls
 from cartwheel.bridges.foxglove.incoming import ENCODINGS, Incoming, offered
 from cartwheel.bridges.foxglove.listener import Listener, playback_state
@@ -19,7 +20,7 @@ from cartwheel.bridges.foxglove.publication import READER, Publication
 from cartwheel.bridges.foxglove.values import PAUSED, SPEED, Values
 from cartwheel.bridges.mirror import offered_by_others
 from cartwheel.errors import CartwheelError, Diagnostic, Once, one_line
-from cartwheel.graph import Graph, Service, Subscription, TopicInfo
+from cartwheel.graph import Service, TopicInfo
 
 PORT = 8765
 """Foxglove's own."""
@@ -61,7 +62,7 @@ class FoxgloveBridge:
 
     def __init__(
         self,
-        graph: Graph,
+        graph: BridgedGraph,
         *,
         name: str,
         controls: Controls,
@@ -84,7 +85,7 @@ class FoxgloveBridge:
         self._by_channel: dict[int, Publication | Log] = {}
         self._services: dict[str, Service] = {}
         self._descriptions: dict[str, str] = {}
-        self._watched: dict[str, Subscription] = {}
+        self._watched: dict[str, BridgedSubscription] = {}
         self._jobs: queue.SimpleQueue[Callable[[], None] | None] = queue.SimpleQueue()
         self._pending: set[str] = set()
         self._surveying = False

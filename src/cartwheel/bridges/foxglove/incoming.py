@@ -6,9 +6,10 @@ import json
 from collections.abc import Callable
 from typing import Any
 
+from cartwheel.bridges.bridged import BridgedGraph
 from cartwheel.bridges.mirror import asked
 from cartwheel.errors import CartwheelError, GraphError
-from cartwheel.graph import TWIST, TWIST_STAMPED, Graph, Service
+from cartwheel.graph import TWIST, TWIST_STAMPED, Service
 from cartwheel.messages import (
     decode_cdr,
     encode_cdr,
@@ -53,7 +54,7 @@ class Incoming:
         tell: Takes a warning, for clients and the user.
     """
 
-    def __init__(self, graph: Graph, tell: Callable[[str], None]) -> None:
+    def __init__(self, graph: BridgedGraph, tell: Callable[[str], None]) -> None:
         self._graph = graph
         self._tell = tell
         self._channels: dict[tuple[int, int], tuple[str, str, str]] = {}
@@ -96,7 +97,7 @@ class Incoming:
         self._waiting -= 1
 
 
-def offered(graph: Graph, service: Service) -> Any:
+def offered(graph: BridgedGraph, service: Service) -> Any:
     """A service of the graph as the server takes it; it is called on threads of the server.
 
     Raises:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from cartwheel.graph import Graph, Mailbox, Subscription, TopicInfo
+from cartwheel.bridges.bridged import BridgedGraph, BridgedSubscription
+from cartwheel.graph import Mailbox, TopicInfo
 from cartwheel.messages.ros2 import ros2_definition
 from cartwheel.messages.ros2_types import ros2_name
 
@@ -30,7 +31,7 @@ class Publication:
 
     def __init__(
         self,
-        graph: Graph,
+        graph: BridgedGraph,
         info: TopicInfo,
         *,
         context: Any,
@@ -56,7 +57,7 @@ class Publication:
         self.latched = info.qos == "latched"
         size = _LARGE_WAITING if info.type in _LARGE else _WAITING
         self._box = Mailbox(size)
-        self._subscription: Subscription | None = None
+        self._subscription: BridgedSubscription | None = None
         self._readers = 0
         self._last: tuple[int, bytes] | None = None
         self._told = False

@@ -6,9 +6,9 @@ import math
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
+from cartwheel.bridges.bridged import BridgedGraph
 from cartwheel.bridges.foxglove.controls import Controls
 from cartwheel.errors import CartwheelError, GraphError
-from cartwheel.graph import Graph
 
 PAUSED, SPEED = "/cartwheel/paused", "/cartwheel/speed"
 """Whether time is held, and how fast it goes; a speed of 0 is as fast as it can."""
@@ -26,7 +26,7 @@ class Values:
 
     def __init__(
         self,
-        graph: Graph,
+        graph: BridgedGraph,
         *,
         controls: Controls,
         descriptions: Mapping[str, str],

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from cartwheel.bridges.bridged import BridgedGraph, BridgedSubscription
 from cartwheel.bridges.mirror import offered_by_others
 from cartwheel.bridges.recording.backlog import Backlog, Item
 from cartwheel.bridges.recording.formats import (
@@ -28,7 +29,7 @@ from cartwheel.errors import (
     UnknownNameError,
     one_line,
 )
-from cartwheel.graph import Graph, Subscription, TopicInfo
+from cartwheel.graph import TopicInfo
 
 READER = "recorder"
 """Our name in the graph."""
@@ -54,13 +55,13 @@ class Summary:
 class _Tap:
     """The subscription of one topic."""
 
-    def __init__(self, recorder: Recorder, graph: Graph, info: TopicInfo) -> None:
+    def __init__(self, recorder: Recorder, graph: BridgedGraph, info: TopicInfo) -> None:
         self.type = info.type
         self.latched = info.qos == "latched"
         self.topic = info.name
         self.last: Any = None
         self._recorder = recorder
-        self._subscription: Subscription = graph.subscribe(
+        self._subscription: BridgedSubscription = graph.subscribe(
             info.name, self._take, type_name=info.type, node=READER
         )
 
@@ -99,7 +100,7 @@ class Recorder:
 
     def __init__(
         self,
-        graph: Graph,
+        graph: BridgedGraph,
         path: Path | str,
         *,
         time_ns: Callable[[], int],

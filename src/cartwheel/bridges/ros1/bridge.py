@@ -6,6 +6,7 @@ import functools
 from collections.abc import Callable, Sequence
 from typing import Any
 
+from cartwheel.bridges.bridged import BridgedGraph
 from cartwheel.bridges.loop import Loop
 from cartwheel.bridges.mirror import Arrivals, asked, survey
 from cartwheel.bridges.ros1.address import (
@@ -26,7 +27,7 @@ from cartwheel.bridges.ros1.rpc import Peer, RpcError, UnreachableError
 from cartwheel.bridges.ros1.service import OfferedService
 from cartwheel.bridges.ros1.subscription import TopicSubscription
 from cartwheel.errors import CartwheelError, Diagnostic, Once, UnknownNameError, one_line
-from cartwheel.graph import Graph, Service, TopicInfo
+from cartwheel.graph import Service, TopicInfo
 from cartwheel.messages.ros1 import ros1_service, ros1_type
 from cartwheel.messages.store import is_ros2_only
 
@@ -61,7 +62,7 @@ class Ros1Bridge:
 
     def __init__(
         self,
-        graph: Graph,
+        graph: BridgedGraph,
         *,
         node: str = "gazebo",
         arguments: Sequence[str] = (),

@@ -6,12 +6,12 @@ import struct
 from collections.abc import Callable
 from typing import Any
 
+from cartwheel.bridges.bridged import BridgedGraph
 from cartwheel.bridges.loop import Loop
 from cartwheel.bridges.ros1.connection import Connection
 from cartwheel.bridges.ros1.header import encode_header
 from cartwheel.bridges.tap import Tap
 from cartwheel.errors import GraphError
-from cartwheel.graph import Graph
 from cartwheel.messages.ros1 import Ros1Type, write_ros1
 
 _LENGTH = struct.Struct("<I")
@@ -145,7 +145,7 @@ class GraphPublication(Publication):
     def __init__(
         self,
         loop: Loop,
-        graph: Graph,
+        graph: BridgedGraph,
         *,
         source: str,
         type_name: str,

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from cartwheel.bridges.bridged import BridgedAction, BridgedGraph
 from cartwheel.bridges.loop import Loop
 from cartwheel.bridges.ros2.middleware import (
     CALLS,
@@ -22,7 +23,7 @@ from cartwheel.bridges.ros2.middleware import (
     Served,
 )
 from cartwheel.errors import GraphError
-from cartwheel.graph import Action, Goal, GoalState, Graph
+from cartwheel.graph import Goal, GoalState
 from cartwheel.messages import decode_cdr, encode_cdr, message_class, stamp, zero
 from cartwheel.messages.ros2_types import ros2_service, ros2_type
 
@@ -58,8 +59,8 @@ class OfferedAction:
 
     def __init__(
         self,
-        graph: Graph,
-        action: Action,
+        graph: BridgedGraph,
+        action: BridgedAction,
         *,
         loop: Loop,
         middleware: Middleware,

@@ -7,6 +7,7 @@ import re
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any, Literal
 
+from cartwheel.bridges.bridged import BridgedAction, BridgedGraph
 from cartwheel.bridges.loop import Loop
 from cartwheel.bridges.mirror import BRIDGES, ONLOOKERS, Arrivals, asked, survey
 from cartwheel.bridges.ros2.actions import OfferedAction
@@ -32,7 +33,7 @@ from cartwheel.errors import (
     UnknownNameError,
     one_line,
 )
-from cartwheel.graph import Action, Graph, Service, TopicInfo
+from cartwheel.graph import Service, TopicInfo
 from cartwheel.messages import decode_cdr
 from cartwheel.messages.ros2_types import is_ros1_only, ros2_service, ros2_type
 
@@ -69,7 +70,7 @@ class Ros2Bridge:
 
     def __init__(
         self,
-        graph: Graph,
+        graph: BridgedGraph,
         *,
         node: str = "gazebo",
         rmw: Rmw = "dds",
@@ -231,7 +232,7 @@ class Ros2Bridge:
                     ),
                 )
 
-    def _mirror_actions(self, offered: Mapping[str, Action]) -> None:
+    def _mirror_actions(self, offered: Mapping[str, BridgedAction]) -> None:
         known = self._actions
         for name, action in list(known.items()):
             if offered.get(name) is not action.action:
