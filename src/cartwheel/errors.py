@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
 
 Severity = Literal["info", "warning", "error"]
 
@@ -54,6 +54,10 @@ class CartwheelError(Exception):
         self.hint = hint
         super().__init__(message)
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """For other processes: subclasses are made of other arguments."""
+        return _remade, (type(self), self.message, self.origin, self.hint)
+
     def __str__(self) -> str:
         text = f"{self.origin}: {self.message}" if self.origin else self.message
         if self.hint:
@@ -61,6 +65,14 @@ class CartwheelError(Exception):
         if self.origin:
             text += "".join(f"\n  in {frame}" for frame in self.origin.stack)
         return text
+
+
+def _remade(
+    kind: type[CartwheelError], message: str, origin: Origin | None, hint: str | None
+) -> CartwheelError:
+    error = kind.__new__(kind, message)
+    CartwheelError.__init__(error, message, origin=origin, hint=hint)
+    return error
 
 
 class DescriptionError(CartwheelError):

@@ -2,28 +2,19 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from typing import Any
 
+from cartwheel.bridges.bridged import BridgedGraph, BridgedSubscription
 from cartwheel.bridges.loop import Loop
-from cartwheel.graph import Graph, Mailbox, Subscription
+from cartwheel.graph import Mailbox
 
-_WAITING = 100
+_WAITING = 200
 """Messages that may wait between the simulation's thread and ours."""
-_CLOCK = "rosgraph_msgs/msg/Clock"
-_TIMES, _TIMES_AT_ONCE = 1000.0, 100.0
-"""Times that are sent in a second, and at once: a simulation at full speed publishes many more, and
-each is read by every node that uses simulated time."""
-_SOON = 0.001
-"""s after which times that may not be sent yet are looked at again."""
 
 
 class Tap:
     """Subscribes to one topic of the graph while it is open, so that nothing is made for nobody.
-
-    Of times that come faster than anybody can use them, the newest are passed on: an old one is
-    no loss. All other messages are.
 
     Args:
         loop: Takes the messages on its thread.
@@ -40,7 +31,7 @@ class Tap:
     def __init__(
         self,
         loop: Loop,
-        graph: Graph,
+        graph: BridgedGraph,
         *,
         topic: str,
         type_name: str,
@@ -62,17 +53,12 @@ class Tap:
         self._box = Mailbox(_WAITING)
         self._due = False
         self._late = False
-        self._allowance = _Allowance() if type_name == _CLOCK else None
-        self._subscription: Subscription | None = None
+        self._subscription: BridgedSubscription | None = None
 
     @property
     def dropped(self) -> int:
         """Messages that were published faster than they could be sent, or than others read."""
-        return self._overrun + self._beyond()
-
-    @property
-    def _overrun(self) -> int:
-        return 0 if self._allowance is not None else self._box.dropped
+        return self._box.dropped + self._beyond()
 
     def open(self) -> None:
         """Subscribes, where that is not done yet."""
@@ -99,39 +85,12 @@ class Tap:
             self._loop.post(self._pass_on)
 
     def _pass_on(self) -> None:
-        allowed = None if self._allowance is None else self._allowance.left()
-        if allowed == 0:
-            self._loop.after(_SOON, self._pass_on)
-            return
         self._due = False
-        messages = self._box.drain()
-        if self._allowance is not None and allowed is not None:
-            messages = messages[-allowed:]
-            self._allowance.spend(len(messages))
-        for message in messages:
+        for message in self._box.drain():
             if self._subscription is not None:
                 self._take(message)
-        if self._overrun and not self._late:
+        if self._box.dropped and not self._late:
             self._late = True
             self._tell(
                 f"{self._topic} is published faster than it can be sent: messages are dropped"
             )
-
-
-class _Allowance:
-    """How many times may be sent: so many in a second of wall time, and so many at once."""
-
-    def __init__(self) -> None:
-        self._left = _TIMES_AT_ONCE
-        self._since = time.monotonic()
-
-    def left(self) -> int:
-        """How many may be sent now."""
-        now = time.monotonic()
-        self._left = min(_TIMES_AT_ONCE, self._left + (now - self._since) * _TIMES)
-        self._since = now
-        return int(self._left)
-
-    def spend(self, count: int) -> None:
-        """They are sent."""
-        self._left -= count

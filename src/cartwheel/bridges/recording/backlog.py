@@ -8,6 +8,8 @@ from collections import deque
 from dataclasses import dataclass
 from typing import Any
 
+from cartwheel.bridges.packed import Packed
+
 ROOM = 64 << 20
 """Bytes of messages, about, that may wait."""
 COUNT = 20_000
@@ -107,6 +109,8 @@ class Backlog:
 
 def size_of(message: Any) -> int:
     """About how many bytes a message holds: those of the arrays that grow large."""
+    if isinstance(message, Packed):
+        return _SMALL + len(message.cdr)
     size = _SMALL
     for name in ("data", "ranges", "intensities"):
         size += getattr(getattr(message, name, None), "nbytes", 0)

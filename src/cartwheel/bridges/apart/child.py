@@ -1,0 +1,89 @@
+"""The program of a bridge's process."""
+
+from __future__ import annotations
+
+import gc
+import importlib
+import os
+import signal
+import socket
+import threading
+from typing import Any, Protocol
+
+from cartwheel.bridges.apart.link import Link
+from cartwheel.bridges.apart.remote_graph import RemoteGraph
+from cartwheel.bridges.apart.ring import RingReader
+from cartwheel.errors import Diagnostic, one_line
+
+WIRES = {
+    "ros1": "Ros1Wire",
+    "ros2": "Ros2Wire",
+    "foxglove": "FoxgloveWire",
+    "recording": "RecordingWire",
+}
+"""The classes of `wires`, by kind."""
+
+
+class Wire(Protocol):
+    """A bridge in this process."""
+
+    def open(self, options: dict[str, Any]) -> Any:
+        """Makes it; tells what it is."""
+
+    def close(self) -> Any:
+        """Ends it; tells what became of it."""
+
+
+def main(kind: str, patient: str, link_file: str, bell_file: str, memory_file: str) -> None:
+    """Runs a bridge until the simulation's process says so, or has ended.
+
+    Args:
+        kind: One of `WIRES`.
+        patient: Not empty where nothing may be lost.
+        link_file: Number of the link's socket.
+        bell_file: Number of the ring's bell.
+        memory_file: Number of the ring's memory.
+    """
+    # They may be sent to all of a service's processes. The simulation's hears of them, and its end
+    # is heard here: until then there may be something to be written.
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, signal.SIG_IGN)
+    over = threading.Event()
+
+    def fault(error: Exception) -> None:
+        link.tell(
+            "report",
+            Diagnostic(severity="warning", message=f"a fault of the bridge: {one_line(error)}"),
+        )
+
+    link = Link(socket.socket(fileno=int(link_file)), name="link", on_end=over.set, on_fault=fault)
+    graph = RemoteGraph(link, on_fault=fault)
+    reader = RingReader(
+        int(memory_file),
+        socket.socket(fileno=int(bell_file)),
+        patient=bool(patient),
+        take=graph.take,
+        on_fault=fault,
+    )
+    module = importlib.import_module("cartwheel.bridges.apart.wires")
+    wire: Wire = getattr(module, WIRES[kind])(graph, link)
+
+    def begin(options: dict[str, Any]) -> Any:
+        graph.begin()
+        reader.start()
+        return wire.open(options)
+
+    def close(written: int) -> Any:
+        reader.read_to(written)
+        return wire.close()
+
+    link.handle("open", begin, threaded=True)
+    link.handle("close", close, threaded=True)
+    gc.collect()
+    gc.freeze()
+    link.start()
+    over.wait()
+    # What the simulation had handed on before it ended, in whatever way, is still there.
+    reader.read_all()
+    wire.close()
+    os._exit(0)

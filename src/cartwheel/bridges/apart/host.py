@@ -1,0 +1,290 @@
+"""A graph for a bridge in another process."""
+
+from __future__ import annotations
+
+import itertools
+import threading
+import time
+from collections.abc import Callable
+from concurrent.futures import Future
+from typing import Any
+
+from cartwheel.bridges.apart.hosted_actions import HostedActions
+from cartwheel.bridges.apart.link import Link
+from cartwheel.bridges.apart.remote_graph import ANSWER, GraphState, OfferedService
+from cartwheel.bridges.apart.ring import RingWriter
+from cartwheel.calls import answered
+from cartwheel.errors import Diagnostic, one_line
+from cartwheel.graph import Graph, Service, Subscription
+from cartwheel.messages import decode_cdr, encode_cdr, service_classes
+
+_CLOCK = "rosgraph_msgs/msg/Clock"
+_TIMES, _TIMES_AT_ONCE = 1000.0, 100.0
+"""Times that are passed on in a second, and at once: a simulation at full speed publishes many
+more, and each is read by every node that uses simulated time."""
+_LAST_TIME = 0.02
+"""s after which the last of them is looked at again."""
+
+
+class GraphHost:
+    """Answers for a graph at one end of a link; a `RemoteGraph` is at the other.
+
+    Args:
+        graph: Of the simulation.
+        link: To the bridge's process.
+        ring: For messages.
+        time_ns: Tells simulation time; on any thread.
+        patient: Nothing may be lost: where the ring is full, the simulation waits.
+        echo: Whether the bridge hears what it has published itself.
+        title: Of the bridge, as the user knows it.
+        report: Takes what the user should know, from any thread.
+    """
+
+    def __init__(
+        self,
+        graph: Graph,
+        link: Link,
+        ring: RingWriter,
+        *,
+        time_ns: Callable[[], int],
+        patient: bool,
+        echo: bool,
+        title: str,
+        report: Callable[[Diagnostic], None],
+    ) -> None:
+        self._graph = graph
+        self._link = link
+        self._ring = ring
+        self._time_ns = time_ns
+        self._patient = patient
+        self._echo = echo
+        self._title = title
+        self._report = report
+        self._relays: dict[int, _Relay] = {}
+        self._arrived: dict[int, Any] = {}
+        """Messages from the bridge that the simulation has not taken yet, by identity."""
+        self._numbers = itertools.count(1)
+        self._services: dict[str, tuple[Service, int]] = {}
+        self._server = _RemoteServer(link)
+        self._actions = HostedActions(link, graph, time_ns)
+        self._changing = False
+        self._closed = False
+        self.waited = 0.0
+        """s that the simulation has waited for the bridge."""
+        link.handle("begin", self._begin)
+        link.handle("taken", lambda: answered(graph.post, lambda: None))
+        link.handle("subscribe", self._subscribe)
+        link.handle("unsubscribe", self._unsubscribe)
+        link.handle("dropped", self._dropped)
+        link.handle("publish", self._publish)
+        link.handle("call", self._call, threaded=True)
+        link.handle("action", self._actions.do)
+        link.handle("serve_parameters", self._serve_parameters)
+        link.handle("get_parameter", graph.parameters.get, threaded=True)
+        link.handle("set_parameter", graph.parameters.set, threaded=True)
+
+    def close(self) -> None:
+        """Takes everything of the bridge's off the graph; from any thread."""
+        self._closed = True
+        if self._changed in self._graph.on_change:
+            self._graph.on_change.remove(self._changed)
+        self._serve_parameters(False)
+        for relay in list(self._relays.values()):
+            relay.close()
+        self._relays.clear()
+        self._actions.close()
+
+    # -- on the link's thread
+
+    def _begin(self) -> GraphState:
+        self._graph.on_change.append(self._changed)
+        return self._state()
+
+    def _changed(self) -> None:
+        """On any thread, the graph locked."""
+        if not self._changing:
+            self._changing = True
+            self._link.loop.post(self._tell_change)
+
+    def _tell_change(self) -> None:
+        self._changing = False
+        if not self._closed:
+            self._link.tell("changed", self._state())
+
+    def _state(self) -> GraphState:
+        graph, before = self._graph, self._services
+        self._services = {}
+        for one in graph.services():
+            known = before.get(one.name)
+            same = known is not None and known[0] is one
+            self._services[one.name] = known if same and known else (one, next(self._numbers))
+        return GraphState(
+            time_ns=self._time_ns(),
+            topics=tuple(graph.topics()),
+            services=tuple(
+                OfferedService(number=number, name=one.name, type=one.type, node=one.node)
+                for one, number in self._services.values()
+            ),
+            actions=self._actions.known(),
+            nodes=dict(graph.nodes),
+        )
+
+    def _subscribe(self, number: int, name: str, type_name: str, node: str) -> None:
+        kind = _Times if type_name == _CLOCK and not self._patient else _Relay
+        relay = kind(self, number, name)
+        relay.subscription = self._graph.subscribe(name, relay.take, type_name=type_name, node=node)
+        relay.subscription.dropped = lambda: relay.dropped + relay.beyond
+        self._relays[number] = relay
+
+    def _unsubscribe(self, number: int) -> None:
+        relay = self._relays.pop(number, None)
+        if relay is not None:
+            relay.close()
+
+    def _dropped(self, number: int, count: int) -> None:
+        if number in self._relays:
+            self._relays[number].beyond = count
+
+    def _publish(self, name: str, type_name: str, data: bytes) -> None:
+        message = decode_cdr(data, type_name)
+        if self._echo:
+            self._graph.publish(name, type_name, message)
+            return
+        self._arrived[id(message)] = message
+        try:
+            self._graph.publish(name, type_name, message)
+        finally:
+            self._graph.post(lambda: self._arrived.pop(id(message), None) and None)
+
+    def _call(self, name: str, data: bytes) -> Future[bytes]:
+        """On a thread of its own."""
+        request = service_classes(self._graph.service(name).type)[0]
+        future = self._graph.call(name, decode_cdr(data, request.__msgtype__))
+        answer: Future[bytes] = Future()
+
+        def pack(done: Future[Any]) -> None:
+            try:
+                answer.set_result(encode_cdr(done.result()))
+            except Exception as error:  # noqa: BLE001 - it is the caller's to handle
+                answer.set_exception(error)
+
+        future.add_done_callback(pack)
+        return answer
+
+    def _serve_parameters(self, served: bool) -> None:
+        parameters = self._graph.parameters
+        if served:
+            parameters.server = self._server
+        elif parameters.server is self._server:
+            parameters.server = None
+
+    # -- on the simulation's thread
+
+    def pass_on(self, relay: _Relay, message: Any) -> None:
+        """Sends a message of the graph, unless it came from there."""
+        if self._arrived and id(message) in self._arrived:
+            return
+        try:
+            data = self._graph.cdr.encode(message)
+        except Exception as error:  # noqa: BLE001 - rosbags lets whatever it meets through
+            if not relay.faulty:
+                relay.faulty = True
+                self._warn(f"{relay.topic}: a message that is none: {one_line(error)}")
+            return
+        if self._patient:
+            self.waited += self._ring.put_patiently(relay.number, self._time_ns(), data)
+        elif not self._ring.put(relay.number, self._time_ns(), data) and not self._closed:
+            relay.dropped += 1
+            if relay.dropped == 1:
+                self._warn(
+                    f"{relay.topic} is published faster than it can be sent: messages are dropped"
+                )
+
+    def later(self, function: Callable[[], None]) -> None:
+        """Runs a function on the link's thread, a little later."""
+        self._link.loop.post(lambda: self._link.loop.after(_LAST_TIME, function))
+
+    def _warn(self, text: str) -> None:
+        self._report(Diagnostic(severity="warning", message=f"{self._title}: {text}"))
+
+
+class _Relay:
+    """A subscription of the bridge's."""
+
+    def __init__(self, host: GraphHost, number: int, topic: str) -> None:
+        self._host = host
+        self.number = number
+        self.topic = topic
+        self.subscription: Subscription | None = None
+        self.dropped = 0
+        self.beyond = 0
+        """What the bridge has dropped."""
+        self.faulty = False
+
+    def take(self, message: Any) -> None:
+        """On the simulation's thread."""
+        self._host.pass_on(self, message)
+
+    def close(self) -> None:
+        """Ends it."""
+        if self.subscription is not None:
+            self.subscription.close()
+
+
+class _Times(_Relay):
+    """Of times that come faster than anybody can use them the newest: an old one is no loss."""
+
+    def __init__(self, host: GraphHost, number: int, topic: str) -> None:
+        super().__init__(host, number, topic)
+        self._lock = threading.Lock()
+        self._left = _TIMES_AT_ONCE
+        self._since = time.monotonic()
+        self._held: Any = None
+        """The newest, while it may not be sent yet."""
+        self._due = False
+
+    def take(self, message: Any) -> None:
+        """On the simulation's thread."""
+        with self._lock:
+            self._held = message
+            if self._pass_held() or self._due:
+                return
+            self._due = True
+        self._host.later(self._pass_last)
+
+    def _pass_held(self) -> bool:
+        now = time.monotonic()
+        self._left = min(_TIMES_AT_ONCE, self._left + (now - self._since) * _TIMES)
+        self._since = now
+        if self._held is None or self._left < 1.0:
+            return self._held is None
+        self._left -= 1.0
+        message, self._held = self._held, None
+        self._host.pass_on(self, message)
+        return True
+
+    def _pass_last(self) -> None:
+        """On the link's thread: nothing may have come since."""
+        with self._lock:
+            self._due = not self._pass_held()
+        if self._due:
+            self._host.later(self._pass_last)
+
+
+class _RemoteServer:
+    """Parameters that the bridge keeps; a `ParameterServer`."""
+
+    def __init__(self, link: Link) -> None:
+        self._link = link
+
+    def get(self, name: str) -> Any:
+        """The value; waits for it."""
+        return self._link.call("server_get", name).result(ANSWER)
+
+    def set(self, name: str, value: Any) -> None:
+        """Stores a value."""
+        self._link.tell("server_set", name, _plain(value))
+
+
+def _plain(value: Any) -> Any:
+    return value.tolist() if hasattr(value, "tolist") else value

@@ -1,0 +1,110 @@
+"""The actions of a graph for a bridge in another process."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable
+from concurrent.futures import Future
+from typing import Any
+
+from cartwheel.bridges.apart.link import Link
+from cartwheel.bridges.apart.remote_action import GoalNews, KnownAction, news_of
+from cartwheel.calls import answered
+from cartwheel.errors import GraphError
+from cartwheel.graph import Action, Goal, Graph
+from cartwheel.messages import decode_cdr, encode_cdr
+
+
+class HostedActions:
+    """Does with actions what a `RemoteAction` asks for.
+
+    Args:
+        link: To the bridge's process.
+        graph: Whose actions.
+        time_ns: Tells simulation time.
+    """
+
+    def __init__(self, link: Link, graph: Graph, time_ns: Callable[[], int]) -> None:
+        self._link = link
+        self._graph = graph
+        self._time_ns = time_ns
+        self._numbers = itertools.count(1)
+        self._known: dict[int, tuple[Action, _Teller]] = {}
+
+    def known(self) -> tuple[KnownAction, ...]:
+        """All there are, by name; on the link's thread, as `do`."""
+        before = {id(one[0]): (number, one) for number, one in self._known.items()}
+        self._known = {}
+        for action in self._graph.actions():
+            number, one = before.get(id(action)) or self._new(action)
+            self._known[number] = one
+        return tuple(
+            KnownAction(number=number, name=one.name, type=one.type, node=one.node)
+            for number, (one, _) in self._known.items()
+        )
+
+    def close(self) -> None:
+        """Tells of no goals any more; from any thread."""
+        for action, teller in list(self._known.values()):
+            self._graph.post(lambda action=action, teller=teller: action.leave(teller))  # type: ignore[misc]
+
+    def do(self, number: int, what: str, *arguments: Any) -> Future[Any] | None:
+        """Does something with an action, on the graph owner's thread."""
+        if number in self._known:
+            action, teller = self._known[number]
+            function = getattr(self, f"_{what}")
+            return answered(self._graph.post, lambda: function(action, teller, *arguments))
+        if what in ("listen", "want_feedback"):
+            return None
+        raise GraphError("there is no such action any more")
+
+    def _new(self, action: Action) -> tuple[int, tuple[Action, _Teller]]:
+        number = next(self._numbers)
+        return number, (action, _Teller(self._link, number, self._time_ns))
+
+    # -- on the owner's thread
+
+    @staticmethod
+    def _listen(action: Action, teller: _Teller, wanted: bool) -> None:
+        action.leave(teller)
+        if wanted:
+            action.listen(teller)
+
+    @staticmethod
+    def _want_feedback(_: Action, teller: _Teller, wanted: bool) -> None:
+        teller.wants_feedback = wanted
+
+    def _goals(self, action: Action, _: _Teller) -> list[GoalNews]:
+        return [news_of(goal, self._time_ns()) for goal in action.goals]
+
+    def _goal(self, action: Action, _: _Teller, identity: str) -> GoalNews | None:
+        goal = action.goal(identity)
+        return None if goal is None else news_of(goal, self._time_ns())
+
+    def _submit(self, action: Action, _: _Teller, data: bytes, identity: str) -> GoalNews | None:
+        goal = action.submit(decode_cdr(data, f"{action.type}_Goal"), identity=identity)
+        return None if goal is None else news_of(goal, self._time_ns())
+
+    def _cancel(self, action: Action, _: _Teller, identity: str, before_ns: int) -> list[GoalNews]:
+        meant = action.cancel(identity=identity, before_ns=before_ns)
+        return [news_of(goal, self._time_ns()) for goal in meant]
+
+
+class _Teller:
+    """Tells the bridge of an action's goals; an `ActionListener`."""
+
+    def __init__(self, link: Link, number: int, time_ns: Callable[[], int]) -> None:
+        self._link = link
+        self._number = number
+        self._time_ns = time_ns
+        self.wants_feedback = False
+
+    def goal_changed(self, goal: Goal) -> None:
+        """See `ActionListener`."""
+        self._link.tell("goal", self._number, news_of(goal, self._time_ns()), None)
+
+    def goal_goes_on(self, goal: Goal, feedback: Any) -> None:
+        """See `ActionListener`."""
+        if self.wants_feedback:
+            news = news_of(goal, self._time_ns())
+            self._link.tell("goal", self._number, news, encode_cdr(feedback))

@@ -1,0 +1,225 @@
+"""Functions of another process, called by name over a socket."""
+
+from __future__ import annotations
+
+import contextlib
+import itertools
+import pickle
+import socket
+import struct
+import threading
+from collections import deque
+from collections.abc import Callable
+from concurrent.futures import Future
+from typing import Any
+
+from cartwheel.bridges.loop import READ, WRITE, Loop
+from cartwheel.errors import CartwheelError, ControlError, one_line
+
+_LENGTH = struct.Struct("<Q")
+_CHUNK = 1 << 18
+_CALL, _TELL, _ANSWER = range(3)
+
+Handler = Callable[..., Any]
+
+
+class Link:
+    """One end; both are ours, so that what comes is trusted.
+
+    What is sent arrives in order. A handler runs on the link's thread and must return at once,
+    unless it is `threaded` or gives a future, which is the answer when it is done.
+
+    Args:
+        sock: Connected to the other end.
+        name: Of the thread.
+        on_end: Told on the link's thread when the other end has gone.
+        on_fault: Told of what a handler raised that nobody waits for.
+    """
+
+    def __init__(
+        self,
+        sock: socket.socket,
+        *,
+        name: str,
+        on_end: Callable[[], None],
+        on_fault: Callable[[Exception], None],
+    ) -> None:
+        self._sock = sock
+        self._on_end = on_end
+        self._on_fault = on_fault
+        self._handlers: dict[str, tuple[Handler, bool]] = {}
+        self._waiting: dict[int, Future[Any]] = {}
+        self._numbers = itertools.count()
+        self._received = bytearray()
+        self._queue: deque[memoryview] = deque()
+        self._ended = False
+        self.loop = Loop(on_fault, name=name)
+        sock.setblocking(False)
+
+    def handle(self, name: str, handler: Handler, *, threaded: bool = False) -> None:
+        """Lets the other end call a function; before `start`, or before it is told of it."""
+        self._handlers[name] = (handler, threaded)
+
+    def start(self) -> None:
+        """Begins to listen."""
+        self.loop.start()
+        self.loop.post(lambda: self.loop.watch(self._sock, READ, self._ready))
+
+    def close(self) -> None:
+        """Ends it, once what was said before is sent as far as the system takes it."""
+        self.loop.post(self._end)
+        self.loop.stop()
+
+    # -- from any thread
+
+    def call(self, name: str, *arguments: Any) -> Future[Any]:
+        """Calls a function there; its error is the future's."""
+        future: Future[Any] = Future()
+        number = next(self._numbers)
+        frame = _frame(_CALL, number, name, arguments)
+
+        def send() -> None:
+            if self._ended:
+                _fail(future, _gone())
+                return
+            self._waiting[number] = future
+            self._write(frame)
+
+        self.loop.post(send)
+        return future
+
+    def tell(self, name: str, *arguments: Any) -> None:
+        """Calls a function there and does not ask what became of it."""
+        frame = _frame(_TELL, 0, name, arguments)
+        self.loop.post(lambda: self._write(frame))
+
+    # -- on the link's thread
+
+    def _write(self, frame: bytes) -> None:
+        if self._ended:
+            return
+        self._queue.append(memoryview(frame))
+        if len(self._queue) == 1:
+            self._flush()
+
+    def _flush(self) -> None:
+        while self._queue:
+            try:
+                count = self._sock.send(self._queue[0])
+            except BlockingIOError:
+                self.loop.watch(self._sock, READ | WRITE, self._ready)
+                return
+            except OSError:
+                self._end()
+                return
+            rest = self._queue[0][count:]
+            if rest:
+                self._queue[0] = rest
+            else:
+                self._queue.popleft()
+        self.loop.watch(self._sock, READ, self._ready)
+
+    def _ready(self, events: int) -> None:
+        if events & WRITE and not self._ended:
+            self._flush()
+        if events & READ and not self._ended:
+            self._read()
+
+    def _read(self) -> None:
+        try:
+            data = self._sock.recv(_CHUNK)
+        except BlockingIOError:
+            return
+        except OSError:
+            data = b""
+        if not data:
+            self._end()
+            return
+        received = self._received
+        received += data
+        start = 0
+        while len(received) - start >= _LENGTH.size:
+            (length,) = _LENGTH.unpack_from(received, start)
+            end = start + _LENGTH.size + length
+            if len(received) < end:
+                break
+            with memoryview(received) as view:
+                found = pickle.loads(view[start + _LENGTH.size : end])  # noqa: S301 - our own
+            start = end
+            self._take(*found)
+        if start:
+            del received[:start]
+
+    def _take(self, kind: int, number: int, name: str, content: Any) -> None:
+        if kind == _ANSWER:
+            future = self._waiting.pop(number, None)
+            if future is not None and future.set_running_or_notify_cancel():
+                error, value = content
+                if error is None:
+                    future.set_result(value)
+                else:
+                    future.set_exception(error)
+            return
+        handler, threaded = self._handlers[name]
+        if threaded:
+            threading.Thread(
+                target=self._run, args=(kind, number, handler, content), name=name, daemon=True
+            ).start()
+        else:
+            self._run(kind, number, handler, content)
+
+    def _run(self, kind: int, number: int, handler: Handler, arguments: Any) -> None:
+        try:
+            result = handler(*arguments)
+        except Exception as error:  # noqa: BLE001 - it is the caller's to handle
+            if kind == _TELL:
+                self._on_fault(error)
+            else:
+                self._answer(number, error, None)
+            return
+        if kind == _TELL:
+            return
+        if isinstance(result, Future):
+            result.add_done_callback(lambda done: self._answer_with(number, done))
+        else:
+            self._answer(number, None, result)
+
+    def _answer_with(self, number: int, done: Future[Any]) -> None:
+        error = done.exception()
+        if isinstance(error, Exception):
+            self._answer(number, error, None)
+        else:
+            self._answer(number, None, done.result())
+
+    def _answer(self, number: int, error: Exception | None, value: Any) -> None:
+        if error is not None and not isinstance(error, CartwheelError):
+            # Others' errors may hold what cannot be sent.
+            error = RuntimeError(one_line(error))
+        frame = _frame(_ANSWER, number, "", (error, value))
+        self.loop.post(lambda: self._write(frame))
+
+    def _end(self) -> None:
+        if self._ended:
+            return
+        self._ended = True
+        self.loop.forget(self._sock)
+        with contextlib.suppress(OSError):
+            self._sock.close()
+        for future in self._waiting.values():
+            _fail(future, _gone())
+        self._waiting.clear()
+        self._on_end()
+
+
+def _frame(kind: int, number: int, name: str, content: Any) -> bytes:
+    data = pickle.dumps((kind, number, name, content), protocol=pickle.HIGHEST_PROTOCOL)
+    return _LENGTH.pack(len(data)) + data
+
+
+def _fail(future: Future[Any], error: Exception) -> None:
+    if future.set_running_or_notify_cancel():
+        future.set_exception(error)
+
+
+def _gone() -> ControlError:
+    return ControlError("the process at the other end has ended")

@@ -1,0 +1,285 @@
+"""The graph of a simulation in another process, as its bridge sees it."""
+
+from __future__ import annotations
+
+import itertools
+import queue
+import threading
+from collections.abc import Callable, Mapping
+from concurrent.futures import Future
+from dataclasses import dataclass
+from typing import Any, TypeVar
+
+from cartwheel.bridges.apart.link import Link
+from cartwheel.bridges.apart.remote_action import KnownAction, RemoteAction
+from cartwheel.bridges.packed import Packed
+from cartwheel.calls import answered
+from cartwheel.errors import UnknownNameError
+from cartwheel.graph import ParameterServer, Service, TopicInfo
+from cartwheel.messages import decode_cdr, encode_cdr, service_classes
+
+T = TypeVar("T")
+ANSWER = 30.0
+"""s that the simulation's process may take to answer what it answers at once."""
+_LOOKS = 0.25
+"""s between two looks at what readers have missed, and what they want."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class OfferedService:
+    """What crosses of a service."""
+
+    number: int
+    """Another one for a service that took the name of an older one."""
+    name: str
+    type: str
+    node: str
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class GraphState:
+    """What crosses of a graph whenever it has changed."""
+
+    time_ns: int
+    topics: tuple[TopicInfo, ...] = ()
+    services: tuple[OfferedService, ...] = ()
+    actions: tuple[KnownAction, ...] = ()
+    nodes: Mapping[str, str]
+
+
+class _Packer:
+    """Gives back the bytes of what was packed at the other end."""
+
+    def encode(self, message: Any) -> bytes:
+        if isinstance(message, Packed):
+            return message.cdr
+        return encode_cdr(message)
+
+
+class RemoteSubscription:
+    """One subscription; see `Subscription`."""
+
+    def __init__(
+        self, graph: RemoteGraph, number: int, type_name: str, callback: Callable[[Any], None]
+    ) -> None:
+        self._graph = graph
+        self.number = number
+        self.type = type_name
+        self.callback = callback
+        self.dropped: Callable[[], int] = lambda: 0
+        self.told = 0
+        """What the other end was told of `dropped`."""
+
+    def close(self) -> None:
+        """Takes it off the graph."""
+        self._graph._remove(self)
+
+
+class RemoteParameters:
+    """The graph's parameters; see `Parameters`."""
+
+    def __init__(self, link: Link) -> None:
+        self._link = link
+        self._server: ParameterServer | None = None
+        link.handle("server_get", lambda name: self._kept().get(name), threaded=True)
+        link.handle("server_set", lambda name, value: self._kept().set(name, value))
+
+    @property
+    def server(self) -> ParameterServer | None:
+        """Where they are kept, if it is we who know."""
+        return self._server
+
+    @server.setter
+    def server(self, server: ParameterServer | None) -> None:
+        self._server = server
+        self._link.call("serve_parameters", server is not None).result(ANSWER)
+
+    def get(self, name: str, default: Any = None) -> Any:
+        """A value; waits for it."""
+        return self._link.call("get_parameter", name, default).result(ANSWER)
+
+    def set(self, name: str, value: Any) -> None:
+        """Stores a value."""
+        self._link.call("set_parameter", name, value).result(ANSWER)
+
+    def _kept(self) -> ParameterServer:
+        assert self._server is not None
+        return self._server
+
+
+class RemoteGraph:
+    """A `BridgedGraph`; what its methods ask for they wait for, but not for the simulation.
+
+    Messages are delivered on one thread, as `Packed`; functions that are posted run on another.
+
+    Args:
+        link: To the simulation's process.
+        on_fault: Told of what a callback raised.
+    """
+
+    def __init__(self, link: Link, *, on_fault: Callable[[Exception], None]) -> None:
+        self._link = link
+        self._on_fault = on_fault
+        self._state = GraphState(time_ns=0, nodes={})
+        self._services: dict[int, Service] = {}
+        self._actions: dict[int, RemoteAction] = {}
+        self._subscriptions: dict[int, RemoteSubscription] = {}
+        self._numbers = itertools.count(1)
+        self._posted: queue.SimpleQueue[Callable[[], None]] = queue.SimpleQueue()
+        self.time_ns = 0
+        """The latest simulation time that is known here."""
+        self.parameters = RemoteParameters(link)
+        self.cdr = _Packer()
+        self.on_change: list[Callable[[], None]] = []
+        link.handle("changed", self._changed)
+        link.handle("goal", self._goal_event)
+        threading.Thread(target=self._run_posted, name="graph", daemon=True).start()
+
+    def begin(self) -> None:
+        """Learns what there is."""
+        self._changed(self._link.call("begin").result(ANSWER))
+        self._link.loop.post(self._look)
+
+    # -- what a graph is
+
+    @property
+    def nodes(self) -> Mapping[str, str]:
+        """See `Graph.nodes`."""
+        return self._state.nodes
+
+    def topics(self) -> list[TopicInfo]:
+        """All topics, by name."""
+        return list(self._state.topics)
+
+    def services(self) -> list[Service]:
+        """All services, by name; they are called by `call` alone."""
+        return list(self._services.values())
+
+    def actions(self) -> list[RemoteAction]:
+        """All actions, by name."""
+        return list(self._actions.values())
+
+    def post(self, function: Callable[[], None]) -> None:
+        """Runs a function once the simulation has taken what it was handed before."""
+        future = self._link.call("taken")
+        future.add_done_callback(lambda _: self._posted.put(function))
+
+    def run(self, function: Callable[[], T]) -> Future[T]:
+        """Runs a function on the thread of those that are posted."""
+        return answered(self._posted.put, function)
+
+    def subscribe(
+        self,
+        name: str,
+        callback: Callable[[Any], None],
+        *,
+        type_name: str | None = None,
+        node: str = "cartwheel",
+    ) -> RemoteSubscription:
+        """A callback for each message, on the thread that reads them.
+
+        Raises:
+            CartwheelError: As `Graph.subscribe`.
+        """
+        if type_name is None:
+            known = {info.name: info.type for info in self._state.topics}
+            if name not in known:
+                raise UnknownNameError("topic", name, known)
+            type_name = known[name]
+        made = RemoteSubscription(self, next(self._numbers), type_name, callback)
+        # Before the first message can come.
+        self._subscriptions[made.number] = made
+        try:
+            self._link.call("subscribe", made.number, name, type_name, node).result(ANSWER)
+        except Exception:
+            del self._subscriptions[made.number]
+            raise
+        return made
+
+    def publish(self, name: str, type_name: str, message: Any) -> None:
+        """Delivers one message."""
+        self._link.tell("publish", name, type_name, encode_cdr(message))
+
+    def call(self, name: str, request: Any) -> Future[Any]:
+        """Calls a service.
+
+        Raises:
+            UnknownNameError: There is no such service.
+        """
+        types = {one.name: one.type for one in self._state.services}
+        if name not in types:
+            raise UnknownNameError("service", name, types)
+        response = service_classes(types[name])[1].__msgtype__
+        answer: Future[Any] = Future()
+
+        def take(done: Future[Any]) -> None:
+            if not answer.set_running_or_notify_cancel():
+                return
+            try:
+                answer.set_result(decode_cdr(done.result(), response))
+            except Exception as error:  # noqa: BLE001 - it is the caller's to handle
+                answer.set_exception(error)
+
+        self._link.call("call", name, encode_cdr(request)).add_done_callback(take)
+        return answer
+
+    # -- what comes
+
+    def take(self, number: int, time_ns: int, data: bytes) -> None:
+        """A message; on the thread that reads them."""
+        self.time_ns = time_ns
+        found = self._subscriptions.get(number)
+        if found is not None:
+            found.callback(Packed(data, found.type))
+
+    def saw(self, time_ns: int) -> None:
+        """It was so late in the simulation, at least."""
+        self.time_ns = time_ns
+
+    def _changed(self, state: GraphState) -> None:
+        self.saw(state.time_ns)
+        services, actions = self._services, self._actions
+        # Those that stay are the same objects: who mirrors the graph goes by that.
+        self._services = {
+            one.number: services.get(one.number)
+            or Service(name=one.name, type=one.type, handler=_elsewhere, node=one.node)
+            for one in state.services
+        }
+        self._actions = {
+            one.number: actions.get(one.number) or RemoteAction(self._link, one, self)
+            for one in state.actions
+        }
+        self._state = state
+        for callback in list(self.on_change):
+            callback()
+
+    def _goal_event(self, number: int, goal: Any, feedback: bytes | None) -> None:
+        action = self._actions.get(number)
+        if action is not None:
+            self._posted.put(lambda: action.hear(goal, feedback))
+
+    def _run_posted(self) -> None:
+        while True:
+            function = self._posted.get()
+            try:
+                function()
+            except Exception as error:  # noqa: BLE001 - one must not end the others
+                self._on_fault(error)
+
+    def _remove(self, subscription: RemoteSubscription) -> None:
+        if self._subscriptions.pop(subscription.number, None) is not None:
+            self._link.tell("unsubscribe", subscription.number)
+
+    def _look(self) -> None:
+        for one in list(self._subscriptions.values()):
+            count = one.dropped()
+            if count != one.told:
+                one.told = count
+                self._link.tell("dropped", one.number, count)
+        for action in list(self._actions.values()):
+            action.tell_wants()
+        self._link.loop.after(_LOOKS, self._look)
+
+
+def _elsewhere(_: Any) -> Any:
+    raise NotImplementedError("a service of another process is called through its graph")

@@ -1,0 +1,125 @@
+"""Functions of another process, called by name."""
+
+import socket
+import threading
+from collections.abc import Iterator
+from concurrent.futures import Future
+
+import pytest
+
+from cartwheel.bridges.apart.link import Link
+from cartwheel.errors import ControlError, GraphError, Origin, UnknownNameError
+
+_PATIENCE = 60.0
+
+
+class Pair:
+    """Both ends in one process."""
+
+    def __init__(self) -> None:
+        self.faults: list[Exception] = []
+        self.ended = threading.Event()
+        ours, theirs = socket.socketpair()
+        self.near = Link(ours, name="near", on_end=lambda: None, on_fault=self.faults.append)
+        self.far = Link(theirs, name="far", on_end=self.ended.set, on_fault=self.faults.append)
+
+
+@pytest.fixture
+def pair() -> Iterator[Pair]:
+    made = Pair()
+    yield made
+    made.near.close()
+    made.far.close()
+
+
+def test_calls_are_answered_and_tells_come_in_order(pair: Pair) -> None:
+    told: list[int] = []
+    pair.far.handle("add", lambda a, b: a + b)
+    pair.far.handle("note", told.append)
+    pair.far.handle("told", lambda: list(told))
+    pair.near.start()
+    pair.far.start()
+    for number in range(500):
+        pair.near.tell("note", number)
+    assert pair.near.call("told").result(_PATIENCE) == list(range(500))
+    assert pair.near.call("add", 2, 3).result(_PATIENCE) == 5
+
+
+def test_both_may_call_each_other_at_once_with_much(pair: Pair) -> None:
+    large = bytes(3_000_000)
+    for link, other in ((pair.near, pair.far), (pair.far, pair.near)):
+        link.handle("size", len)
+        link.handle("ask_back", lambda data, other=link: other.call("size", data))
+        assert other is not link
+    pair.near.start()
+    pair.far.start()
+    futures = [link.call("ask_back", large) for link in (pair.near, pair.far) for _ in range(5)]
+    assert [each.result(_PATIENCE) for each in futures] == [3_000_000] * 10
+
+
+def test_what_takes_long_delays_nothing_else(pair: Pair) -> None:
+    go_on = threading.Event()
+    pair.far.handle("long", lambda: go_on.wait(_PATIENCE), threaded=True)
+    pair.far.handle("short", lambda: "done")
+    pair.near.start()
+    pair.far.start()
+    long = pair.near.call("long")
+    assert pair.near.call("short").result(_PATIENCE) == "done"
+    assert not long.done()
+    go_on.set()
+    assert long.result(_PATIENCE) is True
+
+
+def test_a_future_is_answered_when_it_is_done(pair: Pair) -> None:
+    later: Future[str] = Future()
+    pair.far.handle("later", lambda: later)
+    pair.near.start()
+    pair.far.start()
+    answer = pair.near.call("later")
+    later.set_result("now")
+    assert answer.result(_PATIENCE) == "now"
+
+
+def test_errors_of_the_user_cross_with_place_and_hint(pair: Pair) -> None:
+    origin = Origin(file="a.xacro", line=3, stack=("b.xacro:1 wheel",))
+
+    def refuse() -> None:
+        raise GraphError("no", origin=origin, hint="Do so.")
+
+    def unknown() -> None:
+        raise UnknownNameError("topic", "/odm", ["/odom"])
+
+    pair.far.handle("refuse", refuse)
+    pair.far.handle("unknown", unknown)
+    pair.far.handle("fault", lambda: {}["key"])
+    pair.near.start()
+    pair.far.start()
+    with pytest.raises(GraphError) as refused:
+        pair.near.call("refuse").result(_PATIENCE)
+    assert (refused.value.message, refused.value.origin, refused.value.hint) == (
+        "no",
+        origin,
+        "Do so.",
+    )
+    with pytest.raises(UnknownNameError, match=r'topic "/odm".*\n.*"/odom"'):
+        pair.near.call("unknown").result(_PATIENCE)
+    with pytest.raises(RuntimeError, match="KeyError"):
+        pair.near.call("fault").result(_PATIENCE)
+    pair.near.tell("fault")
+    pair.near.call("refuse").exception(_PATIENCE)
+    assert [type(fault) for fault in pair.faults] == [KeyError]
+
+
+def test_the_end_of_the_other_is_heard_and_nobody_waits_for_ever(pair: Pair) -> None:
+    pair.far.handle("never", Future)
+    pair.near.handle("never", Future)
+    pair.near.start()
+    pair.far.start()
+    waiting = pair.far.call("never")
+    pair.near.close()
+    assert pair.ended.wait(_PATIENCE)
+    with pytest.raises(ControlError, match="has ended"):
+        waiting.result(_PATIENCE)
+    with pytest.raises(ControlError, match="has ended"):
+        pair.far.call("never").result(_PATIENCE)
+    pair.far.tell("never")
