@@ -83,7 +83,9 @@ def main(kind: str, patient: str, link_file: str, bell_file: str, memory_file: s
     gc.freeze()
     link.start()
     over.wait()
-    # What the simulation had handed on before it ended, in whatever way, is still there.
-    reader.read_all()
-    wire.close()
-    os._exit(0)
+    try:
+        # What the simulation had handed on before it ended, in whatever way, is still there.
+        reader.read_all()
+        wire.close()
+    finally:
+        os._exit(0)

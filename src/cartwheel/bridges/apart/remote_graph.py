@@ -92,7 +92,11 @@ class RemoteParameters:
     @server.setter
     def server(self, server: ParameterServer | None) -> None:
         self._server = server
-        self._link.call("serve_parameters", server is not None).result(ANSWER)
+        if server is None:
+            # Also where there is nobody left to hear it.
+            self._link.tell("serve_parameters", False)
+        else:
+            self._link.call("serve_parameters", True).result(ANSWER)
 
     def get(self, name: str, default: Any = None) -> Any:
         """A value; waits for it."""

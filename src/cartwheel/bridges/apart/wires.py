@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 import time
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -41,12 +42,8 @@ class Ros1Wire:
             bridge.start()
             return bridge.has_own_master
 
-        def log(diagnostic: Diagnostic, time_ns: int) -> None:
-            graph.saw(time_ns)
-            bridge.log(diagnostic)
-
         link.handle("start", lambda: graph.run(start))
-        link.handle("log", log)
+        link.handle("log", _logger(graph, bridge.log))
         return bridge.name, bridge.master_uri, bridge.uri
 
     def close(self) -> None:
@@ -90,15 +87,11 @@ class Ros2Wire:
             time_ns=lambda: graph.time_ns,
         )
 
-        def log(diagnostic: Diagnostic, time_ns: int) -> None:
-            graph.saw(time_ns)
-            bridge.log(diagnostic)
-
         def make_way(last: str) -> None:
             bridge.make_way(last, lambda topics: link.tell("taken_by_others", topics))
 
         link.handle("start", lambda: graph.run(bridge.start))
-        link.handle("log", log)
+        link.handle("log", _logger(graph, bridge.log))
         link.handle("make_way", make_way)
         return bridge.name, bridge.description
 
@@ -158,6 +151,7 @@ class FoxgloveWire:
             return bridge.url
 
         link.handle("start", lambda: graph.run(start))
+        link.handle("log", _logger(graph, bridge.log))
 
     def close(self) -> None:
         """Ends it."""
@@ -230,3 +224,15 @@ class RecordingWire:
         """Ends it; a `Summary`."""
         recorder, self._recorder = self._recorder, None
         return None if recorder is None else self._graph.run(recorder.close).result()
+
+
+def _logger(
+    graph: RemoteGraph, log: Callable[[Diagnostic], None]
+) -> Callable[[Diagnostic, int], None]:
+    """Takes what is to be said on ``/rosout``, with the simulation time of then."""
+
+    def take(diagnostic: Diagnostic, time_ns: int) -> None:
+        graph.saw(time_ns)
+        log(diagnostic)
+
+    return take

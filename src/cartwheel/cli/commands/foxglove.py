@@ -13,10 +13,11 @@ from cartwheel.cli import interrupts
 from cartwheel.cli.commands.options import Options
 from cartwheel.cli.commands.report import Report
 from cartwheel.description.packages import Packages
-from cartwheel.errors import CartwheelError
+from cartwheel.errors import CartwheelError, Diagnostic
 from cartwheel.simulation import RunState
 
 if TYPE_CHECKING:
+    from cartwheel.bridges.apart.process import BridgeProcess
     from cartwheel.bridges.foxglove.controls import TimeState
     from cartwheel.session import Session
     from cartwheel.simulation import Simulation
@@ -30,37 +31,51 @@ _FILE = re.compile(r'file://[^"\'<>\s]+')
 
 @contextlib.contextmanager
 def shown_by_foxglove(
-    session: Session, options: Options, port: int, report: Report
+    session: Session, process: BridgeProcess, options: Options, port: int, report: Report
 ) -> Iterator[None]:
     """Serves the enclosed run to Foxglove.
 
     Raises:
         CartwheelError: The extra is missing, or the port is taken.
     """
-    from cartwheel.bridges.foxglove import FoxgloveBridge
     from cartwheel.gazebo.ros2_api import Ros2Api
 
     simulation = session.simulation
     end_ns = None if options.seconds is None else round(options.seconds * 1e9)
-    bridge = FoxgloveBridge(
-        session.graph,
-        name=f"Cartwheel: {', '.join(simulation.models)}",
-        host=options.host,
-        port=port,
-        controls=SimulationControls(simulation),
-        assets=Assets(session, options.package_path),
-        time_range=None if end_ns is None else (0, end_ns),
-        report=simulation.report,
-    )
-    with interrupts.finally_do(bridge.close):
+    controls = SimulationControls(simulation)
+
+    def log(diagnostic: Diagnostic) -> None:
+        process.tell("log", diagnostic, simulation.time_ns)
+
+    with interrupts.finally_do(process.close):
+        process.open(
+            session.graph,
+            {
+                "name": f"Cartwheel: {', '.join(simulation.models)}",
+                "host": options.host,
+                "port": port,
+                "time_range": None if end_ns is None else (0, end_ns),
+            },
+            time_ns=lambda: simulation.time_ns,
+            echo=True,
+            report=simulation.report,
+            handlers={
+                "state": (controls.state, False),
+                "pause": (controls.pause, True),
+                "resume": (controls.resume, True),
+                "set_speed": (controls.set_speed, True),
+                "seek": (controls.seek, True),
+                "asset": (Assets(session, options.package_path), True),
+            },
+        )
         if options.ros1_node is None and options.ros2_node is None:
             # Where a run is no part of ROS, nobody else offers what Gazebo does.
             Ros2Api(session, package_path=options.package_path).start()
-        bridge.start()
+        url = process.call("start")
         for diagnostic in simulation.engine.diagnostics:
-            bridge.log(diagnostic)
-        simulation.engine.on_diagnostic.append(bridge.log)
-        report.foxglove(bridge.url)
+            log(diagnostic)
+        simulation.engine.on_diagnostic.append(log)
+        report.foxglove(url)
         yield
 
 

@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import contextlib
 import threading
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from cartwheel.cli import interrupts
 from cartwheel.cli.commands.options import Options
 from cartwheel.cli.commands.report import Report
-from cartwheel.errors import RecordingError, UnknownNameError
+from cartwheel.errors import CartwheelError, ControlError, RecordingError, UnknownNameError
 
 if TYPE_CHECKING:
-    from cartwheel.bridges.recording import Encoding, Recorder
+    from cartwheel.bridges.apart.process import BridgeProcess
+    from cartwheel.bridges.recording import Encoding
+    from cartwheel.bridges.recording.recorder import Summary
     from cartwheel.session import Session
 
 
@@ -37,11 +39,14 @@ def check_recording(options: Options) -> None:
 
 
 @contextlib.contextmanager
-def recorded(session: Session, options: Options, report: Report) -> Iterator[None]:
+def recorded(
+    session: Session, processes: Mapping[Path, BridgeProcess], options: Options, report: Report
+) -> Iterator[None]:
     """Records the enclosed run, if that was asked for; a recording that breaks off ends it.
 
     Args:
         session: To record.
+        processes: Of the recorders, by file.
         options: Of the run.
         report: Tells the user.
 
@@ -49,32 +54,36 @@ def recorded(session: Session, options: Options, report: Report) -> Iterator[Non
         RecordingError: One cannot be written, or broke off.
     """
     with contextlib.ExitStack() as stack:
-        for path in options.record:
-            stack.enter_context(_recorded_to(path, session, options, report))
+        for path, process in processes.items():
+            stack.enter_context(_recorded_to(path, process, session, options, report))
         yield
 
 
 @contextlib.contextmanager
-def _recorded_to(path: Path, session: Session, options: Options, report: Report) -> Iterator[None]:
-    from cartwheel.bridges.recording import Recorder
-
+def _recorded_to(
+    path: Path, process: BridgeProcess, session: Session, options: Options, report: Report
+) -> Iterator[None]:
     simulation = session.simulation
-    recorder = Recorder(
+    process.open(
         session.graph,
-        path,
+        {
+            "path": str(path),
+            "topics": tuple(options.record_topics),
+            "encoding": _encoding(options),
+            "overwrite": options.overwrite,
+            "notes": dict(session.notes),
+        },
         time_ns=lambda: simulation.time_ns,
-        topics=options.record_topics,
-        encoding=_encoding(options),
-        overwrite=options.overwrite,
-        notes=session.notes,
+        echo=True,
         report=simulation.report,
-        on_failure=lambda _: simulation.stop(),
+        handlers={"failed": (lambda _: simulation.stop(), False)},
     )
-    ending = _Ending(recorder)
+    process.on_lost = simulation.stop
+    ending = _Ending(process, path)
     # Stays among the last rites until it is done: a second of messages takes longer to write
     # than Ctrl-C allows.
     with interrupts.finally_do(ending.finish):
-        recorder.start()
+        process.call("start")
         report.recording(path)
         try:
             yield
@@ -84,28 +93,39 @@ def _recorded_to(path: Path, session: Session, options: Options, report: Report)
             if ending.failure is not None:
                 # In place of whatever else ended the run: the failure did.
                 raise ending.failure
-            found = recorder.summary
-            report.recorded(found.files, found.messages, found.topics, found.size)
+            found = ending.summary
+            if found is not None:
+                report.recorded(found.files, found.messages, found.topics, found.size)
 
 
 class _Ending:
     """The end of a recording, on whichever thread comes first; the others wait for it."""
 
-    def __init__(self, recorder: Recorder) -> None:
-        self._recorder = recorder
+    def __init__(self, process: BridgeProcess, path: Path) -> None:
+        self._process = process
+        self._path = path
         self._lock = threading.Lock()
         self._done = False
-        self.failure: RecordingError | None = None
+        self.failure: CartwheelError | None = None
+        self.summary: Summary | None = None
 
     def finish(self) -> None:
         with self._lock:
             if self._done:
                 return
             self._done = True
+            self._process.leave_graph()
             try:
-                self._recorder.close()
-            except RecordingError as error:
+                # However long the disk takes.
+                self.summary = self._process.call("close", self._process.written, timeout=None)
+            except ControlError:
+                self.failure = RecordingError(
+                    f'the recording "{self._path}" broke off: its process was ended',
+                    hint="What was written before can be read; cartwheel info shows it.",
+                )
+            except CartwheelError as error:
                 self.failure = error
+            self._process.close()
 
 
 def _encoding(options: Options) -> Encoding | None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from cartwheel.bridges.ros1 import Ros1Bridge
+from cartwheel.bridges.apart.process import BridgeProcess
 from cartwheel.cli.commands.report import Report
 from cartwheel.cli.console import print_warning
 from cartwheel.errors import Diagnostic
@@ -18,6 +18,7 @@ class Ros1:
 
     Args:
         session: To offer.
+        process: Of the bridge.
         node: Name of the node.
         arguments: ``name:=value`` of ROS.
         package_path: Where models that are spawned look for packages first.
@@ -30,6 +31,7 @@ class Ros1:
     def __init__(
         self,
         session: Session,
+        process: BridgeProcess,
         *,
         node: str,
         arguments: Sequence[str],
@@ -40,19 +42,15 @@ class Ros1:
         self._report = report
         self._api = GazeboApi(session, package_path=package_path)
         simulation = session.simulation
-        self._bridge = Ros1Bridge(
+        self._process = process
+        self.name, self.master_uri, _ = process.open(
             session.graph,
-            node=node,
-            arguments=arguments,
-            report=simulation.report,
+            {"node": node, "arguments": tuple(arguments)},
             time_ns=lambda: simulation.time_ns,
-            on_end=self._ended,
+            echo=False,
+            report=simulation.report,
+            handlers={"ended": (self._ended, False)},
         )
-
-    @property
-    def master_uri(self) -> str:
-        """Of the ROS master."""
-        return self._bridge.master_uri
 
     def start(self) -> None:
         """Joins ROS; on the owner's thread, before the run.
@@ -61,27 +59,28 @@ class Ros1:
             CartwheelError: There is no ROS master, and none can be started.
         """
         self._api.start()
-        self._bridge.start()
-        self._report.joined(
-            self._bridge.name, self._bridge.master_uri, own=self._bridge.has_own_master
-        )
+        own = self._process.call("start")
+        self._report.joined(self.name, self.master_uri, own=own)
         engine = self._session.simulation.engine
         for diagnostic in engine.diagnostics:
-            self._bridge.log(diagnostic)
-        engine.on_diagnostic.append(self._bridge.log)
+            self._log(diagnostic)
+        engine.on_diagnostic.append(self._log)
         parameters = self._session.graph.parameters
-        rate = parameters.get(f"{self._bridge.name}/pub_clock_frequency")
+        rate = parameters.get(f"{self.name}/pub_clock_frequency")
         if isinstance(rate, int | float) and not isinstance(rate, bool) and rate > 0:
             self._session.set_clock_rate(float(rate))
-        if parameters.get(f"{self._bridge.name}/enable_ros_network") is False:
+        if parameters.get(f"{self.name}/enable_ros_network") is False:
             # As with Gazebo: its plugins' topics stay, and the clock.
             self._api.close()
 
     def close(self) -> None:
         """Leaves ROS."""
-        self._bridge.close()
+        self._process.close()
 
     def _ended(self, reason: str) -> None:
         print_warning(reason)
-        self._bridge.log(Diagnostic(severity="warning", message=reason))
+        self._log(Diagnostic(severity="warning", message=reason))
         self._session.simulation.stop()
+
+    def _log(self, diagnostic: Diagnostic) -> None:
+        self._process.tell("log", diagnostic, self._session.simulation.time_ns)

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
-from cartwheel.bridges.ros2 import Parameter, Rmw, Ros2Bridge
+from cartwheel.bridges.apart.process import BridgeProcess
+from cartwheel.bridges.ros2 import Parameter, Rmw
 from cartwheel.cli.commands.report import Report
-from cartwheel.errors import CartwheelError
+from cartwheel.errors import CartwheelError, Diagnostic
 from cartwheel.gazebo.robot_states import RobotStates
 from cartwheel.gazebo.ros2_api import Ros2Api
 from cartwheel.plugins.robot_descriptions import TOPIC, RobotDescriptions
@@ -22,6 +24,7 @@ class Ros2:
 
     Args:
         session: To offer.
+        process: Of the bridge.
         node: Name of the node.
         rmw: The middleware.
         package_path: Where models that are spawned look for packages first.
@@ -35,6 +38,7 @@ class Ros2:
     def __init__(
         self,
         session: Session,
+        process: BridgeProcess,
         *,
         node: str,
         rmw: Rmw,
@@ -47,13 +51,27 @@ class Ros2:
         self._report = report
         self._api = Ros2Api(session, package_path=package_path)
         simulation = session.simulation
-        self._bridge = Ros2Bridge(
+        self._process = process
+        self._parameters = {one.name: one for one in node_parameters(session)}
+        self._states: RobotStates | None = None
+        self._name, self._middleware = process.open(
             session.graph,
-            node=node,
-            rmw=rmw,
-            parameters=node_parameters(session),
-            report=simulation.report,
+            {
+                "node": node,
+                "rmw": rmw,
+                "parameters": [
+                    (one.name, one.description, one.set is not None)
+                    for one in self._parameters.values()
+                ],
+            },
             time_ns=lambda: simulation.time_ns,
+            echo=False,
+            report=simulation.report,
+            handlers={
+                "values": (self._values, False),
+                "set_value": (self._set_value, False),
+                "taken_by_others": (self._leave_to_others, False),
+            },
         )
 
     def start(self) -> None:
@@ -64,20 +82,36 @@ class Ros2:
         """
         self._api.start()
         simulation = self._session.simulation
-        states = RobotStates(simulation, self._session.graph, self._descriptions)
-        self._bridge.start()
-        self._bridge.make_way(
-            TOPIC.strip("/"),
-            lambda topics: simulation.post(lambda: states.leave_to_others(topics)),
-        )
-        self._report.joined_ros2(self._bridge.name, self._bridge.description)
+        self._states = RobotStates(simulation, self._session.graph, self._descriptions)
+        self._process.call("start")
+        self._process.tell("make_way", TOPIC.strip("/"))
+        self._report.joined_ros2(self._name, self._middleware)
         for diagnostic in simulation.engine.diagnostics:
-            self._bridge.log(diagnostic)
-        simulation.engine.on_diagnostic.append(self._bridge.log)
+            self._log(diagnostic)
+        simulation.engine.on_diagnostic.append(self._log)
 
     def close(self) -> None:
         """Leaves ROS."""
-        self._bridge.close()
+        self._process.close()
+
+    def _log(self, diagnostic: Diagnostic) -> None:
+        self._process.tell("log", diagnostic, self._session.simulation.time_ns)
+
+    # -- for the bridge
+
+    def _values(self) -> tuple[int, dict[str, Any]]:
+        values = {name: one.get() for name, one in self._parameters.items()}
+        return self._session.simulation.time_ns, values
+
+    def _set_value(self, name: str, value: Any) -> None:
+        set_ = self._parameters[name].set
+        assert set_ is not None
+        set_(value)
+
+    def _leave_to_others(self, topics: frozenset[str]) -> None:
+        states = self._states
+        if states is not None:
+            self._session.simulation.post(lambda: states.leave_to_others(topics))
 
 
 def node_parameters(session: Session) -> list[Parameter]:

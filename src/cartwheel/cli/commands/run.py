@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from cartwheel.cli import interrupts
+from cartwheel.cli.commands.bridges import Bridges, bridges_for
 from cartwheel.cli.commands.options import Options
 from cartwheel.cli.commands.ports import refuse_taken
 from cartwheel.cli.commands.recording import check_recording, recorded
@@ -18,6 +19,7 @@ from cartwheel.control import running
 from cartwheel.errors import CartwheelError
 
 if TYPE_CHECKING:
+    from cartwheel.bridges.apart.process import BridgeProcess
     from cartwheel.cli.commands.page import Page
     from cartwheel.control.server import ControlServer
     from cartwheel.description.model import RobotDescription, WorldDescription
@@ -46,6 +48,11 @@ def simulate(options: Options) -> None:
     # What is loaded stays: looking through it for garbage costs a tenth of the start, and of
     # the speed later where a reader keeps many messages.
     gc.disable()
+    with bridges_for(options) as bridges:
+        _simulate(options, bridges)
+
+
+def _simulate(options: Options, bridges: Bridges) -> None:
     others = running()
     report = Report(verbose=options.verbose)
     world, robot, remappings = _read(options)
@@ -87,11 +94,13 @@ def simulate(options: Options) -> None:
                 report.others(others)
             report.loaded(session, name, ros=options.ros1_node is not None)
             with (
-                _joined_to_ros1(session, server, options, remappings, report),
+                _joined_to_ros1(
+                    session, bridges.ros1, server, options, report, remappings=remappings
+                ),
                 _described(session, options) as descriptions,
-                _joined_to_ros2(session, options, descriptions, report),
-                _shown_by_foxglove(session, options, report),
-                recorded(session, options, report),
+                _joined_to_ros2(session, bridges.ros2, options, descriptions, report),
+                _shown_by_foxglove(session, bridges.foxglove, options, report),
+                recorded(session, bridges.recorders, options, report),
             ):
                 _run(session, pacer, page, report)
 
@@ -99,18 +108,21 @@ def simulate(options: Options) -> None:
 @contextlib.contextmanager
 def _joined_to_ros1(
     session: Session,
+    process: BridgeProcess | None,
     server: ControlServer,
     options: Options,
-    remappings: Sequence[str],
     report: Report,
+    *,
+    remappings: Sequence[str],
 ) -> Iterator[None]:
-    if options.ros1_node is None:
+    if process is None or options.ros1_node is None:
         yield
         return
     from cartwheel.cli.commands.ros1 import Ros1
 
     ros1 = Ros1(
         session,
+        process,
         node=options.ros1_node,
         arguments=(*options.ros1_arguments, *remappings),
         package_path=options.package_path,
@@ -124,15 +136,20 @@ def _joined_to_ros1(
 
 @contextlib.contextmanager
 def _joined_to_ros2(
-    session: Session, options: Options, descriptions: RobotDescriptions | None, report: Report
+    session: Session,
+    process: BridgeProcess | None,
+    options: Options,
+    descriptions: RobotDescriptions | None,
+    report: Report,
 ) -> Iterator[None]:
-    if options.ros2_node is None or descriptions is None:
+    if process is None or options.ros2_node is None or descriptions is None:
         yield
         return
     from cartwheel.cli.commands.ros2 import Ros2
 
     ros2 = Ros2(
         session,
+        process,
         node=options.ros2_node,
         rmw=options.rmw,
         package_path=options.package_path,
@@ -145,13 +162,15 @@ def _joined_to_ros2(
 
 
 @contextlib.contextmanager
-def _shown_by_foxglove(session: Session, options: Options, report: Report) -> Iterator[None]:
-    if options.foxglove_port is None:
+def _shown_by_foxglove(
+    session: Session, process: BridgeProcess | None, options: Options, report: Report
+) -> Iterator[None]:
+    if process is None or options.foxglove_port is None:
         yield
         return
     from cartwheel.cli.commands.foxglove import shown_by_foxglove
 
-    with shown_by_foxglove(session, options, options.foxglove_port, report):
+    with shown_by_foxglove(session, process, options, options.foxglove_port, report):
         yield
 
 

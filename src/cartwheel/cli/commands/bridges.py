@@ -1,0 +1,52 @@
+"""The processes of a run's bridges, one for each wire."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from cartwheel.cli.commands.options import Options
+
+if TYPE_CHECKING:
+    from cartwheel.bridges.apart.process import BridgeProcess
+
+
+@dataclass(slots=True)
+class Bridges:
+    """Those that a run wants."""
+
+    ros1: BridgeProcess | None = None
+    ros2: BridgeProcess | None = None
+    foxglove: BridgeProcess | None = None
+    recorders: dict[Path, BridgeProcess] = field(default_factory=dict)
+
+
+@contextlib.contextmanager
+def bridges_for(options: Options) -> Iterator[Bridges]:
+    """Starts them: they come up while the run's files are read."""
+    found = Bridges()
+    wanted = (options.ros1_node, options.ros2_node, options.foxglove_port)
+    if not options.record and all(each is None for each in wanted):
+        yield found
+        return
+    from cartwheel.bridges.apart.process import BridgeProcess
+
+    with contextlib.ExitStack() as stack:
+
+        def started(kind: str, title: str, *, patient: bool = False) -> BridgeProcess:
+            made = BridgeProcess(kind, title, patient=patient)
+            stack.callback(made.close)
+            return made
+
+        if options.ros1_node is not None:
+            found.ros1 = started("ros1", "ROS 1")
+        if options.ros2_node is not None:
+            found.ros2 = started("ros2", "ROS 2")
+        if options.foxglove_port is not None:
+            found.foxglove = started("foxglove", "Foxglove")
+        for path in options.record:
+            found.recorders[path] = started("recording", f"the recording {path}", patient=True)
+        yield found

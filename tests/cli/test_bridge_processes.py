@@ -1,0 +1,146 @@
+"""Each wire of a run has a process of its own: what becomes of both when one of them ends."""
+
+import contextlib
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from tests.cli.conftest import Program
+
+_PATIENCE = 60.0
+_MARK = "cartwheel.bridges.apart.child"
+
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="looks at processes in /proc")
+
+
+def _until(condition: Callable[[], Any]) -> None:
+    deadline = time.monotonic() + _PATIENCE
+    while not condition():
+        assert time.monotonic() < deadline
+        time.sleep(0.02)
+
+
+def _children(process: subprocess.Popen[str]) -> list[int]:
+    """The processes of its bridges."""
+    found = []
+    for folder in Path("/proc").glob("[0-9]*"):
+        with contextlib.suppress(OSError, IndexError):
+            parent = int((folder / "stat").read_text().rpartition(")")[2].split()[1])
+            if parent == process.pid and _MARK in (folder / "cmdline").read_text():
+                found.append(int(folder.name))
+    return sorted(found)
+
+
+def _read_to(process: subprocess.Popen[str], start: str) -> None:
+    """Reads what it prints up to a line of that beginning: it runs soon."""
+    assert process.stdout is not None
+    for line in process.stdout:
+        if line.startswith(start):
+            return
+    raise AssertionError(f"{start} never came")
+
+
+def _alive(pid: int) -> bool:
+    try:
+        return (Path("/proc") / str(pid) / "stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except OSError:
+        return False
+
+
+def test_a_killed_run_leaves_no_process_and_a_whole_recording(program: Program) -> None:
+    process = program.start("run", "--headless", "--ros2", "--record", "drive.mcap")
+    _until(lambda: len(_children(process)) == 2)
+    children = _children(process)
+    file = program.folder / "drive.mcap"
+    _until(lambda: file.exists() and file.stat().st_size > 100_000)
+    process.kill()
+    process.communicate(timeout=_PATIENCE)
+    _until(lambda: not any(map(_alive, children)))
+    told = program("info", "drive.mcap").stdout
+    assert "holds" in told
+    assert "broke off" not in told
+    assert "/odom" in told
+
+
+def test_ctrl_c_ends_them_all_and_keeps_everything(program: Program) -> None:
+    process = program.start(
+        "run", "--headless", "--ros2", "--record", "drive.mcap", start_new_session=True
+    )
+    program.wait_until_up(process)
+    _until(lambda: len(_children(process)) == 2)
+    children = _children(process)
+    file = program.folder / "drive.mcap"
+    _until(lambda: file.exists() and file.stat().st_size > 100_000)
+    # As a terminal does: to all of its foreground.
+    os.killpg(process.pid, signal.SIGINT)
+    out, error = process.communicate(timeout=_PATIENCE)
+    assert process.returncode == 0, error
+    assert "recorded" in out
+    assert not any(map(_alive, children))
+    assert "holds" in program("info", "drive.mcap").stdout
+
+
+def test_a_signal_to_all_of_them_keeps_everything(program: Program) -> None:
+    process = program.start("run", "--headless", "--record", "drive.mcap")
+    _read_to(process, "record")
+    (child,) = _children(process)
+    # As systemd does.
+    for pid in (child, process.pid):
+        os.kill(pid, signal.SIGTERM)
+    out, error = process.communicate(timeout=_PATIENCE)
+    assert process.returncode == 0, error
+    assert "recorded" in out
+
+
+def test_a_wire_that_dies_is_told_and_the_simulation_goes_on(program: Program) -> None:
+    process = program.start("run", "--headless", "--ros2", "--for", "6")
+    _read_to(process, "ros 2")
+    (child,) = _children(process)
+    os.kill(child, signal.SIGKILL)
+    out, error = process.communicate(timeout=_PATIENCE)
+    assert process.returncode == 0, error
+    assert "simulated 6.000 s" in out
+    assert "the process of ROS 2 has ended" in error
+
+
+def test_a_recorder_that_dies_ends_the_run(program: Program) -> None:
+    process = program.start("run", "--headless", "--record", "drive.mcap")
+    _read_to(process, "record")
+    (child,) = _children(process)
+    os.kill(child, signal.SIGKILL)
+    _, error = process.communicate(timeout=_PATIENCE)
+    assert process.returncode == 2
+    assert 'the recording "drive.mcap" broke off' in error
+    assert "Traceback" not in error
+
+
+def test_a_wire_that_stands_still_does_not_hold_the_simulation(program: Program) -> None:
+    process = program.start("run", "--headless", "--ros2", "--speed", "max", "--for", "60")
+    _read_to(process, "ros 2")
+    (child,) = _children(process)
+    os.kill(child, signal.SIGSTOP)
+    out, error = process.communicate(timeout=_PATIENCE)
+    assert process.returncode == 0, error
+    assert "simulated 60.000 s" in out
+    assert not _alive(child)
+
+
+def test_a_file_that_cannot_be_read_leaves_nothing_behind(program: Program) -> None:
+    (program.folder / "broken.urdf").write_text("<robot")
+    began = time.monotonic()
+    process = program.start("run", "broken.urdf", "--headless", "--ros2", "--record", "a.mcap")
+    seen: set[int] = set()
+    while process.poll() is None:
+        seen.update(_children(process))
+        assert time.monotonic() < began + _PATIENCE
+    _, error = process.communicate()
+    assert process.returncode == 2
+    assert "broken.urdf:1" in error
+    assert not any(map(_alive, seen))
+    assert not (program.folder / "a.mcap").exists()
