@@ -58,7 +58,7 @@ def _of(group: str, wires: Sequence[str], pairs: int, *, all_: bool = False) -> 
         name="CPU",
         value=100 * statistics.median(loud[0] - quiet[0] for quiet, loud in found["real"]),
         unit="% of a core",
-        note="of the simulation's process, beyond that of messages that stay in it",
+        note="of the simulation and the bridges, beyond that of messages that stay in it",
     )
     for wire, ages in found["ages"].items():
         title = f", {_TITLES[wire]}" if all_ else ""
