@@ -8,6 +8,7 @@ import os
 import signal
 import socket
 import threading
+import traceback
 from typing import Any, Protocol
 
 from cartwheel.bridges.apart.link import Link
@@ -87,5 +88,6 @@ def main(kind: str, patient: str, link_file: str, bell_file: str, memory_file: s
         # What the simulation had handed on before it ended, in whatever way, is still there.
         reader.read_all()
         wire.close()
-    finally:
-        os._exit(0)
+    except Exception:  # noqa: BLE001 - nobody is left to be told
+        traceback.print_exc()
+    os._exit(0)
