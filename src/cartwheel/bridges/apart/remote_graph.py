@@ -81,6 +81,8 @@ class RemoteParameters:
     def __init__(self, link: Link) -> None:
         self._link = link
         self._server: ParameterServer | None = None
+        self._answering: ParameterServer | None = None
+        """The last one: the other end may still ask when it is ours no longer."""
         link.handle("server_get", lambda name: self._kept().get(name), threaded=True)
         link.handle("server_set", lambda name, value: self._kept().set(name, value))
 
@@ -92,6 +94,7 @@ class RemoteParameters:
     @server.setter
     def server(self, server: ParameterServer | None) -> None:
         self._server = server
+        self._answering = server or self._answering
         if server is None:
             # Also where there is nobody left to hear it.
             self._link.tell("serve_parameters", False)
@@ -107,8 +110,8 @@ class RemoteParameters:
         self._link.call("set_parameter", name, value).result(ANSWER)
 
     def _kept(self) -> ParameterServer:
-        assert self._server is not None
-        return self._server
+        assert self._answering is not None
+        return self._answering
 
 
 class RemoteGraph:
