@@ -154,10 +154,15 @@ def test_controllers_and_their_manager_are_nodes(bridged: Ros2Bridged) -> None:
             f"rq{ARM}/_action/send_goalRequest",
             "rr/arm_controller/get_parametersReply",
         )
+        # What all nodes have.
+        has("/arm_controller", "rt/rosout", "rt/parameter_events")
+        has("/arm_controller", "rq/arm_controller/get_type_descriptionRequest")
         has("/controller_manager", "rq/controller_manager/list_controllersRequest")
         has("/gazebo", "rt/clock", "rr/gazebo/get_parametersReply")
         others = bridged.bridge._loop.call(lambda: topics("/gazebo")).result()
         assert not [name for name in others if "arm_controller" in name]
+        of_ros1 = {f"rt{ARM}/{part}" for part in ("goal", "cancel", "status", "feedback", "result")}
+        assert not of_ros1 & (topics("/arm_controller") | others)
 
         def call(node: str, kind: str, **fields: Any) -> Any:
             name = "".join(f"_{letter.lower()}" if letter.isupper() else letter for letter in kind)

@@ -106,15 +106,17 @@ def test_a_node_of_its_own_is_told_of_while_it_has_something(
     heard = bridged.graph.subscribe(
         "/left/heard", lambda _: None, type_name="std_msgs/msg/String", node="test/arm"
     )
-    wait_for(lambda: len(tokens) == 3, "a node, what it publishes and what it reads")
+    # Every node has two topics and a service beside its own.
+    wait_for(lambda: len(tokens) == 6, "a node, what it publishes, reads and offers")
     numbers = {token.split("/")[0] for token in tokens}
     (number,) = numbers
     assert number != "0"
     assert f"{number}/{number}/NN/%/%left/arm" in tokens
-    ends = {token.split("/", 2)[2].partition("/std_msgs")[0] for token in tokens}
+    ends = {"/".join(token.split("/")[2:7]) for token in tokens}
     assert {"MP/%/%left/arm/%left%said", "MS/%/%left/arm/%left%heard"} < ends
+    assert {"MP/%/%left/arm/%rosout", "SS/%/%left/arm/%left%arm%get_type_description"} < ends
     publisher.close()
-    wait_for(lambda: len(tokens) == 2, "that it publishes no longer")
+    wait_for(lambda: len(tokens) == 5, "that it publishes no longer")
     heard.close()
     wait_for(lambda: not tokens, "the end of the node")
     subscriber.undeclare()

@@ -20,6 +20,7 @@ from cartwheel.bridges.ros2.middleware import (
     Outlet,
     profile_of,
 )
+from cartwheel.bridges.ros2.nodes import OwnNode
 from cartwheel.bridges.ros2.parameters import NodeParameters, Parameter
 from cartwheel.bridges.ros2.services import Services
 from cartwheel.bridges.ros2.type_descriptions import TYPE as DESCRIPTION
@@ -44,6 +45,8 @@ _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*\Z")
 _TOLD = 500
 """Different warnings; they name nodes, of which any number may come."""
 _CLOSING = 10.0
+_ROS1_PARTS = ("goal", "cancel", "status", "feedback", "result")
+"""Topics that an action has in ROS 1, and in ROS 2 in another form."""
 _LOOK = 0.2
 """s between two looks whether parameters were changed by others."""
 
@@ -96,6 +99,7 @@ class Ros2Bridge:
         self._subscriptions: dict[str, _Subscription] = {}
         self._services: dict[str, _Offered] = {}
         self._actions: dict[str, OfferedAction] = {}
+        self._nodes: dict[str, OwnNode] = {}
         self._theirs: frozenset[str] = frozenset()
         self._due = False
         self._closed = False
@@ -183,7 +187,10 @@ class Ros2Bridge:
         self._due = False
         if self._closed:
             return
-        found = survey(self._graph.topics(), known=self._is_known)
+        actions = self._graph.actions()
+        of_ros1 = {f"{one.name}/{part}" for one in actions for part in _ROS1_PARTS}
+        topics = (info for info in self._graph.topics() if info.name not in of_ros1)
+        found = survey(topics, known=self._is_known)
         self._mirror_publications(
             {name: info for name, info in found.sent.items() if name not in self._theirs}
         )
@@ -191,7 +198,21 @@ class Ros2Bridge:
         self._mirror_services(
             {one.name: one for one in self._graph.services() if self._is_known_service(one)}
         )
-        self._mirror_actions({one.name: one for one in self._graph.actions()})
+        self._mirror_actions({one.name: one for one in actions})
+        self._mirror_nodes()
+
+    def _mirror_nodes(self) -> None:
+        """As long as they have something of their own."""
+        found = {
+            *(publication.told[-1] for publication in self._publications.values()),
+            *(subscription.told[-1] for subscription in self._subscriptions.values()),
+            *(service.told[-1] for service in self._services.values()),
+            *(action.node for action in self._actions.values()),
+        } - {""}
+        for name in self._nodes.keys() - found:
+            self._nodes.pop(name).close()
+        for name in found - self._nodes.keys():
+            self._nodes[name] = OwnNode(self.middleware, self._offers, name)
 
     def _mirror_publications(self, sent: Mapping[str, TopicInfo]) -> None:
         known = self._publications

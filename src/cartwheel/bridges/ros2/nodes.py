@@ -1,0 +1,38 @@
+"""What every node of ROS 2 has, for those of the graph that are nodes of their own there."""
+
+from __future__ import annotations
+
+from cartwheel.bridges.ros2 import log, parameters
+from cartwheel.bridges.ros2.middleware import Closable, Middleware, profile_of
+from cartwheel.bridges.ros2.services import Services
+from cartwheel.bridges.ros2.type_descriptions import TYPE, get_type_description
+from cartwheel.messages.ros2_types import ros2_type
+
+
+class OwnNode:
+    """The endpoints of a node that says nothing and whose types are told; on the loop's thread.
+
+    Args:
+        middleware: Where they are offered.
+        offers: Offers services.
+        name: Of the node, with its namespace.
+    """
+
+    def __init__(self, middleware: Middleware, offers: Services, name: str) -> None:
+        self._parts: list[Closable] = [
+            middleware.publish(
+                topic, ros2_type(kind), profile_of(topic, "default"), lambda _: None, node=name
+            )
+            for topic, kind in (
+                (log.TOPIC, log.TYPE),
+                (parameters.EVENTS, parameters.EVENT),
+            )
+        ]
+        self._parts.append(
+            offers.offer(f"{name}/get_type_description", TYPE, get_type_description, node=name)
+        )
+
+    def close(self) -> None:
+        """Takes them off."""
+        for part in self._parts:
+            part.close()
