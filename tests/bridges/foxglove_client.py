@@ -17,10 +17,26 @@ PEER = Path(__file__).with_name("foxglove_peer.cjs")
 MODULES = [
     "@foxglove/ws-protocol@0.8.0",
     "@foxglove/rosmsg@5.0.5",
+    "@foxglove/rosmsg-serialization@2.0.4",
     "@foxglove/rosmsg2-serialization@3.1.0",
     "ws@8.23.0",
 ]
 PATIENCE = 120.0
+
+READ_ALL = """
+const { parse } = require("@foxglove/rosmsg");
+const readers = {
+  cdr: require("@foxglove/rosmsg2-serialization").MessageReader,
+  ros1: require("@foxglove/rosmsg-serialization").MessageReader,
+};
+for (const { name, encoding, schema, data } of JSON.parse(require("fs").readFileSync(0))) {
+  try {
+    const reader = new readers[encoding](parse(schema, { ros2: encoding === "cdr" }));
+    reader.readMessage(Buffer.from(data, "base64"));
+  } catch (error) { console.log(name + ": " + error.message); }
+}
+"""
+"""A program in Node that tells what of the messages on its standard input cannot be read."""
 
 Accept = Callable[[dict[str, Any]], Any]
 
@@ -45,6 +61,19 @@ def modules() -> Path | str:
             return f"npm cannot fetch Foxglove's client: {run.stderr.strip()[-200:]}"
         stamp.write_text(" ".join(MODULES))
     return folder / "node_modules"
+
+
+def unreadable(messages: list[dict[str, str]], folder: Path) -> list[str]:
+    """What Foxglove's own readers have against messages, with their definitions."""
+    done = subprocess.run(
+        ["node", "-e", READ_ALL],
+        input=json.dumps(messages),
+        capture_output=True,
+        text=True,
+        env={**os.environ, "NODE_PATH": str(folder)},
+        check=True,
+    )
+    return done.stdout.splitlines()
 
 
 class Client:

@@ -14,15 +14,19 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from tests.bridges.foxglove_client import Client, modules
+from tests.bridges.foxglove_client import Client, modules, unreadable
 from tests.bridges.running import Running
 from websockets.sync.client import connect
 
 from cartwheel.bridges.foxglove import FoxgloveBridge
+from cartwheel.bridges.foxglove.forms import encoding_of, packed, schema_of
 from cartwheel.cli.commands.foxglove import Assets, SimulationControls
 from cartwheel.description import load_robot, load_text, load_world
 from cartwheel.errors import CartwheelError, Diagnostic, Origin
-from cartwheel.messages import decode_cdr, encode_cdr, from_dict, service_classes
+from cartwheel.graph import Graph
+from cartwheel.messages import decode_cdr, encode_cdr, from_dict, service_classes, zero
+from cartwheel.messages.ros1 import decode_ros1, encode_ros1
+from cartwheel.messages.store import store
 from cartwheel.plugins.robot_descriptions import RobotDescriptions
 from cartwheel.session import Session
 from cartwheel.simulation.snapshot import RunState
@@ -107,6 +111,26 @@ def test_every_topic_has_a_channel(served: Served, client: Client) -> None:
     assert {name: channel["schemaName"] for name, channel in found.items()} == names
     assert {channel["encoding"] for channel in found.values()} == {"cdr"}
     assert {channel["schemaEncoding"] for channel in found.values()} == {"ros2msg"}
+
+
+def test_every_type_is_read_by_clients(folder: Path) -> None:
+    types = [kind for kind in sorted(store().fielddefs) if "/action/" not in kind]
+    told = []
+    for kind in types:
+        encoding = encoding_of(kind)
+        schema = schema_of(kind, encoding)
+        told.append(
+            {
+                "name": kind,
+                "encoding": encoding,
+                "schema": schema.data.decode(),
+                "data": base64.b64encode(packed(Graph(), zero(kind), encoding)).decode(),
+            }
+        )
+    assert {one["encoding"] for one in told} == {"cdr", "ros1"}
+    # These two are lists of constants, which no topic has.
+    odd = {"rcl_interfaces/msg/ParameterType", "statistics_msgs/msg/StatisticDataType"}
+    assert [one for one in unreadable(told, folder) if one.partition(":")[0] not in odd] == []
 
 
 def test_messages_arrive_as_they_were_published(served: Served, client: Client) -> None:
@@ -262,6 +286,19 @@ def test_services(served: Served, client: Client) -> None:
     client.send("call", b"\0", service="/switch", encoding="cdr")
     client.wait("failure", count=2)
     assert seen == [True, False]
+
+
+def test_a_service_that_only_ros_1_can_have(served: Served, client: Client) -> None:
+    kind = "gazebo_msgs/srv/SetJointProperties"
+    request, response = service_classes(kind)
+    served.graph.serve(
+        "/joint", kind, lambda r: response(success=True, status_message=r.joint_name)
+    )
+    client.wait("services", lambda e: any(s["name"] == "/joint" for s in e["services"]))
+    asked = from_dict(request.__msgtype__, {"joint_name": "wheel"})
+    client.send("call", encode_ros1(asked), service="/joint", encoding="ros1")
+    answer = base64.b64decode(client.wait("answer")["data"])
+    assert decode_ros1(answer, response.__msgtype__).status_message == "wheel"
 
 
 def test_parameters(served: Served, client: Client) -> None:

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from typing import Any
 
 from cartwheel.bridges.bridged import BridgedGraph
+from cartwheel.bridges.foxglove.forms import encoding_of, schema_of
 from cartwheel.bridges.mirror import asked
 from cartwheel.errors import CartwheelError, GraphError
 from cartwheel.graph import TWIST, TWIST_STAMPED, Service
@@ -18,8 +19,7 @@ from cartwheel.messages import (
     to_dict,
     type_name,
 )
-from cartwheel.messages.ros1 import decode_ros1
-from cartwheel.messages.ros2 import ros2_definition
+from cartwheel.messages.ros1 import decode_ros1, encode_ros1
 from cartwheel.messages.ros2_types import ros2_name
 
 ENCODINGS = ["cdr", "ros1", "json"]
@@ -107,12 +107,11 @@ def offered(graph: BridgedGraph, service: Service) -> Any:
 
     request_class, response_class = service_classes(service.type)
 
+    encoding = encoding_of(request_class.__msgtype__, response_class.__msgtype__)
+
     def schema(made: Any) -> Any:
-        kind = made.__msgtype__
-        text = ros2_definition(kind).encode()
         return foxglove.MessageSchema(
-            encoding="cdr",
-            schema=foxglove.Schema(name=ros2_name(kind), encoding="ros2msg", data=text),
+            encoding=encoding, schema=schema_of(made.__msgtype__, encoding)
         )
 
     def handle(request: Any) -> bytes:
@@ -121,7 +120,7 @@ def offered(graph: BridgedGraph, service: Service) -> Any:
         response = asked(graph, service.name, message)
         if request.encoding == "json":
             return json.dumps(to_dict(response)).encode()
-        return encode_cdr(response)
+        return encode_ros1(response) if request.encoding == "ros1" else encode_cdr(response)
 
     return foxglove.Service(
         service.name,

@@ -6,10 +6,9 @@ from collections import deque
 from collections.abc import Callable
 from typing import Any
 
+from cartwheel.bridges.foxglove.forms import schema_of
 from cartwheel.errors import Diagnostic
 from cartwheel.messages import encode_cdr, message_class, stamp
-from cartwheel.messages.ros2 import ros2_definition
-from cartwheel.messages.ros2_types import ros2_name
 
 TOPIC, TYPE = "/rosout", "rcl_interfaces/msg/Log"
 NODE = "cartwheel"
@@ -33,11 +32,8 @@ class Log:
         import foxglove
 
         self._time_ns = time_ns
-        schema = foxglove.Schema(
-            name=ros2_name(TYPE), encoding="ros2msg", data=ros2_definition(TYPE).encode()
-        )
         self.channel = foxglove.Channel(
-            TOPIC, message_encoding="cdr", schema=schema, context=context
+            TOPIC, message_encoding="cdr", schema=schema_of(TYPE, "cdr"), context=context
         )
         self._said: deque[tuple[int, bytes]] = deque(maxlen=_KEPT)
         self._readers = 0

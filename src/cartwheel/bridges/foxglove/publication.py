@@ -6,9 +6,8 @@ from collections.abc import Callable
 from typing import Any
 
 from cartwheel.bridges.bridged import BridgedGraph, BridgedSubscription
+from cartwheel.bridges.foxglove.forms import encoding_of, packed, schema_of
 from cartwheel.graph import Mailbox, TopicInfo
-from cartwheel.messages.ros2 import ros2_definition
-from cartwheel.messages.ros2_types import ros2_name
 
 READER = "foxglove"
 """Our name in the graph."""
@@ -46,13 +45,12 @@ class Publication:
         self._time_ns = time_ns
         self._wake = wake
         self._tell = tell
-        schema = foxglove.Schema(
-            name=ros2_name(info.type),
-            encoding="ros2msg",
-            data=ros2_definition(info.type).encode(),
-        )
+        self._encoding = encoding_of(info.type)
         self.channel = foxglove.Channel(
-            info.name, message_encoding="cdr", schema=schema, context=context
+            info.name,
+            message_encoding=self._encoding,
+            schema=schema_of(info.type, self._encoding),
+            context=context,
         )
         self.latched = info.qos == "latched"
         size = _LARGE_WAITING if info.type in _LARGE else _WAITING
@@ -85,7 +83,7 @@ class Publication:
         for time_ns, message in self._box.drain():
             if not self._readers:
                 return
-            data = self._graph.cdr.encode(message)
+            data = packed(self._graph, message, self._encoding)
             if self.latched:
                 self._last = (time_ns, data)
             self.channel.log(data, log_time=time_ns)

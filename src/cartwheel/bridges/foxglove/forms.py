@@ -1,0 +1,56 @@
+"""In what form a type goes to clients."""
+
+from __future__ import annotations
+
+import functools
+from typing import Any, Literal
+
+from cartwheel.bridges.bridged import BridgedGraph
+from cartwheel.messages.ros1 import encode_ros1, ros1_type
+from cartwheel.messages.ros2 import ros2_definition
+from cartwheel.messages.ros2_types import ros2_name
+
+Encoding = Literal["cdr", "ros1"]
+
+
+@functools.cache
+def encoding_of(*types: str) -> Encoding:
+    """ROS 2's, but for types that only ROS 1 can have: clients refuse their definitions else.
+
+    Args:
+        types: That go together, such as a request and its response.
+    """
+    # Such as hiStop and Kp: a field of ROS 2 has no capitals.
+    names = [name for kind in types for name in _fields(kind)]
+    return "cdr" if all(name == name.lower() for name in names) else "ros1"
+
+
+def schema_of(kind: str, encoding: Encoding) -> Any:
+    """A type's name and definition, as the server takes them.
+
+    Raises:
+        UnknownNameError: There is no such type.
+    """
+    import foxglove
+
+    if encoding == "ros1":
+        found = ros1_type(kind)
+        text = found.definition.encode()
+        return foxglove.Schema(name=found.name, encoding="ros1msg", data=text)
+    text = ros2_definition(kind).encode()
+    return foxglove.Schema(name=ros2_name(kind), encoding="ros2msg", data=text)
+
+
+def packed(graph: BridgedGraph, message: Any, encoding: Encoding) -> bytes:
+    """A message's bytes; those that other wires send as well are packed once."""
+    return graph.cdr.encode(message) if encoding == "cdr" else encode_ros1(message)
+
+
+def _fields(kind: str) -> list[str]:
+    """Names of a type's fields, and of those of all types within it."""
+    names = []
+    for line in ros2_definition(kind).splitlines():
+        words = line.split()
+        if len(words) == 2 and words[0] != "MSG:" and "=" not in line:
+            names.append(words[1])
+    return names
