@@ -283,9 +283,13 @@ def test_services(served: Served, client: Client) -> None:
     assert (got.success, got.message) == (True, "done")
     client.send("call", encode_cdr(request(data=False)), service="/switch", encoding="cdr")
     assert "not now" in str(client.wait("failure")["failure"])
+    client.wait("status", lambda e: "/switch: not now" in e["status"]["message"])
+    padded = encode_cdr(request(data=True)) + bytes(100)
+    client.send("call", padded, service="/switch", encoding="cdr")
+    client.wait("answer", count=2)
     client.send("call", b"\0", service="/switch", encoding="cdr")
     client.wait("failure", count=2)
-    assert seen == [True, False]
+    assert seen == [True, False, True]
 
 
 def test_a_service_that_only_ros_1_can_have(served: Served, client: Client) -> None:

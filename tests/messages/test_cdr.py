@@ -8,7 +8,15 @@ import numpy as np
 import pytest
 
 from cartwheel.errors import GraphError
-from cartwheel.messages import decode_cdr, encode_cdr, header, message_class, store, zero
+from cartwheel.messages import (
+    decode_cdr,
+    encode_cdr,
+    from_dict,
+    header,
+    message_class,
+    store,
+    zero,
+)
 from cartwheel.messages.fields import Field, fields
 
 TYPES = sorted(store().fielddefs)
@@ -114,3 +122,12 @@ def test_what_does_not_fit_is_told(name: str, field: str, value: Any) -> None:
     setattr(message, field, value)
     with pytest.raises(GraphError, match="that ROS 2 cannot hold"):
         encode_cdr(message)
+
+
+def test_zeros_after_a_message_are_taken_where_that_is_said() -> None:
+    name = "geometry_msgs/msg/Twist"
+    data = encode_cdr(from_dict(name, {"linear": {"x": 0.5}}))
+    assert decode_cdr(data + bytes(64), name, padded=True).linear.x == 0.5
+    for wrong, padded in ((data + bytes(64), False), (data + b"\0\0\0\0\1", True), (b"", True)):
+        with pytest.raises(GraphError):
+            decode_cdr(wrong, name, padded=padded)

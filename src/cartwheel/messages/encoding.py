@@ -10,8 +10,13 @@ from cartwheel.messages.cdr_writing import encode_cdr
 from cartwheel.messages.store import loaded, message_class
 
 
-def decode_cdr(data: bytes | memoryview, type_name: str) -> Any:
+def decode_cdr(data: bytes | memoryview, type_name: str, *, padded: bool = False) -> Any:
     """The message of CDR bytes; its arrays are views of them.
+
+    Args:
+        data: The bytes.
+        type_name: Of the message.
+        padded: Whether any number of zero bytes may follow it.
 
     Raises:
         UnknownNameError: There is no such type.
@@ -19,9 +24,20 @@ def decode_cdr(data: bytes | memoryview, type_name: str) -> Any:
     """
     full = message_class(type_name).__msgtype__
     try:
+        if padded:
+            data = memoryview(data)[: _size(data, full)]
         return loaded().deserialize_cdr(data, full)
     except Exception as error:  # rosbags lets whatever its generated code meets through
         raise GraphError(f"{len(data)} bytes are no {full}: {error}") from error
+
+
+def _size(data: bytes | memoryview, full: str) -> int:
+    """Of a message that zero bytes follow; of all bytes where others do."""
+    definition = loaded().get_msgdef(full)
+    little = bool(data[1])
+    read = definition.deserialize_cdr_le if little else definition.deserialize_cdr_be
+    end = 4 + int(read(data[4:], 0, definition.cls, loaded())[1])
+    return len(data) if any(data[end:]) else end
 
 
 class CdrCache:

@@ -321,7 +321,7 @@ class FoxgloveBridge:
         for name, service in services.items():
             if name not in self._services:
                 try:
-                    self._server.add_services([offered(self._graph, service)])
+                    self._server.add_services([offered(self._graph, service, self._warn)])
                 except CartwheelError as error:
                     self._warn(f"service {name} is left out: {error.message}")
                 self._services[name] = service

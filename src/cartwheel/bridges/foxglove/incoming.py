@@ -22,8 +22,9 @@ from cartwheel.messages import (
 from cartwheel.messages.ros1 import decode_ros1, encode_ros1
 from cartwheel.messages.ros2_types import ros2_name
 
-ENCODINGS = ["cdr", "ros1", "json"]
-"""Of messages that clients may send."""
+ENCODINGS = ["json", "cdr", "ros1"]
+"""Of messages that clients may send. Lichtblick takes the first, and JSON has fields left out; its
+CDR of a message without one of its arrays is broken."""
 _BACKLOG = 1000
 """Messages that the simulation has not taken yet."""
 
@@ -35,7 +36,8 @@ def decode(data: bytes, encoding: str, kind: str) -> Any:
         CartwheelError: They are none.
     """
     if encoding == "cdr":
-        return decode_cdr(data, kind)
+        # Lichtblick sends the whole buffer that a request was written into.
+        return decode_cdr(data, kind, padded=True)
     if encoding == "ros1":
         return decode_ros1(data, kind)
     if encoding != "json":
@@ -97,8 +99,13 @@ class Incoming:
         self._waiting -= 1
 
 
-def offered(graph: BridgedGraph, service: Service) -> Any:
+def offered(graph: BridgedGraph, service: Service, tell: Callable[[str], None]) -> Any:
     """A service of the graph as the server takes it; it is called on threads of the server.
+
+    Args:
+        graph: Whose it is.
+        service: The service.
+        tell: Takes why a call failed, from any thread: not all clients show the answer.
 
     Raises:
         UnknownNameError: Its type is not known.
@@ -115,9 +122,12 @@ def offered(graph: BridgedGraph, service: Service) -> Any:
         )
 
     def handle(request: Any) -> bytes:
-        # What is raised is what the client is told.
-        message = decode(bytes(request.payload), request.encoding, request_class.__msgtype__)
-        response = asked(graph, service.name, message)
+        try:
+            message = decode(bytes(request.payload), request.encoding, request_class.__msgtype__)
+            response = asked(graph, service.name, message)
+        except CartwheelError as error:
+            tell(f"{service.name}: {error.message}")
+            raise  # That is the client's answer.
         if request.encoding == "json":
             return json.dumps(to_dict(response)).encode()
         return encode_ros1(response) if request.encoding == "ros1" else encode_cdr(response)
