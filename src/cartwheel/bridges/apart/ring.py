@@ -32,7 +32,7 @@ _MORE = 1 << 31
 _BATCH = 1 << 16
 """Bytes for which a patient reader is woken at once."""
 _LINGER = 0.02
-"""s after which a patient reader looks by itself."""
+"""s after which a reader looks by itself: a patient one always, another once after a message."""
 _PAUSE = 0.0005
 """s between two looks at a full ring."""
 
@@ -143,6 +143,8 @@ class RingWriter(_Ring):
 
     def _write(self, number: int, time_ns: int, data: bytes) -> None:
         written = self._counts[0]
+        # Where not all was taken yet the reader is awake, or about to be.
+        awake = self._counts[1] != written
         at = written % self._size
         length = len(data)
         whole = _HEAD.size + _padded(length)
@@ -156,7 +158,7 @@ class RingWriter(_Ring):
         # From now on the reader may read it.
         self._counts[0] = written + whole
         self._untold += whole
-        if not self._patient or self._untold >= _BATCH:
+        if self._untold >= _BATCH if self._patient else not awake:
             self._ring_bell()
 
     def _ring_bell(self) -> None:
@@ -211,18 +213,18 @@ class RingReader(_Ring):
 
     def _run(self) -> None:
         self._bell.setblocking(False)
-        while not self._ended:
-            ended = self._wait()
-            self._drain()
-            if ended:
-                break
+        patience = self._patience
+        while not self._wait(patience):
+            # What came as the last one was taken may have been held for seen: one look more.
+            patience = _LINGER if self._drain() else self._patience
+        self._drain()
         with self._read:
             self._ended = True
             self._read.notify_all()
 
-    def _wait(self) -> bool:
+    def _wait(self, patience: float | None) -> bool:
         """Waits for the bell; whether the writer has gone."""
-        ready, _, _ = select.select([self._bell], [], [], self._patience)
+        ready, _, _ = select.select([self._bell], [], [], patience)
         if ready:
             try:
                 while self._bell.recv(_COUNTS):
@@ -234,8 +236,9 @@ class RingReader(_Ring):
             return True
         return False
 
-    def _drain(self) -> None:
-        read = self._counts[1]
+    def _drain(self) -> bool:
+        """Takes what there is; whether that was anything."""
+        began = read = self._counts[1]
         while read != self._counts[0]:
             at = read % self._size
             length, number, time_ns = _HEAD.unpack_from(self._data, at)
@@ -250,6 +253,7 @@ class RingReader(_Ring):
             self._counts[1] = read
         with self._read:
             self._read.notify_all()
+        return read != began
 
     def _hand_on(self, number: int, time_ns: int) -> None:
         parts, self._parts = self._parts, []
