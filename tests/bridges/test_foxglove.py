@@ -41,14 +41,16 @@ class Served(Running):
 
     bridge: FoxgloveBridge
 
-    def __init__(self, **options: Any) -> None:
+    def __init__(
+        self, *, controls: type[SimulationControls] = SimulationControls, **options: Any
+    ) -> None:
         super().__init__()
         self.robots = RobotDescriptions(self.simulation, self.graph)
         self.bridge = FoxgloveBridge(
             self.graph,
             name="a test",
             port=0,
-            controls=SimulationControls(self.simulation),
+            controls=controls(self.simulation),
             assets=Assets(self.session, ()),
             report=self.reports.append,
             **options,
@@ -366,6 +368,27 @@ def test_messages_come_close_to_the_time_told(served: Served, client: Client) ->
         elif told is not None:
             off.append(abs(event["time"] - told))
     assert sorted(off)[len(off) // 2] <= 30 * 10**6
+
+
+class Late(SimulationControls):
+    """As in another process, where messages tell what time it is."""
+
+    @property
+    def time_ns(self) -> int:
+        return max(0, super().time_ns - 70 * 10**6)
+
+
+def test_time_takes_no_step_back_for_a_late_message(folder: Path) -> None:
+    with serving(controls=Late) as served:
+        client = Client(served.bridge.url, folder)
+        client.subscribe("/odom")
+        client.wait("message", count=200)
+        times = [event["time"] for event in client.of("time")]
+        assert times == sorted(times)
+        simulation = served.simulation
+        simulation.call(simulation.reset).result(120)
+        client.wait("time", lambda e: e["time"] < times[-1], count=3)
+        client.close()
 
 
 def test_playback_control(folder: Path) -> None:

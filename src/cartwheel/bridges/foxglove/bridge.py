@@ -255,9 +255,13 @@ class FoxgloveBridge:
             publication.send()
 
     def _tell_fine_time(self) -> None:
-        """Tells it before messages go: some clients take the last time told for a message's."""
+        """Tells it before messages go: some clients take the last time told for a message's.
+
+        What messages tell of it lags behind; clients take a step back for a jump, and forget
+        what they show.
+        """
         time_ns, now = self._controls.time_ns, time.monotonic()
-        if time_ns != self._told_ns and now >= self._fine_due:
+        if time_ns > self._told_ns and now >= self._fine_due:
             self._told_ns, self._fine_due = time_ns, now + 1.0 / _FINE_TIME_RATE
             self._server.broadcast_time(time_ns)
 
