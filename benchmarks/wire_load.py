@@ -106,9 +106,8 @@ def _waited() -> float:
 
 
 def _used(processes: Iterable[int]) -> float:
-    """CPU seconds of all threads of some processes."""
-    folders = (folder for pid in processes for folder in Path(f"/proc/{pid}/task").iterdir())
-    return sum(int((folder / "schedstat").read_text().split()[0]) for folder in folders) / 1e9
+    """CPU seconds of some processes, by the clocks that Linux has of each: clock_getcpuclockid."""
+    return sum(time.clock_gettime((~pid << 3) | 2) for pid in processes)
 
 
 def _picture() -> Any:
