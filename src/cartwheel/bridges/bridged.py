@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future
 from typing import Any, Protocol
 
-from cartwheel.graph import Goal, ParameterServer, Service, TopicInfo
+from cartwheel.graph import ActionListener, Goal, ParameterServer, Service, TopicInfo
 
 
 class BridgedSubscription(Protocol):
@@ -56,10 +56,10 @@ class BridgedAction(Protocol):
     def goal(self, identity: str) -> Goal | None:
         """One of `goals`."""
 
-    def listen(self, listener: Any) -> None:
-        """Tells an `ActionListener` of all goals from now on."""
+    def listen(self, listener: ActionListener) -> None:
+        """Tells it of all goals from now on."""
 
-    def leave(self, listener: Any) -> None:
+    def leave(self, listener: ActionListener) -> None:
         """Tells it of goals no longer."""
 
     def submit(self, goal: Any, *, identity: str = "") -> Goal | None:
@@ -120,5 +120,5 @@ class BridgedGraph(Protocol):
     def services(self) -> list[Service]:
         """All services, by name."""
 
-    def actions(self) -> list[Any]:
-        """All actions, by name; each a `BridgedAction`."""
+    def actions(self) -> Sequence[BridgedAction]:
+        """All actions, by name."""
