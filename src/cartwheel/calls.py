@@ -6,6 +6,7 @@ from collections.abc import Callable
 from concurrent.futures import Future
 from typing import TypeVar
 
+S = TypeVar("S")
 T = TypeVar("T")
 Post = Callable[[Callable[[], None]], None]
 """Leaves a function with the thread that is to run it."""
@@ -28,3 +29,19 @@ def answered(post: Post, function: Callable[[], T]) -> Future[T]:
 
     post(run)
     return future
+
+
+def mapped(future: Future[S], function: Callable[[S], T]) -> Future[T]:
+    """What a function makes of another future's result, or that one's error or its own."""
+    made: Future[T] = Future()
+
+    def take(done: Future[S]) -> None:
+        if not made.set_running_or_notify_cancel():
+            return
+        try:
+            made.set_result(function(done.result()))
+        except Exception as error:  # noqa: BLE001 - it is the caller's to handle
+            made.set_exception(error)
+
+    future.add_done_callback(take)
+    return made

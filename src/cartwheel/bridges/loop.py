@@ -18,6 +18,7 @@ from typing import TypeVar
 from cartwheel.calls import answered
 
 READ, WRITE = selectors.EVENT_READ, selectors.EVENT_WRITE
+_CHUNK = 1 << 18
 
 # As `os.write`, but it keeps Python's lock. Let go of, the lock would be taken by the loop that was
 # woken, and who posts would wait until that has done its work: 0.5 ms for a message on three wires.
@@ -135,3 +136,18 @@ class Loop:
     def _rouse(self, _: int) -> None:
         with contextlib.suppress(BlockingIOError):
             self._inner.recv(4096)
+
+
+def taken(sock: socket.socket, size: int = _CHUNK) -> bytes | None:
+    """What has come on a connection: no bytes where it is at its end, None where there is nothing.
+
+    Args:
+        sock: The connection, which does not block.
+        size: Bytes to take at most.
+    """
+    try:
+        return sock.recv(size)
+    except BlockingIOError:
+        return None
+    except OSError:
+        return b""

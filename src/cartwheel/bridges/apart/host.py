@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import threading
 import time
 from collections.abc import Callable
@@ -11,13 +10,16 @@ from typing import Any
 
 from cartwheel.bridges.apart.hosted_actions import HostedActions
 from cartwheel.bridges.apart.link import Link
-from cartwheel.bridges.apart.remote_graph import ANSWER, GraphState, OfferedService
+from cartwheel.bridges.apart.offers import Offers
+from cartwheel.bridges.apart.remote_graph import GraphState
 from cartwheel.bridges.apart.ring import RingWriter
-from cartwheel.calls import answered
-from cartwheel.errors import Diagnostic, one_line
+from cartwheel.bridges.mirror import Arrivals
+from cartwheel.calls import answered, mapped
+from cartwheel.errors import Diagnostic, Once, one_line
 from cartwheel.graph import Graph, Service, Subscription
 from cartwheel.messages import decode_cdr, encode_cdr, service_classes
 
+_TOLD = 500
 _CLOCK = "rosgraph_msgs/msg/Clock"
 _TIMES, _TIMES_AT_ONCE = 1000.0, 100.0
 """Times that are passed on in a second, and at once: a simulation at full speed publishes many
@@ -60,11 +62,10 @@ class GraphHost:
         self._echo = echo
         self._title = title
         self._report = report
+        self._is_new = Once(_TOLD)
         self._relays: dict[int, _Relay] = {}
-        self._arrived: dict[int, Any] = {}
-        """Messages from the bridge that the simulation has not taken yet, by identity."""
-        self._numbers = itertools.count(1)
-        self._services: dict[str, tuple[Service, int]] = {}
+        self._arrivals = Arrivals(graph, self._warn)
+        self._services: Offers[Service] = Offers()
         self._server = _RemoteServer(link)
         self._actions = HostedActions(link, graph, time_ns)
         self._changing = False
@@ -112,20 +113,12 @@ class GraphHost:
             self._link.tell("changed", self._state())
 
     def _state(self) -> GraphState:
-        graph, before = self._graph, self._services
-        self._services = {}
-        for one in graph.services():
-            known = before.get(one.name)
-            same = known is not None and known[0] is one
-            self._services[one.name] = known if same and known else (one, next(self._numbers))
+        graph = self._graph
         return GraphState(
             time_ns=self._time_ns(),
             topics=tuple(graph.topics()),
-            services=tuple(
-                OfferedService(number=number, name=one.name, type=one.type, node=one.node)
-                for one, number in self._services.values()
-            ),
-            actions=self._actions.known(),
+            services=self._services.update(graph.services()),
+            actions=self._actions.update(),
             nodes=dict(graph.nodes),
         )
 
@@ -149,27 +142,14 @@ class GraphHost:
         message = decode_cdr(data, type_name)
         if self._echo:
             self._graph.publish(name, type_name, message)
-            return
-        self._arrived[id(message)] = message
-        try:
-            self._graph.publish(name, type_name, message)
-        finally:
-            self._graph.post(lambda: self._arrived.pop(id(message), None) and None)
+        else:
+            self._arrivals.deliver(name, type_name, message)
 
     def _call(self, name: str, data: bytes) -> Future[bytes]:
         """On a thread of its own."""
         request = service_classes(self._graph.service(name).type)[0]
         future = self._graph.call(name, decode_cdr(data, request.__msgtype__))
-        answer: Future[bytes] = Future()
-
-        def pack(done: Future[Any]) -> None:
-            try:
-                answer.set_result(encode_cdr(done.result()))
-            except Exception as error:  # noqa: BLE001 - it is the caller's to handle
-                answer.set_exception(error)
-
-        future.add_done_callback(pack)
-        return answer
+        return mapped(future, encode_cdr)
 
     def _serve_parameters(self, served: bool) -> None:
         parameters = self._graph.parameters
@@ -182,14 +162,12 @@ class GraphHost:
 
     def pass_on(self, relay: _Relay, message: Any) -> None:
         """Sends a message of the graph, unless it came from there."""
-        if self._arrived and id(message) in self._arrived:
+        if message in self._arrivals:
             return
         try:
             data = self._graph.cdr.encode(message)
         except Exception as error:  # noqa: BLE001 - rosbags lets whatever it meets through
-            if not relay.faulty:
-                relay.faulty = True
-                self._warn(f"{relay.topic}: a message that is none: {one_line(error)}")
+            self._warn(f"{relay.topic}: a message that is none: {one_line(error)}")
             return
         if self._patient:
             self.waited += self._ring.put_patiently(relay.number, self._time_ns(), data)
@@ -205,7 +183,9 @@ class GraphHost:
         self._link.loop.post(lambda: self._link.loop.after(_LAST_TIME, function))
 
     def _warn(self, text: str) -> None:
-        self._report(Diagnostic(severity="warning", message=f"{self._title}: {text}"))
+        """Once for each text."""
+        if self._is_new(text):
+            self._report(Diagnostic(severity="warning", message=f"{self._title}: {text}"))
 
 
 class _Relay:
@@ -219,7 +199,6 @@ class _Relay:
         self.dropped = 0
         self.beyond = 0
         """What the bridge has dropped."""
-        self.faulty = False
 
     def take(self, message: Any) -> None:
         """On the simulation's thread."""
@@ -279,7 +258,7 @@ class _RemoteServer:
 
     def get(self, name: str) -> Any:
         """The value; waits for it."""
-        return self._link.call("server_get", name).result(ANSWER)
+        return self._link.ask("server_get", name)
 
     def set(self, name: str, value: Any) -> None:
         """Stores a value."""

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Callable
 from concurrent.futures import Future
 from typing import Any
 
 from cartwheel.bridges.apart.link import Link
-from cartwheel.bridges.apart.remote_action import GoalNews, KnownAction, news_of
+from cartwheel.bridges.apart.offers import Offer, Offers
+from cartwheel.bridges.apart.remote_action import GoalNews, news_of
 from cartwheel.calls import answered
 from cartwheel.errors import GraphError
 from cartwheel.graph import Action, Goal, Graph
@@ -28,39 +28,35 @@ class HostedActions:
         self._link = link
         self._graph = graph
         self._time_ns = time_ns
-        self._numbers = itertools.count(1)
-        self._known: dict[int, tuple[Action, _Teller]] = {}
+        self._offers: Offers[Action] = Offers()
+        self._tellers: dict[int, _Teller] = {}
 
-    def known(self) -> tuple[KnownAction, ...]:
+    def update(self) -> tuple[Offer, ...]:
         """All there are, by name; on the link's thread, as `do`."""
-        before = {id(one[0]): (number, one) for number, one in self._known.items()}
-        self._known = {}
-        for action in self._graph.actions():
-            number, one = before.get(id(action)) or self._new(action)
-            self._known[number] = one
-        return tuple(
-            KnownAction(number=number, name=one.name, type=one.type, node=one.node)
-            for number, (one, _) in self._known.items()
-        )
+        found = self._offers.update(self._graph.actions())
+        self._tellers = {
+            one.number: self._tellers.get(one.number)
+            or _Teller(self._link, one.number, self._time_ns)
+            for one in found
+        }
+        return found
 
     def close(self) -> None:
         """Tells of no goals any more; from any thread."""
-        for action, teller in list(self._known.values()):
+        tellers = self._tellers
+        for number, action in self._offers.known.items():
+            teller = tellers[number]
             self._graph.post(lambda action=action, teller=teller: action.leave(teller))  # type: ignore[misc]
 
     def do(self, number: int, what: str, *arguments: Any) -> Future[Any] | None:
         """Does something with an action, on the graph owner's thread."""
-        if number in self._known:
-            action, teller = self._known[number]
+        if number in self._tellers:
+            action, teller = self._offers.known[number], self._tellers[number]
             function = getattr(self, f"_{what}")
             return answered(self._graph.post, lambda: function(action, teller, *arguments))
         if what in ("listen", "want_feedback"):
             return None
         raise GraphError("there is no such action any more")
-
-    def _new(self, action: Action) -> tuple[int, tuple[Action, _Teller]]:
-        number = next(self._numbers)
-        return number, (action, _Teller(self._link, number, self._time_ns))
 
     # -- on the owner's thread
 

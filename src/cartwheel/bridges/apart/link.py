@@ -13,12 +13,13 @@ from collections.abc import Callable
 from concurrent.futures import Future
 from typing import Any
 
-from cartwheel.bridges.loop import READ, WRITE, Loop
+from cartwheel.bridges.loop import READ, WRITE, Loop, taken
 from cartwheel.errors import CartwheelError, ControlError, one_line
 
 _LENGTH = struct.Struct("<Q")
-_CHUNK = 1 << 18
 _CALL, _TELL, _ANSWER = range(3)
+_PATIENCE = 30.0
+"""s that the other end may take to answer, where it is in the middle of something."""
 
 Handler = Callable[..., Any]
 
@@ -88,6 +89,15 @@ class Link:
         self.loop.post(send)
         return future
 
+    def ask(self, name: str, *arguments: Any) -> Any:
+        """Calls a function there, and waits for what it gives; not for the link's thread.
+
+        Raises:
+            Exception: What it raised.
+            TimeoutError: It takes too long.
+        """
+        return self.call(name, *arguments).result(_PATIENCE)
+
     def tell(self, name: str, *arguments: Any) -> None:
         """Calls a function there and does not ask what became of it."""
         frame = _frame(_TELL, 0, name, arguments)
@@ -126,12 +136,9 @@ class Link:
             self._read()
 
     def _read(self) -> None:
-        try:
-            data = self._sock.recv(_CHUNK)
-        except BlockingIOError:
+        data = taken(self._sock)
+        if data is None:
             return
-        except OSError:
-            data = b""
         if not data:
             self._end()
             return

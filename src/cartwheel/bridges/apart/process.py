@@ -180,7 +180,7 @@ class BridgeProcess:
             return
         self.leave_graph()
         self._ring.close()
-        self._report(Diagnostic(severity="error", message=f"the process of {self.title} has ended"))
+        self._report(Diagnostic(severity="error", message=self._death))
         self.on_lost()
 
     def _fault(self, error: Exception) -> None:

@@ -6,21 +6,9 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 from cartwheel.bridges.apart.link import Link
+from cartwheel.bridges.apart.offers import Offer
 from cartwheel.graph import Action, ActionListener, Goal, GoalState
 from cartwheel.messages import decode_cdr, encode_cdr
-
-_ANSWER = 30.0
-"""s that the simulation may take: it is in the middle of something."""
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class KnownAction:
-    """What crosses of an action."""
-
-    number: int
-    name: str
-    type: str
-    node: str
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -52,9 +40,7 @@ class Clock(Protocol):
     """Who knows what time it is in the simulation."""
 
     time_ns: int
-
-    def saw(self, time_ns: int) -> None:
-        """It was so late, at least."""
+    """The last that was heard of."""
 
 
 class RemoteAction:
@@ -66,7 +52,7 @@ class RemoteAction:
         clock: Of the simulation.
     """
 
-    def __init__(self, link: Link, known: KnownAction, clock: Clock) -> None:
+    def __init__(self, link: Link, known: Offer, clock: Clock) -> None:
         self._link = link
         self._number = known.number
         self._clock = clock
@@ -126,7 +112,7 @@ class RemoteAction:
             self._listener.goal_goes_on(goal, decode_cdr(feedback, f"{self.type}_Feedback"))
 
     def _goal(self, news: GoalNews) -> Goal:
-        self._clock.saw(news.time_ns)
+        self._clock.time_ns = news.time_ns
         goal = Goal(_NOWHERE, news.id, news.stamp_ns, None)
         goal.state, goal.text = news.state, news.text
         if news.result is not None:
@@ -134,7 +120,7 @@ class RemoteAction:
         return goal
 
     def _ask(self, what: str, *arguments: Any) -> Any:
-        return self._link.call("action", self._number, what, *arguments).result(_ANSWER)
+        return self._link.ask("action", self._number, what, *arguments)
 
 
 _NOWHERE: Action = None  # type: ignore[assignment]

@@ -11,29 +11,17 @@ from dataclasses import dataclass
 from typing import Any, TypeVar
 
 from cartwheel.bridges.apart.link import Link
-from cartwheel.bridges.apart.remote_action import KnownAction, RemoteAction
+from cartwheel.bridges.apart.offers import Offer
+from cartwheel.bridges.apart.remote_action import RemoteAction
 from cartwheel.bridges.packed import Packed
-from cartwheel.calls import answered
+from cartwheel.calls import answered, mapped
 from cartwheel.errors import UnknownNameError
 from cartwheel.graph import ParameterServer, Service, TopicInfo
 from cartwheel.messages import decode_cdr, encode_cdr, service_classes
 
 T = TypeVar("T")
-ANSWER = 30.0
-"""s that the simulation's process may take to answer what it answers at once."""
 _LOOKS = 0.25
 """s between two looks at what readers have missed, and what they want."""
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class OfferedService:
-    """What crosses of a service."""
-
-    number: int
-    """Another one for a service that took the name of an older one."""
-    name: str
-    type: str
-    node: str
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -42,8 +30,8 @@ class GraphState:
 
     time_ns: int
     topics: tuple[TopicInfo, ...] = ()
-    services: tuple[OfferedService, ...] = ()
-    actions: tuple[KnownAction, ...] = ()
+    services: tuple[Offer, ...] = ()
+    actions: tuple[Offer, ...] = ()
     nodes: Mapping[str, str]
 
 
@@ -99,15 +87,15 @@ class RemoteParameters:
             # Also where there is nobody left to hear it.
             self._link.tell("serve_parameters", False)
         else:
-            self._link.call("serve_parameters", True).result(ANSWER)
+            self._link.ask("serve_parameters", True)
 
     def get(self, name: str, default: Any = None) -> Any:
         """A value; waits for it."""
-        return self._link.call("get_parameter", name, default).result(ANSWER)
+        return self._link.ask("get_parameter", name, default)
 
     def set(self, name: str, value: Any) -> None:
         """Stores a value."""
-        self._link.call("set_parameter", name, value).result(ANSWER)
+        self._link.ask("set_parameter", name, value)
 
     def _kept(self) -> ParameterServer:
         assert self._answering is not None
@@ -144,7 +132,7 @@ class RemoteGraph:
 
     def begin(self) -> None:
         """Learns what there is."""
-        self._changed(self._link.call("begin").result(ANSWER))
+        self._changed(self._link.ask("begin"))
         self._link.loop.post(self._look)
 
     # -- what a graph is
@@ -197,7 +185,7 @@ class RemoteGraph:
         # Before the first message can come.
         self._subscriptions[made.number] = made
         try:
-            self._link.call("subscribe", made.number, name, type_name, node).result(ANSWER)
+            self._link.ask("subscribe", made.number, name, type_name, node)
         except Exception:
             del self._subscriptions[made.number]
             raise
@@ -217,18 +205,8 @@ class RemoteGraph:
         if name not in types:
             raise UnknownNameError("service", name, types)
         response = service_classes(types[name])[1].__msgtype__
-        answer: Future[Any] = Future()
-
-        def take(done: Future[Any]) -> None:
-            if not answer.set_running_or_notify_cancel():
-                return
-            try:
-                answer.set_result(decode_cdr(done.result(), response))
-            except Exception as error:  # noqa: BLE001 - it is the caller's to handle
-                answer.set_exception(error)
-
-        self._link.call("call", name, encode_cdr(request)).add_done_callback(take)
-        return answer
+        answer = self._link.call("call", name, encode_cdr(request))
+        return mapped(answer, lambda data: decode_cdr(data, response))
 
     # -- what comes
 
@@ -239,12 +217,8 @@ class RemoteGraph:
         if found is not None:
             found.callback(Packed(data, found.type))
 
-    def saw(self, time_ns: int) -> None:
-        """It was so late in the simulation, at least."""
-        self.time_ns = time_ns
-
     def _changed(self, state: GraphState) -> None:
-        self.saw(state.time_ns)
+        self.time_ns = state.time_ns
         services, actions = self._services, self._actions
         # Those that stay are the same objects: who mirrors the graph goes by that.
         self._services = {

@@ -6,69 +6,103 @@ import threading
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 from cartwheel.bridges.apart.link import Link
-from cartwheel.bridges.apart.remote_graph import ANSWER, RemoteGraph
+from cartwheel.bridges.apart.remote_graph import RemoteGraph
 from cartwheel.errors import Diagnostic, RecordingError
 
 _FRESH = 0.05
 """s for which parameters that were asked for are taken for those of now."""
 
 
-class Ros1Wire:
-    """See `Ros1Bridge`."""
+class _Bridge(Protocol):
+    """What all of them do."""
+
+    def close(self) -> None:
+        """Ends it."""
+
+    def log(self, diagnostic: Diagnostic) -> None:
+        """Says something on ``/rosout``."""
+
+
+class _BridgeWire:
+    """A bridge, once it is made.
+
+    Args:
+        graph: Of the simulation.
+        link: To its process.
+    """
 
     def __init__(self, graph: RemoteGraph, link: Link) -> None:
-        from cartwheel.bridges.ros1 import Ros1Bridge
-
-        self._made = Ros1Bridge
         self._graph = graph
         self._link = link
-        self._bridge: Ros1Bridge | None = None
-
-    def open(self, options: dict[str, Any]) -> Any:
-        """Makes it; its name, its master's URI and its own."""
-        link, graph = self._link, self._graph
-        self._bridge = bridge = self._made(
-            graph,
-            **options,
-            report=lambda diagnostic: link.tell("report", diagnostic),
-            time_ns=lambda: graph.time_ns,
-            on_end=lambda reason: link.tell("ended", reason),
-        )
-
-        def start() -> bool:
-            bridge.start()
-            return bridge.has_own_master
-
-        link.handle("start", lambda: graph.run(start))
-        link.handle("log", _logger(graph, bridge.log))
-        return bridge.name, bridge.master_uri, bridge.uri
+        self._bridge: _Bridge | None = None
 
     def close(self) -> None:
         """Ends it."""
         if self._bridge is not None:
             self._bridge.close()
 
+    def _offer(self, bridge: _Bridge, start: Callable[[], Any]) -> None:
+        """Lets the simulation's process start it and say things on its ``/rosout``."""
+        self._bridge = bridge
+        self._link.handle("start", lambda: self._graph.run(start))
+        self._link.handle("log", self._log)
 
-class Ros2Wire:
+    def _log(self, diagnostic: Diagnostic, time_ns: int) -> None:
+        assert self._bridge is not None
+        self._graph.time_ns = time_ns
+        self._bridge.log(diagnostic)
+
+    def _report(self, diagnostic: Diagnostic) -> None:
+        self._link.tell("report", diagnostic)
+
+    def _time_ns(self) -> int:
+        return self._graph.time_ns
+
+
+class Ros1Wire(_BridgeWire):
+    """See `Ros1Bridge`."""
+
+    def __init__(self, graph: RemoteGraph, link: Link) -> None:
+        super().__init__(graph, link)
+        from cartwheel.bridges.ros1 import Ros1Bridge
+
+        self._made = Ros1Bridge
+
+    def open(self, options: dict[str, Any]) -> Any:
+        """Makes it; its name, its master's URI and its own."""
+        bridge = self._made(
+            self._graph,
+            **options,
+            report=self._report,
+            time_ns=self._time_ns,
+            on_end=lambda reason: self._link.tell("ended", reason),
+        )
+
+        def start() -> bool:
+            bridge.start()
+            return bridge.has_own_master
+
+        self._offer(bridge, start)
+        return bridge.name, bridge.master_uri, bridge.uri
+
+
+class Ros2Wire(_BridgeWire):
     """See `Ros2Bridge`."""
 
     def __init__(self, graph: RemoteGraph, link: Link) -> None:
+        super().__init__(graph, link)
         from cartwheel.bridges.ros2 import Ros2Bridge
 
         self._made = Ros2Bridge
-        self._graph = graph
-        self._link = link
-        self._bridge: Ros2Bridge | None = None
 
     def open(self, options: dict[str, Any]) -> Any:
         """Makes it; its name and its middleware's description."""
         from cartwheel.bridges.ros2 import Parameter
 
-        link, graph = self._link, self._graph
-        values = _Values(link, graph)
+        values = _Values(self._link, self._graph)
         described = options.pop("parameters")
         parameters = [
             Parameter(
@@ -79,26 +113,20 @@ class Ros2Wire:
             )
             for name, description, settable in described
         ]
-        self._bridge = bridge = self._made(
-            graph,
+        bridge = self._made(
+            self._graph,
             **options,
             parameters=parameters,
-            report=lambda diagnostic: link.tell("report", diagnostic),
-            time_ns=lambda: graph.time_ns,
+            report=self._report,
+            time_ns=self._time_ns,
         )
 
         def make_way(last: str) -> None:
-            bridge.make_way(last, lambda topics: link.tell("taken_by_others", topics))
+            bridge.make_way(last, lambda topics: self._link.tell("taken_by_others", topics))
 
-        link.handle("start", lambda: graph.run(bridge.start))
-        link.handle("log", _logger(graph, bridge.log))
-        link.handle("make_way", make_way)
+        self._offer(bridge, bridge.start)
+        self._link.handle("make_way", make_way)
         return bridge.name, bridge.description
-
-    def close(self) -> None:
-        """Ends it."""
-        if self._bridge is not None:
-            self._bridge.close()
 
 
 class _Values:
@@ -114,49 +142,40 @@ class _Values:
     def get(self, name: str) -> Any:
         with self._lock:
             if time.monotonic() - self._since > _FRESH:
-                time_ns, self._values = self._link.call("values").result(ANSWER)
-                self._graph.saw(time_ns)
+                time_ns, self._values = self._link.ask("values")
+                self._graph.time_ns = time_ns
                 self._since = time.monotonic()
             return self._values[name]
 
     def set(self, name: str, value: Any) -> None:
-        self._link.call("set_value", name, value).result(ANSWER)
+        self._link.ask("set_value", name, value)
         self._since = 0.0
 
 
-class FoxgloveWire:
+class FoxgloveWire(_BridgeWire):
     """See `FoxgloveBridge`."""
 
     def __init__(self, graph: RemoteGraph, link: Link) -> None:
+        super().__init__(graph, link)
         from cartwheel.bridges.foxglove import FoxgloveBridge
 
         self._made = FoxgloveBridge
-        self._graph = graph
-        self._link = link
-        self._bridge: FoxgloveBridge | None = None
 
     def open(self, options: dict[str, Any]) -> None:
         """Makes it."""
-        link, graph = self._link, self._graph
-        self._bridge = bridge = self._made(
-            graph,
+        bridge = self._made(
+            self._graph,
             **options,
-            controls=_Controls(link, graph),
-            assets=lambda uri: link.call("asset", uri).result(ANSWER),
-            report=lambda diagnostic: link.tell("report", diagnostic),
+            controls=_Controls(self._link, self._graph),
+            assets=lambda uri: self._link.ask("asset", uri),
+            report=self._report,
         )
 
         def start() -> str:
             bridge.start()
             return bridge.url
 
-        link.handle("start", lambda: graph.run(start))
-        link.handle("log", _logger(graph, bridge.log))
-
-    def close(self) -> None:
-        """Ends it."""
-        if self._bridge is not None:
-            self._bridge.close()
+        self._offer(bridge, start)
 
 
 class _Controls:
@@ -173,23 +192,23 @@ class _Controls:
 
     def state(self) -> Any:
         """How it goes now."""
-        return self._link.call("state").result(ANSWER)
+        return self._link.ask("state")
 
     def pause(self) -> None:
         """Holds it."""
-        self._link.call("pause").result(ANSWER)
+        self._link.ask("pause")
 
     def resume(self) -> None:
         """Lets it go on."""
-        self._link.call("resume").result(ANSWER)
+        self._link.ask("resume")
 
     def set_speed(self, speed: float | None) -> None:
         """Sets the wanted real-time factor."""
-        self._link.call("set_speed", speed).result(ANSWER)
+        self._link.ask("set_speed", speed)
 
     def seek(self, time_ns: int) -> None:
         """Jumps."""
-        self._link.call("seek", time_ns).result(ANSWER)
+        self._link.ask("seek", time_ns)
 
 
 class RecordingWire:
@@ -224,15 +243,3 @@ class RecordingWire:
         """Ends it; a `Summary`."""
         recorder, self._recorder = self._recorder, None
         return None if recorder is None else self._graph.run(recorder.close).result()
-
-
-def _logger(
-    graph: RemoteGraph, log: Callable[[Diagnostic], None]
-) -> Callable[[Diagnostic, int], None]:
-    """Takes what is to be said on ``/rosout``, with the simulation time of then."""
-
-    def take(diagnostic: Diagnostic, time_ns: int) -> None:
-        graph.saw(time_ns)
-        log(diagnostic)
-
-    return take

@@ -8,11 +8,10 @@ import struct
 from collections import deque
 from collections.abc import Callable
 
-from cartwheel.bridges.loop import READ, WRITE, Loop
+from cartwheel.bridges.loop import READ, WRITE, Loop, taken
 from cartwheel.bridges.ros1 import header
 
 _LENGTH = struct.Struct("<I")
-_CHUNK = 1 << 18
 HANDSHAKE = 10.0
 """s within which a connection must have told what it is for."""
 LARGEST = 64 << 20
@@ -156,12 +155,9 @@ class Connection:
             self._loop.watch(self._sock, READ, self._ready)
 
     def _read(self) -> None:
-        try:
-            data = self._sock.recv(_CHUNK)
-        except BlockingIOError:
+        data = taken(self._sock)
+        if data is None:
             return
-        except OSError:
-            data = b""
         if not data:
             self.close()
             return

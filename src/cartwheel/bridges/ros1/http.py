@@ -8,7 +8,7 @@ import xmlrpc.client
 from collections.abc import Callable
 from typing import Any
 
-from cartwheel.bridges.loop import READ, WRITE, Loop
+from cartwheel.bridges.loop import READ, WRITE, Loop, taken
 
 HEAD_LIMIT = 16 << 10
 BODY_LIMIT = 1 << 20
@@ -77,12 +77,9 @@ class RpcConnection:
             self._read()
 
     def _read(self) -> None:
-        try:
-            data = self._sock.recv(1 << 16)
-        except BlockingIOError:
+        data = taken(self._sock, 1 << 16)
+        if data is None:
             return
-        except OSError:
-            data = b""
         if not data:
             self.close()
         elif not self._closing:

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import contextlib
+import functools
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from cartwheel.cli.commands.options import Options
+from cartwheel.errors import Diagnostic
 
 if TYPE_CHECKING:
     from cartwheel.bridges.apart.process import BridgeProcess
+    from cartwheel.simulation import Simulation
 
 
 @dataclass(slots=True)
@@ -50,3 +53,16 @@ def bridges_for(options: Options) -> Iterator[Bridges]:
         for path in options.record:
             found.recorders[path] = started("recording", f"the recording {path}", patient=True)
         yield found
+
+
+def log_on(process: BridgeProcess, simulation: Simulation, diagnostic: Diagnostic) -> None:
+    """Says something on the ``/rosout`` of a bridge."""
+    process.tell("log", diagnostic, simulation.time_ns)
+
+
+def log_all_on(process: BridgeProcess, simulation: Simulation) -> None:
+    """Says there what the user was told, and will be."""
+    engine = simulation.engine
+    for diagnostic in engine.diagnostics:
+        log_on(process, simulation, diagnostic)
+    engine.on_diagnostic.append(functools.partial(log_on, process, simulation))

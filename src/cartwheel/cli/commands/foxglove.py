@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING
 from urllib.parse import unquote
 
 from cartwheel.cli import interrupts
+from cartwheel.cli.commands.bridges import log_all_on
 from cartwheel.cli.commands.options import Options
 from cartwheel.cli.commands.report import Report
 from cartwheel.description.packages import Packages
-from cartwheel.errors import CartwheelError, Diagnostic
+from cartwheel.errors import CartwheelError
 from cartwheel.simulation import RunState
 
 if TYPE_CHECKING:
@@ -44,9 +45,6 @@ def shown_by_foxglove(
     end_ns = None if options.seconds is None else round(options.seconds * 1e9)
     controls = SimulationControls(simulation)
 
-    def log(diagnostic: Diagnostic) -> None:
-        process.tell("log", diagnostic, simulation.time_ns)
-
     with interrupts.finally_do(process.close):
         process.open(
             session.graph,
@@ -72,9 +70,7 @@ def shown_by_foxglove(
             # Where a run is no part of ROS, nobody else offers what Gazebo does.
             Ros2Api(session, package_path=options.package_path).start()
         url = process.call("start")
-        for diagnostic in simulation.engine.diagnostics:
-            log(diagnostic)
-        simulation.engine.on_diagnostic.append(log)
+        log_all_on(process, simulation)
         report.foxglove(url)
         yield
 

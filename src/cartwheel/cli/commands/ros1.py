@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from cartwheel.bridges.apart.process import BridgeProcess
+from cartwheel.cli.commands.bridges import log_all_on, log_on
 from cartwheel.cli.commands.report import Report
 from cartwheel.cli.console import print_warning
 from cartwheel.errors import Diagnostic
@@ -61,10 +62,7 @@ class Ros1:
         self._api.start()
         own = self._process.call("start")
         self._report.joined(self.name, self.master_uri, own=own)
-        engine = self._session.simulation.engine
-        for diagnostic in engine.diagnostics:
-            self._log(diagnostic)
-        engine.on_diagnostic.append(self._log)
+        log_all_on(self._process, self._session.simulation)
         parameters = self._session.graph.parameters
         rate = parameters.get(f"{self.name}/pub_clock_frequency")
         if isinstance(rate, int | float) and not isinstance(rate, bool) and rate > 0:
@@ -79,8 +77,6 @@ class Ros1:
 
     def _ended(self, reason: str) -> None:
         print_warning(reason)
-        self._log(Diagnostic(severity="warning", message=reason))
-        self._session.simulation.stop()
-
-    def _log(self, diagnostic: Diagnostic) -> None:
-        self._process.tell("log", diagnostic, self._session.simulation.time_ns)
+        simulation = self._session.simulation
+        log_on(self._process, simulation, Diagnostic(severity="warning", message=reason))
+        simulation.stop()

@@ -8,8 +8,9 @@ from typing import Any
 
 from cartwheel.bridges.apart.process import BridgeProcess
 from cartwheel.bridges.ros2 import Parameter, Rmw
+from cartwheel.cli.commands.bridges import log_all_on
 from cartwheel.cli.commands.report import Report
-from cartwheel.errors import CartwheelError, Diagnostic
+from cartwheel.errors import CartwheelError
 from cartwheel.gazebo.robot_states import RobotStates
 from cartwheel.gazebo.ros2_api import Ros2Api
 from cartwheel.plugins.robot_descriptions import TOPIC, RobotDescriptions
@@ -86,16 +87,11 @@ class Ros2:
         self._process.call("start")
         self._process.tell("make_way", TOPIC.strip("/"))
         self._report.joined_ros2(self._name, self._middleware)
-        for diagnostic in simulation.engine.diagnostics:
-            self._log(diagnostic)
-        simulation.engine.on_diagnostic.append(self._log)
+        log_all_on(self._process, simulation)
 
     def close(self) -> None:
         """Leaves ROS."""
         self._process.close()
-
-    def _log(self, diagnostic: Diagnostic) -> None:
-        self._process.tell("log", diagnostic, self._session.simulation.time_ns)
 
     # -- for the bridge
 
