@@ -20,6 +20,7 @@ from cartwheel.graph import Graph, Service, Subscription
 from cartwheel.messages import decode_cdr, encode_cdr, service_classes
 
 _TOLD = 500
+"""Different warnings."""
 _CLOCK = "rosgraph_msgs/msg/Clock"
 _TIMES, _TIMES_AT_ONCE = 1000.0, 100.0
 """Times that are passed on in a second, and at once: a simulation at full speed publishes many

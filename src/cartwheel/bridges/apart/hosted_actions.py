@@ -43,10 +43,12 @@ class HostedActions:
 
     def close(self) -> None:
         """Tells of no goals any more; from any thread."""
-        tellers = self._tellers
-        for number, action in self._offers.known.items():
-            teller = tellers[number]
-            self._graph.post(lambda action=action, teller=teller: action.leave(teller))  # type: ignore[misc]
+        known = self._offers.known
+        for number, teller in self._tellers.items():
+            # One that has gone since, or is about to be told of, has nobody to tell.
+            if number in known:
+                action = known[number]
+                self._graph.post(lambda action=action, teller=teller: action.leave(teller))  # type: ignore[misc]
 
     def do(self, number: int, what: str, *arguments: Any) -> Future[Any] | None:
         """Does something with an action, on the graph owner's thread."""
