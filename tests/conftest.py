@@ -45,10 +45,6 @@ settings.register_profile(
 )
 settings.load_profile("cartwheel")
 
-BESIDE_OTHERS = {"bridges", "cli", "docs", "ros1", "viewer"}
-"""Rooms whose tests run programs beside Cartwheel: a browser, a master, rviz, peers, terminals."""
-
-
 @pytest.fixture(scope="session", autouse=True)
 def temporary_files(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
     """Keeps what others put among temporary files from tests, and from programs they start."""
@@ -57,25 +53,6 @@ def temporary_files(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
         patch.setenv("TMPDIR", folder)
         patch.setattr(tempfile, "tempdir", folder)
         yield
-
-
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Gives a test among other programs a second try, which the summary shows as a rerun.
-
-    Their processes meet on a machine that may be busy with something else. A fault of
-    ours fails twice; all other tests have to pass the first time.
-    """
-    tests = Path(__file__).parent
-    for item in items:
-        if item.path.relative_to(tests).parts[0] in BESIDE_OTHERS:
-            item.add_marker(pytest.mark.flaky(reruns=1))
-
-
-def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
-    """Shows what went wrong in the first tries."""
-    for report in terminalreporter.getreports("rerun"):
-        terminalreporter.section(f"first try of {report.nodeid}", "_")
-        terminalreporter.line(report.longreprtext)
 
 
 class Make:
