@@ -15,6 +15,8 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
+from tests.reserved import free_port
+
 PROGRAM = Path(sys.executable).with_name("cartwheel")
 PYTHON = "/usr/bin/python3"
 PATIENCE = 120.0
@@ -23,13 +25,6 @@ NEEDED = ("rosmaster", "rostopic", "rosservice", "rosnode", "rosbag", "rosparam"
 _missing = [name for name in NEEDED if shutil.which(name) is None]
 _rospy = Path("/usr/lib/python3/dist-packages/rospy").is_dir()
 REASON = f"not installed: {', '.join(_missing)}" if _missing else "" if _rospy else "Debian's rospy"
-
-
-def free_port() -> int:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        port: int = probe.getsockname()[1]
-        return port
 
 
 def wait_for(condition: Callable[[], Any], what: str, patience: float = PATIENCE) -> Any:

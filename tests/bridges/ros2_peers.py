@@ -15,6 +15,7 @@ from typing import Any
 
 from tests.bridges.ros1_peers import wait_for
 from tests.bridges.running import Running
+from tests.reserved import dds_domains
 
 from cartwheel.bridges.ros2 import Parameter, Ros2Bridge
 from cartwheel.messages import decode_cdr, encode_cdr, from_dict
@@ -25,8 +26,8 @@ SOURCE = Path(__file__).with_name("fastdds_peer.cpp")
 HEADER = Path("/usr/include/fastdds/dds/domain/DomainParticipant.hpp")
 _there = HEADER.exists() and shutil.which("g++") is not None
 REASON = "" if _there else "not installed: g++, libfastrtps-dev"
-DOMAIN = 20 + os.getpid() % 80
-"""Other tests that run beside these have others."""
+DOMAIN = dds_domains()
+"""And the six after it: other tests that run at the same time have others."""
 
 
 @functools.cache

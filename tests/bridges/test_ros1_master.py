@@ -13,11 +13,11 @@ from tests.bridges.ros1_peers import (
     REASON,
     Master,
     Subscriber,
-    free_port,
     registered,
     simulation,
     wait_for,
 )
+from tests.reserved import free_port
 
 from cartwheel.bridges.ros1 import Ros1Bridge
 from cartwheel.errors import CartwheelError

@@ -13,9 +13,10 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
-from tests.bridges.ros1_peers import free_port, wait_for
+from tests.bridges.ros1_peers import wait_for
 from tests.bridges.ros2_peers import Ros2Bridged
 from tests.bridges.test_ros2_services import prepared
+from tests.reserved import free_port
 
 from cartwheel.bridges.ros2 import zenoh as ours
 from cartwheel.graph import Action, Goal

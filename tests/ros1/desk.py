@@ -12,7 +12,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 from PIL import ImageGrab
-from tests.ros1.conftest import ROOT, free_port
+from tests.reserved import free_port
+from tests.ros1.conftest import ROOT
 from tests.ros1.terminal import Terminal
 
 Pixels = NDArray[np.uint8]

@@ -182,9 +182,13 @@ def test_the_keyboard_drives_the_cart(desk: Desk, shell: Terminal) -> None:
     keys.press(",")
     assert eventually(lambda: place() < before - 0.3)
     keys.press("k")
-    time.sleep(2.0)
+
+    def speed() -> float:
+        shown = shell.run("rostopic echo /odom/twist/twist/linear/x -n1")
+        return abs(float(shown.split()[0]))
+
+    assert eventually(lambda: speed() < 0.01)
     held = place()
-    time.sleep(1.0)
     assert place() == pytest.approx(held, abs=0.02)
 
 
