@@ -3,9 +3,10 @@ VENV ?= .venv
 BIN = $(VENV)/bin
 ARGS ?=
 FOLDER ?= robots
+MINUTES ?= 5
 export VENV
 
-.PHONY: run test lint format bench corpus docs ros1 clean
+.PHONY: run test campaign lint format bench corpus docs ros1 clean
 
 run: ## the cart in the browser, with a post before its camera
 	@tools/setup.sh run
@@ -14,6 +15,10 @@ run: ## the cart in the browser, with a post before its camera
 test: ## all tests
 	@tools/setup.sh test
 	@$(BIN)/pytest -q $(ARGS)
+
+campaign: ## mutated inputs against all that reads files and sockets, for MINUTES
+	@tools/setup.sh test
+	@$(BIN)/python -m tests.campaign --minutes $(MINUTES) $(ARGS)
 
 lint: ## style, format and types
 	@tools/setup.sh lint

@@ -1,0 +1,1 @@
+"""The reliability campaign: mutated inputs against everything that reads what strangers wrote."""

@@ -1,0 +1,36 @@
+"""All targets. Each module offers ``TARGETS``; a new one is named here."""
+
+from __future__ import annotations
+
+import importlib
+
+from tests.campaign.target import Target
+
+MODULES: dict[str, tuple[str, ...]] = {
+    "fuzz_meshes": ("stl", "obj", "dae", "glb", "ply"),
+}
+"""Modules, and the targets of each: known without an import, which takes seconds."""
+
+
+def names() -> list[str]:
+    """Of all targets."""
+    return [name for targets in MODULES.values() for name in targets]
+
+
+def load(name: str) -> Target:
+    """The target of a name.
+
+    Raises:
+        KeyError: There is none.
+    """
+    for module, targets in MODULES.items():
+        if name in targets:
+            return _find(module, name)
+    if name.startswith("planted-"):
+        return _find("planted", name)
+    raise KeyError(name)
+
+
+def _find(module: str, name: str) -> Target:
+    offered = importlib.import_module(f"tests.campaign.{module}").TARGETS
+    return next(target for target in offered if target.name == name)

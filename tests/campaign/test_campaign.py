@@ -1,0 +1,69 @@
+"""The campaign finds faults that were planted, and saves what shows them."""
+
+from __future__ import annotations
+
+import json
+from random import Random
+
+import pytest
+from tests.campaign import mutating, registry
+from tests.campaign.finding import Finding
+from tests.campaign.harness import Campaign, replay
+
+KINDS = {
+    "exception": "exception",
+    "time": "time",
+    "memory": "memory",
+    "death": "death",
+    "traceback": "traceback",
+    "exit": "exception",
+}
+
+
+@pytest.mark.parametrize("fault", KINDS)
+def test_a_planted_fault_is_found_and_fails_again(tmp_path, fault):
+    campaign = Campaign(tmp_path, [registry.load(f"planted-{fault}")])
+    campaign.run(0.01)
+    (file,) = campaign.findings()
+    finding = Finding.load(file)
+    assert finding.kind == KINDS[fault]
+    assert finding.inputs[-1] not in (b"good", b"also good")
+    assert campaign.counts[f"planted-{fault}"].faulty > 0
+    assert replay(file)
+
+
+def test_refused_inputs_are_no_findings_and_counts_go_on(tmp_path):
+    target = registry.load("planted-none")
+    first = Campaign(tmp_path, [target])
+    first.run(0.01)
+    first.save()
+    assert first.findings() == []
+    counted = first.counts[target.name]
+    assert counted.inputs == counted.accepted + counted.refused > 2
+    second = Campaign(tmp_path, [target])
+    second.run(0.01)
+    assert second.counts[target.name].inputs > counted.inputs
+    assert json.loads((tmp_path / "counts.json").read_text())["findings"] == []
+
+
+def test_a_mended_finding_is_forgotten(tmp_path):
+    campaign = Campaign(tmp_path, [registry.load("planted-none")])
+    finding = Finding(
+        target="planted-none", kind="exception", where="x", text="x", inputs=(b"good",)
+    )
+    finding.save(tmp_path / "findings")
+    campaign.forget_mended()
+    assert campaign.findings() == []
+
+
+@pytest.mark.parametrize("mutate", [mutating.binary, mutating.text, mutating.xml])
+def test_mutations_follow_from_the_seed(mutate):
+    data = b'<robot name="r"><link name="a"><mass value="1.5"/></link></robot>'
+    made = [[mutate(data, [data], Random(f"{i}")) for i in range(200)] for _ in range(2)]
+    assert made[0] == made[1]
+    assert len(set(made[0])) > 100
+
+
+def test_every_target_reads_its_seeds():
+    for name in registry.names():
+        assert registry.load(name).seeds(), name
