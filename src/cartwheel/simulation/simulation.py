@@ -23,6 +23,7 @@ from cartwheel.simulation.running import Run
 from cartwheel.simulation.separation import Separation, told
 from cartwheel.simulation.sight import in_sight
 from cartwheel.simulation.snapshot import RunState, Scene, Snapshot
+from cartwheel.simulation.space import Space, occupied
 from cartwheel.world import build, unused
 from cartwheel.world.build import step_of
 from cartwheel.world.entry import ModelEntry
@@ -282,6 +283,10 @@ class Simulation(Run):
     def in_sight(self, name: str, eyes: Sequence[Vec3], target: Vec3) -> list[bool]:
         """From which points, m in the world, nothing hides a point of a model."""
         return in_sight(self.engine.model, self.engine.data, name, eyes, target)
+
+    def occupied(self) -> Space:
+        """The space that all collision shapes take now."""
+        return occupied(self.engine.model, self.engine.data)
 
     def set_pose(self, name: str, pose: Pose) -> None:
         """Moves a model's frame, and with it the model, at rest.

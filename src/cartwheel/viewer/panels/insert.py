@@ -4,20 +4,28 @@ from __future__ import annotations
 
 import math
 import tempfile
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from cartwheel.description.model import RobotDescription
 from cartwheel.description.packages import share
 from cartwheel.errors import CartwheelError, DescriptionError
-from cartwheel.geometry import Pose, quat_from_rpy, rotate
+from cartwheel.geometry import Pose, quat_from_rpy
 from cartwheel.simulation.naming import free_name
-from cartwheel.viewer.model_view import footprint
+from cartwheel.simulation.space import Space
+from cartwheel.viewer.model_view import bounds, footprint
 from cartwheel.viewer.panels.base import Panel
 from cartwheel.viewer.stage import Stage
 
 _GAP = 0.15
 """m of air between what is inserted and what is there."""
+_LIFT = 0.001
+"""m above the ground at which it appears."""
+_FLAT = 0.02
+"""m above the ground up to which a shape is part of it."""
 _SCENERY = ("sun", "ground_plane")
 _LARGEST = 20_000_000
 
@@ -49,10 +57,13 @@ class InsertPanel(Panel):
         from cartwheel.description import load_robot
 
         description: RobotDescription = load_robot(path)
-        simulation, session = self.simulation, self.session
-        pose = self._place(description)
+        simulation, session, robot = self.simulation, self.session, self.stage.robot
+        size = Size.of(description)
 
         def spawn() -> str:
+            # Only here is known what stands where: inserts may follow faster than pictures.
+            start = simulation.pose(robot) if robot in simulation.models else Pose()
+            pose = free_place(start, simulation.occupied(), size)
             wanted = free_name(name or description.name, simulation.models)
             return session.spawn(description, name=wanted, pose=pose)
 
@@ -76,18 +87,6 @@ class InsertPanel(Panel):
                 # The folder is nothing to the user, who knows the file by its name.
                 raise DescriptionError(str(error).replace(f"{folder}/", "")) from error
 
-    def _place(self, description: RobotDescription) -> Pose:
-        reach, below = footprint(description)
-        taken = []
-        for name, view in self.stage.scene.models.items():
-            pose = self.stage.scene.pose(name)
-            other, _ = footprint(view.description)
-            if pose is not None and other < 20.0:
-                taken.append((pose.x, pose.y, other))
-        robot = self.stage.robot
-        start = self.stage.scene.pose(robot) if robot is not None else None
-        return free_place(start or Pose(), taken, reach=reach, below=below)
-
 
 def palette(folder: Path) -> dict[str, Path]:
     """The models to choose from, by name: what stands in a folder as a file or a Gazebo model."""
@@ -96,28 +95,49 @@ def palette(folder: Path) -> dict[str, Path]:
     return {name: found[name] for name in sorted(found) if name not in _SCENERY}
 
 
-def free_place(
-    start: Pose,
-    taken: list[tuple[float, float, float]],
-    *,
-    reach: float,
-    below: float,
-) -> Pose:
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Size:
+    """How far a model reaches from its frame's origin, m."""
+
+    reach: float
+    """In the plane, in any direction."""
+    below: float
+    above: float
+
+    @classmethod
+    def of(cls, description: RobotDescription) -> Size:
+        """That of a description."""
+        reach, below = footprint(description)
+        found = bounds(description)
+        return cls(reach=reach, below=below, above=0.0 if found is None else float(found[1][2]))
+
+
+def free_place(start: Pose, space: Space, size: Size) -> Pose:
     """Straight ahead of a robot, on the ground, else as little aside and beyond as is free.
 
     Args:
         start: The robot's.
-        taken: Circles that are occupied: x, y, radius, m.
-        reach: Radius of what is to be placed, m.
-        below: How far it reaches below its origin, m.
+        space: What is occupied.
+        size: Of what is to be placed.
     """
-    height = below + 0.001
+    height = size.below + _LIFT
+    here = np.array(start.position[:2])
+    low, high = space.low[:, :2], space.high[:, :2]
+    around = np.all((low <= here) & (here <= high), axis=1)
+    overhead = space.low[:, 2] > height + size.above + _GAP
+    # A floor, a house and a roof take no place. What can fall does, from any height.
+    taken = ~(space.fixed & (around | overhead)) & (space.high[:, 2] > _FLAT)
+    low, high = low[taken], high[taken]
+    turn = quat_from_rpy(0.0, 0.0, start.yaw)
     for distance in (step * 0.25 for step in range(4, 81)):
         for aside in (0.0, 0.3, -0.3, 0.6, -0.6, 0.9, -0.9):
             heading = start.yaw + aside
-            x = start.x + distance * math.cos(heading)
-            y = start.y + distance * math.sin(heading)
-            if all(math.hypot(x - a, y - b) > reach + r + _GAP for a, b, r in taken):
-                return Pose((x, y, height), quat_from_rpy(0.0, 0.0, start.yaw))
-    ahead = rotate(quat_from_rpy(0.0, 0.0, start.yaw), (21.0, 0.0, 0.0))
-    return Pose((start.x + ahead[0], start.y + ahead[1], height))
+            spot = here + distance * np.array((math.cos(heading), math.sin(heading)))
+            gaps = np.maximum(0.0, np.maximum(low - spot, spot - high))
+            if np.all(np.hypot(gaps[:, 0], gaps[:, 1]) > size.reach + _GAP):
+                return Pose((float(spot[0]), float(spot[1]), height), turn)
+    # Further ahead than anything reaches.
+    ahead = np.array((math.cos(start.yaw), math.sin(start.yaw)))
+    furthest = np.maximum((low - here) * ahead, (high - here) * ahead).sum(axis=1).max(initial=0.0)
+    spot = here + ahead * (furthest + size.reach + 2 * _GAP)
+    return Pose((float(spot[0]), float(spot[1]), height), turn)
