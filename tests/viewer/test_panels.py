@@ -15,7 +15,7 @@ from cartwheel.viewer.every import Every
 from cartwheel.viewer.panels.bumper import light_html, other_side
 from cartwheel.viewer.panels.camera import pixels_of
 from cartwheel.viewer.panels.drive import DrivePanel
-from cartwheel.viewer.panels.imu import row_of, thin
+from cartwheel.viewer.panels.imu import IMU, ImuPanel, row_of, thin
 from cartwheel.viewer.panels.notes import notes_html
 from cartwheel.viewer.panels.topics import list_html
 
@@ -76,6 +76,24 @@ def test_an_imu_message_becomes_a_row():
         linear_acceleration_covariance=zeros,
     )
     assert row_of(message) == pytest.approx((2.5, 1, 2, 3, 4, 5, 9.8, 0, 0, 30))
+
+
+def test_headings_of_the_imu_show_only_with_one():
+    stage = MagicMock()
+    made = []
+
+    def add(*_, visible=True, **__):
+        made.append(SimpleNamespace(visible=visible, content=""))
+        return made[-1]
+
+    stage.page.gui.add_html.side_effect = stage.page.gui.add_uplot.side_effect = add
+    panel = ImuPanel(stage)
+    assert [each.visible for each in made] == [True, *[False] * 6], "only the note"
+    imu = TopicInfo(name="/imu", type=IMU, publishers=("imu",), subscribers=(), rate=1.0, qos="")
+    panel.show_topics([imu])
+    assert all(each.visible for each in made)
+    panel.show_topics([])
+    assert not any(each.visible for each in made[1:])
 
 
 def test_thinning_keeps_the_newest_row():

@@ -65,8 +65,8 @@ class ImuPanel(Panel):
         self._topic = topic
         self._rows.clear()
         self._note.content = _note(escape(topic) or "No IMU publishes.")
-        for plot in self._plots:
-            plot.visible = bool(topic)
+        for heading, plot in self._plots:
+            heading.visible = plot.visible = bool(topic)
         if self.page.clients:
             self.watch()
 
@@ -84,19 +84,20 @@ class ImuPanel(Panel):
         while self._rows[-1][0] - self._rows[0][0] > WINDOW:
             self._rows.popleft()
         table = thin(np.array(self._rows), _POINTS)
-        for i, plot in enumerate(self._plots):
+        for i, (_, plot) in enumerate(self._plots):
             columns = table[:, 1 + 3 * i : 4 + 3 * i]
             plot.data = (table[:, 0].copy(), *(columns[:, k].copy() for k in range(3)))
 
-    def _plot(self, title: str, names: tuple[str, str, str], *, least: float) -> Any:
+    def _plot(self, title: str, names: tuple[str, str, str], *, least: float) -> tuple[Any, Any]:
+        """A heading and its curves; hidden, as an arm may have no IMU."""
         # At rest the scale stays at `least`, or a shiver of a millionth would fill the plot.
         start = np.zeros(2)
         key = "".join(
             f'<span style="color:{color};margin-left:0.5rem">{name}</span>'
             for name, color in zip(names, _COLORS, strict=True)
         )
-        self.gui.add_html(f'<div class="cw"><b>{title}</b>{key}</div>')
-        return self.gui.add_uplot(
+        heading = self.gui.add_html(f'<div class="cw"><b>{title}</b>{key}</div>', visible=False)
+        plot = self.gui.add_uplot(
             (start, start, start, start),
             (
                 {"label": "s"},
@@ -120,6 +121,7 @@ class ImuPanel(Panel):
             padding=(6, 8, 0, 0),
             visible=False,
         )
+        return heading, plot
 
 
 def row_of(message: Any) -> tuple[float, ...]:
