@@ -202,6 +202,21 @@ def test_teleop_over_a_pipe(cart):
     cart("reset")
 
 
+def test_a_killed_teleop_stops_what_it_has_set_in_motion(cart):
+    process = cart.start("teleop", "--speed", "0.4", stdin=subprocess.PIPE)
+    process.stdin.write("i")
+    process.stdin.flush()
+    deadline = time.monotonic() + 120
+    while speed(cart) < 0.1:
+        assert time.monotonic() < deadline
+    process.kill()
+    deadline = time.monotonic() + 120
+    while speed(cart) > 0.01:
+        assert time.monotonic() < deadline
+    process.communicate()
+    cart("reset")
+
+
 def test_teleop_stamps_its_commands_where_they_are_read_so(program):
     (program.folder / "bridge.yaml").write_text(
         f"- {{topic_name: {CART_TOPIC}, ros_type_name: geometry_msgs/msg/TwistStamped}}"

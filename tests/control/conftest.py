@@ -1,4 +1,5 @@
 import threading
+import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -82,11 +83,11 @@ def commands(session: Session) -> list[object]:
 @pytest.fixture
 def eventually() -> Callable[[Callable[[], object]], None]:
     def wait(condition: Callable[[], object]) -> None:
-        event = threading.Event()
-        for _ in range(500):
+        deadline = time.monotonic() + 60.0
+        while time.monotonic() < deadline:
             if condition():
                 return
-            event.wait(0.01)
+            time.sleep(0.01)
         raise AssertionError("it did not come true")
 
     return wait

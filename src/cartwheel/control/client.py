@@ -95,9 +95,26 @@ class ControlClient:
             raise
         return Subscription(connection, answer["topic"], answer["type"])
 
-    def publish(self, topic: str, type_name: str, message: Mapping[str, Any] | list[Any]) -> int:
-        """Publishes a message; returns how many read it."""
-        answer = self.request("publish", topic=topic, type=type_name, message=message)
+    def publish(
+        self,
+        topic: str,
+        type_name: str,
+        message: Mapping[str, Any] | list[Any],
+        *,
+        at_end: Mapping[str, Any] | None = None,
+    ) -> int:
+        """Publishes a message; returns how many read it.
+
+        Args:
+            topic: Its name.
+            type_name: Of the message.
+            message: Its fields.
+            at_end: What the simulation publishes on that topic when this connection ends, in
+                whatever manner; None withdraws it.
+        """
+        answer = self.request(
+            "publish", topic=topic, type=type_name, message=message, at_end=at_end
+        )
         return int(answer["subscribers"])
 
 

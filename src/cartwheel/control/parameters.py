@@ -23,6 +23,9 @@ class Parameters:
             raise ControlError("the request's parameters are no mapping")
         self._values: dict[str, Any] = values
 
+    def __contains__(self, name: str) -> bool:
+        return name in self._values
+
     def text(self, name: str, default: str | None = None) -> str:
         """A text; needed where there is no default."""
         value = self._values.get(name)

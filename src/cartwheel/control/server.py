@@ -16,6 +16,7 @@ from cartwheel.control.parameters import Parameters
 from cartwheel.control.protocol import Connection, Frame
 from cartwheel.control.registry import Running
 from cartwheel.control.stream import Streams
+from cartwheel.control.wills import Wills
 from cartwheel.errors import CartwheelError, ControlError
 from cartwheel.graph import resolve_name
 from cartwheel.session import Session
@@ -106,13 +107,14 @@ class ControlServer:
             ).start()
 
     def _serve(self, client: Connection) -> None:
+        wills = Wills(self._session.graph)
         try:
             while (frame := client.receive()) is not None and not self._closed.is_set():
                 if frame.header.get("request") == "subscribe":
                     if self._stream(client, frame):
                         return
                 else:
-                    client.send(self._answer(frame))
+                    client.send(self._answer(frame, wills))
         except ControlError as error:
             # No frame: what follows cannot be understood either.
             with contextlib.suppress(OSError):
@@ -121,8 +123,17 @@ class ControlServer:
             pass  # It is gone, or took too long; nobody is left to be told.
         finally:
             client.close()
+            self._execute(wills)
             with self._lock:
                 self._clients.discard(client)
+
+    def _execute(self, wills: Wills) -> None:
+        if self._closed.is_set():
+            return
+        try:
+            wills.execute()
+        except CartwheelError as error:
+            _log.warning("a message that was left for the end of a client: %s", error)
 
     def _stream(self, client: Connection, frame: Frame) -> bool:
         """Serves a subscription to its end; returns whether there was one."""
@@ -135,10 +146,14 @@ class ControlServer:
             return False
         return True
 
-    def _answer(self, frame: Frame) -> dict[str, Any]:
+    def _answer(self, frame: Frame, wills: Wills) -> dict[str, Any]:
         try:
             name = Parameters(frame.header).text("request")
-            answer = self._operations.run(name, _parameters(frame), frame.payload)
+            parameters = _parameters(frame)
+            if name == "publish" and "at_end" in parameters:
+                # First, so that no message moves a robot that nothing would stop.
+                wills.take(parameters)
+            answer = self._operations.run(name, parameters, frame.payload)
         except CartwheelError as error:
             return {"error": str(error)}
         except Exception as error:  # noqa: BLE001 - a fault of ours must not end the simulation

@@ -33,7 +33,8 @@ def drive(sim: int | None, topic: str | None, *, speed: float, turn: float) -> N
                 note(f"driving {paint(topic, 'bold', stream=sys.stderr)}\n\n{HELP}\n")
                 for key in keys():
                     driver.press(key)
-                    client.publish(topic, kind, _message(driver, kind))
+                    # Where this process ends without a word, the simulation itself stops the robot.
+                    client.publish(topic, kind, _message(driver, kind), at_end=_end(driver, kind))
                     _show(driver)
         except interrupts.Interrupted:
             pass  # The way to end it.
@@ -101,6 +102,11 @@ def _message(driver: Driver, kind: str) -> dict[str, Any]:
     x, y, z = driver.linear
     twist = {"linear": {"x": x, "y": y, "z": z}, "angular": {"z": driver.angular}}
     return {"twist": twist} if kind == STAMPED else twist
+
+
+def _end(driver: Driver, kind: str) -> dict[str, Any] | None:
+    """What stops a robot that moves; one that stands may be driven by others."""
+    return _message(Driver(0.0, 0.0), kind) if any(driver.move) else None
 
 
 def _show(driver: Driver) -> None:
