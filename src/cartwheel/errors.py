@@ -87,6 +87,10 @@ class SimulationError(CartwheelError):
     """A simulation that cannot go on."""
 
 
+class DivergedError(SimulationError):
+    """A simulation whose state is no longer finite."""
+
+
 class PluginError(CartwheelError):
     """A plugin or sensor whose parameters make no sense."""
 

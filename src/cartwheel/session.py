@@ -150,7 +150,7 @@ class Session:
 
     def pacer(self, *, until_ns: int | None = None) -> Pacer:
         """Runs the session against the wall clock."""
-        return Pacer(self.simulation, until_ns=until_ns)
+        return Pacer(self.simulation, until_ns=until_ns, strict=self.strict)
 
     def close(self) -> None:
         """Frees what the simulation holds."""

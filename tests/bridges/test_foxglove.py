@@ -325,6 +325,9 @@ def test_parameters(served: Served, client: Client) -> None:
     assert served.simulation.run_state is RunState.PAUSED
     client.do("set", parameters=[{"name": "/cartwheel/speed", "value": "fast"}])
     client.wait("status", lambda e: "number" in e["status"]["message"])
+    client.do("set", parameters=[{"name": "/cartwheel/speed", "value": 1e308}])
+    client.wait("status", lambda e: "real-time factor is 1e+308" in e["status"]["message"])
+    assert served.simulation.speed == 1.0
 
 
 def test_what_others_do_to_time_is_told(served: Served, client: Client) -> None:

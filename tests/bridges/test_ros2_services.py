@@ -330,10 +330,12 @@ def test_parameters_are_listed_described_got_and_set(bridged: Ros2Bridged, peer:
                 parameter("max_step_size", 3, double_value=1.0),
                 parameter("paused", 3, double_value=1.0),
                 parameter("nonsense", 1),
+                parameter("real_time_factor", 3, double_value=1e308),
             ]
         },
     ).results
-    assert [each.successful for each in results] == [True, False, False, False, False]
+    assert [each.successful for each in results] == [True, False, False, False, False, False]
+    assert "real-time factor is 1e+308" in results[5].reason
     assert "read-only" in results[2].reason
     wait_for(lambda: bridged.simulation.speed == 2.0, "the speed that was set")
 

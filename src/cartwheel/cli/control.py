@@ -8,6 +8,7 @@ import typer
 
 from cartwheel.cli.arguments import Sim
 from cartwheel.errors import CartwheelError
+from cartwheel.simulation.limits import FASTEST, SLOWEST
 
 
 def add_to(app: typer.Typer) -> None:
@@ -28,10 +29,11 @@ def parse_speed(text: str) -> float | None:
         value = float(text)
     except ValueError:
         value = -1.0
-    if not 0 < value < 1e9:
+    if not SLOWEST <= value <= FASTEST:
         raise CartwheelError(
             f'a speed of "{text}" is neither a number above 0 nor "max"',
-            hint="1 is real time, 2 twice as fast; max is as fast as it can.",
+            hint="1 is real time, 2 twice as fast; max is as fast as it can. "
+            f"It can be {SLOWEST:g} to {FASTEST:g}.",
         )
     return value
 

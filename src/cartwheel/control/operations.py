@@ -115,13 +115,7 @@ class Operations:
 
     def speed(self, parameters: Parameters, _: bytes) -> Answer:
         """A positive number, or null for as fast as it can."""
-        speed = None
-        if parameters.value("speed") is not None:
-            speed = parameters.number("speed")
-            if speed <= 0:
-                raise ControlError(
-                    f"a speed of {speed:g} is not above 0", hint="To hold time, pause."
-                )
+        speed = None if parameters.value("speed") is None else parameters.number("speed")
         return self._then_time(lambda: self._simulation.set_speed(speed))
 
     # -- models

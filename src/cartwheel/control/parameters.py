@@ -54,9 +54,13 @@ class Parameters:
         value = self._values.get(name, default)
         if isinstance(value, bool) or not isinstance(value, int | float):
             raise ControlError(f'the request\'s "{name}" is no number')
-        if not math.isfinite(value):
-            raise ControlError(f'the request\'s "{name}" is {value}, which is no finite number')
-        return float(value)
+        try:
+            number = float(value)
+        except OverflowError:
+            number = math.inf
+        if not math.isfinite(number):
+            raise ControlError(f'the request\'s "{name}" is {number}, but must be a finite number')
+        return number
 
     def whole(self, name: str, default: int, low: int, high: int) -> int:
         """A whole number within limits."""

@@ -9,10 +9,11 @@ import numpy as np
 
 from cartwheel.errors import CartwheelError, GraphError, one_line
 from cartwheel.gazebo.entities import INERTIAL, Entities
-from cartwheel.gazebo.requests import STRONGEST, Answer, Offer, number, vector
+from cartwheel.gazebo.requests import Answer, Offer, vector
 from cartwheel.geometry import rotate
 from cartwheel.messages import nanoseconds
 from cartwheel.simulation import Simulation
+from cartwheel.simulation.limits import STRONGEST, number
 
 
 class Pushes:

@@ -7,11 +7,12 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from cartwheel.errors import GraphError
-from cartwheel.gazebo.requests import Answer, Offer, number, vector, vector_message
+from cartwheel.gazebo.requests import Answer, Offer, vector, vector_message
 from cartwheel.geometry import Vec3
 from cartwheel.messages import from_dict
 from cartwheel.simulation import RunState, Simulation
 from cartwheel.simulation.clock import NANOSECONDS, to_ns
+from cartwheel.simulation.limits import check_speed, number
 
 LONGEST_STEP = 0.1
 """s; with a longer one nothing stands on anything."""
@@ -118,7 +119,7 @@ class Physics:
             What has no effect.
 
         Raises:
-            GraphError: A value makes no sense; nothing has changed.
+            CartwheelError: A value makes no sense; nothing has changed.
         """
         step_ns = to_ns(number(time_step, "time_step"))
         if not 1 <= step_ns <= to_ns(LONGEST_STEP):
@@ -128,6 +129,8 @@ class Physics:
         rate = number(max_update_rate, "max_update_rate", most=1e9)
         for name, value in ode.items():
             number(value, f"ode_config.{name}", most=1e308)
+        speed = step_ns / NANOSECONDS * rate if rate > 0 else None
+        check_speed(speed)
         simulation = self._simulation
         world = simulation.world
         changed = dataclasses.replace(world, gravity=gravity)
@@ -136,7 +139,7 @@ class Physics:
             changed = dataclasses.replace(changed, physics=physics)
         if changed != world:
             simulation.change_world(changed)
-        simulation.set_speed(step_ns / NANOSECONDS * rate if rate > 0 else None)
+        simulation.set_speed(speed)
         unlike = [name for name, value in ode.items() if value != self.ode[name]]
         self.ode |= ode
         if tell:

@@ -12,17 +12,10 @@ from cartwheel.description.inertia import impossibility, principal_moments
 from cartwheel.description.model import Inertial, Joint, Light, RobotDescription
 from cartwheel.errors import GraphError, WorldError
 from cartwheel.gazebo.entities import Entities
-from cartwheel.gazebo.requests import (
-    STRONGEST,
-    Answer,
-    Offer,
-    number,
-    pose,
-    pose_message,
-    vector,
-)
+from cartwheel.gazebo.requests import Answer, Offer, pose, pose_message, vector
 from cartwheel.messages import message_class
 from cartwheel.simulation import Simulation
+from cartwheel.simulation.limits import STRONGEST, number
 from cartwheel.world.entry import scoped
 
 _JOINT_TYPES = {

@@ -2,21 +2,15 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
-from cartwheel.errors import CartwheelError, Diagnostic, GraphError, Once, one_line
-from cartwheel.geometry import IDENTITY, Pose, Vec3, quat_normalize
+from cartwheel.errors import CartwheelError, Diagnostic, Once, one_line
+from cartwheel.geometry import IDENTITY, Pose, Vec3
 from cartwheel.messages import message_class, zero
 from cartwheel.simulation import Simulation
-
-FARTHEST = 1e6
-"""m, m/s or rad/s: beyond it, a state is what the engine takes for diverged."""
-STRONGEST = 1e10
-"""N or N m."""
-
+from cartwheel.simulation.limits import FARTHEST, number, rotation
 
 _REMEMBERED = 200
 """Failures that are told once each; further ones are not told."""
@@ -100,20 +94,6 @@ class Teller:
             self._simulation.report(Diagnostic(severity="warning", message=text))
 
 
-def number(value: float, name: str, *, most: float = FARTHEST) -> float:
-    """A finite number.
-
-    Raises:
-        GraphError: It is not finite, or beyond what can be simulated.
-    """
-    value = float(value)
-    if not math.isfinite(value):
-        raise GraphError(f"{name} is {value}, which is no number to work with")
-    if abs(value) > most:
-        raise GraphError(f"{name} is {value:g}, beyond the {most:g} that can be simulated")
-    return value
-
-
 def vector(value: Any, name: str, *, most: float = FARTHEST) -> Vec3:
     """``geometry_msgs/Vector3`` or ``Point``."""
     return (
@@ -127,20 +107,14 @@ def pose(value: Any, name: str) -> Pose:
     """``geometry_msgs/Pose``; an orientation of zeros, which nobody set, is none, as in Gazebo.
 
     Raises:
-        GraphError: A number is not finite, or the orientation is no rotation.
+        CartwheelError: A number is not finite, or the orientation is no rotation.
     """
     position = vector(value.position, f"{name}.position")
     q = value.orientation
-    parts = tuple(
-        number(part, f"{name}.orientation.{axis}")
-        for part, axis in zip((q.x, q.y, q.z, q.w), "xyzw", strict=True)
-    )
+    parts = (float(q.x), float(q.y), float(q.z), float(q.w))
     if not any(parts):
         return Pose(position, IDENTITY)
-    try:
-        return Pose(position, quat_normalize(parts))
-    except ValueError as error:
-        raise GraphError(f"{name}.orientation: {error}") from None
+    return Pose(position, rotation(parts, f"{name}.orientation"))
 
 
 def pose_message(where: Pose) -> Any:

@@ -15,10 +15,11 @@ from cartwheel.description import load_text
 from cartwheel.description.model import Light, RobotDescription, WorldDescription
 from cartwheel.errors import CartwheelError, DescriptionError, WorldError
 from cartwheel.gazebo.entities import Entities
-from cartwheel.gazebo.requests import Answer, Offer, number, pose
+from cartwheel.gazebo.requests import Answer, Offer, pose
 from cartwheel.geometry import Pose
 from cartwheel.session import Session
 from cartwheel.simulation import RunState
+from cartwheel.simulation.limits import number
 from cartwheel.simulation.naming import free_name
 
 T = TypeVar("T")

@@ -9,19 +9,12 @@ import numpy as np
 
 from cartwheel.errors import CartwheelError, one_line
 from cartwheel.gazebo.entities import Entities, Motion
-from cartwheel.gazebo.requests import (
-    Answer,
-    Offer,
-    number,
-    pose,
-    pose_message,
-    twist_message,
-    vector,
-)
+from cartwheel.gazebo.requests import Answer, Offer, pose, pose_message, twist_message, vector
 from cartwheel.geometry import Pose, from_wxyz, rotate
 from cartwheel.graph import Graph, Subscription
 from cartwheel.messages import header, message_class
 from cartwheel.simulation import Simulation
+from cartwheel.simulation.limits import number
 from cartwheel.world.entry import scoped
 
 

@@ -232,4 +232,6 @@ def _clamped(parameter: ReconfigureParameter, value: Value) -> Value:
         for stated, choose in ((parameter.minimum, max), (parameter.maximum, min)):
             if isinstance(stated, int | float):
                 value = choose(value, stated)
+        if math.isinf(value):
+            raise GraphError(f'parameter "{parameter.name}" must be finite, but is {value}')
     return _typed(parameter, value)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, ClassVar, Generic, Protocol, TypeVar
 
@@ -21,6 +20,7 @@ from cartwheel.graph import (
 )
 from cartwheel.graph.reconfigure import OnChange, Value
 from cartwheel.plugins.gz_bridge import GzBridge
+from cartwheel.plugins.inputs import obeyable, obeyable_positions
 from cartwheel.plugins.parameters import read
 from cartwheel.simulation import LinkHandle, Part
 
@@ -149,7 +149,11 @@ class Plugin(Generic[C]):
         return self.keep(self.graph.advertise(name, type_name, node=self.node, rate=rate, qos=qos))
 
     def subscribe(self, topic: str, type_name: str, callback: Callable[[Any], None]) -> None:
-        """A subscription that closes with the plugin."""
+        """A subscription that closes with the plugin.
+
+        Messages with a number that nobody can obey, such as NaN, are ignored, with a warning.
+        """
+        callback = obeyable(callback, self.part, self.warn)
         bridge = GzBridge.of(self.graph)
         name, kind, taker = bridge.read(self.resolve(topic), type_name, callback)
         self.keep(self.graph.subscribe(name, taker, type_name=kind, node=self.node))
@@ -188,7 +192,10 @@ class Plugin(Generic[C]):
         """Takes positions for joints by hand too, while the plugin lives; see `JointInput`."""
         inputs = self.graph.joint_inputs
         made = JointInput(
-            model=self.part.name, owner=self.tag.name or self.node, joints=tuple(joints), put=put
+            model=self.part.name,
+            owner=self.tag.name or self.node,
+            joints=tuple(joints),
+            put=obeyable_positions(put, self.part),
         )
         inputs.add(made)
         self._open.callback(inputs.remove, made)
@@ -233,13 +240,6 @@ class Plugin(Generic[C]):
         description = self.part.description
         known = description.link(name) is not None
         return self.part.link(name if known else description.canonical_link)
-
-    def is_finite(self, *values: float) -> bool:
-        """Whether a command can be obeyed; the user is told where not."""
-        finite = all(map(math.isfinite, values))
-        if not finite:
-            self.warn("a command that is not finite was ignored")
-        return finite
 
     def check_above_zero(self, **values: float) -> None:
         """Refuses parameters, given by the names of their tags.

@@ -39,9 +39,7 @@ class Drive(Plugin[Any]):
         self._updated_ns: int | None = None
 
     def _on_command(self, message: Any) -> None:
-        forward, turn = float(message.linear.x), float(message.angular.z)
-        if self.is_finite(forward, turn):
-            self._aim(forward, turn)
+        self._aim(float(message.linear.x), float(message.angular.z))
 
     def _aim(self, forward: float, turn: float) -> None:
         """Takes a command: m/s, and what the drive takes ``angular.z`` for."""

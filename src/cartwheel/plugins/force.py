@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import Any, ClassVar, Literal
 
@@ -45,9 +44,6 @@ class Force(Plugin[ForceParameters]):
     def _on_wrench(self, message: Any) -> None:
         force, torque = message.force, message.torque
         values = [force.x, force.y, force.z, torque.x, torque.y, torque.z]
-        if not all(math.isfinite(value) for value in values):
-            self.warn("a force that is not finite was ignored")
-            return
         self._wrench = (values[:3], values[3:])
         if self.config.frame == "world":
             self._push.apply(*self._wrench)

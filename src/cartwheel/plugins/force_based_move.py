@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -112,9 +111,6 @@ class ForceBasedMove(Plugin[ForceBasedMoveParameters]):
 
     def _on_command(self, message: Any) -> None:
         x, y, turn = float(message.linear.x), float(message.linear.y), float(message.angular.z)
-        if not all(math.isfinite(value) for value in (x, y, turn)):
-            self.warn("a command that is not finite was ignored")
-            return
         self._heard_ns = self.part.time_ns
         self._drive.command((x, y, None), (None, None, turn))
 

@@ -126,8 +126,7 @@ class _JointController(Plugin[Any]):
         raise NotImplementedError
 
     def _on_command(self, message: Any) -> None:
-        if self.is_finite(message.data):
-            self._target = float(message.data)
+        self._target = float(message.data)
 
     def _seconds(self) -> float:
         """Since the last turn."""
@@ -218,5 +217,4 @@ class ApplyJointForce(Plugin[ApplyJointForceParameters]):
         self._servo.release()
 
     def _on_command(self, message: Any) -> None:
-        if self.is_finite(message.data):
-            self._servo.command_effort(float(message.data))
+        self._servo.command_effort(float(message.data))

@@ -136,9 +136,7 @@ class Harness(Plugin[HarnessParameters]):
         return self._ropes[name]
 
     def _on_velocity(self, message: Any) -> None:
-        if not math.isfinite(message.data):
-            self.warn("a velocity that is not finite was ignored")
-        elif self._winch is None:
+        if self._winch is None:
             self.warn("there is no <winch> to be wound")
         else:
             self._velocity = float(message.data)

@@ -94,8 +94,6 @@ class MecanumDrive(Plugin[MecanumParameters]):
     def _on_command(self, message: Any) -> None:
         forward, sideways = float(message.linear.x), float(message.linear.y)
         turn = float(message.angular.z)
-        if not self.is_finite(forward, sideways, turn):
-            return
         self._command = (forward, sideways, turn)
 
     def _push(self, forward: float, sideways: float, turn: float) -> None:

@@ -94,9 +94,7 @@ class _MotorModel(Plugin[Any]):
                 f"a command of {len(speeds)} speeds has none of motor {self._number}: ignored"
             )
             return
-        speed = float(speeds[self._number])
-        if self.is_finite(speed):
-            self._wanted = min(speed, self._fastest)
+        self._wanted = min(float(speeds[self._number]), self._fastest)
 
     def _thrust(self, speed: float) -> float:
         """N along the link's z axis, of a turning about the joint's axis in rad/s."""

@@ -94,8 +94,6 @@ class PlanarMove(Plugin[PlanarMoveParameters]):
 
     def _on_command(self, message: Any) -> None:
         linear, angular = message.linear, message.angular
-        if not self.is_finite(linear.x, linear.y, angular.z):
-            return
         self._heard_ns = self.part.time_ns
         self._drive.command(
             (float(linear.x), float(linear.y), None), (None, None, float(angular.z))
@@ -155,6 +153,4 @@ class VelocityControl(Plugin[VelocityControlParameters]):
         self._hold((linear.x, linear.y, linear.z), (angular.x, angular.y, angular.z))
 
     def _hold(self, linear: tuple[float, ...], angular: tuple[float, ...]) -> None:
-        if not self.is_finite(*linear, *angular):
-            return
         self._drive.command(linear, angular, level=False)

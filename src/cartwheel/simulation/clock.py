@@ -9,6 +9,8 @@ from fractions import Fraction
 NANOSECONDS = 1_000_000_000
 _NEVER = 1 << 40
 """Steps."""
+_FINEST = 1_000_000
+"""Of the denominators of rates."""
 _KEPT = 1 << 15
 """Steps of a cycle."""
 
@@ -56,7 +58,10 @@ class Task:
         self.order = order
         self.period_ns = Fraction(0)
         if rate > 0:
-            self.period_ns = NANOSECONDS / Fraction(rate).limit_denominator(1_000_000)
+            # Not infinite: a rate of no more than there are steps is every step. Not zero, which
+            # is what the slowest ones would be rounded to.
+            fast = Fraction(min(rate, NANOSECONDS)).limit_denominator(_FINEST)
+            self.period_ns = NANOSECONDS / max(fast, Fraction(1, _FINEST))
 
     def period(self, step_ns: int) -> Fraction:
         """In steps; a rate faster than the step runs every step."""

@@ -44,6 +44,8 @@ class Engine:
         """Steps made since `origin_ns`."""
         self.origin_ns = 0
         """When the present length of a step began to count; time zero at first."""
+        self.commanded = 0
+        """How often something from outside moved, pushed or drove anything."""
         self.rewinds = 0
         """How often time went back to zero."""
         self.model: Any = None

@@ -9,6 +9,7 @@ import numpy as np
 
 from cartwheel.geometry import Array, Vec3
 from cartwheel.simulation.engine import Engine
+from cartwheel.simulation.limits import STRONGEST, number, numbers
 
 _NEVER = 1 << 40
 """Steps."""
@@ -87,7 +88,11 @@ class Forces:
             torque: N m, in the world's axes.
             start_ns: Simulation time; now when it is past.
             duration_ns: None is without end, 0 is one step.
+
+        Raises:
+            CartwheelError: A number is not finite or too large.
         """
+        numbers((*force, *torque), f'the wrench on link "{link}"', most=STRONGEST)
         self._add(model, link, np.array([*force, *torque], dtype=float), start_ns, duration_ns)
 
     def effort(
@@ -100,6 +105,7 @@ class Forces:
         duration_ns: int | None = None,
     ) -> None:
         """Drives a joint of one degree of freedom by N m or N; see `wrench`."""
+        number(effort, f'the effort on joint "{joint}"', most=STRONGEST)
         self._add(model, joint, np.array([effort], dtype=float), start_ns, duration_ns)
 
     def clear_wrenches(self, model: str, link: str) -> None:
@@ -171,6 +177,7 @@ class Forces:
             )
         )
         self._due = 0
+        engine.commanded += 1
 
     def _keep(self, wanted: Callable[[Push], bool]) -> None:
         kept = [push for push in self._pushes if wanted(push)]

@@ -10,10 +10,12 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from cartwheel.errors import SimulationError
+from cartwheel.errors import DivergedError
 
 _KEPT = 40
 """States, one for each check."""
+_DUMPS = 3
+"""Files that one simulation leaves: one that recovers can diverge as often as somebody likes."""
 _HUGE = 1e10
 """m, m/s or rad/s: what the engine itself takes for diverged."""
 _WARNING = mujoco.mjtWarning
@@ -35,6 +37,7 @@ class Guard:
         mujoco.set_mju_user_warning(_swallow)
         self._states: deque[tuple[float, Any, Any]] = deque(maxlen=_KEPT)
         self._seen: dict[int, int] = {}
+        self._dumps = 0
 
     def bind(self, model: Any, data: Any) -> None:
         """Goes on with a new model, which has moved the indices."""
@@ -56,7 +59,7 @@ class Guard:
         """Warnings that can be lived with, each once; none is the rule.
 
         Raises:
-            SimulationError: The state is no longer finite.
+            DivergedError: The state is no longer finite.
         """
         # One number that is not finite spoils the sum: cheaper than a look at each.
         size = self._qpos.dot(self._qpos) + self._qvel.dot(self._qvel)
@@ -75,9 +78,11 @@ class Guard:
             self._seen[kind] = count
         return messages
 
-    def _diverged(self) -> SimulationError:
+    def _diverged(self) -> DivergedError:
         self.keep()
-        model, data = self._model, self._data
+        if self._dumps >= _DUMPS:
+            return self._error("")
+        self._dumps += 1
         with tempfile.NamedTemporaryFile(
             prefix="cartwheel-diverged-", suffix=".npz", delete=False
         ) as file:
@@ -87,11 +92,14 @@ class Guard:
                 qpos=np.array([state[1] for state in self._states]),
                 qvel=np.array([state[2] for state in self._states]),
             )
+        return self._error(f" The last states are in {Path(file.name)}.")
+
+    def _error(self, where: str) -> DivergedError:
         body = self._culprit()
-        name = mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_BODY, body) or "world"
-        return SimulationError(
-            f'the simulation diverged by {data.time:.3f} s, first at "{name}"',
-            hint=f"{_likely(model, body)} The last states are in {Path(file.name)}.",
+        name = mujoco.mj_id2name(self._model, mujoco.mjtObj.mjOBJ_BODY, body) or "world"
+        return DivergedError(
+            f'the simulation diverged by {self._data.time:.3f} s, first at "{name}"',
+            hint=f"{_likely(self._model, body)}{where}",
         )
 
     def _culprit(self) -> int:

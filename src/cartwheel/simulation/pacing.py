@@ -7,6 +7,7 @@ from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from cartwheel.errors import DivergedError
 from cartwheel.simulation.clock import NANOSECONDS
 from cartwheel.simulation.simulation import Simulation
 from cartwheel.simulation.snapshot import RunState, Snapshot
@@ -58,10 +59,14 @@ class Pacer:
     Args:
         simulation: To run.
         until_ns: Simulation time at which the run ends; None never.
+        strict: End with the first divergence, also where `Simulation.recover` could go on.
     """
 
-    def __init__(self, simulation: Simulation, *, until_ns: int | None = None) -> None:
+    def __init__(
+        self, simulation: Simulation, *, until_ns: int | None = None, strict: bool = False
+    ) -> None:
         self._simulation = simulation
+        self._strict = strict
         self.until_ns = until_ns
         self._frames: tuple[_Frames, ...] = ()
         self._history: deque[tuple[float, int]] = deque()
@@ -79,7 +84,7 @@ class Pacer:
         """Runs until the time is reached or the simulation is stopped.
 
         Raises:
-            SimulationError: The simulation diverged.
+            SimulationError: The simulation diverged, and nothing from outside had moved it.
         """
         simulation = self._simulation
         turns = {RunState.RUNNING: self._run_on, RunState.PAUSED: self._hold}
@@ -106,7 +111,7 @@ class Pacer:
         if self.until_ns is not None:
             goal_ns = min(goal_ns, self.until_ns)
         if goal_ns > now_ns:
-            simulation.advance(goal_ns)
+            self._advance(goal_ns)
         now = time.perf_counter()
         self._measure(now)
         self._show(now)
@@ -119,12 +124,25 @@ class Pacer:
         """One turn of a paused simulation: single steps that were asked for, listeners, sleep."""
         simulation = self._simulation
         if simulation.steps_allowed:
-            simulation.advance(simulation.time_ns + simulation.steps_allowed * simulation.step_ns)
+            # Many of them take some turns, so that listeners see what goes on.
+            most_ns = max(simulation.step_ns, _LONGEST_TURN_NS)
+            wanted_ns = simulation.steps_allowed * simulation.step_ns
+            self._advance(simulation.time_ns + min(wanted_ns, most_ns))
         self._restart()
         simulation.real_time_factor = 0.0
         now = time.perf_counter()
         self._show(now)
+        if simulation.steps_allowed:
+            return
         simulation.wait(self._next_frame(now + 0.1) - time.perf_counter())
+
+    def _advance(self, goal_ns: int) -> None:
+        simulation = self._simulation
+        try:
+            simulation.advance(goal_ns)
+        except DivergedError as error:
+            if self._strict or not simulation.recover(error):
+                raise
 
     def _anchored(self, now: float) -> _Anchor | None:
         """What to keep to: counted anew after a change of speed or a lag; None without a speed."""

@@ -454,6 +454,10 @@ class Part:
         """
         return self._engine.renderer.render_with_depth(self._engine.data, camera)
 
+    def count_command(self) -> None:
+        """Something from outside acts on the model; see `Simulation.recover`."""
+        self._engine.commanded += 1
+
     def report(self, diagnostic: Diagnostic) -> None:
         """Tells the user something about this model; also while it runs."""
         if self.spawned:

@@ -9,6 +9,7 @@ from concurrent.futures import Future
 from typing import TypeVar
 
 from cartwheel.calls import answered
+from cartwheel.simulation.limits import check_speed
 from cartwheel.simulation.snapshot import RunState
 
 T = TypeVar("T")
@@ -52,7 +53,12 @@ class Run:
         self.post(lambda: None)
 
     def set_speed(self, speed: float | None) -> None:
-        """Sets the wanted real-time factor; None is as fast as it can."""
+        """Sets the wanted real-time factor; None is as fast as it can.
+
+        Raises:
+            CartwheelError: It is outside of `limits.SLOWEST` and `limits.FASTEST`.
+        """
+        check_speed(speed)
         self.speed = speed
 
     def post(self, function: Callable[[], None]) -> None:

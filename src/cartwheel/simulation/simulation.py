@@ -7,13 +7,14 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 from cartwheel.description.model import RobotDescription, WorldDescription
-from cartwheel.errors import Diagnostic, UnknownNameError, WorldError
+from cartwheel.errors import Diagnostic, DivergedError, UnknownNameError, WorldError
 from cartwheel.geometry import Pose, Vec3
 from cartwheel.simulation.adjusting import adjust
 from cartwheel.simulation.clock import Schedule, Task, always, to_ns
 from cartwheel.simulation.engine import Engine
 from cartwheel.simulation.forces import Forces
 from cartwheel.simulation.guard import Guard
+from cartwheel.simulation.limits import STRONGEST, check_pose, check_steps, number, numbers
 from cartwheel.simulation.naming import free_name
 from cartwheel.simulation.observing import Observer
 from cartwheel.simulation.part import Part
@@ -29,6 +30,8 @@ from cartwheel.world.build import step_of
 from cartwheel.world.entry import ModelEntry
 
 _GUARD_INTERVAL_NS = 50_000_000
+_RECOVERIES = 20
+"""Recoveries that are reported: somebody may cause one again and again."""
 _STILL: Vec3 = (0.0, 0.0, 0.0)
 
 
@@ -66,6 +69,9 @@ class Simulation(Run):
         self._guard = Guard()
         self._guard_due = 0
         self._separation = Separation()
+        self._recovered = 0
+        """`Engine.commanded` at the last recovery."""
+        self._recoveries = 0
         self._version = 0
         self._house.behaviours = attach_world(self._house.part)
         self._compile({})
@@ -136,7 +142,12 @@ class Simulation(Run):
             if self.run_state is not RunState.RUNNING and not self.steps_allowed:
                 return
             change = forces.serve() if forces.active else None
-            due, forwarded = self._serve()
+            try:
+                due, forwarded = self._serve()
+            except Exception:
+                # What reads a state that has just diverged fails in all ways: name the cause.
+                self._watch()
+                raise
             if change is not None:
                 due = min(due, change)
             # Asked again: what was due may have changed the length of a step.
@@ -185,7 +196,12 @@ class Simulation(Run):
         self.engine.forward()
 
     def step(self, count: int = 1) -> None:
-        """Lets a paused simulation make `count` steps more."""
+        """Lets a paused simulation make `count` steps more.
+
+        Raises:
+            CartwheelError: It is not from 1 to `limits.MOST_STEPS`.
+        """
+        check_steps(count)
         self.pause()
         self.steps_allowed = (self.steps_allowed or 0) + count
 
@@ -218,6 +234,29 @@ class Simulation(Run):
         self._gather_tasks()
         for callback in self.on_reset:
             callback()
+
+    def recover(self, error: DivergedError) -> bool:
+        """Takes every model to where it was spawned, at rest, after a divergence; time goes on.
+
+        What anybody commands can diverge: a huge force, a robot driven into a corner. A world
+        that diverges by itself would do so again, and is left to its author.
+
+        Returns:
+            Whether it can go on: something from outside acted since the last recovery.
+        """
+        if self.engine.commanded == self._recovered:
+            return False
+        self._recovered = self.engine.commanded
+        self.forces.forget()
+        self.reset(keep_time=True)
+        self._recoveries += 1
+        if self._recoveries <= _RECOVERIES:
+            last = " Further ones are not reported." if self._recoveries == _RECOVERIES else ""
+            text = (
+                f"{error.message}. All models are back where they were spawned. {error.hint}{last}"
+            )
+            self.engine.report(Diagnostic(severity="warning", message=text))
+        return True
 
     def report(self, diagnostic: Diagnostic) -> None:
         """Tells the user something, on the owner's thread; from any thread."""
@@ -254,8 +293,11 @@ class Simulation(Run):
         Raises:
             WorldError: The name is taken or the model cannot be built; nothing has changed.
             PluginError: A plugin's parameters make no sense; nothing has changed.
+            CartwheelError: The pose is not finite or too far away; nothing has changed.
         """
         name = name or description.name
+        if pose is not None:
+            check_pose(pose, f'model "{name}"')
         resident = self._admit(description, name, pose, namespace, frame_prefix)
         try:
             self._compile({**self._residents, name: resident})
@@ -293,8 +335,11 @@ class Simulation(Run):
 
         Raises:
             UnknownNameError: There is no such model.
+            CartwheelError: The pose is not finite or too far away.
         """
         entry = self._resident(name).entry
+        check_pose(pose, f'model "{name}"')
+        self.engine.commanded += 1
         joint = self.engine.joint_id(name, entry.description.canonical_link)
         if joint < 0:
             # It stands fixed in the world, so the world is made anew.
@@ -337,8 +382,12 @@ class Simulation(Run):
 
         Raises:
             UnknownNameError: There is no such model.
+            CartwheelError: A number is not finite or too large.
         """
         entry = self._resident(name).entry
+        check_pose(pose, f'model "{name}"')
+        numbers((*linear, *angular), f'the velocity of model "{name}"')
+        self.engine.commanded += 1
         if self.moves(name):
             place_model(self.engine, entry, pose, linear, angular)
         elif entry.pose != pose:
@@ -353,12 +402,15 @@ class Simulation(Run):
 
         Raises:
             UnknownNameError: There is no such model or joint.
+            CartwheelError: A position is not finite or too large.
         """
         description = self._resident(name).entry.description
         known = [other for model, other in self.scene.joints if model == name]
-        for joint in positions:
+        for joint, position in positions.items():
             if joint not in known:
                 raise UnknownNameError("joint", joint, known)
+            number(position, f'the position of joint "{joint}"')
+        self.engine.commanded += 1
         for joint, position in with_mimics(description, positions).items():
             self.engine.set_joint(self.engine.joint_id(name, joint), position)
         self.engine.forward()
@@ -385,7 +437,13 @@ class Simulation(Run):
         Raises:
             UnknownNameError: There is no such model or joint.
             WorldError: A plugin drives the joint by effort or position.
+            CartwheelError: A number is not finite or too large.
         """
+        if velocity is not None:
+            number(velocity, f'the velocity of joint "{joint}"')
+        if max_effort is not None:
+            number(max_effort, f'the effort of joint "{joint}"', most=STRONGEST)
+        self.engine.commanded += 1
         if self._resident(name).motorise(joint, max_effort):
             self._compile(self._residents)
         drives = self._resident(name).drives

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from typing import Any
 
@@ -82,7 +81,7 @@ class Listener:
             if request.seek_time is not None:
                 controls.seek(request.seek_time)
             speed = float(request.playback_speed)
-            if math.isfinite(speed) and speed > 0 and controls.state().speed != speed:
+            if speed > 0 and controls.state().speed != speed:
                 controls.set_speed(speed)
             play = request.playback_command == PlaybackCommand.Play
             (controls.resume if play else controls.pause)()

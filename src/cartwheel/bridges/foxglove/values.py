@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
@@ -62,8 +61,8 @@ class Values:
             (controls.pause if value else controls.resume)()
         elif name == SPEED:
             number = isinstance(value, int | float) and not isinstance(value, bool)
-            if not number or not 0 <= value < math.inf:
-                raise GraphError("it is a number of at least 0")
+            if not number:
+                raise GraphError("it must be a number; 0 is as fast as it can")
             controls.set_speed(float(value) or None)
         elif name in self._descriptions:
             raise GraphError("the description of a robot that stands there cannot be changed")

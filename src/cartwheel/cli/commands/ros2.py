@@ -16,8 +16,10 @@ from cartwheel.gazebo.ros2_api import Ros2Api
 from cartwheel.plugins.robot_descriptions import TOPIC, RobotDescriptions
 from cartwheel.session import CLOCK_RATE, Session
 from cartwheel.simulation import RunState
+from cartwheel.simulation.limits import check_speed
 
 _FASTEST = 1e6
+"""Hz."""
 
 
 class Ros2:
@@ -115,10 +117,8 @@ def node_parameters(session: Session) -> list[Parameter]:
     simulation = session.simulation
 
     def set_speed(factor: float) -> None:
-        if not 0 <= factor <= _FASTEST:
-            raise CartwheelError(
-                f"real_time_factor is {factor:g}, but must be from 0 to {_FASTEST:g}"
-            )
+        # Here as well as where it is set, which is too late for the answer.
+        check_speed(factor or None)
         simulation.post(lambda: simulation.set_speed(factor or None))
 
     def set_paused(paused: bool) -> None:

@@ -7,8 +7,10 @@ from typing import Any
 
 from cartwheel.graph import Action, ActionTopics, Goal
 from cartwheel.graph.actionlib import STATUS_RATE
-from cartwheel.messages import store
+from cartwheel.messages import store, zero
+from cartwheel.messages.limits import unfit
 from cartwheel.plugins.control.controller import Controller, Rhythm
+from cartwheel.simulation.limits import STRONGEST
 
 
 class ActionServer:
@@ -33,13 +35,22 @@ class ActionServer:
     ) -> None:
         part = controller.part
         self._rhythm = Rhythm(STATUS_RATE)
+
+        def take(goal: Goal) -> None:
+            reason = unfit(goal.goal, most=STRONGEST, unset=True)
+            if reason:
+                goal.reject(zero(f"{self._action.type}_Result"), f"{reason} cannot be simulated")
+            else:
+                part.count_command()
+                on_goal(goal)
+
         self._action = Action(
             controller.graph,
             controller.resolve(name),
             f"control_msgs_ros2/action/{kind}",
             node=controller.node,
             time_ns=lambda: part.time_ns,
-            on_goal=on_goal,
+            on_goal=take,
             on_cancel=on_cancel,
         )
         controller.keep(self._action)

@@ -19,6 +19,7 @@ from cartwheel.plugins.control.ros2_parameters import ParameterServices
 from cartwheel.plugins.control.settings import Settings
 from cartwheel.plugins.ft_sensor import JointLoad
 from cartwheel.plugins.inertial_unit import InertialUnit
+from cartwheel.plugins.inputs import obeyable, obeyable_positions
 from cartwheel.simulation import Part
 from cartwheel.simulation.clock import NANOSECONDS, Beat
 from cartwheel.simulation.pushing import BodyDriveHandle
@@ -251,7 +252,12 @@ class Controller:
         *,
         always: bool = False,
     ) -> None:
-        """A subscription that closes with the controller; heard while it runs, or `always`."""
+        """A subscription that closes with the controller; heard while it runs, or `always`.
+
+        Messages with a number that is too large are ignored, with a warning. NaN and infinities
+        mean different things to different controllers, which look at them.
+        """
+        callback = obeyable(callback, self.part, self.warn, unset=True)
 
         def heard(message: Any) -> None:
             if self.running and not self.started:
@@ -271,7 +277,7 @@ class Controller:
             model=self.part.name,
             owner=self.name,
             joints=tuple(claim.joint for claim in self.claims.values()),
-            put=put,
+            put=obeyable_positions(put, self.part),
         )
 
     def hear(self, topic: str, type_name: str, **fields: object) -> None:

@@ -1,0 +1,55 @@
+"""What stands between the graph and what plugins do with its messages."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from cartwheel.messages.limits import unfit
+from cartwheel.simulation import Part
+from cartwheel.simulation.limits import STRONGEST, number
+
+
+def obeyable(
+    take: Callable[[Any], None],
+    part: Part,
+    warn: Callable[[str], None],
+    *,
+    unset: bool = False,
+) -> Callable[[Any], None]:
+    """A callback that passes on what can be simulated, and warns once where something cannot.
+
+    Args:
+        take: Takes the messages that can be obeyed.
+        part: Of the simulation, which is told that something from outside acts on it.
+        warn: Takes the warning.
+        unset: Pass on NaN and infinities too.
+    """
+    warned = False
+
+    def checked(message: Any) -> None:
+        nonlocal warned
+        reason = unfit(message, most=STRONGEST, unset=unset)
+        if not reason:
+            part.count_command()
+            take(message)
+        elif not warned:
+            warned = True
+            warn(f"a command was ignored, as others like it will be: {reason} cannot be simulated")
+
+    return checked
+
+
+def obeyable_positions(
+    put: Callable[[Mapping[str, float], float], None], part: Part
+) -> Callable[[Mapping[str, float], float], None]:
+    """`JointInput.put`, which refuses positions that cannot be simulated with a CartwheelError."""
+
+    def checked(wanted: Mapping[str, float], seconds: float) -> None:
+        for joint, position in wanted.items():
+            number(position, f'the position of joint "{joint}"')
+        number(seconds, "the time to get there, in s,")
+        part.count_command()
+        put(wanted, seconds)
+
+    return checked

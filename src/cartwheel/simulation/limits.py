@@ -1,0 +1,85 @@
+"""Which numbers a simulation takes from outside: checked once, for all who bring them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from cartwheel.errors import CartwheelError
+from cartwheel.geometry import Pose, Quat, quat_normalize
+
+FARTHEST = 1e6
+"""m, rad, m/s or rad/s: 1e10 is where the engine takes a state for diverged."""
+STRONGEST = 1e10
+"""N or N m."""
+SLOWEST, FASTEST = 1e-6, 1e6
+"""Real-time factors."""
+MOST_STEPS = 1_000_000_000
+"""Single steps that may be asked for at a time."""
+
+
+def number(value: float, name: str, *, most: float = FARTHEST) -> float:
+    """A finite number.
+
+    Raises:
+        CartwheelError: It is not finite, or beyond what can be simulated.
+    """
+    value = float(value)
+    if not math.isfinite(value):
+        raise CartwheelError(f"{name} is {value}, but must be a finite number")
+    if abs(value) > most:
+        raise CartwheelError(f"{name} is {value:g}, but must be from {-most:g} to {most:g}")
+    return value
+
+
+def numbers(values: Sequence[float], name: str, *, most: float = FARTHEST) -> None:
+    """Checks some that belong together; see `number`."""
+    for value in values:
+        number(value, name, most=most)
+
+
+def rotation(parts: Sequence[float], name: str) -> Quat:
+    """A unit quaternion of four numbers.
+
+    Raises:
+        CartwheelError: One is not finite, or all are zero.
+    """
+    for part, axis in zip(parts, "xyzw", strict=True):
+        number(part, f"{name}.{axis}")
+    try:
+        return quat_normalize(parts)
+    except ValueError as error:
+        raise CartwheelError(f"{name}: {error}") from None
+
+
+def check_pose(pose: Pose, name: str) -> None:
+    """Refuses a pose with a number that cannot be simulated.
+
+    Raises:
+        CartwheelError: See `number`.
+    """
+    numbers(pose.position, f"the position of {name}")
+    rotation(pose.orientation, f"the orientation of {name}")
+
+
+def check_speed(speed: float | None) -> None:
+    """Refuses what is no real-time factor; None is as fast as it can.
+
+    Raises:
+        CartwheelError: It is outside of what can be kept to.
+    """
+    if speed is not None and not SLOWEST <= speed <= FASTEST:
+        raise CartwheelError(
+            f"the real-time factor is {speed:g}, but must be from {SLOWEST:g} to {FASTEST:g}",
+            hint="To hold time, pause.",
+        )
+
+
+def check_steps(count: int) -> None:
+    """Refuses a number of single steps that is too large.
+
+    Raises:
+        CartwheelError: It is not from 1 to `MOST_STEPS`.
+    """
+    if not 1 <= count <= MOST_STEPS:
+        raise CartwheelError(f"{count} steps were asked for, but 1 to {MOST_STEPS} are possible")
