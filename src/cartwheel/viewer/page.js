@@ -64,16 +64,46 @@
     }
   });
 
+  // viser greys the panels of a lost connection and goes on to show their last values. A network
+  // that loses everything is not even noticed: then the beat, which comes each second, stands still.
+  const notice = document.createElement("div");
+  notice.className = "cw-offline-notice";
+  notice.setAttribute("role", "alert");
+  notice.innerHTML =
+    "<b>Connection lost.</b> What you see is the last state received. The simulation has ended or " +
+    "cannot be reached. If it has ended, start it again; this page connects by itself, or open " +
+    "the address that the simulation prints.";
+  document.body.appendChild(notice);
+  let beat = null;
+  let heard = performance.now();
+  const silence = 10000; // ms
+  const watch = () => {
+    const news = document.querySelector("[data-beat]")?.dataset.beat ?? null;
+    if (news !== beat || document.hidden) {
+      beat = news;
+      heard = performance.now();
+    }
+    const panel = document.querySelector(".cw");
+    const frozen = panel?.closest('[style*="pointer-events: none"][style*="opacity: 0.5"]');
+    const lost = Boolean(frozen) || performance.now() - heard > silence;
+    if (root.classList.contains("cw-offline") && !lost) lighten();
+    root.classList.toggle("cw-offline", lost);
+  };
+  document.addEventListener("visibilitychange", () => (heard = performance.now()));
+  setInterval(watch, 500);
+
   // Shadows double the time of a picture where no GPU draws it.
   const drawing = document.createElement("canvas").getContext("webgl2");
   const info = drawing && drawing.getExtension("WEBGL_debug_renderer_info");
   const renderer = info ? drawing.getParameter(info.UNMASKED_RENDERER_WEBGL) : "";
   if (drawing) drawing.getExtension("WEBGL_lose_context")?.loseContext();
-  if (/swiftshader|llvmpipe|softpipe|software/i.test(renderer)) {
+  const lighten = () => {
+    if (!/swiftshader|llvmpipe|softpipe|software/i.test(renderer)) return;
     const wait = setInterval(() => {
       if (!document.querySelector("canvas[data-engine]")) return;
       clearInterval(wait);
       setTimeout(() => press("__LIGHTLY__"), 1500);
     }, 100);
-  }
+  };
+  lighten();
 })();

@@ -7,15 +7,19 @@ import logging
 import queue
 import socket
 import threading
+import time
 from collections.abc import Callable, Coroutine
 from pathlib import Path
 from typing import Any, TypeVar
 
 from cartwheel.errors import CartwheelError, ControlError
+from cartwheel.viewer.every import Every
 
 _log = logging.getLogger(__name__)
 _FOLDER = Path(__file__).parent
 _KEEP_SECONDS = 8.0
+_BEAT = 1.0
+"""s between two signs of life; `page.js` waits for ten of them."""
 _LIGHTLY: Any = "f9"
 """Key of the command that a browser without a GPU gives by itself; viser's types know no F9."""
 
@@ -90,6 +94,9 @@ class Page:
             hotkey=_LIGHTLY,
         )
         lightly.on_trigger(self.on(self._draw_lightly))
+        self._beats = 0
+        self._beat_due = Every(1 / _BEAT)
+        self._pulse = self.gui.add_html(_pulse(0))
         self.server.on_client_connect(self.on(self._connected))
         self.server.on_client_disconnect(self.on(self._disconnected))
 
@@ -104,7 +111,11 @@ class Page:
     def run(self, stopped: threading.Event) -> None:
         """Does what was posted, until `stopped`."""
         while not stopped.is_set():
-            job = self._jobs.get()
+            try:
+                job = self._jobs.get(timeout=_BEAT if self.clients else None)
+            except queue.Empty:
+                job = None
+            self._beat(time.monotonic())
             if job is None:
                 continue
             function, self._client = job
@@ -152,6 +163,12 @@ class Page:
             lambda done: self.post(lambda: function(done.result()), client=client)
         )
 
+    def _beat(self, now: float) -> None:
+        """Lets the browsers know that they are still connected, also while nothing changes."""
+        if self.clients and self._beat_due(now):
+            self._beats += 1
+            self._pulse.content = _pulse(self._beats)
+
     # -- notes
 
     def show_error(self, error: CartwheelError) -> None:
@@ -192,6 +209,10 @@ class Page:
     def close(self) -> None:
         """Ends the web server."""
         _quietly(self.server.stop)
+
+
+def _pulse(beats: int) -> str:
+    return f'<i data-beat="{beats}"></i>'
 
 
 def _script(title: str, keys: tuple[str, ...]) -> str:
