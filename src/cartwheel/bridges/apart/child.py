@@ -47,8 +47,9 @@ def main(kind: str, patient: str, link_file: str, bell_file: str, memory_file: s
     """
     # They may be sent to all of a service's processes. The simulation's hears of them, and its end
     # is heard here: until then there may be something to be written.
+    # A handler, since a program that a bridge starts would inherit an ignored signal.
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-        signal.signal(number, signal.SIG_IGN)
+        signal.signal(number, lambda *_: None)
     over = threading.Event()
 
     def fault(error: Exception) -> None:

@@ -76,7 +76,7 @@ class Ros1Bridge:
         self._arguments = Arguments.parse(arguments)
         self._names = NodeNames(node, self._arguments)
         self.master_uri = master_uri(self._arguments.special)
-        host = own_host(self._arguments.special, self.master_uri)
+        self._host = host = own_host(self._arguments.special, self.master_uri)
         self._core: OwnCore | None = None
         self._is_new = Once(_TOLD)
         self._closed = False
@@ -175,7 +175,7 @@ class Ros1Bridge:
                     f"no ROS master: {error}",
                     hint="ROS_MASTER_URI names another computer: is its roscore running?",
                 ) from None
-            self._core = OwnCore(self.master_uri)
+            self._core = OwnCore(self.master_uri, self._host)
             self._core.start()
         except RpcError as error:
             raise CartwheelError(f"{self.master_uri} is no ROS master: {error}") from None

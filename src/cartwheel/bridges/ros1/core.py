@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import contextlib
 import os
 import shutil
-import signal
 import subprocess
+import threading
 import time
 from pathlib import Path
 
@@ -16,6 +15,10 @@ from cartwheel.errors import CartwheelError
 
 _START = 20.0
 """s that a master may take to answer."""
+_EXIT = 0.1
+"""s that a child may take to end before it is killed."""
+_IF_CHILD_OF = '[ "$PPID" = "$0" ] && exec "$@"'
+"""For a shell: runs a program, unless the process of that number has ended already."""
 _PREFIXES = ("/opt/ros/noetic", "/opt/ros/melodic", "/opt/ros/one", "/usr")
 
 
@@ -24,17 +27,19 @@ class OwnCore:
 
     Args:
         uri: Where it is to listen.
+        host: Our own name or address. Both listen on loopback alone where it is loopback.
     """
 
-    def __init__(self, uri: str) -> None:
+    def __init__(self, uri: str, host: str) -> None:
         self._uri = uri
-        self._master: subprocess.Popen[bytes] | None = None
-        self._rosout: subprocess.Popen[bytes] | None = None
+        self._host = host
+        self._master: _Child | None = None
+        self._rosout: _Child | None = None
 
     @property
     def dead(self) -> bool:
         """Whether the master has ended, by whatever cause."""
-        return self._master is not None and self._master.poll() is not None
+        return self._master is not None and self._master.ended
 
     def start(self) -> None:
         """Starts both and waits until the master answers.
@@ -51,7 +56,7 @@ class OwnCore:
                 " or start a roscore elsewhere and set ROS_MASTER_URI.",
             )
         _, port = host_and_port(self._uri)
-        self._master = _child([program, "--core", "-p", str(port)], program)
+        self._master = _Child([program, "--core", "-p", str(port)], self._environment(program))
         peer = Peer(self._uri, timeout=1.0)
         deadline = time.monotonic() + _START
         while True:
@@ -67,20 +72,74 @@ class OwnCore:
                     ) from None
             time.sleep(0.02)
         rosout = _found("rosout", "lib/rosout/rosout")
-        if rosout is not None and (self._rosout is None or self._rosout.poll() is not None):
-            self._rosout = _child([rosout, "__name:=rosout"], rosout, self._uri)
+        if rosout is not None and (self._rosout is None or self._rosout.ended):
+            self._rosout = _Child([rosout, "__name:=rosout"], self._environment(rosout))
 
     def stop(self) -> None:
         """Ends both."""
         children = [child for child in (self._rosout, self._master) if child is not None]
         for child in children:
-            with contextlib.suppress(OSError):
-                child.send_signal(signal.SIGTERM)
+            child.process.terminate()
         for child in children:
             try:
-                child.wait(0.1)
+                child.process.wait(_EXIT)
             except subprocess.TimeoutExpired:
-                child.kill()
+                child.process.kill()
+
+    def _environment(self, program: str) -> dict[str, str]:
+        environment = dict(os.environ, ROS_MASTER_URI=self._uri, ROS_HOSTNAME=self._host)
+        prefix = Path(program).parents[1]
+        modules = prefix / "lib/python3/dist-packages"
+        if prefix != Path("/usr") and modules.is_dir():
+            # A distribution that nobody has sourced.
+            known = environment.get("PYTHONPATH")
+            environment["PYTHONPATH"] = f"{modules}:{known}" if known else str(modules)
+        return environment
+
+
+class _Child:
+    """A program that ends with this process, also where this process is killed.
+
+    The system kills it when the thread that started it ends, so that thread waits for it.
+    """
+
+    def __init__(self, command: list[str], environment: dict[str, str]) -> None:
+        tether = shutil.which("setpriv")
+        if tether is not None:
+            # The shell ends where this process was killed before the tether held.
+            shell = ["/bin/sh", "-c", _IF_CHILD_OF, str(os.getpid())]
+            command = [tether, "--pdeathsig", "KILL", *shell, *command]
+        self._command = command
+        self._environment = environment
+        self._error: OSError | None = None
+        self._started = threading.Event()
+        threading.Thread(target=self._run, name="ros1 child", daemon=True).start()
+        self._started.wait()
+        if self._error is not None:
+            raise CartwheelError(f"{command[0]} cannot be started: {self._error}")
+
+    @property
+    def ended(self) -> bool:
+        """Whether it has ended."""
+        return self.process.poll() is not None
+
+    def _run(self) -> None:
+        try:
+            self.process = subprocess.Popen(  # noqa: S603 - a program of ROS, found by us
+                self._command,
+                env=self._environment,
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.DEVNULL,
+                stderr=subprocess.DEVNULL,
+                # Ctrl-C in a terminal is for us: we end them when we have said farewell.
+                start_new_session=True,
+            )
+        except OSError as error:
+            self._error = error
+            return
+        finally:
+            self._started.set()
+        self.process.wait()
 
 
 def _found(name: str, below: str) -> str | None:
@@ -92,30 +151,3 @@ def _found(name: str, below: str) -> str | None:
         if os.access(path, os.X_OK):
             return str(path)
     return None
-
-
-def _child(
-    command: list[str], program: str, master_uri: str | None = None
-) -> subprocess.Popen[bytes]:
-    environment = dict(os.environ)
-    if master_uri is not None:
-        environment["ROS_MASTER_URI"] = master_uri
-    prefix = Path(program).parents[1]
-    modules = prefix / "lib/python3/dist-packages"
-    if prefix != Path("/usr") and modules.is_dir():
-        # A distribution that nobody has sourced.
-        known = environment.get("PYTHONPATH")
-        environment["PYTHONPATH"] = f"{modules}:{known}" if known else str(modules)
-    tether = shutil.which("setpriv")
-    if tether is not None:
-        # Also where we are killed, nothing of ours is to stay.
-        command = [tether, "--pdeathsig", "TERM", *command]
-    return subprocess.Popen(  # noqa: S603 - a program of ROS, found by us
-        command,
-        env=environment,
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
-        # Ctrl-C in a terminal is for us: we end them when we have said farewell.
-        start_new_session=True,
-    )
