@@ -43,7 +43,11 @@ libstd-msgs-dev libgeometry-msgs-dev libtrajectory-msgs-dev libstd-srvs-dev
 libactionlib-msgs-dev ros-actionlib-msgs python3-actionlib-msgs
 ros-std-msgs ros-geometry-msgs ros-trajectory-msgs ros-sensor-msgs ros-std-srvs
 python3-std-msgs python3-geometry-msgs python3-trajectory-msgs python3-sensor-msgs python3-std-srvs
-python3-nav-msgs python3-tf2-msgs       # to echo topics
+python3-nav-msgs python3-tf2-msgs python3-rosgraph-msgs python3-roscpp-msg  # to echo topics
+python3-dynamic-reconfigure             # to set parameters of /gazebo and of cameras
+# rosmsg and rossrv find a type by its package.xml, which is in these:
+libsensor-msgs-dev libnav-msgs-dev libtf2-msgs-dev libros-rosgraph-msgs-dev libroscpp-dev
+libdynamic-reconfigure-config-init-mutex-dev
 python3-rospy python3-roslaunch python3-rosmaster rosout
 rosbash rospack-tools ros-environment   # rosrun, roscd
 python3-rostopic python3-rosnode python3-rosservice python3-rosparam python3-rosmsg python3-rosbag
