@@ -1,5 +1,9 @@
 """Masters that come, go and come again; names that others take; ends."""
 
+import contextlib
+import os
+import re
+import shutil
 import signal
 import subprocess
 import time
@@ -162,14 +166,54 @@ def test_a_master_is_started_where_none_is_and_ends_with_us(tmp_path: Path) -> N
     wait_for(lambda: not Path(f"/proc/{child}").exists(), "its end")
 
 
-def test_a_master_of_ours_ends_also_where_we_are_killed(tmp_path: Path) -> None:
+def parent(pid: int) -> int:
+    lines = Path(f"/proc/{pid}/status").read_text().splitlines()
+    return int(next(line.split()[1] for line in lines if line.startswith("PPid:")))
+
+
+def left(master: Master) -> list[str]:
+    """All processes of the environment of a master, by their commands."""
+    mark = f"ROS_HOME={master.environment['ROS_HOME']}".encode()
+    found = []
+    for process in Path("/proc").glob("[0-9]*"):
+        with contextlib.suppress(OSError):
+            if mark in (process / "environ").read_bytes().split(b"\0"):
+                found.append((process / "cmdline").read_bytes().replace(b"\0", b" ").decode())
+    return found
+
+
+@pytest.mark.parametrize("victim", ["the run", "the bridge", "both"])
+def test_what_we_started_ends_also_where_we_are_killed(tmp_path: Path, victim: str) -> None:
     made = Master(tmp_path)
     made.kill()
     with simulation(made, "empty.world") as process:
-        registered_pid = wait_for(lambda: made.answers() and made.api.getPid("/test")[2], "it")
-        process.kill()
-        process.wait()
-    wait_for(lambda: not Path(f"/proc/{registered_pid}").exists(), "its end")
+        wait_for(made.answers, "a master")
+        registered(made)
+        if shutil.which("rosout") or Path("/usr/lib/rosout/rosout").exists():
+            wait_for(lambda: any("rosout" in command for command in left(made)), "rosout")
+        child = made.api.getPid("/test")[2]
+        bridge = parent(child)
+        assert bridge != process.pid
+        for pid in {"the run": [process.pid], "the bridge": [bridge]}.get(
+            victim, [process.pid, bridge]
+        ):
+            os.kill(pid, signal.SIGKILL)
+        wait_for(
+            lambda: not [command for command in left(made) if " run " not in command], "its end"
+        )
+    wait_for(lambda: not left(made), "the end of all")
+
+
+def test_a_bridges_child_can_be_ended_by_a_signal(tmp_path: Path) -> None:
+    """A bridge hears no SIGTERM, but what it starts does not inherit that."""
+    made = Master(tmp_path)
+    made.kill()
+    with simulation(made, "empty.world"):
+        wait_for(made.answers, "a master")
+        status = Path(f"/proc/{made.api.getPid('/test')[2]}/status").read_text()
+        ignored = int(re.search(r"SigIgn:\s+(\w+)", status)[1], 16)  # type: ignore[index]
+        assert not ignored >> (signal.SIGTERM - 1) & 1
+        assert not ignored >> (signal.SIGINT - 1) & 1
 
 
 def test_a_remote_master_that_does_not_answer_is_an_error(
