@@ -9,11 +9,13 @@ import socket
 import threading
 import time
 from collections.abc import Callable, Coroutine
+from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
 
 from cartwheel.errors import CartwheelError, ControlError
 from cartwheel.viewer.every import Every
+from cartwheel.viewer.inbox import Inbox
 
 _log = logging.getLogger(__name__)
 _FOLDER = Path(__file__).parent
@@ -68,6 +70,9 @@ class Page:
         # Whatever knocks at the port, a scanner say: its errors are not for the terminal.
         logging.getLogger("websockets").addHandler(logging.NullHandler())
         self.server: Any = _quietly(lambda: viser.ViserServer(host, port, verbose=False))
+        self._jobs: queue.SimpleQueue[tuple[Callable[[], object], int | None] | None]
+        self._jobs = queue.SimpleQueue()
+        self.inbox = Inbox(self.server, self._jobs.qsize, self._refuse)
         self._host = host
         self.gui: Any = self.server.gui
         self.scene: Any = self.server.scene
@@ -75,8 +80,6 @@ class Page:
         """Browsers that are connected now."""
         self.on_clients: Callable[[], None] = lambda: None
         """Called when `clients` has changed."""
-        self._jobs: queue.SimpleQueue[tuple[Callable[[], object], int | None] | None]
-        self._jobs = queue.SimpleQueue()
         self._client: int | None = None
         self.gui.configure_theme(
             show_logo=False, show_share_button=False, brand_color=(37, 99, 176)
@@ -188,6 +191,10 @@ class Page:
         asked = clients.get(self._client) if self._client is not None else None
         for client in [asked] if asked is not None else clients.values():
             client.add_notification(title, body, color=color, auto_close_seconds=seconds)
+
+    def _refuse(self, client: int, reason: str) -> None:
+        """Says, from viser's thread, why a file was not taken."""
+        self.post(partial(self.notify, "Error", reason, color="red"), client=client)
 
     # -- browsers
 

@@ -19,6 +19,7 @@ from cartwheel.simulation.space import Space
 from cartwheel.viewer.model_view import bounds, footprint
 from cartwheel.viewer.panels.base import Panel
 from cartwheel.viewer.stage import Stage
+from cartwheel.viewer.uploads import MOST_BYTES
 
 _GAP = 0.15
 """m of air between what is inserted and what is there."""
@@ -27,7 +28,6 @@ _LIFT = 0.001
 _FLAT = 0.02
 """m above the ground up to which a shape is part of it."""
 _SCENERY = ("sun", "ground_plane")
-_LARGEST = 20_000_000
 
 
 class InsertPanel(Panel):
@@ -43,7 +43,10 @@ class InsertPanel(Panel):
             button.on_click(page.do(self.insert, path))
             command = gui.add_command(f"Insert: {label}")
             command.on_trigger(page.do(self.insert, path))
-        gui.add_html('<div class="cw cw-dim">URDF, xacro or SDF of your own</div>')
+        most = MOST_BYTES // 1_000_000
+        gui.add_html(
+            f'<div class="cw cw-dim">URDF, xacro or SDF of your own, up to {most} MB</div>'
+        )
         upload = gui.add_upload_button("Open a file", icon=page.viser.Icon.UPLOAD)
         upload.on_upload(page.on(lambda event: self._upload(event.target.value)))
 
@@ -76,8 +79,6 @@ class InsertPanel(Panel):
         name = Path(file.name.replace("\\", "/")).name
         if not file.content:
             raise DescriptionError(f'"{name}" is empty')
-        if len(file.content) > _LARGEST:
-            raise DescriptionError(f'"{name}" is larger than {_LARGEST // 1_000_000} MB')
         with tempfile.TemporaryDirectory(prefix="cartwheel-") as folder:
             path = Path(folder) / (name or "upload.urdf")
             path.write_bytes(file.content)

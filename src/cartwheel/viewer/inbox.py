@@ -1,0 +1,262 @@
+"""What browsers send, checked before viser sees it: kinds, types, numbers, sizes, who asks.
+
+viser sets whatever property a message names, asserts on the rest, keeps parts of files without a
+bound and opens a public tunnel for whoever asks. Only what this page itself can send is handed on;
+the rest is dropped and counted, with one warning.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import math
+from collections.abc import Callable
+from functools import partial
+from typing import Annotated, Any
+
+import msgspec
+
+from cartwheel.viewer.uploads import PART_BYTES, UploadError, Uploads
+
+MOST_BYTES = PART_BYTES + 4096
+"""Of one message: a part of a file is the largest."""
+MOST_WAITING = 500
+"""Jobs of the page's thread; while there are more, nothing is read from any browser."""
+_PATIENCE = 0.02
+"""s between two looks whether there are fewer."""
+
+_log = logging.getLogger(__name__)
+
+_Name = Annotated[str, msgspec.Meta(max_length=1000)]
+_Number = Annotated[float, msgspec.Meta(ge=-1e6, le=1e6)]
+_Part = Annotated[float, msgspec.Meta(ge=-1.001, le=1.001)]
+_Place = tuple[_Number, _Number, _Number]
+_Turn = tuple[_Part, _Part, _Part, _Part]
+_Count = Annotated[int, msgspec.Meta(ge=0, le=1 << 40)]
+
+
+class Incoming(msgspec.Struct, tag_field="type", forbid_unknown_fields=True):
+    """A message of a browser."""
+
+
+class Camera(Incoming, tag="ViewerCameraMessage"):
+    """From where it looks."""
+
+    wxyz: _Turn
+    position: _Place
+    fov: Annotated[float, msgspec.Meta(gt=0, lt=math.pi)]
+    near: Annotated[float, msgspec.Meta(gt=0, le=1e6)]
+    far: Annotated[float, msgspec.Meta(gt=0, le=1e6)]
+    image_height: Annotated[float, msgspec.Meta(ge=0, le=1e5)]
+    image_width: Annotated[float, msgspec.Meta(ge=0, le=1e5)]
+    look_at: _Place
+    up_direction: _Place
+
+
+class Change(Incoming, tag="GuiUpdateMessage"):
+    """A control was used."""
+
+    uuid: _Name
+    updates: dict[_Name, bool | int | float | _Name]
+
+
+class Command(Incoming, tag="CommandTriggerMessage"):
+    """A key or an entry of the list of commands."""
+
+    uuid: _Name
+
+
+class Click(Incoming, tag="SceneNodeClickMessage"):
+    """On something in the scene."""
+
+    name: _Name
+    instance_index: int | None
+    ray_origin: _Place
+    ray_direction: _Place
+    screen_pos: tuple[_Number, _Number]
+    modifier: _Name | None
+    owner: _Name = ""
+
+
+class Drag(Incoming, tag="TransformControlsUpdateMessage"):
+    """A gizmo moves."""
+
+    name: _Name
+    wxyz: _Turn
+    position: _Place
+    owner: _Name = ""
+
+
+class DragStart(Incoming, tag="TransformControlsDragStartMessage"):
+    """A gizmo is held."""
+
+    name: _Name
+    owner: _Name = ""
+
+
+class DragEnd(Incoming, tag="TransformControlsDragEndMessage"):
+    """It is let go."""
+
+    name: _Name
+    owner: _Name = ""
+
+
+class UploadStart(Incoming, tag="FileTransferStartUpload"):
+    """A file is announced."""
+
+    source_component_uuid: _Name
+    transfer_uuid: _Name
+    filename: _Name
+    mime_type: _Name
+    part_count: _Count
+    size_bytes: _Count
+
+
+class UploadPart(Incoming, tag="FileTransferPart"):
+    """A part of it."""
+
+    source_component_uuid: _Name
+    transfer_uuid: _Name
+    part_index: _Count
+    content: bytes
+
+
+_DECODER = msgspec.msgpack.Decoder(
+    Camera | Change | Command | Click | Drag | DragStart | DragEnd | UploadStart | UploadPart
+)
+
+
+class MalformedError(Exception):
+    """A message that the page of ours cannot have sent."""
+
+
+class Inbox:
+    """Stands between the connections of a server and viser.
+
+    Args:
+        server: viser's.
+        waiting: How many jobs the page's thread has still to do.
+        refused: Called with a browser's number and a text for its user.
+    """
+
+    def __init__(
+        self, server: Any, waiting: Callable[[], int], refused: Callable[[int, str], None]
+    ) -> None:
+        self.dropped = 0
+        """Messages that were not handed on."""
+        self._server = server
+        self._waiting = waiting
+        self._refused = refused
+        self._uploads = Uploads(server)
+        self._known: set[int] = set()
+        websocks = server._websock_server
+        websocks.on_client_connect(self._attach)
+        websocks.on_client_disconnect(self._detach)
+        # What fails all the same is not for the terminal, and concerns the sender alone.
+        websocks._background_event_loop.set_exception_handler(self._failed)
+        # Whoever was faster than these lines comes again.
+        websocks.disconnect_all_clients()
+
+    def check(self, client: int, raw: object) -> None:
+        """Looks at a message.
+
+        Args:
+            client: The browser's number.
+            raw: What came.
+
+        Raises:
+            MalformedError: The page cannot have sent it.
+            UploadError: It is a file, or a part of one, that cannot be taken.
+        """
+        if not isinstance(raw, bytes):
+            raise MalformedError("text")
+        try:
+            message = _DECODER.decode(raw)
+        except (msgspec.DecodeError, RecursionError, ValueError) as error:
+            raise MalformedError(str(error)) from error
+        if isinstance(message, Camera):
+            if not any(message.wxyz):
+                raise MalformedError("a rotation of zeros")
+            # viser takes a browser for connected only from here on, and cleans up after it.
+            self._known.add(client)
+            return
+        if client not in self._known:
+            raise MalformedError(f"{type(message).__name__} before the first camera")
+        if isinstance(message, Change):
+            self._check_change(client, message)
+        if isinstance(message, UploadStart):
+            self._uploads.start(
+                client, message.transfer_uuid, message.size_bytes, message.part_count
+            )
+        elif isinstance(message, UploadPart):
+            self._uploads.add(
+                client, message.transfer_uuid, message.part_index, len(message.content)
+            )
+
+    def _check_change(self, client: int, message: Change) -> None:
+        if list(message.updates) != ["value"]:
+            raise MalformedError("a property of a control that browsers may not set")
+        handle = self._control(client, message.uuid)
+        if handle is None:
+            return  # Removed meanwhile, which is no fault; viser ignores it.
+        value, now = message.updates["value"], handle.value
+        options = getattr(handle, "options", None)
+        if options is not None:
+            fits = value in options
+        elif isinstance(now, bool):
+            fits = isinstance(value, bool)
+        elif isinstance(now, int | float) and isinstance(value, int | float):
+            low, high = getattr(handle, "min", -1e6), getattr(handle, "max", 1e6)
+            slack = 1e-6 * (1 + high - low)
+            fits = not isinstance(value, bool) and low - slack <= value <= high + slack
+        else:
+            fits = False
+        if not fits:
+            raise MalformedError("a value that the control cannot have")
+
+    def _control(self, client: int, uuid: str) -> Any:
+        """What a browser may use: the page's own controls and those made for it alone."""
+        shared = self._server.gui._gui_input_handle_from_uuid.get(uuid)
+        own = self._server.get_clients().get(client)
+        if shared is not None or own is None:
+            return shared
+        return own.gui._gui_input_handle_from_uuid.get(uuid)
+
+    async def _attach(self, connection: Any) -> None:
+        client = connection.client_id
+        websocket = self._server._websock_server._live_connections[client]
+        websocket.protocol.max_message_size = MOST_BYTES
+        websocket.recv = partial(self._receive, client, websocket.recv)
+
+    async def _detach(self, connection: Any) -> None:
+        self._known.discard(connection.client_id)
+        self._uploads.drop(connection.client_id)
+
+    async def _receive(self, client: int, receive: Callable[[], Any]) -> bytes:
+        """The next message that may be handed on."""
+        while True:
+            while self._waiting() > MOST_WAITING:
+                await asyncio.sleep(_PATIENCE)
+            raw: bytes = await receive()
+            try:
+                self.check(client, raw)
+            except UploadError as error:
+                if error.tell:
+                    self._refused(client, str(error))
+            except MalformedError as error:
+                self._drop(str(error))
+            else:
+                return raw
+
+    def _failed(self, _loop: object, context: dict[str, Any]) -> None:
+        _log.debug("viser failed: %s", context.get("message"), exc_info=context.get("exception"))
+        self._drop(f"viser failed: {context.get('exception') or context.get('message')!r}")
+
+    def _drop(self, reason: str) -> None:
+        self.dropped += 1
+        if self.dropped == 1:
+            _log.warning(
+                "the page received a malformed message (%s); it ignores such messages, "
+                "further ones without a warning",
+                reason[:200].replace("\n", " "),
+            )

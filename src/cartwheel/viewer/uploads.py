@@ -1,0 +1,113 @@
+"""Files that browsers send in parts: bounded while they arrive."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+PART_BYTES = 512 * 1024
+"""Of each part but the last, as viser's page cuts a file."""
+MOST_BYTES = 20_000_000
+"""Of one file."""
+MOST_AT_ONCE = 4
+"""Files of all browsers; one browser sends one at a time."""
+SILENCE = 60.0
+"""s after which an upload of which nothing more comes is forgotten."""
+
+
+class UploadError(Exception):
+    """A file, or a part of one, that is not taken.
+
+    Args:
+        reason: For the user.
+        tell: Whether the user has to be told; else this has been done.
+    """
+
+    def __init__(self, reason: str, *, tell: bool = True) -> None:
+        super().__init__(reason)
+        self.tell = tell
+
+
+@dataclass
+class _Upload:
+    transfer: str
+    size: int
+    parts: int
+    seen: set[int] = field(default_factory=set)
+    timer: Any = None
+
+
+class Uploads:
+    """Which file each browser is sending, and how much of it is there.
+
+    viser keeps the parts; it is only handed those that were announced here.
+
+    Args:
+        server: viser's.
+    """
+
+    def __init__(self, server: Any) -> None:
+        self._server = server
+        self._by_client: dict[int, _Upload] = {}
+
+    def start(self, client: int, transfer: str, size: int, parts: int) -> None:
+        """Admits a file.
+
+        Args:
+            client: The browser's number.
+            transfer: Name of the upload.
+            size: Announced, bytes.
+            parts: Announced.
+
+        Raises:
+            UploadError: It cannot be taken.
+        """
+        if size > MOST_BYTES:
+            raise UploadError(f"A file may have {MOST_BYTES // 1_000_000} MB.")
+        if parts != -(-size // PART_BYTES):
+            raise UploadError("The parts of the file do not fit its size.")
+        if client in self._by_client:
+            raise UploadError("Another file is still being uploaded from here.")
+        if len(self._by_client) >= MOST_AT_ONCE:
+            raise UploadError(f"{MOST_AT_ONCE} files are being uploaded; try again later.")
+        if parts:
+            self._by_client[client] = upload = _Upload(transfer, size, parts)
+            self._wait(client, upload)
+
+    def add(self, client: int, transfer: str, index: int, length: int) -> None:
+        """Admits a part.
+
+        Raises:
+            UploadError: It was not announced so; the whole upload is forgotten.
+        """
+        upload = self._by_client.get(client)
+        if upload is None or upload.transfer != transfer:
+            # Of a file that was refused, for example: the browser sends all parts at once.
+            raise UploadError("This part of a file was not announced.", tell=False)
+        expected = min(PART_BYTES, upload.size - index * PART_BYTES)
+        if index in upload.seen or length != expected:
+            self.drop(client)
+            raise UploadError("A part of the file has the wrong size, or came twice.")
+        upload.seen.add(index)
+        upload.timer.cancel()
+        if len(upload.seen) == upload.parts:
+            del self._by_client[client]
+        else:
+            self._wait(client, upload)
+
+    def drop(self, client: int) -> None:
+        """Forgets what a browser has sent of a file."""
+        upload = self._by_client.pop(client, None)
+        if upload is None:
+            return
+        upload.timer.cancel()
+        handles = [self._server.gui]
+        connected = self._server.get_clients().get(client)
+        if connected is not None:
+            handles.append(connected.gui)
+        for gui in handles:
+            gui._current_file_upload_states.pop(upload.transfer, None)
+
+    def _wait(self, client: int, upload: _Upload) -> None:
+        loop = self._server._event_loop
+        upload.timer = loop.call_later(SILENCE, self.drop, client)
