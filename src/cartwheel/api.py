@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
@@ -10,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from cartwheel import description as descriptions
 from cartwheel.description.model import RobotDescription, WorldDescription
-from cartwheel.errors import Diagnostic
+from cartwheel.errors import Diagnostic, SimulationError
 from cartwheel.geometry import Pose
 from cartwheel.graph import Graph, Mailbox
 from cartwheel.messages import from_dict, from_flat, type_name
@@ -19,6 +20,7 @@ from cartwheel.simulation.clock import NANOSECONDS, to_ns
 
 if TYPE_CHECKING:
     from cartwheel.bridges.recording import Encoding, Recorder
+    from cartwheel.simulation import Simulation
 
 
 class Model:
@@ -31,12 +33,14 @@ class Model:
     @property
     def pose(self) -> Pose:
         """Where its root link is in the world."""
-        self._world.session.simulation.refresh()
-        return self._world.session.simulation.pose(self.name)
+        with self._world.lock:
+            self._world.session.simulation.refresh()
+            return self._world.session.simulation.pose(self.name)
 
     @pose.setter
     def pose(self, pose: Pose) -> None:
-        self._world.session.simulation.set_pose(self.name, pose)
+        with self._world.used() as simulation:
+            simulation.set_pose(self.name, pose)
 
     def joint(self, name: str) -> float:
         """Position of a joint in rad or m.
@@ -44,7 +48,8 @@ class Model:
         Raises:
             UnknownNameError: There is no such joint.
         """
-        return self._world.session.simulation.joint_position(self.name, name)
+        with self._world.lock:
+            return self._world.session.simulation.joint_position(self.name, name)
 
     def publish(self, topic: str, message: Any = None, **fields: Any) -> None:
         """`World.publish`."""
@@ -52,11 +57,15 @@ class Model:
 
     def delete(self) -> None:
         """Takes it out of the world."""
-        self._world.session.simulation.delete(self.name)
+        with self._world.used() as simulation:
+            simulation.delete(self.name)
 
 
 class World:
-    """A simulation to be stepped by the thread that made it.
+    """A simulation that steps when you call `run`.
+
+    Threads may share a world: while one of them is in `run`, the calls of others wait. A forked
+    process has a copy of its own, whose cameras work only if no image was drawn before the fork.
 
     Args:
         world: ``empty``, another shipped world, a file, or a description.
@@ -84,6 +93,10 @@ class World:
         files = [Path(file) for file in bridge]
         self.session = Session(world, seed=seed, strict=strict, lenient=lenient, bridge=files)
         self.session.simulation.drain()  # this thread is the owner
+        self.lock = threading.RLock()
+        """Held while a thread uses the world."""
+        self._running = False
+        self._closing = False
 
     def __enter__(self) -> World:
         return self
@@ -95,6 +108,18 @@ class World:
         trace: TracebackType | None,
     ) -> None:
         self.close()
+
+    @contextlib.contextmanager
+    def used(self) -> Iterator[Simulation]:
+        """The simulation, for this thread alone meanwhile.
+
+        Raises:
+            SimulationError: The world is closed.
+        """
+        with self.lock:
+            if self.session.simulation.closed:
+                raise SimulationError("the world is closed")
+            yield self.session.simulation
 
     @property
     def graph(self) -> Graph:
@@ -156,7 +181,8 @@ class World:
         given = any((x, y, z, roll, pitch, yaw))
         pose = Pose.from_xyz_rpy((x, y, z), (roll, pitch, yaw)) if given else None
         files = [Path(file) for file in controllers]
-        return Model(self, self.session.spawn(robot, name=name, pose=pose, controllers=files))
+        with self.used():
+            return Model(self, self.session.spawn(robot, name=name, pose=pose, controllers=files))
 
     def model(self, name: str) -> Model:
         """A model that stands in the world.
@@ -164,17 +190,24 @@ class World:
         Raises:
             UnknownNameError: There is none of that name.
         """
-        self.session.simulation.pose(name)
+        with self.lock:
+            self.session.simulation.pose(name)
         return Model(self, name)
 
     def run(self, seconds: float) -> None:
         """Lets simulated time go on, as fast as it can.
 
         Raises:
-            SimulationError: The simulation diverged.
+            SimulationError: The simulation diverged, or the world is closed.
         """
-        simulation = self.session.simulation
-        simulation.advance(simulation.time_ns + to_ns(seconds))
+        with self.used() as simulation:
+            outer, self._running = self._running, True
+            try:
+                simulation.advance(simulation.time_ns + to_ns(seconds))
+            finally:
+                self._running = outer
+                if self._closing and not outer:
+                    self.session.close()
 
     def publish(self, topic: str, message: Any = None, **fields: Any) -> None:
         """Publishes on a topic that exists.
@@ -202,8 +235,19 @@ class World:
         self.graph.subscribe(topic, callback, type_name=type_name(type) if type else None)
 
     def mailbox(self, topic: str, *, size: int = 1000) -> Mailbox:
-        """Keeps the topic's messages to be read after `run`."""
-        return self.graph.mailbox(topic, size=size)
+        """Keeps the topic's messages to be read after `run`.
+
+        Its `get` waits only where another thread runs the world: in the thread that does, no
+        message comes while it waits, so that an empty mailbox gives None at once.
+        """
+        return self.graph.mailbox(topic, size=size, can_come=self._run_by_another)
+
+    def _run_by_another(self) -> bool:
+        """Whether another thread that still lives ran the world last."""
+        owner = self.session.simulation.owner
+        return owner != threading.get_ident() and any(
+            thread.ident == owner for thread in threading.enumerate()
+        )
 
     @contextlib.contextmanager
     def record(
@@ -253,11 +297,21 @@ class World:
 
     def reset(self) -> None:
         """Takes time and every model back to the start."""
-        self.session.simulation.reset()
+        with self.used() as simulation:
+            simulation.reset()
 
     def close(self) -> None:
-        """Frees what the world holds."""
-        self.session.close()
+        """Ends the run and all topics; what was simulated can still be read.
+
+        Called within `run`, it ends that run first. The memory is freed with the last reference
+        to the world.
+        """
+        with self.lock:
+            if self._running:
+                self._closing = True
+                self.session.simulation.stop()
+            else:
+                self.session.close()
 
 
 __all__ = ["Model", "World"]

@@ -153,8 +153,11 @@ class Session:
         return Pacer(self.simulation, until_ns=until_ns, strict=self.strict)
 
     def close(self) -> None:
-        """Frees what the simulation holds."""
+        """Ends the run; see `Simulation.close`."""
         self.simulation.close()
+        ControllerFiles.of(self.graph).loaded.clear()
+        self.graph.close()
+        self._clock_task.forget()
 
     def _check(self, start: int) -> None:
         if not self.strict:

@@ -184,6 +184,10 @@ def run_expat(text: str | bytes, file: str, handler: Handler) -> None:
         raise DescriptionError(
             f"the text cannot be decoded: {error}", origin=Origin(file=file, line=1)
         ) from error
+    finally:
+        # The handlers refer to the parser: all that was read would wait for Python's collector.
+        parser.StartElementHandler = parser.EndElementHandler = None
+        parser.CharacterDataHandler = parser.EntityDeclHandler = None
 
 
 def _declared_first(text: str | bytes) -> str | bytes:

@@ -7,6 +7,7 @@ with a `Mailbox`, and hand messages in through `Graph.post`.
 from __future__ import annotations
 
 import threading
+import weakref
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future
 from dataclasses import dataclass
@@ -166,6 +167,7 @@ class Graph:
         self._topics: dict[str, Topic] = {}
         self._services: dict[str, Service] = {}
         self._actions: dict[str, Action] = {}
+        self._boxes: weakref.WeakSet[Mailbox] = weakref.WeakSet()
         self.parameters = Parameters()
         self.joint_inputs = JointInputs(self._inputs_changed)
         self.cdr = CdrCache()
@@ -179,6 +181,29 @@ class Graph:
         mirror the graph."""
         self.on_change: list[Callable[[], None]] = []
         """Called after each such change, on any thread, the graph locked: must return at once."""
+
+    def close(self) -> None:
+        """Ends all topics, services and actions; wakes those who wait at a mailbox.
+
+        Nothing of the graph refers to itself afterwards, so its memory is freed with the last
+        reference to it.
+        """
+        with self._lock:
+            boxes = list(self._boxes)
+            topics = list(self._topics.values())
+            self.post = _refuse
+            self.on_change.clear()
+            self.joint_inputs.close()
+            for table in (self._topics, self._services, self._actions):
+                table.clear()
+            for topic in topics:
+                topic.publishers = ()
+                topic.subscriptions = ()
+                topic.callbacks = ()
+                topic.latched = None
+            self.static_transforms = None
+        for box in boxes:
+            box.close()
 
     def advertise(
         self,
@@ -235,12 +260,20 @@ class Graph:
             return subscription
 
     def mailbox(
-        self, name: str, *, size: int = 10, type_name: str | None = None, node: str = "cartwheel"
+        self,
+        name: str,
+        *,
+        size: int = 10,
+        type_name: str | None = None,
+        node: str = "cartwheel",
+        can_come: Callable[[], bool] | None = None,
     ) -> Mailbox:
-        """A bounded queue of the topic's messages for another thread to read."""
-        box = Mailbox(size)
+        """A bounded queue of the topic's messages for another thread to read; see `Mailbox`."""
+        box = Mailbox(size, can_come=can_come)
         subscription = self.subscribe(name, box.put, type_name=type_name, node=node)
         box.on_close = subscription.close
+        with self._lock:
+            self._boxes.add(box)
         return box
 
     def publish(self, name: str, type_name: str, message: Any) -> None:
@@ -426,3 +459,7 @@ class Graph:
 
 def _at_once(function: Callable[[], None]) -> None:
     function()
+
+
+def _refuse(_: Callable[[], None]) -> None:
+    raise GraphError("the simulation is closed")

@@ -49,6 +49,12 @@ class JointInputs:
         if not same:
             self._changed()
 
+    def close(self) -> None:
+        """Forgets all, and tells nobody any more."""
+        with self._lock:
+            self._all = ()
+            self._changed = lambda: None
+
     def all(self) -> tuple[JointInput, ...]:
         """Them, the oldest first."""
         return self._all

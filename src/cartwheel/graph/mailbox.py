@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 import threading
+import time
 from collections import deque
 from collections.abc import Callable
 from typing import Any
+
+_LOOK = 1.0
+"""s between two looks at whether a message can still come."""
 
 
 class Mailbox:
@@ -13,9 +17,11 @@ class Mailbox:
 
     Args:
         size: How many messages to hold; 1 keeps the latest alone.
+        can_come: Whether a message may come while the calling thread waits.
     """
 
-    def __init__(self, size: int) -> None:
+    def __init__(self, size: int, *, can_come: Callable[[], bool] | None = None) -> None:
+        self._can_come = can_come
         self._messages: deque[Any] = deque(maxlen=size)
         self._condition = threading.Condition()
         self._closed = False
@@ -32,9 +38,25 @@ class Mailbox:
             self._condition.notify()
 
     def get(self, timeout: float | None = None) -> Any | None:
-        """The oldest unread message; None when `timeout` seconds pass or the mailbox closes."""
+        """The oldest unread message, as soon as there is one.
+
+        Args:
+            timeout: s to wait at most; None without a limit.
+
+        Returns:
+            None when the time has passed, the mailbox is closed, or no message can come.
+        """
+        end = None if timeout is None else time.monotonic() + timeout
         with self._condition:
-            self._condition.wait_for(lambda: self._messages or self._closed, timeout)
+            while not self._messages and not self._closed:
+                left = None if end is None else end - time.monotonic()
+                if left is not None and left <= 0:
+                    break
+                if self._can_come is not None:
+                    if not self._can_come():
+                        break
+                    left = _LOOK if left is None else min(left, _LOOK)
+                self._condition.wait(left)
             return self._messages.popleft() if self._messages else None
 
     def drain(self) -> list[Any]:
@@ -53,4 +75,6 @@ class Mailbox:
         self.on_close()
         with self._condition:
             self._closed = True
+            self.on_close = lambda: None
+            self._can_come = None
             self._condition.notify_all()

@@ -7,12 +7,13 @@ from collections.abc import Iterator
 from typing import Any, ClassVar, TypeVar
 
 from cartwheel.description.model import CameraIntrinsics
-from cartwheel.errors import Diagnostic, GraphError, SimulationError
+from cartwheel.errors import Diagnostic, GraphError
 from cartwheel.plugins.base import Plugin
 from cartwheel.plugins.camera_depth import DepthOptions, Depths
 from cartwheel.plugins.camera_eye import Eye, EyeTopics
 from cartwheel.plugins.camera_info import Calibration
 from cartwheel.plugins.camera_lens import Distortion, Lens
+from cartwheel.simulation.offscreen import NoOpenGLError
 
 _WIDEST_VIEW = 2.8
 """rad; a pinhole's picture of more is nearly all edge."""
@@ -187,7 +188,7 @@ class CameraBase(Plugin[C]):
                 for eye in self._eyes:
                     if eye.sees:
                         eye.publish(now, eye.picture())
-        except SimulationError as error:
+        except NoOpenGLError as error:
             # Said once; everything but images goes on.
             self._blind = True
             self.part.report(

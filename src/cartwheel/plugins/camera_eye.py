@@ -132,7 +132,7 @@ class Eye:
         """The image of now, RGB, shape (height, width, 3).
 
         Raises:
-            SimulationError: No OpenGL.
+            SimulationError: No OpenGL, or opened before a fork.
         """
         return self._noisy(self.lens.image(self._plugin.part.render(self._camera)))
 
@@ -140,7 +140,7 @@ class Eye:
         """The same with the depths along the optical axis in m; inf where nothing is.
 
         Raises:
-            SimulationError: No OpenGL.
+            SimulationError: No OpenGL, or opened before a fork.
         """
         pixels, depths = self._plugin.part.render_with_depth(self._camera)
         return self._noisy(self.lens.image(pixels)), self.lens.depths(depths)

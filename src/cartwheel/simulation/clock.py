@@ -63,6 +63,11 @@ class Task:
             fast = Fraction(min(rate, NANOSECONDS)).limit_denominator(_FINEST)
             self.period_ns = NANOSECONDS / max(fast, Fraction(1, _FINEST))
 
+    def forget(self) -> None:
+        """Does nothing any more, and refers to nobody."""
+        self.before = self.after = None
+        self.active = always
+
     def period(self, step_ns: int) -> Fraction:
         """In steps; a rate faster than the step runs every step."""
         return max(self.period_ns / step_ns, Fraction(1))

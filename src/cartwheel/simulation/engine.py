@@ -61,6 +61,12 @@ class Engine:
         """The models that stand in the world."""
         self._orders = itertools.count()
 
+    def close(self) -> None:
+        """Frees what drawing holds; calls nobody any more."""
+        self.renderer.close()
+        for listeners in (self.on_diagnostic, self.on_tasks, self.on_entries):
+            listeners.clear()
+
     def steps_until(self, time_ns: int) -> int:
         """Steps that bring time to `time_ns`, or just beyond it."""
         return -((self.time_ns - time_ns) // self.step_ns)

@@ -442,7 +442,7 @@ class Part:
         """An image through a camera, shape (height, width, 3), RGB.
 
         Raises:
-            SimulationError: No OpenGL; says what to install.
+            SimulationError: No OpenGL, or opened before a fork; says what to do.
         """
         return self._engine.renderer.render(self._engine.data, camera)
 
@@ -450,7 +450,7 @@ class Part:
         """The image, and depths along the camera's axis in m, shape (height, width).
 
         Raises:
-            SimulationError: No OpenGL; says what to install.
+            SimulationError: No OpenGL, or opened before a fork; says what to do.
         """
         return self._engine.renderer.render_with_depth(self._engine.data, camera)
 

@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-import importlib
+import contextlib
 import math
-import os
 import weakref
+from collections.abc import Iterator
 from typing import Any
 
 import mujoco
 import numpy as np
 
-from cartwheel.errors import SimulationError
 from cartwheel.simulation.handles import CameraHandle
+from cartwheel.simulation.offscreen import OffscreenContext
 from cartwheel.world.visuals import HIDDEN_GROUP, VISUAL_GROUP
-
-_PACKAGES = "libegl1 libgl1 libgl1-mesa-dri"
-_BACKENDS = {"egl": "mujoco.egl", "osmesa": "mujoco.osmesa"}
 
 _WALL = 0.99
 """Of the far distance, where a wall is put behind everything."""
@@ -30,16 +27,16 @@ Depth = np.ndarray[tuple[int, int], np.dtype[np.float32]]
 
 
 class Renderer:
-    """Draws what cameras see. Made at the first image; then bound to each new model.
+    """Draws what cameras see. OpenGL is opened at the first image.
 
-    For one thread alone: OpenGL contexts belong to the thread that made them.
+    Any thread may draw, one at a time: the context is current only while an image is drawn.
     """
 
     def __init__(self) -> None:
         self._model: Any = None
         self._background: Any = np.zeros(3, dtype=np.uint8)
         self._opaque: Any = None
-        self._gl: Any = None
+        self._gl: OffscreenContext | None = None
         self._context: Any = None
         self._scene: Any = None
         self._size = (0, 0)
@@ -60,6 +57,7 @@ class Renderer:
     def close(self) -> None:
         """Frees everything."""
         self._drop_scene()
+        self._model = None
         if self._gl is not None:
             self._gl.free()
             self._gl = None
@@ -68,7 +66,8 @@ class Renderer:
         """An image through a camera of the bound model, shape (height, width, 3), RGB.
 
         Raises:
-            SimulationError: No OpenGL; says what to install.
+            NoOpenGLError: OpenGL is missing; says what to install.
+            ForkedError: This process was forked from one that had opened OpenGL.
         """
         pixels, _ = self._draw(data, camera)
         return np.ascontiguousarray(pixels[::-1])
@@ -79,7 +78,8 @@ class Renderer:
         Along the camera's axis, not along the pixel's ray; inf where nothing is.
 
         Raises:
-            SimulationError: No OpenGL; says what to install.
+            NoOpenGLError: OpenGL is missing; says what to install.
+            ForkedError: This process was forked from one that had opened OpenGL.
         """
         pixels, buffer = self._draw(data, camera)
         lens = camera.intrinsics
@@ -93,6 +93,10 @@ class Renderer:
 
     def _draw(self, data: Any, camera: CameraHandle) -> tuple[Image, Depth]:
         """Pixels and the depth buffer, both from the lowest row upwards."""
+        with self._opened(camera.intrinsics.width, camera.intrinsics.height):
+            return self._draw_in_context(data, camera)
+
+    def _draw_in_context(self, data: Any, camera: CameraHandle) -> tuple[Image, Depth]:
         lens = camera.intrinsics
         self._prepare(lens.width, lens.height)
         self._camera.fixedcamid = camera.id
@@ -180,13 +184,18 @@ class Renderer:
         self._shoot(shares, None)
         return shares
 
-    def _prepare(self, width: int, height: int) -> None:
+    @contextlib.contextmanager
+    def _opened(self, width: int, height: int) -> Iterator[None]:
+        """The context, current on this thread."""
         if self._gl is None:
-            self._gl = _open_gl(width, height)
+            self._gl = OffscreenContext(width, height)
             # A script may end without closing its world: before Python takes OpenGL's modules
             # apart, and not while it does.
             weakref.finalize(self, self._gl.free)
-        self._gl.make_current()
+        with self._gl.current():
+            yield
+
+    def _prepare(self, width: int, height: int) -> None:
         if self._scene is None:
             self._scene = mujoco.MjvScene(self._model, maxgeom=self._model.ngeom + 100)
             flags = self._scene.flags
@@ -204,9 +213,8 @@ class Renderer:
             mujoco.mjr_resizeOffscreen(*self._size, self._context)
 
     def _drop_scene(self) -> None:
-        if self._context is not None:
-            self._gl.make_current()
-            self._context.free()
+        if self._context is not None and self._gl is not None:
+            self._gl.release(self._context)
         self._context = self._scene = None
 
 
@@ -238,23 +246,3 @@ def _opaque(model: Any) -> Any:
     """Which visuals hide what is behind them, shape (ngeom,); None where all do."""
     transparent = (model.geom_group == VISUAL_GROUP) & (model.geom_rgba[:, 3] < 1)
     return ~transparent if transparent.any() else None
-
-
-def _open_gl(width: int, height: int) -> Any:
-    """An OpenGL context without a window: EGL, else OSMesa; MUJOCO_GL names one of them."""
-    wanted = os.environ.get("MUJOCO_GL", "").lower()
-    names = [wanted] if wanted in _BACKENDS else list(_BACKENDS)
-    reasons = []
-    for name in names:
-        try:
-            module = importlib.import_module(_BACKENDS[name])
-            context = module.GLContext(width, height)
-            context.make_current()
-        except Exception as error:  # noqa: BLE001 - a missing library shows in many ways
-            reasons.append(f"{name}: {str(error).splitlines()[0] if str(error) else error!r}")
-        else:
-            return context
-    raise SimulationError(
-        f"cameras need OpenGL, which this machine lacks ({'; '.join(reasons)})",
-        hint=f"On Debian or Ubuntu: sudo apt-get install {_PACKAGES}. All else works without.",
-    )

@@ -78,6 +78,19 @@ class Resident:
         for behaviour in self.behaviours:
             behaviour.close()
 
+    def forget(self) -> None:
+        """After `close`: lets go of plugins, and they of all that they have.
+
+        Plugins and their parts refer to each other, which would keep the engine's memory until
+        Python's collector comes.
+        """
+        for behaviour in self.behaviours:
+            vars(behaviour).clear()
+        self.behaviours = []
+        self.drives.clear()
+        self.part.handles.clear()
+        self.part.tasks.clear()
+
 
 def world_resident(engine: Engine) -> Resident:
     """What the world itself has: no links, but plugins, and what they ask for."""

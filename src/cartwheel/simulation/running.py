@@ -9,6 +9,7 @@ from concurrent.futures import Future
 from typing import TypeVar
 
 from cartwheel.calls import answered
+from cartwheel.errors import SimulationError
 from cartwheel.simulation.limits import check_speed
 from cartwheel.simulation.snapshot import RunState
 
@@ -33,6 +34,8 @@ class Run:
         """Called after time went back to the start."""
         self.owner: int | None = None
         """The thread that ran it last; None while none has."""
+        self.closed = False
+        """Whether it has ended for good."""
         self.commands: queue.SimpleQueue[Callable[[], None]] = queue.SimpleQueue()
 
     def pause(self) -> None:
@@ -62,12 +65,28 @@ class Run:
         self.speed = speed
 
     def post(self, function: Callable[[], None]) -> None:
-        """Runs a function on the owner's thread, before the next step; from any thread."""
-        self.commands.put(function)
+        """Runs a function on the owner's thread, before the next step; from any thread.
+
+        Nothing is run after the end.
+        """
+        if not self.closed:
+            self.commands.put(function)
 
     def call(self, function: Callable[[], T]) -> Future[T]:
-        """Like `post`, with the result or the error; from any thread."""
+        """Like `post`, with the result or the error; from any thread.
+
+        Raises:
+            SimulationError: It has ended for good.
+        """
+        if self.closed:
+            raise SimulationError("the simulation is closed")
         return answered(self.post, function)
+
+    def end(self) -> None:
+        """Takes no commands any more, and calls nobody; those that came last are run."""
+        self.closed = True
+        self.drain()
+        self.on_reset.clear()
 
     def drain(self) -> None:
         """Runs what other threads posted."""

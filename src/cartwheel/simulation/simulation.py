@@ -664,8 +664,21 @@ class Simulation(Run):
         )
 
     def close(self) -> None:
-        """Ends the run and frees what it holds."""
-        self.stop()
+        """Ends the run. What was simulated can still be read.
+
+        Nothing refers to itself afterwards, so the memory is freed with the last reference.
+        """
+        if self.closed:
+            return
+        self.run_state = RunState.STOPPED
+        # Those who wait for an answer get it.
+        self.drain()
         for resident in self._inhabitants():
             resident.close()
-        self.engine.renderer.close()
+        self.engine.close()
+        for resident in self._inhabitants():
+            resident.forget()
+        self._schedule = Schedule()
+        self._world_tasks.clear()
+        self._attach = lambda _: []
+        self.end()

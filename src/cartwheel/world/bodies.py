@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, replace
 from typing import Any
 
 import mujoco
@@ -68,6 +69,23 @@ _POINT = 1e-6
 _WORLD_SITE = "world::site"
 
 
+@dataclass(frozen=True, slots=True)
+class _Branch:
+    """A link that is to become a body."""
+
+    link: Link
+    parent: Any
+    """The body that it hangs on."""
+    pose: Pose
+    """In that body."""
+    moves: bool
+    """Whether that body does."""
+    trunk: bool
+    """Whether only fixed joints lead there from a free root."""
+    axle: Axle | None = None
+    """That body turns about, where it is a wheel."""
+
+
 class BodyBuilder:
     """Adds one model to a spec."""
 
@@ -99,43 +117,26 @@ class BodyBuilder:
         links = {link.name: link for link in description.links}
         senses = bool(description.plugins) or any(link.sensors for link in description.links)
 
-        def grow(
-            link: Link,
-            parent: Any,
-            pose: Pose,
-            *,
-            moves: bool,
-            axle: Axle | None,
-            trunk: bool,
-        ) -> None:
-            joint = inbound.get(link.name)
-            trunk = trunk and (joint is None or joint.type == "fixed")
-            body = parent.add_body(name=scoped(entry.name, link.name), **pose_arguments(pose))
-            bodies[link.name] = body
-            roots = moves and joint is None
-            if joint is not None and not description.static:
-                joints.add_joint(self._spec, entry, body, joint)
-                roots = not moves and joint.type != "fixed"
-                moves = moves or roots
-            if roots and senses:
-                # A body asleep has no accelerations and no contacts to be read.
-                body.sleep = mujoco.mjtSleepPolicy.mjSLEEP_NEVER
-            # A tyre may be fixed to a hub.
-            held = joint is not None and joint.type == "fixed" and axle is not None
-            axle = axle.seen_from(pose) if held and axle is not None else axle_of(joint)
-            self._fill(entry, body, link, axle, moves=moves, trunk=trunk)
-            for next_joint in children.get(link.name, ()):
-                child = links[next_joint.child]
-                there = link.pose.inverse() @ child.pose
-                grow(child, body, there, moves=moves, axle=axle, trunk=trunk)
-
         for link in description.links:
             if link.name in inbound and inbound[link.name].parent != "world":
                 continue
             anchor = inbound.get(link.name)
             free = anchor is None and not description.static and not link.kinematic
             there = entry.pose @ link.pose
-            grow(link, self._spec.worldbody, there, moves=free, axle=None, trunk=free)
+            # A list and no recursion: chains may be longer than Python's stack.
+            waiting = [_Branch(link, self._spec.worldbody, there, moves=free, trunk=free)]
+            while waiting:
+                branch = waiting.pop()
+                grown = self._grow(entry, branch, inbound.get(branch.link.name), senses=senses)
+                bodies[branch.link.name] = grown.parent
+                waiting += [
+                    replace(
+                        grown,
+                        link=(child := links[joint.child]),
+                        pose=branch.link.pose.inverse() @ child.pose,
+                    )
+                    for joint in reversed(children.get(branch.link.name, ()))
+                ]
             if free:
                 bodies[link.name].add_freejoint(name=scoped(entry.name, link.name))
         lost = [link for link in description.links if link.name not in bodies]
@@ -154,6 +155,29 @@ class BodyBuilder:
             self._add_drive(entry, bodies[drive.link], drive)
         for camera in entry.cameras:
             self._add_camera(entry, bodies[camera.link], camera)
+
+    def _grow(
+        self, entry: ModelEntry, branch: _Branch, joint: Joint | None, *, senses: bool
+    ) -> _Branch:
+        """Adds a link's body; returns what those that hang on it begin with."""
+        link, moves, axle = branch.link, branch.moves, branch.axle
+        trunk = branch.trunk and (joint is None or joint.type == "fixed")
+        body = branch.parent.add_body(
+            name=scoped(entry.name, link.name), **pose_arguments(branch.pose)
+        )
+        roots = moves and joint is None
+        if joint is not None and not entry.description.static:
+            joints.add_joint(self._spec, entry, body, joint)
+            roots = not moves and joint.type != "fixed"
+            moves = moves or roots
+        if roots and senses:
+            # A body asleep has no accelerations and no contacts to be read.
+            body.sleep = mujoco.mjtSleepPolicy.mjSLEEP_NEVER
+        # A tyre may be fixed to a hub.
+        held = joint is not None and joint.type == "fixed" and axle is not None
+        axle = axle.seen_from(branch.pose) if held and axle is not None else axle_of(joint)
+        self._fill(entry, body, link, axle, moves=moves, trunk=trunk)
+        return replace(branch, parent=body, moves=moves, axle=axle, trunk=trunk)
 
     def _fill(
         self,

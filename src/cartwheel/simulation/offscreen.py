@@ -1,0 +1,152 @@
+"""OpenGL without a window: one context, in threads and after a fork."""
+
+from __future__ import annotations
+
+import atexit
+import contextlib
+import ctypes
+import importlib
+import os
+import sys
+import threading
+import weakref
+from collections.abc import Iterator
+from typing import Any, ClassVar
+
+from cartwheel.errors import SimulationError
+
+_PACKAGES = "libegl1 libgl1 libgl1-mesa-dri"
+_BACKENDS = {"egl": "mujoco.egl", "osmesa": "mujoco.osmesa"}
+
+
+class NoOpenGLError(SimulationError):
+    """OpenGL is missing on this machine."""
+
+
+class ForkedError(SimulationError):
+    """OpenGL was opened before this process was forked."""
+
+    def __init__(self) -> None:
+        super().__init__(
+            "cameras do not work in this process: it was forked after its parent had opened OpenGL",
+            hint='Start processes with multiprocessing.get_context("spawn"), or fork before the '
+            "first image.",
+        )
+
+
+class _Process:
+    """What this process knows of OpenGL."""
+
+    opened: ClassVar[bool] = False
+    forked: ClassVar[bool] = False
+    """Whether a parent had opened it: the driver's threads do not survive a fork, and the next
+    call would wait for them for ever."""
+    contexts: ClassVar[weakref.WeakSet[OffscreenContext]] = weakref.WeakSet()
+
+
+class OffscreenContext:
+    """An OpenGL context: EGL, else OSMesa; MUJOCO_GL names one of them.
+
+    Args:
+        width: Of the first image, pixels.
+        height: Of it.
+
+    Raises:
+        NoOpenGLError: Neither can be opened.
+        ForkedError: This process was forked from one that had opened OpenGL.
+    """
+
+    def __init__(self, width: int, height: int) -> None:
+        if _Process.forked:
+            raise ForkedError
+        self._lock = threading.RLock()
+        self._gl: Any = _open(width, height)
+        _Process.opened = True
+        _Process.contexts.add(self)
+
+    @contextlib.contextmanager
+    def current(self) -> Iterator[None]:
+        """Makes the context current on this thread, and on none afterwards.
+
+        A context that stayed current on one thread could not be used on another.
+
+        Raises:
+            ForkedError: This process was forked since.
+        """
+        if self._gl is None:
+            raise ForkedError
+        with self._lock:
+            self._gl.make_current()
+            try:
+                yield
+            finally:
+                _make_none_current(self._gl)
+
+    def release(self, drawing: Any) -> None:
+        """Frees an `MjrContext` of this context."""
+        if self._gl is None:
+            _keep_for_ever(drawing)
+            return
+        with self.current():
+            drawing.free()
+
+    def free(self) -> None:
+        """Frees the context; from any thread."""
+        if self._gl is not None:
+            self._gl.free()
+            self._gl = None
+
+    def abandon(self) -> None:
+        """In a forked process: never touches the context again."""
+        if self._gl is not None:
+            _keep_for_ever(self._gl)
+            self._gl = None
+
+
+def _open(width: int, height: int) -> Any:
+    wanted = os.environ.get("MUJOCO_GL", "").lower()
+    names = [wanted] if wanted in _BACKENDS else list(_BACKENDS)
+    reasons = []
+    for name in names:
+        try:
+            module = importlib.import_module(_BACKENDS[name])
+            context = module.GLContext(width, height)
+            context.make_current()
+            _make_none_current(context)
+        except Exception as error:  # noqa: BLE001 - a missing library shows in many ways
+            reasons.append(f"{name}: {str(error).splitlines()[0] if str(error) else error!r}")
+        else:
+            return context
+    raise NoOpenGLError(
+        f"cameras need OpenGL, which this machine lacks ({'; '.join(reasons)})",
+        hint=f"On Debian or Ubuntu: sudo apt-get install {_PACKAGES}. All else works without.",
+    )
+
+
+def _make_none_current(context: Any) -> None:
+    egl = sys.modules.get("mujoco.egl")
+    # OSMesa's contexts move between threads by themselves.
+    if egl is not None and isinstance(context, egl.GLContext):
+        none = egl.EGL.EGL_NO_SURFACE
+        egl.EGL.eglMakeCurrent(egl.EGL_DISPLAY, none, none, egl.EGL.EGL_NO_CONTEXT)
+
+
+def _keep_for_ever(item: Any) -> None:
+    """Its destructor would call into OpenGL."""
+    ctypes.pythonapi.Py_IncRef(ctypes.py_object(item))
+
+
+def _after_fork() -> None:
+    egl = sys.modules.get("mujoco.egl")
+    display = getattr(egl, "EGL_DISPLAY", None)
+    if not _Process.opened and display is None:
+        return
+    _Process.forked = True
+    for context in _Process.contexts:
+        context.abandon()
+    if egl is not None:
+        # MuJoCo's own farewell to the display would wait for the threads, too.
+        atexit.unregister(egl.EGL.eglTerminate)
+
+
+os.register_at_fork(after_in_child=_after_fork)
