@@ -313,7 +313,7 @@ def test_memory_does_not_grow_with_images(make):
 
 
 def test_a_machine_without_opengl_says_so_once_and_drives_on(make, rosbots, monkeypatch):
-    from cartwheel.simulation import rendering
+    from cartwheel.simulation import offscreen
 
     real = importlib.import_module
 
@@ -322,7 +322,7 @@ def test_a_machine_without_opengl_says_so_once_and_drives_on(make, rosbots, monk
             raise ImportError(f"{name}: no library")
         return real(name, *rest)
 
-    monkeypatch.setattr(rendering.importlib, "import_module", absent)
+    monkeypatch.setattr(offscreen.importlib, "import_module", absent)
     world = make.world()
     world.session.spawn(rosbots, pose=Pose((0, 0, 0.05)))
     images = world.mailbox("/rosbots/camera1/image_raw")
