@@ -11,11 +11,10 @@ import numpy as np
 import pytest
 
 from cartwheel.bridges.apart import host as host_module
-from cartwheel.bridges.apart import ring
 from cartwheel.bridges.apart.host import GraphHost
 from cartwheel.bridges.apart.link import Link
 from cartwheel.bridges.apart.remote_graph import RemoteGraph
-from cartwheel.bridges.apart.ring import RingReader, RingWriter
+from cartwheel.bridges.apart.ring import RingFiles, RingReader, RingWriter
 from cartwheel.errors import Diagnostic, GraphError, UnknownNameError
 from cartwheel.graph import Action, Goal, GoalState, Graph
 from cartwheel.messages import message_class, service_classes, zero
@@ -35,13 +34,12 @@ class Apart:
         self.reports: list[Diagnostic] = []
         self.faults: list[Exception] = []
         ours, theirs = socket.socketpair()
-        bell, other = socket.socketpair()
-        memory = ring.memory(size)
+        files, others = RingFiles.pair(size)
         self.link = Link(ours, name="ours", on_end=lambda: None, on_fault=self.faults.append)
         self.host = GraphHost(
             self.owned,
             self.link,
-            RingWriter(memory, bell, patient=patient),
+            RingWriter(files),
             time_ns=lambda: self.time_ns,
             patient=patient,
             echo=echo,
@@ -51,7 +49,7 @@ class Apart:
         self.far = Link(theirs, name="far", on_end=lambda: None, on_fault=self.faults.append)
         self.graph = RemoteGraph(self.far, on_fault=self.faults.append)
         self.reader = RingReader(
-            memory, other, patient=patient, take=self.graph.take, on_fault=self.faults.append
+            others, patient=patient, take=self.graph.take, on_fault=self.faults.append
         )
         self._thread = threading.Thread(target=self._own, daemon=True)
 
@@ -339,11 +337,15 @@ def test_a_bridge_that_stands_still_costs_messages_and_no_time() -> None:
         apart.own(lambda number=number: publisher.publish(_text(f"{number:03}" + "x" * 2000)))
     (dropped,) = apart.owned.topic("/a").dropped
     assert 60 < dropped < 80
+    until(lambda: len(apart.reports) == 1)
     held.set()
     until(lambda: len(taken) == 100 - dropped)
     assert taken == [f"{number:03}" for number in range(100 - dropped)]
+    until(lambda: len(apart.reports) == 2)
     assert [found.message for found in apart.reports] == [
-        "ROS: /a is published faster than it can be sent: messages are dropped"
+        "ROS: its process does not read: it is stopped, or waits. Messages are dropped until it "
+        "goes on",
+        f"ROS: its process reads again; {dropped} messages of /a were dropped",
     ]
     apart.close()
 

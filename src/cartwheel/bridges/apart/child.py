@@ -13,7 +13,7 @@ from typing import Any, Protocol
 
 from cartwheel.bridges.apart.link import Link
 from cartwheel.bridges.apart.remote_graph import RemoteGraph
-from cartwheel.bridges.apart.ring import RingReader
+from cartwheel.bridges.apart.ring import RingFiles, RingReader
 from cartwheel.errors import Diagnostic, one_line
 
 WIRES = {
@@ -35,15 +35,14 @@ class Wire(Protocol):
         """Ends it; tells what became of it."""
 
 
-def main(kind: str, patient: str, link_file: str, bell_file: str, memory_file: str) -> None:
+def main(kind: str, patient: str, link_file: str, ring_files: str) -> None:
     """Runs a bridge until the simulation's process says so, or has ended.
 
     Args:
         kind: One of `WIRES`.
         patient: Not empty where nothing may be lost.
         link_file: Number of the link's socket.
-        bell_file: Number of the ring's bell.
-        memory_file: Number of the ring's memory.
+        ring_files: Of the ring's reader.
     """
     # They may be sent to all of a service's processes. The simulation's hears of them, and its end
     # is heard here: until then there may be something to be written.
@@ -61,8 +60,7 @@ def main(kind: str, patient: str, link_file: str, bell_file: str, memory_file: s
     link = Link(socket.socket(fileno=int(link_file)), name="link", on_end=over.set, on_fault=fault)
     graph = RemoteGraph(link, on_fault=fault)
     reader = RingReader(
-        int(memory_file),
-        socket.socket(fileno=int(bell_file)),
+        RingFiles.of(ring_files),
         patient=bool(patient),
         take=graph.take,
         on_fault=fault,

@@ -10,9 +10,10 @@ from typing import Any
 
 from cartwheel.bridges.apart.hosted_actions import HostedActions
 from cartwheel.bridges.apart.link import Link
+from cartwheel.bridges.apart.losses import Losses
 from cartwheel.bridges.apart.offers import Offers
 from cartwheel.bridges.apart.remote_graph import GraphState
-from cartwheel.bridges.apart.ring import RingWriter
+from cartwheel.bridges.apart.ring import Put, RingWriter
 from cartwheel.bridges.mirror import Arrivals
 from cartwheel.calls import answered, mapped
 from cartwheel.errors import Diagnostic, Once, one_line
@@ -64,6 +65,7 @@ class GraphHost:
         self._title = title
         self._report = report
         self._is_new = Once(_TOLD)
+        self._losses = Losses(ring, self.later, self._warn)
         self._relays: dict[int, _Relay] = {}
         self._arrivals = Arrivals(graph, self._warn)
         self._services: Offers[Service] = Offers()
@@ -171,17 +173,17 @@ class GraphHost:
             self._warn(f"{relay.topic}: a message that is none: {one_line(error)}")
             return
         if self._patient:
-            self.waited += self._ring.put_patiently(relay.number, self._time_ns(), data)
-        elif not self._ring.put(relay.number, self._time_ns(), data) and not self._closed:
+            put, waited = self._ring.put_patiently(relay.number, self._time_ns(), data)
+            self.waited += waited
+        else:
+            put = self._ring.put(relay.number, self._time_ns(), data)
+        if put is not Put.TAKEN and put is not Put.CLOSED:
             relay.dropped += 1
-            if relay.dropped == 1:
-                self._warn(
-                    f"{relay.topic} is published faster than it can be sent: messages are dropped"
-                )
+            self._losses.add(relay.topic, put, len(data))
 
-    def later(self, function: Callable[[], None]) -> None:
-        """Runs a function on the link's thread, a little later."""
-        self._link.loop.post(lambda: self._link.loop.after(_LAST_TIME, function))
+    def later(self, seconds: float, function: Callable[[], None]) -> None:
+        """Runs a function on the link's thread."""
+        self._link.loop.post(lambda: self._link.loop.after(seconds, function))
 
     def _warn(self, text: str) -> None:
         """Once for each text."""
@@ -230,7 +232,7 @@ class _Times(_Relay):
             if self._pass_held() or self._due:
                 return
             self._due = True
-        self._host.later(self._pass_last)
+        self._host.later(_LAST_TIME, self._pass_last)
 
     def _pass_held(self) -> bool:
         now = time.monotonic()
@@ -248,7 +250,7 @@ class _Times(_Relay):
         with self._lock:
             self._due = not self._pass_held()
         if self._due:
-            self._host.later(self._pass_last)
+            self._host.later(_LAST_TIME, self._pass_last)
 
 
 class _RemoteServer:

@@ -4,17 +4,15 @@ from __future__ import annotations
 
 import contextlib
 import json
-import os
 import socket
 import subprocess
 import sys
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from cartwheel.bridges.apart import ring
 from cartwheel.bridges.apart.host import GraphHost
 from cartwheel.bridges.apart.link import Handler, Link
-from cartwheel.bridges.apart.ring import RingWriter
+from cartwheel.bridges.apart.ring import RingFiles, RingWriter
 from cartwheel.errors import CartwheelError, ControlError, Diagnostic, Once, one_line
 from cartwheel.graph import Graph
 
@@ -53,22 +51,20 @@ class BridgeProcess:
         self.on_lost: Callable[[], None] = lambda: None
         """Told when the process has ended by itself; on another thread."""
         self._own, theirs = socket.socketpair()
-        self._bell, their_bell = socket.socketpair()
-        self._memory = ring.memory()
-        files = [theirs.fileno(), their_bell.fileno(), self._memory]
+        self._files, their_files = RingFiles.pair()
         patience = "patient" if patient else ""
         self._process = subprocess.Popen(  # noqa: S603 - this very program
             [
                 *(sys.executable, "-c", _PROGRAM, json.dumps(sys.path)),
-                *(kind, patience, *map(str, files)),
+                *(kind, patience, str(theirs.fileno()), str(their_files)),
             ],
-            pass_fds=files,
+            pass_fds=[theirs.fileno(), *their_files.numbers],
             stdin=subprocess.DEVNULL,
             # Ctrl-C in a terminal is for us.
             start_new_session=True,
         )
         theirs.close()
-        their_bell.close()
+        their_files.close()
 
     @property
     def pid(self) -> int:
@@ -107,8 +103,7 @@ class BridgeProcess:
             CartwheelError: There can be no such bridge.
         """
         self._report = report
-        self._ring = RingWriter(self._memory, self._bell, patient=self._patient)
-        os.close(self._memory)
+        self._ring = RingWriter(self._files)
         self._link = Link(self._own, name=self.title, on_end=self._ended, on_fault=self._fault)
         self._host = GraphHost(
             graph,
@@ -159,7 +154,7 @@ class BridgeProcess:
         if self._link is None:
             self._process.kill()
             self._own.close()
-            os.close(self._memory)
+            self._files.close()
         else:
             with contextlib.suppress(Exception):
                 self.call("close", self.written, timeout=_END)
