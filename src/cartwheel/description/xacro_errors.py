@@ -27,6 +27,9 @@ class Failure:
     """Of the macro called."""
 
 
+_LONGEST = 4000
+"""Characters of an error that are looked at."""
+
 _UNDEFINED = re.compile(r"name '([^']*)' is not defined")
 _MACRO = re.compile(r"unknown macro name: xacro:(\S+)")
 _ARGUMENT = re.compile(r"Undefined substitution argument '?([\w.-]+)")
@@ -42,7 +45,8 @@ _EXPRESSION = re.compile(r"when evaluating expression '(.*?)'\s*(?:\Z|when evalu
 
 def explain(failure: Failure) -> DescriptionError:
     """The error to show for a failed expansion."""
-    text = str(failure.error) or type(failure.error).__name__
+    # What an error quotes may be as long as the file.
+    text = str(failure.error)[:_LONGEST] or type(failure.error).__name__
     inner = _innermost(failure.error)
     origin = failure.origin
     message, hint = text.splitlines()[0], None

@@ -1,0 +1,175 @@
+"""Bounds on what an expansion may use."""
+
+from __future__ import annotations
+
+import time
+from typing import Any
+
+from cartwheel.errors import DescriptionError
+
+MAX_CHARACTERS = 1_000_000
+"""Of one text, and of all texts in one value."""
+MAX_ITEMS = 100_000
+"""Of one list, dict or range, those in it included."""
+MAX_BITS = 4096
+"""Of one integer."""
+MAX_SECONDS = 10.0
+"""CPU time of one expansion. The largest public robots take less than two."""
+MAX_OPERATIONS = 20_000_000
+MAX_TOTAL = 200_000_000
+"""Characters and items that one expansion makes."""
+
+_LOOK = 1000
+"""Operations between two looks at the clock, which costs as much as one of them."""
+
+
+class ExpressionError(DescriptionError):
+    """An expression that is not allowed, or a value that is too large."""
+
+
+class Budget:
+    """What one expansion may still use.
+
+    Args:
+        seconds: CPU time of the thread that expands. Other programs do not shorten it.
+    """
+
+    def __init__(self, seconds: float = MAX_SECONDS) -> None:
+        self.opaque: tuple[type, ...] = ()
+        """Types that are not values."""
+        self._seconds = seconds
+        self._end = time.thread_time() + seconds
+        self._operations = 0
+        self._next_look = _LOOK
+        self._total = 0
+
+    def spend(self, operations: int = 1) -> None:
+        """Counts operations.
+
+        Raises:
+            ExpressionError: There were too many, or they took too long.
+        """
+        self._operations += operations
+        if self._operations >= self._next_look:
+            self._next_look = self._operations + _LOOK
+            self.look()
+
+    def look(self) -> None:
+        """Looks at the clock.
+
+        Raises:
+            ExpressionError: As `spend`.
+        """
+        if self._operations > MAX_OPERATIONS:
+            raise ExpressionError(f"the xacro needs more than {MAX_OPERATIONS:,} operations")
+        if time.thread_time() > self._end:
+            raise ExpressionError(f"the xacro takes more than {self._seconds:g} s to expand")
+
+    def make(self, size: int) -> None:
+        """Counts characters or items that were made.
+
+        Raises:
+            ExpressionError: They are too many in all.
+        """
+        self._total += size
+        if self._total > MAX_TOTAL:
+            raise ExpressionError(f"the xacro makes more than {MAX_TOTAL:,} characters")
+
+    def text(self, length: int) -> None:
+        """Counts a text before it is made.
+
+        Raises:
+            ExpressionError: It is too long.
+        """
+        if length > MAX_CHARACTERS:
+            raise ExpressionError(f"the text has more than {MAX_CHARACTERS:,} characters")
+        self.make(length)
+
+    def items(self, count: int) -> None:
+        """Counts the items of a list, dict or range before it is made.
+
+        Raises:
+            ExpressionError: They are too many.
+        """
+        room(count)
+        self.make(count)
+
+    def result(self, value: Any) -> Any:
+        """Counts a value that was made; its own size, not that of what is in it.
+
+        Raises:
+            ExpressionError: It is too large.
+        """
+        kind = type(value)
+        if kind is float or kind is bool:
+            return value
+        if kind is int:
+            bits(value.bit_length())
+        elif kind is str:
+            self.text(len(value))
+        elif isinstance(value, list | tuple | dict | set | frozenset | range):
+            self.items(len(value))
+        return value
+
+    def weigh(self, value: Any) -> int:
+        """Counts all that is in a value, each part as often as it is in there.
+
+        A list that holds one list a thousand times is small; its text is not.
+
+        Returns:
+            The characters of its texts.
+
+        Raises:
+            ExpressionError: It is too much.
+        """
+        if isinstance(value, str):
+            return len(value)
+        if not isinstance(value, list | tuple | dict | set | frozenset):
+            return 0
+        count = characters = 0
+        left: list[Any] = [value]
+        while left:
+            each = left.pop()
+            if isinstance(each, str):
+                characters += len(each)
+                if characters > MAX_CHARACTERS:
+                    raise ExpressionError(f"the value has more than {MAX_CHARACTERS:,} characters")
+                continue
+            if isinstance(each, self.opaque):
+                raise ExpressionError("a namespace is not a value")
+            if isinstance(each, dict):
+                count += 2 * len(each)
+            elif isinstance(each, list | tuple | set | frozenset):
+                count += len(each)
+            else:
+                continue
+            if count > MAX_ITEMS:
+                raise ExpressionError(f"the value has more than {MAX_ITEMS:,} items")
+            if isinstance(each, dict):
+                left.extend(dict.keys(each))
+                left.extend(dict.values(each))
+            else:
+                # Not a subclass's own iteration, which makes wrappers.
+                left.extend(list.__iter__(each) if isinstance(each, list) else each)
+        self.spend(count // 8)
+        return characters
+
+
+def room(count: int) -> None:
+    """Refuses lists with too many items.
+
+    Raises:
+        ExpressionError: They are too many.
+    """
+    if count > MAX_ITEMS:
+        raise ExpressionError(f"the list has more than {MAX_ITEMS:,} items")
+
+
+def bits(count: int) -> None:
+    """Refuses integers with too many bits, before they are made.
+
+    Raises:
+        ExpressionError: They are too many.
+    """
+    if count > MAX_BITS:
+        raise ExpressionError(f"the number has more than {MAX_BITS} bits")

@@ -1,0 +1,104 @@
+"""YAML that strangers wrote: a loader with bounds, and files of bounded size.
+
+PyYAML's own loader follows aliases without end: 400 bytes can stand for more values than memory
+holds, as soon as something walks over them.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    import yaml
+
+MAX_BYTES = 2_000_000
+"""Of a file. The largest parameter files of public robots have 100 kB."""
+MAX_DEPTH = 50
+MAX_VALUES = 200_000
+"""In a text, those that aliases stand for included."""
+
+
+def read(path: Path, limit: int = MAX_BYTES) -> str:
+    """The text of a YAML file.
+
+    Raises:
+        OSError: It cannot be read, is not a regular file, or is larger than the limit.
+        UnicodeDecodeError: It is no UTF-8.
+    """
+    if not path.exists():
+        raise FileNotFoundError(2, "No such file or directory", str(path))
+    if not path.is_file():
+        raise OSError("it is not a regular file")
+    with path.open("rb") as file:
+        content = file.read(limit + 1)
+    if len(content) > limit:
+        raise OSError(f"it is larger than {limit / 1e6:g} MB")
+    return content.decode()
+
+
+def load(text: str) -> Any:
+    """What a text of YAML says: mappings, lists, texts, numbers, dates.
+
+    Raises:
+        yaml.YAMLError: It is no YAML, or exceeds the bounds.
+    """
+    import yaml
+
+    return yaml.load(text, Loader=loader())  # noqa: S506 (a SafeLoader with bounds)
+
+
+@lru_cache(maxsize=1)
+def loader() -> type[yaml.SafeLoader]:
+    """A `yaml.SafeLoader` with bounds, for ``yaml.load`` and ``yaml.compose``.
+
+    It is made at the first use: importing yaml takes a while.
+    """
+    import yaml
+
+    class Loader(yaml.SafeLoader):
+        def __init__(self, stream: Any) -> None:
+            super().__init__(stream)
+            self._depth = 0
+            self._values = 0
+            self._sizes: dict[int, int] = {}
+
+        def compose_node(self, parent: Any, index: Any) -> Any:
+            event: Any = self.peek_event()  # type: ignore[no-untyped-call]
+            if self._depth >= MAX_DEPTH:
+                raise yaml.composer.ComposerError(
+                    None, None, f"nested more than {MAX_DEPTH} deep", event.start_mark
+                )
+            before = self._values
+            mark: Any = event.start_mark
+            self._depth += 1
+            node = super().compose_node(parent, index)
+            self._depth -= 1
+            if isinstance(event, yaml.AliasEvent):
+                if id(node) not in self._sizes:
+                    raise yaml.composer.ComposerError(
+                        None, None, f"the alias *{event.anchor} contains itself", mark
+                    )
+                self._values += self._sizes[id(node)]
+            else:
+                self._values += 1
+                self._sizes[id(node)] = self._values - before
+            if self._values > MAX_VALUES:
+                raise yaml.composer.ComposerError(
+                    None,
+                    None,
+                    f"more than {MAX_VALUES:,} values, with those of its aliases",
+                    mark,
+                )
+            return node
+
+        def construct_object(self, node: Any, deep: bool = False) -> Any:
+            try:
+                return super().construct_object(node, deep)
+            except (ValueError, OverflowError) as error:  # a date such as 2001-99-99
+                raise yaml.constructor.ConstructorError(
+                    None, None, str(error), node.start_mark
+                ) from None
+
+    return Loader
