@@ -14,6 +14,7 @@ MAY_IMPORT = {
     "geometry": set(),
     "calls": set(),
     "yaml_text": set(),
+    "gate": set(),
     "messages": set(),
     "graph": {"messages"},
     "description": set(),
@@ -23,9 +24,9 @@ MAY_IMPORT = {
     "session": {"description", "simulation", "messages", "graph", "plugins"},
     "api": {"description", "simulation", "messages", "graph", "session", "plugins", "bridges"},
     "control": {"description", "simulation", "messages", "graph", "session"},
-    "viewer": {"description", "simulation", "messages", "graph", "session"},
+    "viewer": {"description", "simulation", "messages", "graph", "session", "gate"},
     "gazebo": {"description", "world", "simulation", "messages", "graph", "plugins", "session"},
-    "bridges": {"messages", "graph"},
+    "bridges": {"messages", "graph", "gate"},
     "playback": {"description", "simulation", "messages", "graph", "bridges"},
     "corpus": {"description", "simulation", "messages", "graph", "plugins", "api"},
     "cli": {
@@ -39,6 +40,7 @@ MAY_IMPORT = {
         "viewer",
         "gazebo",
         "bridges",
+        "gate",
         "playback",
         "api",
         "plugins",
@@ -98,6 +100,7 @@ def test_the_order_has_no_cycle() -> None:
 def test_wires_and_browser_are_imported_only_in_their_rooms() -> None:
     homes = {
         "viser": "viewer",
+        "h11": "gate",
         "rospy": "bridges",
         "cyclonedds": "bridges",
         "foxglove": "bridges",

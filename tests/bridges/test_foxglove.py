@@ -20,7 +20,8 @@ from websockets.sync.client import connect
 
 from cartwheel.bridges.foxglove import FoxgloveBridge
 from cartwheel.bridges.foxglove.forms import encoding_of, packed, schema_of
-from cartwheel.cli.commands.foxglove import Assets, SimulationControls
+from cartwheel.cli.commands.assets import Assets
+from cartwheel.cli.commands.foxglove import SimulationControls
 from cartwheel.description import load_robot, load_text, load_world
 from cartwheel.errors import CartwheelError, Diagnostic, Origin
 from cartwheel.graph import Graph

@@ -35,7 +35,7 @@ def running(folder: Path, *arguments: str) -> Iterator[Running]:
     assert process.stdout is not None
     try:
         line = next(line for line in process.stdout if line.startswith("viewer"))
-        yield Running(process, int(line.rpartition(":")[2]))
+        yield Running(process, int(line.rpartition(":")[2].partition("/")[0]))
     finally:
         process.kill()
         process.communicate()

@@ -42,7 +42,20 @@ Model = Annotated[
     str | None, typer.Option("--model", metavar="NAME", help="Its name in the world.")
 ]
 Host = Annotated[
-    str, typer.Option(help="Address the viewer listens on; 0.0.0.0 lets other computers in.")
+    str,
+    typer.Option(
+        help="Address the viewer and Foxglove's server listen on; with 0.0.0.0 other computers"
+        " may connect with the token that is printed."
+    ),
+]
+AllowOrigin = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--allow-origin",
+        metavar="ORIGIN",
+        help="Let web pages of this origin connect, for example https://robots.example.org,"
+        " and let browsers reach the server by that name. May be given again.",
+    ),
 ]
 Port = Annotated[
     int, typer.Option(min=0, max=65535, help="Port of the viewer; 0 takes a free one.")

@@ -28,6 +28,7 @@ def add_to(app: typer.Typer) -> None:
 def view(
     words: arguments.Names = None,
     host: arguments.Host = "127.0.0.1",
+    allow_origin: arguments.AllowOrigin = None,
     port: arguments.Port = 8080,
     package_path: arguments.PackagePath = None,
 ) -> None:
@@ -35,7 +36,14 @@ def view(
     from cartwheel.cli.commands import view as work
 
     file, values = arguments.split(words)
-    work.view(arguments.needed(file), values, package_path or [], host=host, port=port)
+    work.view(
+        arguments.needed(file),
+        values,
+        package_path or [],
+        host=host,
+        allow_origin=allow_origin or [],
+        port=port,
+    )
 
 
 def convert(

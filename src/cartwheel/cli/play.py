@@ -32,6 +32,7 @@ def play(
         str | None, typer.Option(metavar="FILE|NAME", help="Things to show around the robot.")
     ] = None,
     host: arguments.Host = "127.0.0.1",
+    allow_origin: arguments.AllowOrigin = None,
     port: arguments.Port = 8080,
     open_browser: arguments.OpenBrowser = None,
     package_path: arguments.PackagePath = None,
@@ -49,6 +50,7 @@ def play(
             paused=paused,
             world=world,
             host=host,
+            allow_origin=tuple(allow_origin or ()),
             port=port,
             open_browser=open_browser,
             package_path=tuple(package_path or ()),

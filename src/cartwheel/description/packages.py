@@ -294,6 +294,18 @@ class Packages:
         return self._found[name]
 
 
+def belongs_to(path: Path, home: Path) -> bool:
+    """Whether a file lies in the folder of a package or model, wherever links lead.
+
+    The links of an installed package may lead to its source, which has the same name.
+    """
+    real, home = path.resolve(), home.resolve()
+    if real.is_relative_to(home):
+        return True
+    source = next((each for each in real.parents if _is_file(each / "package.xml")), None)
+    return source is not None and _package_name(source) == _package_name(home)
+
+
 def _package_above(folder: Path) -> Path | None:
     """The package that a folder belongs to."""
     near = [folder, *folder.parents][:MAX_LEVELS_UP]

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import threading
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
 from cartwheel.description.kinematics import link_poses
 from cartwheel.description.model import RobotDescription
+from cartwheel.gate.access import Access
+from cartwheel.gate.listening import listen
 from cartwheel.geometry import Pose, to_wxyz
 from cartwheel.viewer.display import Display
 from cartwheel.viewer.model_view import ModelView, footprint
@@ -37,19 +40,28 @@ class DescriptionViewer:
 
     Args:
         description: Of a robot or a model.
-        host: Address to listen on; only this computer by default.
+        access: Who may see it; None is whoever is on this computer.
         port: 0 takes any that is free.
+        refused: Takes the origin of each web page that is refused, from any thread.
 
     Raises:
         ControlError: The port cannot be had.
     """
 
     def __init__(
-        self, description: RobotDescription, *, host: str = "127.0.0.1", port: int = 8080
+        self,
+        description: RobotDescription,
+        *,
+        access: Access | None = None,
+        port: int = 8080,
+        refused: Callable[[str], None] = lambda _: None,
     ) -> None:
         self._description = description
         self._stopped = threading.Event()
-        self._page = Page(host, port, title=f"Cartwheel: {description.name}")
+        access = access or Access(host="127.0.0.1")
+        listener = listen(access.host, port, title="the viewer", option="--port")
+        title = f"Cartwheel: {description.name}"
+        self._page = Page(listener, access, title=title, refused=refused)
         self._display = Display()
         self._sliders: dict[str, Any] = {}
         set_stage(self._page)

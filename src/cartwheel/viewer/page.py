@@ -13,7 +13,9 @@ from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
 
-from cartwheel.errors import CartwheelError, ControlError
+from cartwheel.errors import CartwheelError
+from cartwheel.gate.access import Access
+from cartwheel.gate.listening import hidden_host
 from cartwheel.viewer.every import Every
 from cartwheel.viewer.inbox import Inbox
 
@@ -28,22 +30,6 @@ _LIGHTLY: Any = "f9"
 T = TypeVar("T")
 
 
-def check_port(host: str, port: int) -> None:
-    """Refuses a port that is taken: viser would take the next one without a word.
-
-    Raises:
-        ControlError: It cannot be bound.
-    """
-    try:
-        with socket.create_server((host, port)):
-            pass
-    except (OSError, OverflowError) as error:
-        raise ControlError(
-            f"the viewer cannot listen on {host}:{port}: {error}",
-            hint="Another viewer may be running; choose another port with --port.",
-        ) from error
-
-
 class Page:
     """What the parts of the viewer share.
 
@@ -51,29 +37,39 @@ class Page:
     note here, and `run` does what they say, one after the other, in order.
 
     Args:
-        host: Address to listen on.
-        port: 0 takes any that is free.
+        listener: Where browsers come.
+        access: Who of them may.
         title: Of the browser's tab.
         keys: That are commands; every other key counts as ``k``.
-
-    Raises:
-        ControlError: The port cannot be had.
+        refused: Takes the origin of each web page that is refused, from any thread.
     """
 
-    def __init__(self, host: str, port: int, *, title: str, keys: tuple[str, ...] = ()) -> None:
+    def __init__(
+        self,
+        listener: socket.socket,
+        access: Access,
+        *,
+        title: str,
+        keys: tuple[str, ...] = (),
+        refused: Callable[[str], None] = lambda _: None,
+    ) -> None:
         # 0.2 s that must not come before the simulation's first clock.
         import viser
         from viser import _messages
 
-        check_port(host, port)
+        from cartwheel.gate.gate import Gate
+
         self.viser = viser
         # Whatever knocks at the port, a scanner say: its errors are not for the terminal.
         logging.getLogger("websockets").addHandler(logging.NullHandler())
-        self.server: Any = _quietly(lambda: viser.ViserServer(host, port, verbose=False))
+        host = hidden_host()
+        self.server: Any = _quietly(lambda: viser.ViserServer(host, 0, verbose=False))
+        self._gate = Gate(listener, access, (host, self.server.get_port()), refused=refused)
+        self.url = access.url("http", listener.getsockname()[1])
+        """Where browsers find it."""
         self._jobs: queue.SimpleQueue[tuple[Callable[[], object], int | None] | None]
         self._jobs = queue.SimpleQueue()
         self.inbox = Inbox(self.server, self._jobs.qsize, self._refuse)
-        self._host = host
         self.gui: Any = self.server.gui
         self.scene: Any = self.server.scene
         self.clients: frozenset[int] = frozenset()
@@ -102,12 +98,8 @@ class Page:
         self._pulse = self.gui.add_html(_pulse(0))
         self.server.on_client_connect(self.on(self._connected))
         self.server.on_client_disconnect(self.on(self._disconnected))
-
-    @property
-    def url(self) -> str:
-        """Where it is."""
-        host = "127.0.0.1" if self._host in ("0.0.0.0", "") else self._host  # noqa: S104
-        return f"http://{host}:{self.server.get_port()}"
+        # On viser's own loop: no other thread takes Python's lock from the simulation.
+        self._gate.start(self.server.get_event_loop())
 
     # -- work
 
@@ -215,6 +207,7 @@ class Page:
 
     def close(self) -> None:
         """Ends the web server."""
+        self._gate.close()
         _quietly(self.server.stop)
 
 

@@ -7,10 +7,12 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from cartwheel.errors import ControlError
+from cartwheel.gate.access import Access
+from cartwheel.gate.listening import listen
 from cartwheel.session import Session
 from cartwheel.simulation.pacing import Pacer
 from cartwheel.simulation.snapshot import Snapshot
-from cartwheel.viewer.page import Page, check_port
+from cartwheel.viewer.page import Page
 from cartwheel.viewer.teleop import KEYS
 
 if TYPE_CHECKING:
@@ -29,9 +31,10 @@ class Viewer:
 
     Args:
         session: To show.
-        host: Address to listen on; only this computer by default.
+        access: Who may see it; None is whoever is on this computer.
         port: 0 takes any that is free.
         desk: Makes the panels; None makes those of a simulation.
+        refused: Takes the origin of each web page that is refused, from any thread.
 
     Raises:
         ControlError: The port cannot be had.
@@ -41,14 +44,16 @@ class Viewer:
         self,
         session: Session,
         *,
-        host: str = "127.0.0.1",
+        access: Access | None = None,
         port: int = 8080,
         desk: Callable[[Page, Session], Desk] | None = None,
+        refused: Callable[[str], None] = lambda _: None,
     ) -> None:
-        check_port(host, port)
+        self._access = access or Access(host="127.0.0.1")
+        self._listener = listen(self._access.host, port, title="the viewer", option="--port")
         self._session = session
         self._make_desk = desk
-        self._host, self._port = host, port
+        self._refused = refused
         self._slot: Snapshot | None = None
         self._version = -1
         self._page: Page | None = None
@@ -56,6 +61,11 @@ class Viewer:
         self._stopped = threading.Event()
         self._failure: BaseException | None = None
         self._thread = threading.Thread(target=self._run, name="viewer", daemon=True)
+
+    @property
+    def port(self) -> int:
+        """That it listens on."""
+        return int(self._listener.getsockname()[1])
 
     @property
     def url(self) -> str:
@@ -84,6 +94,7 @@ class Viewer:
             self._page.wake()
         if self._thread.is_alive():
             self._thread.join(timeout=10.0)
+        self._listener.close()
 
     def _listen(self, snapshot: Snapshot) -> None:
         """On the simulation's thread: leaves the newest snapshot, and a note if none lies there."""
@@ -104,7 +115,9 @@ class Viewer:
         try:
             from cartwheel.viewer.desk import Desk
 
-            page = Page(self._host, self._port, title="Cartwheel", keys=KEYS)
+            page = Page(
+                self._listener, self._access, title="Cartwheel", keys=KEYS, refused=self._refused
+            )
             self._desk: Any = (self._make_desk or Desk)(page, self._session)
             self._page = page
         except BaseException as error:  # noqa: BLE001 - `url` raises it

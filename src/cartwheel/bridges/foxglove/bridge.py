@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 import queue
 import re
+import socket
 import threading
 import time
 from collections.abc import Callable
@@ -20,10 +21,16 @@ from cartwheel.bridges.foxglove.publication import READER, Publication
 from cartwheel.bridges.foxglove.values import PAUSED, SPEED, Values
 from cartwheel.bridges.mirror import offered_by_others
 from cartwheel.errors import CartwheelError, Diagnostic, Once, one_line
+from cartwheel.gate.access import Access, refused_page
+from cartwheel.gate.gate import Gate
+from cartwheel.gate.listening import hidden_host, listen
 from cartwheel.graph import Service, TopicInfo
 
 PORT = 8765
 """Foxglove's own."""
+APPS = ("https://app.foxglove.dev", "https://studio.foxglove.dev", "file://")
+"""Origins of the programs that are made for it: Foxglove in the browser, by its new and its old
+address, and the desktop programs of Foxglove and Lichtblick, which are Chromium on files."""
 BACKLOG = 256
 """Messages that may wait for a client; the oldest is dropped then."""
 _TIME_RATE = 10.0
@@ -49,7 +56,7 @@ class FoxgloveBridge:
     Args:
         graph: Of the simulation.
         name: What clients show.
-        host: Address to listen on.
+        access: Who may connect; None is whoever is on this computer.
         port: 0 takes any that is free.
         controls: Of time.
         assets: The content of a mesh or texture by its URI; None where there is none.
@@ -66,7 +73,7 @@ class FoxgloveBridge:
         *,
         name: str,
         controls: Controls,
-        host: str = "127.0.0.1",
+        access: Access | None = None,
         port: int = PORT,
         assets: Assets = lambda _: None,
         time_range: tuple[int, int] | None = None,
@@ -74,7 +81,10 @@ class FoxgloveBridge:
     ) -> None:
         require()
         self._graph = graph
-        self._name, self._host, self._port = name, host, port
+        self._name, self._port = name, port
+        self._access = access or Access(host="127.0.0.1")
+        self._listener: socket.socket | None = None
+        self._gate: Gate | None = None
         self._controls = controls
         self._assets = assets
         self._time_range = time_range
@@ -100,19 +110,19 @@ class FoxgloveBridge:
         self._values = Values(
             graph, controls=controls, descriptions=self._descriptions, tell=self._warn
         )
-        self._slow = _Slow(lambda text: self._jobs.put(lambda: self._warn(text)))
+        self._slow = _Slow(lambda client: self._jobs.put(lambda: self._warn_of_slow(client)))
         self._thread = threading.Thread(target=self._run, name="foxglove", daemon=True)
 
     @property
     def port(self) -> int:
-        """Where it listens."""
-        return int(self._server.port)
+        """Where it listens, once it is started."""
+        assert self._listener is not None
+        return int(self._listener.getsockname()[1])
 
     @property
     def url(self) -> str:
-        """Where clients reach it."""
-        host = "127.0.0.1" if self._host in ("0.0.0.0", "") else self._host  # noqa: S104
-        return f"ws://{host}:{self.port}"
+        """Where clients reach it, once it is started."""
+        return self._access.url("ws", self.port)
 
     def start(self) -> None:
         """Listens.
@@ -123,6 +133,10 @@ class FoxgloveBridge:
         import foxglove
         from foxglove.websocket import Capability
 
+        self._listener = listen(
+            self._access.host, self._port, title="the Foxglove server", option="--foxglove-port"
+        )
+        hidden = hidden_host()
         capabilities = [
             Capability.ClientPublish,
             Capability.Parameters,
@@ -147,8 +161,8 @@ class FoxgloveBridge:
         try:
             self._server = foxglove.start_server(
                 name=self._name,
-                host=self._host,
-                port=self._port,
+                host=hidden,
+                port=0,
                 capabilities=capabilities,
                 server_listener=listener,
                 supported_encodings=ENCODINGS,
@@ -158,15 +172,21 @@ class FoxgloveBridge:
                 message_backlog_size=BACKLOG,
             )
         except Exception as error:  # whatever the library has for it
-            raise CartwheelError(
-                f"the Foxglove server cannot listen on {self._host}:{self._port}: {error}",
-                hint="Choose another port with --foxglove-port.",
-            ) from error
+            self._listener.close()
+            raise CartwheelError(f"the Foxglove server cannot start: {error}") from error
         self._log = Log(context=self._context, time_ns=lambda: self._controls.time_ns)
         self._by_channel[self._log.channel.id()] = self._log
         self._mirror()
         self._graph.on_change.append(self._changed)
         self._thread.start()
+        self._gate = Gate(
+            self._listener,
+            self._access,
+            (hidden, int(self._server.port)),
+            apps=APPS,
+            refused=lambda origin: self._report(refused_page("the Foxglove server", origin)),
+        )
+        self._gate.start()
 
     def close(self) -> None:
         """Sends all clients away."""
@@ -185,6 +205,8 @@ class FoxgloveBridge:
             publication.close()
         if self._log is not None:
             self._log.close()
+        if self._gate is not None:
+            self._gate.close()
         if self._server is not None:
             self._server.stop()
 
@@ -343,6 +365,12 @@ class FoxgloveBridge:
             graph.set_advertised_service(service.name, [service.node])
         self._server.publish_connection_graph(graph)
 
+    def _warn_of_slow(self, client: str) -> None:
+        # The server knows the gate's end of the connection alone.
+        port = client.rpartition(":")[2]
+        known = self._gate.peer(int(port)) if self._gate is not None and port.isdigit() else None
+        self._warn(f"the client {known or client} is too slow: messages to it are dropped")
+
     def _warn(self, text: str) -> None:
         """Once for each text, to the user and to clients."""
         if not self._is_new(text):
@@ -358,17 +386,17 @@ class _Slow(logging.Handler):
     """Hears of clients that do not take what they are sent: the library tells it its log alone.
 
     Args:
-        tell: Takes a warning; on any thread.
+        slow: Takes the address of one; on any thread.
     """
 
-    def __init__(self, tell: Callable[[str], None]) -> None:
+    def __init__(self, slow: Callable[[str], None]) -> None:
         super().__init__(logging.INFO)
-        self._tell = tell
+        self._slow = slow
 
     def emit(self, record: logging.LogRecord) -> None:
         found = _FULL.search(record.getMessage())
         if found:
-            self._tell(f"the client {found[1]} is too slow: messages to it are dropped")
+            self._slow(found[1])
 
 
 def require() -> None:

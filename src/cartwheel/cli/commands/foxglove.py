@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 import contextlib
-import re
-from collections.abc import Callable, Iterator, Sequence
-from pathlib import Path
+from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING
-from urllib.parse import unquote
 
 from cartwheel.cli import interrupts
+from cartwheel.cli.commands.assets import Assets
 from cartwheel.cli.commands.bridges import log_all_on
 from cartwheel.cli.commands.options import Options
 from cartwheel.cli.commands.report import Report
-from cartwheel.description.packages import Packages
 from cartwheel.errors import CartwheelError
+from cartwheel.gate.access import Access
 from cartwheel.simulation import RunState
 
 if TYPE_CHECKING:
@@ -23,16 +21,14 @@ if TYPE_CHECKING:
     from cartwheel.session import Session
     from cartwheel.simulation import Simulation
 
-_SHAPES = {".stl", ".dae", ".obj", ".mtl", ".ply", ".glb", ".gltf", ".bin"}
-_PICTURES = {".png", ".jpg", ".jpeg", ".tif", ".tiff", ".tga", ".bmp", ".webp"}
-_LARGEST = 200 << 20
-"""Bytes of a file that is handed out."""
-_FILE = re.compile(r'file://[^"\'<>\s]+')
-
 
 @contextlib.contextmanager
 def shown_by_foxglove(
-    session: Session, process: BridgeProcess, options: Options, port: int, report: Report
+    session: Session,
+    process: BridgeProcess,
+    options: Options,
+    access: Access,
+    report: Report,
 ) -> Iterator[None]:
     """Serves the enclosed run to Foxglove.
 
@@ -50,8 +46,8 @@ def shown_by_foxglove(
             session.graph,
             {
                 "name": f"Cartwheel: {', '.join(simulation.models)}",
-                "host": options.host,
-                "port": port,
+                "access": access,
+                "port": options.foxglove_port,
                 "time_range": None if end_ns is None else (0, end_ns),
             },
             time_ns=lambda: simulation.time_ns,
@@ -71,7 +67,7 @@ def shown_by_foxglove(
             Ros2Api(session, package_path=options.package_path).start()
         url = process.call("start")
         log_all_on(process, simulation)
-        report.foxglove(url)
+        report.foxglove(url, access)
         yield
 
 
@@ -123,58 +119,3 @@ class SimulationControls:
         # Waited for: the client is told the state that it has brought about.
         with contextlib.suppress(TimeoutError):
             self._simulation.call(function).result(5.0)
-
-
-class Assets:
-    """Meshes and textures of what stands in the world, by their URIs.
-
-    Any page in a browser may ask, so nothing else is handed out: by ``package://`` and
-    ``model://`` shapes and pictures below the package's folder; by ``file://`` those that a
-    robot's description names, and what lies beside them.
-
-    Args:
-        session: Whose models.
-        package_path: Where packages are looked for first.
-    """
-
-    def __init__(self, session: Session, package_path: Sequence[Path]) -> None:
-        self._session = session
-        self._package_path = package_path
-
-    def __call__(self, uri: str) -> bytes | None:
-        """The content; None where there is none to be had."""
-        plain = unquote(uri)
-        if ".." in plain.split("/") or "\0" in plain or "\\" in plain:
-            return None
-        if Path(plain).suffix.lower() not in _SHAPES | _PICTURES:
-            return None
-        scheme = plain.partition("://")[0]
-        if scheme in ("package", "model"):
-            return self._in_package(uri)
-        if scheme == "file":
-            path = Path(plain.removeprefix("file://"))
-            return _content(path) if path.parent in self._named_folders() else None
-        return None
-
-    def _in_package(self, uri: str) -> bytes | None:
-        for file in dict.fromkeys(
-            model.description.origin.file for model in self._session.simulation.scene.models
-        ):
-            near = None if file.startswith("<") else Path(file)
-            with contextlib.suppress(CartwheelError, OSError):
-                return _content(Packages(near, self._package_path).resolve(uri))
-        return None
-
-    def _named_folders(self) -> set[Path]:
-        return {
-            Path(unquote(found).removeprefix("file://")).parent
-            for model in self._session.simulation.scene.models
-            for found in _FILE.findall(model.description.text)
-        }
-
-
-def _content(path: Path) -> bytes | None:
-    try:
-        return path.read_bytes() if path.stat().st_size <= _LARGEST else None
-    except OSError:
-        return None

@@ -27,6 +27,7 @@ class Options:
     seed: int = 0
     strict: bool = False
     host: str = "127.0.0.1"
+    allow_origin: tuple[str, ...] = ()
     port: int = 8080
     open_browser: bool | None = None
     place: Mapping[str, float] = field(default_factory=dict)

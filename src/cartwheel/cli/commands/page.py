@@ -9,6 +9,7 @@ from cartwheel.cli.commands.desktop import is_desktop
 from cartwheel.cli.commands.report import Report
 from cartwheel.control.server import ControlServer
 from cartwheel.errors import CartwheelError
+from cartwheel.gate.access import Access
 from cartwheel.session import Session
 from cartwheel.simulation.pacing import Pacer
 from cartwheel.viewer import Viewer
@@ -24,7 +25,7 @@ class Page:
         session: To show.
         server: Tells other processes where the page is.
         report: Tells the user.
-        host: Address to listen on.
+        access: Who may see it.
         port: Port to listen on.
         open_browser: Whether to open it; None does on a desktop.
         desk: Makes its panels; None makes those of a simulation.
@@ -36,16 +37,17 @@ class Page:
         server: ControlServer,
         report: Report,
         *,
-        host: str,
+        access: Access,
         port: int,
         open_browser: bool | None,
         desk: type[Desk] | None = None,
     ) -> None:
         self._session = session
+        self._access = access
         self._server = server
         self._open = is_desktop() if open_browser is None else open_browser
         self._report = report
-        self._viewer = Viewer(session, host=host, port=port, desk=desk)
+        self._viewer = Viewer(session, access=access, port=port, desk=desk, refused=report.refused)
         self._failure: CartwheelError | None = None
 
     def start(self, pacer: Pacer) -> None:
@@ -69,8 +71,8 @@ class Page:
             self._failure = error
             self._session.simulation.stop()
             return
-        self._server.announce(url=url, port=int(url.rsplit(":", 1)[1]))
-        self._report.address(url)
+        self._server.announce(url=url, port=self._viewer.port)
+        self._report.address(url, self._access)
         if self._open:
             import webbrowser
 

@@ -5,8 +5,10 @@ from __future__ import annotations
 import threading
 
 from cartwheel.cli.commands.ports import free_port
+from cartwheel.cli.commands.report import Report
 from cartwheel.control.protocol import PATIENCE
 from cartwheel.control.server import ControlServer
+from cartwheel.gate.access import Access
 from cartwheel.session import Session
 from cartwheel.simulation.pacing import Pacer
 
@@ -18,17 +20,26 @@ class PageOnDemand:
         session: To show.
         server: Whose clients ask, and which then tells where the page is.
         pacer: Runs the session.
-        host: Address to listen on.
+        report: Tells the user.
+        access: Who may see it.
         port: The first to try; one that is taken is left to whoever has it.
     """
 
     def __init__(
-        self, session: Session, server: ControlServer, pacer: Pacer, *, host: str, port: int
+        self,
+        session: Session,
+        server: ControlServer,
+        pacer: Pacer,
+        report: Report,
+        *,
+        access: Access,
+        port: int,
     ) -> None:
         self._session = session
         self._server = server
         self._pacer = pacer
-        self._host, self._port = host, port
+        self._report = report
+        self._access, self._port = access, port
         self._lock = threading.Lock()
         self._url: str | None = None
 
@@ -43,8 +54,10 @@ class PageOnDemand:
                 # A third of a second that a run which nobody looks at does not spend.
                 from cartwheel.viewer import Viewer
 
-                port = free_port(self._host, self._port)
-                viewer = Viewer(self._session, host=self._host, port=port)
+                port = free_port(self._access.host, self._port)
+                viewer = Viewer(
+                    self._session, access=self._access, port=port, refused=self._report.refused
+                )
                 starting = self._session.simulation.call(lambda: viewer.start(self._pacer))
                 starting.result(PATIENCE)
                 self._url = viewer.url

@@ -13,6 +13,7 @@ from cartwheel.cli.commands.ports import refuse_taken
 from cartwheel.cli.commands.report import Report
 from cartwheel.cli.console import say
 from cartwheel.errors import CartwheelError, RecordingError
+from cartwheel.gate.access import Access
 
 if TYPE_CHECKING:
     from cartwheel.session import Session
@@ -32,6 +33,7 @@ class Options:
     paused: bool
     world: str | None
     host: str
+    allow_origin: tuple[str, ...]
     port: int
     open_browser: bool | None
     package_path: tuple[Path, ...]
@@ -48,6 +50,7 @@ def play(options: Options) -> None:
     from cartwheel.bridges.recording.opening import open_recording
 
     recording = open_recording(options.file)
+    access = Access.of(options.host, options.allow_origin)
     if not options.headless:
         refuse_taken(options.host, options.port)
     from cartwheel.control.server import ControlServer
@@ -89,7 +92,7 @@ def play(options: Options) -> None:
                     session,
                     server,
                     report,
-                    host=options.host,
+                    access=access,
                     port=options.port,
                     open_browser=options.open_browser,
                     desk=PlayDesk,

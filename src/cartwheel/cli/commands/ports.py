@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import errno
-import socket
 
 from cartwheel.control import running
 from cartwheel.errors import CartwheelError, ControlError
+from cartwheel.gate.listening import bound
 
 _NEAR = 50
 
@@ -47,7 +47,7 @@ def free_port(host: str, port: int) -> int:
 
 def _problem(host: str, port: int) -> OSError | None:
     try:
-        with socket.create_server((host, port)):
+        with bound(host, port):
             return None
     except OSError as error:
         return error

@@ -6,6 +6,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import PurePath
 from typing import TYPE_CHECKING
+from urllib.parse import urlsplit
 
 from cartwheel.cli.commands.grouping import grouped
 from cartwheel.cli.console import (
@@ -17,6 +18,7 @@ from cartwheel.cli.console import (
     table,
 )
 from cartwheel.control.registry import Running
+from cartwheel.gate.access import Access, refused_page
 from cartwheel.plugins.control.files import ControllerFiles
 
 if TYPE_CHECKING:
@@ -88,9 +90,10 @@ class Report:
         simulation.engine.on_diagnostic.append(self.diagnostic)
         self._topics(session)
 
-    def address(self, url: str) -> None:
-        """Where the viewer is."""
+    def address(self, url: str, access: Access) -> None:
+        """Where the viewer is, and who may see it."""
         self._line("viewer", paint(url, "bold", "cyan"))
+        self._open(access, url)
         if self._decorated:
             say(paint("\nCtrl-C ends.", "dim"))
 
@@ -98,9 +101,20 @@ class Report:
         """Which node of ROS 1 this is, and of which master."""
         self._line("ros 1", f"{node} at {master}{', a master of our own' if own else ''}")
 
-    def foxglove(self, url: str) -> None:
-        """Where Foxglove's protocol is spoken."""
+    def _open(self, access: Access, url: str) -> None:
+        if access.is_open:
+            parts = urlsplit(url)
+            url = access.url(parts.scheme, parts.port or 0, elsewhere=True)
+            self._line("", f"open to other computers, with the token: {url}")
+
+    def refused(self, origin: str) -> None:
+        """Which web page was refused."""
+        self.diagnostic(refused_page("the viewer", origin))
+
+    def foxglove(self, url: str, access: Access) -> None:
+        """Where Foxglove's protocol is spoken, and with whom."""
         self._line("foxglove", paint(url, "bold", "cyan"))
+        self._open(access, url)
 
     def recording(self, path: PurePath) -> None:
         """Where a recording goes."""

@@ -17,6 +17,7 @@ from cartwheel.cli.commands.recording import check_recording, recorded
 from cartwheel.cli.commands.report import Report, world_title
 from cartwheel.control import running
 from cartwheel.errors import CartwheelError
+from cartwheel.gate.access import Access
 
 if TYPE_CHECKING:
     from cartwheel.bridges.apart.process import BridgeProcess
@@ -48,11 +49,12 @@ def simulate(options: Options) -> None:
     # What is loaded stays: looking through it for garbage costs a tenth of the start, and of
     # the speed later where a reader keeps many messages.
     gc.disable()
+    access = Access.of(options.host, options.allow_origin)
     with bridges_for(options) as bridges:
-        _simulate(options, bridges)
+        _simulate(options, access, bridges)
 
 
-def _simulate(options: Options, bridges: Bridges) -> None:
+def _simulate(options: Options, access: Access, bridges: Bridges) -> None:
     others = running()
     report = Report(verbose=options.verbose)
     world, robot, remappings = _read(options)
@@ -89,7 +91,7 @@ def _simulate(options: Options, bridges: Bridges) -> None:
         server = ControlServer(session, title=title, load=_load_robot)
         with interrupts.finally_do(server.close):
             pacer = _pacer(session, options)
-            page = _page(session, server, pacer, options, report)
+            page = _page(session, server, pacer, options, report, access=access)
             if others:
                 report.others(others)
             report.loaded(session, name, ros=options.ros1_node is not None)
@@ -99,7 +101,7 @@ def _simulate(options: Options, bridges: Bridges) -> None:
                 ),
                 _described(session, options) as descriptions,
                 _joined_to_ros2(session, bridges.ros2, options, descriptions, report),
-                _shown_by_foxglove(session, bridges.foxglove, options, report),
+                _shown_by_foxglove(session, bridges.foxglove, options, access, report),
                 recorded(session, bridges.recorders, options, report),
             ):
                 _run(session, pacer, page, report)
@@ -163,14 +165,18 @@ def _joined_to_ros2(
 
 @contextlib.contextmanager
 def _shown_by_foxglove(
-    session: Session, process: BridgeProcess | None, options: Options, report: Report
+    session: Session,
+    process: BridgeProcess | None,
+    options: Options,
+    access: Access,
+    report: Report,
 ) -> Iterator[None]:
     if process is None or options.foxglove_port is None:
         yield
         return
     from cartwheel.cli.commands.foxglove import shown_by_foxglove
 
-    with shown_by_foxglove(session, process, options, options.foxglove_port, report):
+    with shown_by_foxglove(session, process, options, access, report):
         yield
 
 
@@ -241,13 +247,19 @@ def _pacer(session: Session, options: Options) -> Pacer:
 
 
 def _page(
-    session: Session, server: ControlServer, pacer: Pacer, options: Options, report: Report
+    session: Session,
+    server: ControlServer,
+    pacer: Pacer,
+    options: Options,
+    report: Report,
+    *,
+    access: Access,
 ) -> Page | None:
     """The page of the run; None where it is brought up when somebody asks for it."""
     if options.headless:
         from cartwheel.cli.commands.page_on_demand import PageOnDemand
 
-        demanded = PageOnDemand(session, server, pacer, host=options.host, port=options.port)
+        demanded = PageOnDemand(session, server, pacer, report, access=access, port=options.port)
         server.offer_page(demanded.show)
         return None
     from cartwheel.cli.commands.page import Page
@@ -256,7 +268,7 @@ def _page(
         session,
         server,
         report,
-        host=options.host,
+        access=access,
         port=options.port,
         open_browser=options.open_browser,
     )

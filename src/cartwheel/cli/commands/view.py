@@ -10,6 +10,7 @@ from cartwheel.cli import interrupts
 from cartwheel.cli.commands.grouping import grouped
 from cartwheel.cli.commands.ports import refuse_taken
 from cartwheel.cli.console import paint, print_diagnostic, say
+from cartwheel.gate.access import Access, refused_page
 
 
 def view(
@@ -18,6 +19,7 @@ def view(
     package_path: Sequence[Path],
     *,
     host: str,
+    allow_origin: Sequence[str],
     port: int,
 ) -> None:
     """Shows a robot until Ctrl-C."""
@@ -25,15 +27,23 @@ def view(
     from cartwheel.viewer import DescriptionViewer
 
     description = load_robot(file, arguments=values, package_path=package_path)
+    access = Access.of(host, allow_origin)
     refuse_taken(host, port)
     for diagnostic in grouped(description.diagnostics):
         if diagnostic.severity != "info":
             print_diagnostic(diagnostic)
     stopped = threading.Event()
-    viewer = DescriptionViewer(description, host=host, port=port)
+    viewer = DescriptionViewer(
+        description,
+        access=access,
+        port=port,
+        refused=lambda origin: print_diagnostic(refused_page("the viewer", origin)),
+    )
     with interrupts.handled_by(stopped.set, status=0):
         viewer.start()
         say(f"{description.name}  {paint(viewer.url, 'bold', 'cyan')}")
+        if access.is_open:
+            say("open to other computers, with the token in the address")
         say(paint("Ctrl-C ends.", "dim"))
         stopped.wait()
     viewer.close()

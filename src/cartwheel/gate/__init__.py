@@ -1,0 +1,1 @@
+"""The gate before the page's and Foxglove's servers: who may connect is decided here."""

@@ -1,0 +1,289 @@
+"""A door in front of a server: it reads a request, judges it, and only then lets bytes through."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import socket
+import threading
+from collections.abc import Callable
+from concurrent.futures import Future
+from http import HTTPStatus
+
+import h11
+
+from cartwheel.errors import Once
+from cartwheel.gate.access import Access, Refusal
+from cartwheel.gate.relay import relay
+from cartwheel.gate.request import HEAD_SIZE, Request, RequestError, next_event, read_request
+
+MOST_WAITING = 128
+"""Connections whose request is not read yet; the oldest goes when another one comes."""
+MOST_ADMITTED = 64
+"""Connections to the server behind."""
+_HEAD_SECONDS = 10.0
+"""For a request's head, for the connection to the server behind, and for its answer's head."""
+_STALL_SECONDS = 60.0
+"""For a client to take a piece of an answer."""
+_FAREWELL_SECONDS = 1.0
+"""In which a client whose request is refused may still send; else it never sees the answer."""
+_END_SECONDS = 2.0
+"""For all connections to end."""
+_ACCEPT_PAUSE = 0.1
+"""s until the next try where no connection could be accepted."""
+_INNER_BUFFER = 1 << 18
+"""Bytes of the system's for what the server behind sends: what its client does not take must
+wait with the server, which drops what is old."""
+_SHOWN = 20
+_SHOWN_LENGTH = 100
+_WEBSOCKET = (b"upgrade", b"connection", b"sec-websocket")
+_CONTENT = (b"content-type", b"content-length", b"content-encoding")
+"""Headers of answers that clients get."""
+_ENTRANCE = (
+    b'<!doctype html><meta charset="utf-8"><meta http-equiv="refresh" content="0;url=/">'
+    b'<title>Cartwheel</title><a href="/">Continue</a>'
+)
+"""Leads to the address without the token. A redirection would not do: a browser that was led
+here by another site would not send the cookie along with it."""
+_KEEP_ALIVE = {"TCP_KEEPIDLE": 60, "TCP_KEEPINTVL": 20, "TCP_KEEPCNT": 3}
+"""s, s and probes until a peer that vanished is given up."""
+
+Refused = Callable[[str], None]
+
+
+class Gate:
+    """Hands on what `access` lets through to the server behind.
+
+    A connection carries one request. It is read whole before the server behind hears of it, and
+    is written anew for it. Behind a websocket's handshake bytes pass as they are.
+
+    Args:
+        listener: Where clients come; it is the gate's from now on.
+        access: The rules.
+        server: Address of the server behind.
+        apps: Origins of programs that may connect beside the server's own pages.
+        refused: Takes a line about each origin that is refused; on the gate's thread.
+    """
+
+    def __init__(
+        self,
+        listener: socket.socket,
+        access: Access,
+        server: tuple[str, int],
+        *,
+        apps: tuple[str, ...] = (),
+        refused: Refused = lambda _: None,
+    ) -> None:
+        self._listener = listener
+        self._access = access
+        self._server = server
+        self._apps = apps
+        self._refused = refused
+        self._is_new = Once(_SHOWN)
+        self._cookie = f"cartwheel-{listener.getsockname()[1]}"
+        self._waiting: dict[asyncio.Task[None], None] = {}
+        self._admitted = 0
+        self._peers: dict[int, str] = {}
+        self._own_loop: asyncio.AbstractEventLoop | None = None
+        self._serving: Future[None] | None = None
+        self._ended = threading.Event()
+
+    def peer(self, port: int) -> str | None:
+        """The client behind a connection that reaches the server from a port."""
+        return self._peers.get(port)
+
+    def start(self, loop: asyncio.AbstractEventLoop | None = None) -> None:
+        """Begins to accept connections.
+
+        Args:
+            loop: That runs, to work on; None makes one on a thread of its own.
+        """
+        if loop is None:
+            loop = self._own_loop = asyncio.new_event_loop()
+            threading.Thread(target=loop.run_forever, name="gate", daemon=True).start()
+        self._serving = asyncio.run_coroutine_threadsafe(self._serve(), loop)
+
+    def close(self) -> None:
+        """Ends all connections; from any thread but the loop's."""
+        if self._serving is None:
+            self._listener.close()
+            return
+        self._serving.cancel()
+        self._ended.wait(_END_SECONDS)
+        if self._own_loop is not None:
+            self._own_loop.call_soon_threadsafe(self._own_loop.stop)
+
+    # -- on the loop
+
+    async def _serve(self) -> None:
+        loop = asyncio.get_running_loop()
+        tasks: set[asyncio.Task[None]] = set()
+        try:
+            while True:
+                try:
+                    sock, address = await loop.sock_accept(self._listener)
+                except OSError:
+                    # No file is free, or the client is gone already.
+                    await asyncio.sleep(_ACCEPT_PAUSE)
+                    continue
+                task = loop.create_task(self._handle(sock, address))
+                tasks.add(task)
+                self._waiting[task] = None
+                task.add_done_callback(lambda task, sock=sock: self._forget(task, sock, tasks))  # type: ignore[misc]
+                if len(self._waiting) > MOST_WAITING:
+                    next(iter(self._waiting)).cancel()
+        finally:
+            self._listener.close()
+            for task in tasks:
+                task.cancel()
+            await asyncio.gather(*tasks, return_exceptions=True)
+            self._ended.set()
+
+    def _forget(
+        self, task: asyncio.Task[None], sock: socket.socket, tasks: set[asyncio.Task[None]]
+    ) -> None:
+        """Also of one that was cancelled before it began."""
+        sock.close()
+        tasks.discard(task)
+        self._waiting.pop(task, None)
+
+    async def _handle(self, sock: socket.socket, address: tuple[str, int]) -> None:
+        with contextlib.suppress(OSError, EOFError, TimeoutError, h11.ProtocolError):
+            _prepare(sock)
+            try:
+                async with asyncio.timeout(_HEAD_SECONDS):
+                    request = await read_request(sock)
+            except RequestError as error:
+                await _refuse(sock, Refusal(status=error.status, text=str(error)))
+                return
+            refusal = self._refusal(request)
+            if refusal is not None:
+                await _refuse(sock, refusal)
+                return
+            self._waiting.pop(asyncio.current_task(), None)  # type: ignore[arg-type]
+            self._admitted += 1
+            try:
+                await self._admit(sock, address, request)
+            finally:
+                self._admitted -= 1
+
+    def _refusal(self, request: Request) -> Refusal | None:
+        found = self._access.refusal(request.asked, apps=self._apps, cookie=self._cookie)
+        if found is None and self._admitted >= MOST_ADMITTED:
+            text = f"{MOST_ADMITTED} connections are open already"
+            return Refusal(status=HTTPStatus.SERVICE_UNAVAILABLE, text=text)
+        if found is not None and found.origin is not None:
+            # A stranger's text: it may hold anything, and be as long as a head.
+            origin = ascii(found.origin)[1:-1][:_SHOWN_LENGTH]
+            if self._is_new(origin):
+                self._refused(origin)
+        return found
+
+    async def _admit(self, sock: socket.socket, address: tuple[str, int], request: Request) -> None:
+        asked = request.asked
+        if not request.upgrades and self._access.has_token_in_query(asked.target):
+            await _let_in(request, sock, f"{self._cookie}={self._access.token}")
+            return
+        with socket.socket(socket.AF_INET, socket.SOCK_STREAM) as server:
+            server.setblocking(False)
+            server.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, _INNER_BUFFER)
+            server.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+            loop = asyncio.get_running_loop()
+            async with asyncio.timeout(_HEAD_SECONDS):
+                await loop.sock_connect(server, self._server)
+            port = server.getsockname()[1]
+            self._peers[port] = f"{address[0]}:{address[1]}"
+            try:
+                await _exchange(sock, server, request)
+            finally:
+                del self._peers[port]
+
+
+async def _exchange(sock: socket.socket, server: socket.socket, request: Request) -> None:
+    """Hands on a request, and its answer; behind a handshake all that follows."""
+    loop = asyncio.get_running_loop()
+    inner = h11.Connection(h11.CLIENT, max_incomplete_event_size=HEAD_SIZE)
+    async with asyncio.timeout(_HEAD_SECONDS):
+        head = inner.send(request.forwarded("localhost"))
+        end = inner.send(h11.EndOfMessage())
+        await loop.sock_sendall(server, (head or b"") + (end or b""))
+        answer = await next_event(inner, server)
+    if isinstance(answer, h11.InformationalResponse):
+        headers = [pair for pair in answer.headers if pair[0].startswith(_WEBSOCKET)]
+        switched = h11.InformationalResponse(status_code=101, headers=headers, reason=answer.reason)
+        await _send(request, sock, switched, inner.trailing_data[0])
+        await loop.sock_sendall(server, request.connection.trailing_data[0])
+        await relay(sock, server)
+        return
+    if not isinstance(answer, h11.Response):
+        return
+    headers = [pair for pair in answer.headers if pair[0] in _CONTENT]
+    headers += _protected(request.asked.host)
+    kept = h11.Response(status_code=answer.status_code, headers=headers, reason=answer.reason)
+    await _send(request, sock, kept)
+    while isinstance(event := await next_event(inner, server), h11.Data):
+        await _send(request, sock, event)
+    await _send(request, sock, h11.EndOfMessage())
+
+
+async def _send(request: Request, sock: socket.socket, event: h11.Event, more: bytes = b"") -> None:
+    loop = asyncio.get_running_loop()
+    async with asyncio.timeout(_STALL_SECONDS):
+        await loop.sock_sendall(sock, (request.connection.send(event) or b"") + more)
+
+
+def _protected(host: str) -> list[tuple[bytes, bytes]]:
+    """Headers with which a browser holds foreign pages off, and the page to its own server.
+
+    viser's client connects to any server that a link to the page names, and runs its scripts.
+
+    Args:
+        host: This server, as the browser knows it.
+    """
+    policy = f"connect-src 'self' ws://{host} wss://{host} data: blob:; frame-ancestors 'self'"
+    return [
+        (b"Content-Security-Policy", f"{policy}; base-uri 'none'; form-action 'none'".encode()),
+        (b"X-Content-Type-Options", b"nosniff"),
+        (b"Referrer-Policy", b"no-referrer"),
+        (b"Connection", b"close"),
+    ]
+
+
+async def _let_in(request: Request, sock: socket.socket, cookie: str) -> None:
+    """Answers the address with the token: the browser keeps it, and goes on without."""
+    headers = [
+        (b"Content-Type", b"text/html; charset=utf-8"),
+        (b"Content-Length", str(len(_ENTRANCE)).encode()),
+        (b"Cache-Control", b"no-store"),
+        (b"Set-Cookie", f"{cookie}; Path=/; HttpOnly; SameSite=Strict".encode()),
+        *_protected(request.asked.host),
+    ]
+    await _send(request, sock, h11.Response(status_code=200, headers=headers))
+    await _send(request, sock, h11.Data(data=_ENTRANCE))
+
+
+async def _refuse(sock: socket.socket, refusal: Refusal) -> None:
+    """Answers whatever was asked."""
+    loop = asyncio.get_running_loop()
+    text = f"{refusal.text}\n".encode(errors="replace")
+    head = (
+        f"HTTP/1.1 {refusal.status.value} {refusal.status.phrase}\r\n"
+        "Content-Type: text/plain; charset=utf-8\r\nX-Content-Type-Options: nosniff\r\n"
+        f"Content-Length: {len(text)}\r\nConnection: close\r\n\r\n"
+    )
+    with contextlib.suppress(TimeoutError):
+        async with asyncio.timeout(_FAREWELL_SECONDS):
+            await loop.sock_sendall(sock, head.encode() + text)
+            sock.shutdown(socket.SHUT_WR)
+            while await loop.sock_recv(sock, HEAD_SIZE):
+                pass
+
+
+def _prepare(sock: socket.socket) -> None:
+    """A client that vanishes without a word is given up; small messages go at once."""
+    sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+    sock.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)
+    for name, value in _KEEP_ALIVE.items():
+        # Not every system has each of them.
+        if hasattr(socket, name):
+            sock.setsockopt(socket.IPPROTO_TCP, getattr(socket, name), value)
