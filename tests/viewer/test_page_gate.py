@@ -96,6 +96,9 @@ def test_on_all_addresses_the_page_wants_its_token(
 ) -> None:
     with running(tmp_path, "--host", "0.0.0.0", "--allow-origin", "http://lab") as started:
         port = started.port
+        assert started.process.stdout is not None
+        told = started.process.stdout.readline()
+        assert f"open to other computers, with the token: http://{socket.gethostname()}:" in told
         monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path))
         (entry,) = registered()
         assert entry.port == port and entry.url is not None
@@ -107,6 +110,3 @@ def test_on_all_addresses_the_page_wants_its_token(
         for origin in (None, f"http://127.0.0.1:{port}", "http://lab"):
             with browsing(port, additional_headers=cookie, origin=origin) as browser:
                 upload(browser)
-        started.process.terminate()
-        out, _ = started.process.communicate(timeout=60)
-        assert f"open to other computers, with the token: http://{socket.gethostname()}:" in out
