@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import tempfile
 from collections.abc import Callable, Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -53,6 +54,13 @@ def temporary_files(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
         patch.setenv("TMPDIR", folder)
         patch.setattr(tempfile, "tempdir", folder)
         yield
+
+
+@pytest.fixture
+def runtime_folder() -> Iterator[Path]:
+    """A folder for sockets: its path is short enough for them, wherever tests keep their files."""
+    with tempfile.TemporaryDirectory(prefix="cw", dir="/tmp") as folder:
+        yield Path(folder)
 
 
 class Make:

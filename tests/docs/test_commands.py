@@ -34,11 +34,10 @@ ASKS = ("cartwheel topic ", "cartwheel status", "cartwheel models", "cartwheel s
 class Reader:
     """Follows one page."""
 
-    def __init__(self, tmp_path: Path) -> None:
+    def __init__(self, tmp_path: Path, runtime: Path) -> None:
         self.folder = tmp_path
         self._tmp_path = tmp_path
-        self._runtime = tmp_path / "runtime"
-        self._runtime.mkdir(mode=0o700)
+        self._runtime = runtime
         # pip puts `cartwheel` beside the interpreter that runs the tests.
         path = f"{Path(sys.executable).parent}:{os.environ['PATH']}"
         self._environment = {
@@ -200,8 +199,8 @@ def matches(expected: str, output: str) -> bool:
 
 
 @pytest.fixture
-def reader(tmp_path: Path) -> Iterator[Reader]:
-    made = Reader(tmp_path)
+def reader(tmp_path: Path, runtime_folder: Path) -> Iterator[Reader]:
+    made = Reader(tmp_path, runtime_folder)
     yield made
     made.close()
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import fcntl
 import json
 import os
 import shutil
@@ -42,13 +43,17 @@ def overlay() -> Overlay:
     if shutil.which("catkin_make") is None:
         pytest.skip("catkin is not installed (tools/setup.sh ros1 does it)")
     venv = Path(sys.executable).parent.parent
-    built = subprocess.run(
-        [ROOT / "tools" / "build_ros1.sh"],
-        env={**os.environ, "VENV": str(venv)},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    (ROOT / "ros1" / "build").mkdir(exist_ok=True)
+    with (ROOT / "ros1" / "build" / "tests.lock").open("w") as lock:
+        # Another process of the same run may be building it.
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        built = subprocess.run(
+            [ROOT / "tools" / "build_ros1.sh"],
+            env={**os.environ, "VENV": str(venv)},
+            capture_output=True,
+            text=True,
+            check=False,
+        )
     assert built.returncode == 0, built.stderr
     kept = {key: os.environ[key] for key in ("HOME", "LANG", "USER") if key in os.environ}
     shell = subprocess.run(
@@ -162,16 +167,14 @@ def reachable(port: int) -> bool:
 
 
 @pytest.fixture
-def ros(overlay: Overlay, tmp_path: Path) -> Iterator[Ros]:
-    runtime = tmp_path / "run"
-    runtime.mkdir(mode=0o700)
+def ros(overlay: Overlay, tmp_path: Path, runtime_folder: Path) -> Iterator[Ros]:
     made = Ros(
         environment={
             **overlay.environment,
             "ROS_MASTER_URI": f"http://127.0.0.1:{free_port()}",
             "ROS_HOSTNAME": "127.0.0.1",
             "ROS_LOG_DIR": str(tmp_path / "log"),
-            "XDG_RUNTIME_DIR": str(runtime),
+            "XDG_RUNTIME_DIR": str(runtime_folder),
             MARK: uuid.uuid4().hex,
         },
         folder=tmp_path,

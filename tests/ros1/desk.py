@@ -6,6 +6,7 @@ import contextlib
 import os
 import shutil
 import subprocess
+import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -25,6 +26,9 @@ class Desk:
     def __init__(self, folder: Path, display: str) -> None:
         self.folder = folder
         self.display = display
+        self._open = contextlib.ExitStack()
+        # Sockets have short paths.
+        runtime = self._open.enter_context(tempfile.TemporaryDirectory(prefix="cw", dir="/tmp"))
         self.environment = {
             **{key: os.environ[key] for key in ("PATH", "LANG") if key in os.environ},
             "PATH": f"/usr/bin:/bin:{os.environ['PATH']}",
@@ -32,10 +36,8 @@ class Desk:
             "ROS_MASTER_URI": f"http://127.0.0.1:{free_port()}",
             "ROS_HOSTNAME": "127.0.0.1",
             "LIBGL_ALWAYS_SOFTWARE": "1",
-            "XDG_RUNTIME_DIR": str(folder / "runtime"),
+            "XDG_RUNTIME_DIR": runtime,
         }
-        (folder / "runtime").mkdir(mode=0o700)
-        self._open = contextlib.ExitStack()
 
     def terminal(self, *, display: bool = False) -> Terminal:
         """A new one in the workspace, with its setup sourced."""
