@@ -60,14 +60,18 @@ class Desk:
 @contextlib.contextmanager
 def open_desk(folder: Path) -> Iterator[Desk]:
     """A desk with a screen in memory where Xvfb is installed."""
-    display = f":{200 + os.getpid() % 700}"
+    display = ""
     screen = None
     if shutil.which("Xvfb"):
+        # It takes a number that nobody has, and writes it once it can be used.
         screen = subprocess.Popen(
-            ["Xvfb", display, "-screen", "0", "1280x900x24", "-nolisten", "tcp"],
-            stdout=subprocess.DEVNULL,
+            ["Xvfb", "-displayfd", "1", "-screen", "0", "1280x900x24", "-nolisten", "tcp"],
+            stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
+            text=True,
         )
+        assert screen.stdout is not None
+        display = f":{screen.stdout.readline().strip()}"
     desk = Desk(folder, display)
     try:
         yield desk
