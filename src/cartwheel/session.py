@@ -33,6 +33,7 @@ class Session:
         lenient: Leave out, and report, plugins that name what their model does not have, as
             Gazebo does; else such a model is refused.
         bridge: Files of ros_gz_bridge, whose names topics have.
+        allow_path: Folders whose files clients of its services may name.
 
     Raises:
         CartwheelError: One of these cannot be used.
@@ -46,7 +47,9 @@ class Session:
         strict: bool = False,
         lenient: bool = False,
         bridge: Sequence[Path] = (),
+        allow_path: Sequence[Path] = (),
     ) -> None:
+        self.allow_path = tuple(allow_path)
         self.graph = Graph()
         for path in bridge:
             GzBridge.of(self.graph).add(read_bridge(path))

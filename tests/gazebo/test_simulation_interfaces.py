@@ -178,7 +178,9 @@ def test_many_are_spawned_and_each_is_answered(make):
 
 
 def test_what_is_listed_can_be_spawned(make, tmp_path: Path):
-    api = interfaces(make.world())
+    world = make.world()
+    world.session.allow_path = (tmp_path, Path("/nowhere"))
+    api = interfaces(world)
     (tmp_path / "a rock").mkdir()
     (tmp_path / "a rock" / "model.sdf").write_text(
         '<sdf version="1.6"><model name="rock"><link name="l"/></model></sdf>'

@@ -126,13 +126,13 @@ def test_the_text_is_read_on_the_callers_thread(api, monkeypatch):
     from cartwheel.gazebo import spawning
 
     threads = []
-    load_text = spawning.load_text
+    load_plain = spawning.load_plain
 
     def load(*args, **more):
         threads.append(threading.current_thread())
-        return load_text(*args, **more)
+        return load_plain(*args, **more)
 
-    monkeypatch.setattr(spawning, "load_text", load)
+    monkeypatch.setattr(spawning, "load_plain", load)
     api.done("spawn_urdf_model", model_xml=URDF)
     assert threads
     assert threads[0] is not threading.current_thread()

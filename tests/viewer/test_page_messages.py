@@ -134,6 +134,27 @@ def note(text: str):
     return lambda m: "Notification" in m["type"] and text in str(m)
 
 
+def test_an_upload_reads_nothing_of_this_machine(simulation, tmp_path):
+    (tmp_path / "secret.yaml").write_text("word: hidden")
+    attacks = {
+        f"${{xacro.load_yaml('{tmp_path}/secret.yaml')['word']}}": "outside of the folders",
+        "$(env HOME)": "is not set",
+        "${().__class__.__base__.__subclasses__()}": "not allowed in an",
+        "${10**10**10}": "4096 bits",
+    }
+    with browsing(simulation.port) as browser:
+        browser.look()
+        upload = browser.control("Open a file")
+        for attack, answer in attacks.items():
+            content = (
+                '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'
+                f'<link name="{attack}"/></robot>'
+            ).encode()
+            browser.send(start(upload, answer, len(content)) | {"filename": "r.xacro"})
+            browser.send(part(upload, answer, 0, content))
+            browser.hear(note(answer))
+
+
 def test_uploads_are_bounded_while_they_arrive(simulation):
     with browsing(simulation.port) as browser:
         browser.look()

@@ -32,6 +32,15 @@ PackagePath = Annotated[
         help="Look for packages and models here first. May be given again.",
     ),
 ]
+AllowPath = Annotated[
+    list[Path] | None,
+    typer.Option(
+        "--allow-path",
+        metavar="FOLDER",
+        help="Folder whose files services may name, besides packages and models. May be given "
+        "again.",
+    ),
+]
 X = Annotated[float | None, typer.Option("-x", metavar="M", help="Place in the world.")]
 Y = Annotated[float | None, typer.Option("-y", metavar="M")]
 Z = Annotated[float | None, typer.Option("-z", metavar="M")]

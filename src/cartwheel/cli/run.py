@@ -44,6 +44,7 @@ def run(
     yaw: arguments.Yaw = None,
     model: arguments.Model = None,
     package_path: arguments.PackagePath = None,
+    allow_path: arguments.AllowPath = None,
     controllers: Annotated[
         list[Path] | None,
         typer.Option(
@@ -143,6 +144,7 @@ def run(
             place=arguments.place(x=x, y=y, z=z, roll=roll, pitch=pitch, yaw=yaw),
             model=model,
             package_path=tuple(package_path or ()),
+            allow_path=tuple(allow_path or ()),
             controllers=tuple(controllers or ()),
             bridge=tuple(bridge or ()),
             ros1_node=ros1_node if ros1 else None,

@@ -57,13 +57,18 @@ def cached(uri: str, environment: Mapping[str, str]) -> Path | None:
     return None
 
 
+def caches(environment: Mapping[str, str]) -> list[Path]:
+    """Gazebo's caches, the one that a variable names first."""
+    roots = [environment[each] for each in _VARIABLES if environment.get(each)]
+    return [Path(root).expanduser() for root in (*roots, *_CACHES)]
+
+
 def _folders(found: re.Match[str], environment: Mapping[str, str]) -> Iterator[Path]:
     owner, name = unquote(found["owner"]), unquote(found["name"])
-    roots = [environment[each] for each in _VARIABLES if environment.get(each)]
-    for root in (*roots, *_CACHES):
+    for root in caches(environment):
         for host in dict.fromkeys((found["host"].lower(), *_HOSTS)):
             for spelled in dict.fromkeys(((owner, name), (owner.lower(), name.lower()))):
-                yield Path(root).expanduser() / host / spelled[0] / "models" / spelled[1]
+                yield root / host / spelled[0] / "models" / spelled[1]
 
 
 def _numbered(folder: Path) -> list[Path]:

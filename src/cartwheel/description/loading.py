@@ -9,6 +9,8 @@ from pathlib import Path
 from cartwheel.description import xml
 from cartwheel.description.model import RobotDescription, WorldDescription
 from cartwheel.description.packages import Packages
+from cartwheel.description.plain import refuse_xacro
+from cartwheel.description.reach import Reach
 from cartwheel.description.shipped import find_description
 from cartwheel.description.xml import Node
 from cartwheel.description.xml_text import write_xml
@@ -43,6 +45,7 @@ def load(
     *,
     arguments: Mapping[str, str] | None = None,
     package_path: Sequence[Path] = (),
+    reach: Reach | None = None,
 ) -> RobotDescription | WorldDescription:
     """Reads a xacro, URDF, SDF or world file; its content, not its name, says which it is.
 
@@ -50,11 +53,12 @@ def load(
         path: The file, a folder with a model in it, or the name of something shipped.
         arguments: The values of ``name:=value`` for a xacro.
         package_path: Further folders in which packages and models are looked for.
+        reach: What the file may read, where it is not the user's own.
 
     Raises:
         DescriptionError: it cannot be used; says what is wrong, where, and the likely fix.
     """
-    return understand(open_description(path, arguments or {}, package_path))
+    return understand(open_description(path, arguments or {}, package_path, reach))
 
 
 def load_robot(
@@ -62,9 +66,10 @@ def load_robot(
     *,
     arguments: Mapping[str, str] | None = None,
     package_path: Sequence[Path] = (),
+    reach: Reach | None = None,
 ) -> RobotDescription:
     """Reads a file as `load` does, one that must describe a robot or model."""
-    found = load(path, arguments=arguments, package_path=package_path)
+    found = load(path, arguments=arguments, package_path=package_path, reach=reach)
     if isinstance(found, WorldDescription):
         raise DescriptionError(
             f'describes the world "{found.name}", not a robot',
@@ -109,17 +114,50 @@ def load_text(
     if not text.strip():
         raise DescriptionError("the description is empty", origin=Origin(file=file))
     near = None if file.startswith("<") else Path(file)
-    opened = _expand(text, file, Packages(near, package_path), arguments or {})
-    return understand(opened)
+    values = arguments or {}
+    packages = Packages(near, package_path, arguments=values.values())
+    return understand(_expand(text, file, packages, values))
+
+
+def load_plain(
+    text: str | bytes, *, file: str, package_path: Sequence[Path] = (), reach: Reach | None = None
+) -> RobotDescription | WorldDescription:
+    """Reads a description that came over a wire: nothing in it is expanded but ``$(find …)``.
+
+    Args:
+        text: The XML.
+        file: What errors call it.
+        package_path: As for `load`.
+        reach: What it may read besides packages and models.
+
+    Raises:
+        DescriptionError: it cannot be used, or it has to be expanded first.
+    """
+    if not text.strip():
+        raise DescriptionError("the description is empty", origin=Origin(file=file))
+    packages = Packages(None, package_path, reach=reach or Reach())
+    root = xml.parse(text, file)
+    changed = refuse_xacro(root, packages)
+    if changed:
+        text = write_xml(root)
+    elif isinstance(text, bytes):
+        text = text.decode("utf-8", "replace")
+    return understand(
+        Opened(root=root, packages=packages, text=text, diagnostics=(), files=(file,))
+    )
 
 
 def open_description(
-    path: Path | str, arguments: Mapping[str, str], package_path: Sequence[Path] = ()
+    path: Path | str,
+    arguments: Mapping[str, str],
+    package_path: Sequence[Path] = (),
+    reach: Reach | None = None,
 ) -> Opened:
     """Finds and reads a file, and expands its xacro."""
     found = find_description(path, package_path)
     content = xml.read_bytes(found)
-    return _expand(content, xml.shown_path(found), Packages(found, package_path), arguments)
+    packages = Packages(found, package_path, reach=reach, arguments=arguments.values())
+    return _expand(content, xml.shown_path(found), packages, arguments)
 
 
 def _expand(

@@ -56,6 +56,10 @@ class Node:
         """All attributes; looking here marks none as read."""
         return self._attributes
 
+    def set_attributes(self, values: Mapping[str, str]) -> None:
+        """Puts others in the place of all attributes."""
+        self._attributes = dict(values)
+
     def fail(self, message: str, hint: str | None = None) -> DescriptionError:
         """An error at this place, to be raised by the caller."""
         return DescriptionError(message, origin=self.origin, hint=hint)

@@ -8,15 +8,24 @@ from __future__ import annotations
 
 import os
 import re
-import tempfile
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from pathlib import Path
+from typing import NoReturn
 from urllib.parse import unquote
 
 from cartwheel.description import fuel, numbers
 from cartwheel.description.installed import source_of
 from cartwheel.description.missing import advice, also_missing
+from cartwheel.description.reach import (
+    NAME_IT,
+    Reach,
+    is_below,
+    is_common,
+    is_inside,
+    is_named,
+    real,
+)
 from cartwheel.errors import DescriptionError, Origin
 
 MAX_ENTRIES = 500
@@ -34,7 +43,7 @@ _IGNORED = frozenset({"CATKIN_IGNORE", "COLCON_IGNORE", "AMENT_IGNORE"})
 _SKIPPED = frozenset({"build", "devel", "log", "node_modules", "__pycache__", "proc", "sys", "dev"})
 _NAME = re.compile(rb"<name>\s*([^<>\s]+)\s*</name>")
 _COMMENT = re.compile(rb"<!--.*?-->", re.DOTALL)
-_FIND = re.compile(r"\$\(find(?:-pkg-share)?\s+([^\s()]+)\s*\)")
+FIND = re.compile(r"\$\(find(?:-pkg-share)?\s+([^\s()]+)\s*\)")
 
 
 def share() -> Path:
@@ -56,6 +65,8 @@ class Packages:
         package_path: Further folders, searched before everything else: packages themselves,
             folders of packages, or folders of models.
         environment: For tests; `os.environ` otherwise.
+        reach: What it may read, where it came over a wire; None for a file that the user named.
+        arguments: Values of the user's arguments, which may name files.
     """
 
     def __init__(
@@ -63,7 +74,12 @@ class Packages:
         file: Path | None = None,
         package_path: Sequence[Path] = (),
         environment: Mapping[str, str] | None = None,
+        *,
+        reach: Reach | None = None,
+        arguments: Iterable[str] = (),
     ) -> None:
+        self.reach = reach
+        self._arguments = tuple(arguments)
         self.file = file.absolute() if file is not None else None
         self.package_path = tuple(Path(path).expanduser().absolute() for path in package_path)
         self._environment = os.environ if environment is None else environment
@@ -125,11 +141,14 @@ class Packages:
         """
         candidates = list(dict.fromkeys(self._candidates(uri.strip(), origin)))
         for path in candidates:
-            if _is_file(path) or (folder and _is_dir(path)):
-                return path
-            plain = Path(unquote(str(path)))
-            if plain != path and _is_file(plain):
-                return plain
+            for each in dict.fromkeys((path, Path(unquote(str(path))))):
+                # Whether a file exists is nothing for those who may not read it.
+                if self.reach is not None and not self.may_read(each):
+                    continue
+                if _is_file(each) or (folder and each == path and _is_dir(each)):
+                    return each
+        if self.reach is not None and not any(map(self.may_read, candidates)):
+            self._refuse(f'the {what} "{uri}"', origin)
         raise DescriptionError(
             f'the {what} "{uri}" does not exist', origin=origin, hint=_absent(candidates)
         )
@@ -144,8 +163,75 @@ class Packages:
         folders += [Path("~/.gazebo/models").expanduser(), share() / "models", share() / "robots"]
         return list(dict.fromkeys(folder for folder in folders if _is_dir(folder)))
 
+    def may_read(self, path: Path) -> bool:
+        """Whether the description may read a file: one of its workspace or of a package.
+
+        What came over a wire may read files of packages and models, and those of its reach.
+        """
+        if any(is_inside(path, root) for root in self._trusted()):
+            return True
+        if any(is_below(path, root) for root in self._own) or self._in_package(path):
+            return True
+        return self.reach is None and is_named(path, self._arguments, self.folder)
+
+    @cached_property
+    def _own(self) -> tuple[Path, ...]:
+        """Folders whose files it may read, if they do not lead elsewhere by links."""
+        if self.reach is not None:
+            return self.reach.folders
+        file = real(self.file) if self.file is not None else None
+        folders = [self.folder, *([file.parent] if file is not None else [])]
+        return tuple(dict.fromkeys(root for each in folders for root in self._workspace(each)))
+
+    def require(self, path: Path, what: str, origin: Origin | None = None) -> None:
+        """Refuses a file that the description may not read.
+
+        Raises:
+            DescriptionError: It is such a file; says which files may be read.
+        """
+        if not self.may_read(path):
+            self._refuse(f'{what} "{path}"', origin)
+
+    def _refuse(self, what: str, origin: Origin | None) -> NoReturn:
+        raise DescriptionError(
+            f"{what} is outside of the folders that the description may read",
+            origin=origin,
+            hint=self.reach.hint if self.reach is not None else NAME_IT,
+        )
+
+    def _trusted(self) -> Iterator[Path]:
+        """Folders that the user named, by options and variables."""
+        yield from self.package_path
+        yield from self._environment_roots()
+        for variable in _RESOURCES:
+            yield from self._paths(variable)
+        yield from (Path("~/.gazebo/models").expanduser(), *fuel.caches(self._environment))
+        yield from (share() / each for each in ("models", "robots", "worlds"))
+
+    def _workspace(self, folder: Path) -> list[Path]:
+        """The folders around a file whose files it may read."""
+        return [
+            each
+            for each in self._around(folder)
+            if each == folder
+            or each.parent != Path(each.anchor)
+            or any((each / name).exists() for name in ("src", "package.xml"))
+        ]
+
+    def _in_package(self, path: Path) -> bool:
+        """Whether a file is in a package that is found by its name."""
+        file = real(path)
+        if file is None:
+            return False
+        for folder in file.parents:
+            name = _package_name(folder)
+            if name is not None:
+                known = self._known(name)
+                return known is not None and real(known) == folder and is_below(path, folder)
+        return False
+
     def _candidates(self, uri: str, origin: Origin | None) -> Iterator[Path]:
-        uri = _FIND.sub(lambda match: str(self.find(match[1], origin)), uri)
+        uri = FIND.sub(lambda match: str(self.find(match[1], origin)), uri)
         scheme, separator, rest = uri.partition("://")
         if not separator:
             yield from self._relative(uri, origin)
@@ -245,18 +331,19 @@ class Packages:
 
     def _ancestors(self) -> list[Path]:
         """The folders above the file, nearest first, that may be a workspace."""
-        parents = [self.folder, *self.folder.parents]
-        home = Path.home()
-        # None of them is a workspace: they are slow to read, and in the one for temporary
-        # files lies what anybody put there.
-        none = {home, home.parent, Path(tempfile.gettempdir()), Path(self.folder.anchor)}
+        return self._around(self.folder)
+
+    @staticmethod
+    def _around(folder: Path) -> list[Path]:
+        parents = [folder, *folder.parents]
         levels = MAX_LEVELS_UP
         for index, parent in enumerate(parents):
             if (parent / "package.xml").is_file():
                 levels = max(levels, index + MAX_LEVELS_UP)
         chosen = []
         for parent in parents[:levels]:
-            if parent in none:
+            # They are slow to read, and in the one for temporary files is what anybody put there.
+            if is_common(parent):
                 break
             chosen.append(parent)
         return chosen or parents[:1]

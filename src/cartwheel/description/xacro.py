@@ -11,7 +11,9 @@ become diagnostics.
 from __future__ import annotations
 
 import glob
+import itertools
 import keyword
+import os
 import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
@@ -43,6 +45,8 @@ from cartwheel.errors import (
 MAX_ELEMENTS = 100_000
 """Elements that macros may make: some fifty times what the largest robots have."""
 
+MAX_MATCHES = 1000
+"""Files that one include with a wildcard takes."""
 MAX_PARAMETERS = 10_000
 """Characters of the parameters that a macro declares."""
 
@@ -407,11 +411,20 @@ def _bind(module: ModuleType, run: _Run) -> None:
             space.filestack.pop()
             missing = FileNotFoundError(2, "no such file", filename)
             raise space.XacroException("included file", exc=missing)
+        run.packages.require(path, "the included file", run.origin())
         return _parse(xml.read_bytes(path), xml.shown_path(path), run)
 
     def abs_filename_spec(given: str) -> str:
         path = original.abs_filename_spec(given)
         return str(path) if glob.has_magic(path) else str(source_of(Path(path)))
+
+    def matching(pattern: str) -> list[str]:
+        fixed = Path(re.split(r"[][*?]", pattern)[0] + "_").parent
+        if ".." in Path(pattern[len(str(fixed)) :]).parts:
+            raise DescriptionError(f'"{pattern}" has .. after a wildcard')
+        if fixed.exists():
+            run.packages.require(fixed, "the folder", run.origin())
+        return list(itertools.islice(glob.iglob(pattern), MAX_MATCHES))  # noqa: PTH207
 
     def eval_extension(text: str) -> str:
         text = text.replace("$(find-pkg-share ", "$(find ")
@@ -484,6 +497,8 @@ def _bind(module: ModuleType, run: _Run) -> None:
 
     def load_yaml(filename: str) -> object:
         path = Path(abs_filename_spec(str(filename)))
+        if path.exists():
+            run.packages.require(path, "the file", run.origin())
         try:
             content = yaml_text.read(path)
         except FileNotFoundError:
@@ -566,7 +581,9 @@ def _bind(module: ModuleType, run: _Run) -> None:
         is_valid_name, parse_macro_arg, load_yaml,
     )  # fmt: skip
     vars(module).update({function.__name__: function for function in functions})
-    vars(module).update(replace_node=_replace)
+    vars(module).update(replace_node=_replace, glob=SimpleNamespace(glob=matching))
+    if run.packages.reach is not None and not run.packages.reach.environment:
+        substitution.os = SimpleNamespace(environ={}, path=os.path)
     substitution._eval_find = lambda name: str(run.packages.find(name, run.origin()))
 
     evaluator = Evaluator(run.budget, namespace=space.NameSpace, dotted=space.YamlDictWrapper)

@@ -10,8 +10,9 @@ from urllib.parse import unquote
 
 from cartwheel.description import xml
 from cartwheel.description.packages import Packages
+from cartwheel.description.reach import Reach
 from cartwheel.description.shipped import SUFFIXES, find_description, shipped_descriptions
-from cartwheel.errors import DescriptionError
+from cartwheel.errors import DescriptionError, one_line
 from cartwheel.gazebo.entity_info import has_tags
 from cartwheel.gazebo.requests import pose_message
 from cartwheel.gazebo.results import FAILED, NOT_FOUND, PACKAGE, UNSUPPORTED, Handler, Refusal
@@ -27,11 +28,12 @@ class Resources:
     Args:
         simulation: Whose world.
         package_path: Where models are looked for first.
+        reach: Folders that clients may name, besides those of packages and models.
     """
 
-    def __init__(self, simulation: Simulation, package_path: Sequence[Path]) -> None:
+    def __init__(self, simulation: Simulation, package_path: Sequence[Path], reach: Reach) -> None:
         self._simulation = simulation
-        self._package_path = tuple(package_path)
+        self._packages = Packages(None, package_path, reach=reach)
 
     def offers(self) -> list[tuple[str, str, Handler, bool]]:
         """The services: name, type, handler, and whether it runs on a thread of its own."""
@@ -46,20 +48,19 @@ class Resources:
         ]
 
     def _spawnables(self, request: Any, response: Any) -> None:
-        unknown, given = _folders(request.sources)
-        folders = Packages(None, self._package_path).model_folders()
+        wrong, given = self._folders(request.sources)
+        folders = self._packages.model_folders()
         for path, name in _described("model", (*folders, *given)):
             spawnable = zero(f"{PACKAGE}/msg/Spawnable")
             spawnable.entity_resource.uri = path.as_uri()
             spawnable.description = name
             response.spawnables.append(spawnable)
-        if unknown:
-            response.result.error_message = f"no such folder: {', '.join(unknown)}"
+        response.result.error_message = "; ".join(wrong)
 
     def _worlds(self, request: Any, response: Any) -> None:
-        unknown, given = _folders(request.additional_sources)
-        if unknown and not request.continue_on_error:
-            raise Refusal(FAILED, f"no such folder: {', '.join(unknown)}")
+        wrong, given = self._folders(request.additional_sources)
+        if wrong and not request.continue_on_error:
+            raise Refusal(FAILED, "; ".join(wrong))
         if has_tags([], request.filter):
             response.worlds = [
                 _world(name, uri=path.as_uri()) for path, name in _described("world", given)
@@ -82,6 +83,22 @@ class Resources:
             raise Refusal(NOT_FOUND, f'the world has no place "{request.name}"')
         raise Refusal(UNSUPPORTED, "places have no bounds")
 
+    def _folders(self, sources: Iterable[str]) -> tuple[list[str], list[Path]]:
+        """What is wrong with some of the sources, and the folders that the others are."""
+        wrong, found = [], []
+        for source in sources:
+            folder = Path(unquote(source.removeprefix("file://")))
+            try:
+                self._packages.require(folder, "the folder")
+            except DescriptionError as error:
+                wrong.append(one_line(error))
+                continue
+            if "\0" not in source and folder.is_dir():
+                found.append(folder)
+            else:
+                wrong.append(f'no such folder: "{source}"')
+        return wrong, found
+
     def _load(self, _: Any, __: Any) -> None:
         raise Refusal(UNSUPPORTED, "the world stays what it is: start another simulation")
 
@@ -91,18 +108,6 @@ def _world(name: str, *, uri: str) -> Any:
     made = zero(f"{PACKAGE}/msg/WorldResource")
     made.name, made.world_resource.uri = name, uri
     return made
-
-
-def _folders(sources: Iterable[str]) -> tuple[list[str], list[Path]]:
-    """Those of the sources that are no folders, and the folders."""
-    unknown, found = [], []
-    for source in sources:
-        folder = Path(unquote(source.removeprefix("file://"))).expanduser()
-        if "\0" not in source and folder.is_dir():
-            found.append(folder)
-        else:
-            unknown.append(f'"{source}"')
-    return unknown, found
 
 
 def _described(kind: Kind, folders: Iterable[Path]) -> Iterator[tuple[Path, str]]:

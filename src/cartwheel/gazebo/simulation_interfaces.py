@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from cartwheel.description import load
 from cartwheel.description.model import RobotDescription
 from cartwheel.errors import DescriptionError, GraphError, one_line
 from cartwheel.gazebo.entities import Entities
@@ -77,7 +76,7 @@ class SimulationInterfaces:
         self._package_path = tuple(package_path)
         self._infos = EntityInfos(session.simulation, entities)
         self._stepping = Stepping(session, spawning)
-        self._resources = Resources(session.simulation, package_path)
+        self._resources = Resources(session.simulation, package_path, spawning.reach)
         self._original: frozenset[str] = frozenset()
         self._stopped = False
         """Whether it was stopped and not paused since, as far as requests say."""
@@ -221,7 +220,7 @@ class SimulationInterfaces:
         found: object
         try:
             if resource.uri:
-                found = load(resource.uri, package_path=self._package_path)
+                found = self._spawning.load(resource.uri)
             elif resource.resource_string:
                 found = self._spawning.read(name, resource.resource_string)
             else:

@@ -10,9 +10,13 @@ from concurrent.futures import Future
 from concurrent.futures import TimeoutError as NotYet
 from pathlib import Path
 from typing import Any, TypeVar
+from urllib.parse import unquote
 
-from cartwheel.description import load_text
+from cartwheel.description import load, load_plain
 from cartwheel.description.model import Light, RobotDescription, WorldDescription
+from cartwheel.description.packages import Packages
+from cartwheel.description.reach import Reach
+from cartwheel.description.shipped import find_description
 from cartwheel.errors import CartwheelError, DescriptionError, WorldError
 from cartwheel.gazebo.entities import Entities
 from cartwheel.gazebo.requests import Answer, Offer, pose
@@ -44,6 +48,7 @@ class Spawning:
         self._simulation = session.simulation
         self._entities = entities
         self.package_path = tuple(package_path)
+        self.reach = Reach(folders=session.allow_path)
 
     def offers(self) -> list[Offer]:
         """The services."""
@@ -170,8 +175,11 @@ class Spawning:
         if alone is not None:
             # SDF knows lights in worlds and links; the lines stay what they are.
             text = f'{alone[1]}<world name="of the light">{alone[2]}</world>{alone[3]}'
-        found = load_text(
-            text, file=f"<model_xml of {name or 'the model'}>", package_path=self.package_path
+        found = load_plain(
+            text,
+            file=f"<model_xml of {name or 'the model'}>",
+            package_path=self.package_path,
+            reach=self.reach,
         )
         if isinstance(found, WorldDescription) and alone is not None and len(found.lights) == 1:
             return found.lights[0]
@@ -184,6 +192,21 @@ class Spawning:
                 hint="Start the simulation with it, and spawn models into it.",
             )
         return found
+
+    def load(self, uri: str) -> RobotDescription | WorldDescription:
+        """What a file describes that a service names.
+
+        Raises:
+            DescriptionError: It is no description, or outside of the folders that clients may name.
+        """
+        packages = Packages(None, self.package_path, reach=self.reach)
+        named = Path(unquote(uri.removeprefix("file://")))
+        # Before a look at the file: whether it exists is nothing for who may not read it.
+        if named.is_absolute() or uri.startswith("file:") or ".." in named.parts:
+            packages.require(named, "the file")
+        path = find_description(uri, self.package_path)
+        packages.require(path, "the file")
+        return load(path, package_path=self.package_path)
 
     def on_owner(self, function: Callable[[], T]) -> T:
         """Runs a function on the owner's thread and waits for it, as long as there is an owner."""

@@ -6,7 +6,6 @@ import dataclasses
 import re
 from typing import Any
 
-from cartwheel.description import load_robot
 from cartwheel.description.model import Light, RobotDescription
 from cartwheel.errors import GraphError
 from cartwheel.gazebo.entities import Entities
@@ -79,7 +78,10 @@ class WorldServices:
         if asked.sdf:
             return self._spawning.read(name, asked.sdf)
         if asked.sdf_filename:
-            return load_robot(asked.sdf_filename, package_path=self._spawning.package_path)
+            found = self._spawning.load(asked.sdf_filename)
+            if not isinstance(found, RobotDescription):
+                raise GraphError("sdf_filename names a world, not a model")
+            return found
         return self._spawning.on_owner(lambda: self._entities.model(asked.clone_name))
 
     def _remove(self, request: Any) -> Answer:

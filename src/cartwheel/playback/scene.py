@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from cartwheel.description import load_text
+from cartwheel.description import load_plain
 from cartwheel.description.kinematics import joint_positions, link_poses
 from cartwheel.description.model import RobotDescription, WorldDescription
 from cartwheel.errors import CartwheelError, Diagnostic
@@ -72,7 +72,7 @@ class PlayedScene:
             return
         self._texts[topic] = text
         try:
-            found = load_text(text, file=f"<{topic}>", package_path=self._package_path)
+            found = load_plain(text, file=f"<{topic}>", package_path=self._package_path)
         except CartwheelError as error:
             self._note(f"the robot of {topic} is not shown: {error.message}")
             return

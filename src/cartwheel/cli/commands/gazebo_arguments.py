@@ -9,7 +9,7 @@ import argparse
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import PurePath
+from pathlib import Path, PurePath
 from typing import NoReturn
 
 from cartwheel.cli.console import print_warning, say, say_version
@@ -59,6 +59,8 @@ class ServerArguments(ClientArguments):
     seed: int = 0
     iterations: int | None = None
     """Steps to make, then end."""
+    allow_path: tuple[Path, ...] = ()
+    """Folders whose files services may name."""
 
 
 class _Parser(argparse.ArgumentParser):
@@ -91,6 +93,8 @@ def parse_server(program: str, words: Sequence[str]) -> ServerArguments:
     add("--iters", type=_whole, metavar="N", help="make so many steps, then end")
     add("-s", "--server-plugin", action="append", metavar="FILE", default=[],
         help="those of gazebo_ros are part of Cartwheel; others do not apply")  # fmt: skip
+    add("--allow-path", action="append", metavar="FOLDER", default=[], type=Path,
+        help="services may name its files, besides those of packages and models")  # fmt: skip
     add("--lockstep", action="store_true", help="accepted: cameras never miss a frame here")
     add("-e", "--physics", metavar="ENGINE", default="ode",
         help="accepted: MuJoCo computes, by the parameters for ode")  # fmt: skip
@@ -118,6 +122,7 @@ def parse_server(program: str, words: Sequence[str]) -> ServerArguments:
         verbose=given.verbose or program == "debug",
         seed=abs(given.seed),
         iterations=given.iters,
+        allow_path=tuple(given.allow_path),
         ros=tuple(word for word in words if ":=" in word),
         notes=tuple(_server_notes(program, given)),
         help=parser.format_help() if given.help else "",

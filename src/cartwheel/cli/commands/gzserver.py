@@ -49,6 +49,7 @@ def translated(program: str, arguments: ServerArguments) -> Options:
         seed=arguments.seed,
         steps=arguments.iterations,
         verbose=arguments.verbose,
+        allow_path=arguments.allow_path,
         ros1_node=NODE,
         ros1_arguments=arguments.ros,
     )

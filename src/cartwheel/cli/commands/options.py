@@ -34,6 +34,8 @@ class Options:
     """Some of x, y, z, roll, pitch, yaw."""
     model: str | None = None
     package_path: tuple[Path, ...] = ()
+    allow_path: tuple[Path, ...] = ()
+    """Folders whose files clients may name."""
     controllers: tuple[Path, ...] = ()
     """YAML files whose controllers start."""
     bridge: tuple[Path, ...] = ()

@@ -16,6 +16,7 @@ from cartwheel.cli.commands.ports import refuse_taken
 from cartwheel.cli.commands.recording import check_recording, recorded
 from cartwheel.cli.commands.report import Report, world_title
 from cartwheel.control import running
+from cartwheel.description.reach import run_folders
 from cartwheel.errors import CartwheelError
 from cartwheel.gate.access import Access
 
@@ -71,6 +72,7 @@ def _simulate(options: Options, access: Access, bridges: Bridges) -> None:
         strict=options.strict,
         lenient=not options.strict,
         bridge=options.bridge,
+        allow_path=(*options.allow_path, *run_folders(_files(world, robot))),
     )
     name = None
     if robot is None and options.controllers:
@@ -105,6 +107,13 @@ def _simulate(options: Options, access: Access, bridges: Bridges) -> None:
                 recorded(session, bridges.recorders, options, report),
             ):
                 _run(session, pacer, page, report)
+
+
+def _files(*descriptions: WorldDescription | RobotDescription | None) -> Iterator[str]:
+    """The files of a run."""
+    for each in descriptions:
+        if each is not None and not each.origin.file.startswith("<"):
+            yield each.origin.file
 
 
 @contextlib.contextmanager

@@ -12,6 +12,7 @@ import numpy as np
 
 from cartwheel.description.model import RobotDescription
 from cartwheel.description.packages import share
+from cartwheel.description.reach import Reach
 from cartwheel.errors import CartwheelError, DescriptionError
 from cartwheel.geometry import Pose, quat_from_rpy
 from cartwheel.simulation.naming import free_name
@@ -50,7 +51,7 @@ class InsertPanel(Panel):
         upload = gui.add_upload_button("Open a file", icon=page.viser.Icon.UPLOAD)
         upload.on_upload(page.on(lambda event: self._upload(event.target.value)))
 
-    def insert(self, path: Path, *, name: str | None = None) -> None:
+    def insert(self, path: Path, *, name: str | None = None, reach: Reach | None = None) -> None:
         """Spawns what a file describes.
 
         Raises:
@@ -59,7 +60,7 @@ class InsertPanel(Panel):
         # Here, as reading a xacro takes a while that the simulation has not.
         from cartwheel.description import load_robot
 
-        description: RobotDescription = load_robot(path)
+        description: RobotDescription = load_robot(path, reach=reach)
         simulation, session, robot = self.simulation, self.session, self.stage.robot
         size = Size.of(description)
 
@@ -83,7 +84,8 @@ class InsertPanel(Panel):
             path = Path(folder) / (name or "upload.urdf")
             path.write_bytes(file.content)
             try:
-                self.insert(path)
+                # A browser's file may read what came with it, and no more of this machine.
+                self.insert(path, reach=Reach(folders=(Path(folder),), environment=False))
             except CartwheelError as error:
                 # The folder is nothing to the user, who knows the file by its name.
                 raise DescriptionError(str(error).replace(f"{folder}/", "")) from error

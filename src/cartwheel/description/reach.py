@@ -1,0 +1,90 @@
+"""Which files a description may name: strangers wrote it, and the user's rights read it."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+ALLOW = "Allow its folder: start the simulation with --allow-path FOLDER."
+NAME_IT = (
+    "A description reads files of its own workspace and of packages, and those that "
+    "an argument names on the command line."
+)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Reach:
+    """What a description that came over a wire may read, besides packages and models.
+
+    Without one, a description is a file that the user named.
+    """
+
+    folders: tuple[Path, ...] = ()
+    environment: bool = True
+    """Whether ``$(env …)`` has the values of environment variables."""
+    hint: str = ALLOW
+
+
+def real(path: Path) -> Path | None:
+    """A path without links; None for one that cannot exist."""
+    try:
+        return Path(os.path.realpath(path))
+    except (OSError, ValueError):
+        return None
+
+
+def is_below(path: Path, folder: Path) -> bool:
+    """Whether a path, its links followed, is in a folder, and in no hidden folder there."""
+    file, root = real(path), real(folder)
+    if file is None or root is None or not file.is_relative_to(root):
+        return False
+    return not any(part.startswith(".") for part in file.relative_to(root).parts)
+
+
+def is_inside(path: Path, folder: Path) -> bool:
+    """Whether a path is in a folder by its name: links of a folder that the user trusts count."""
+    try:
+        return Path(os.path.normpath(path.absolute())).is_relative_to(folder.absolute())
+    except (OSError, ValueError):
+        return False
+
+
+def is_common(folder: Path) -> bool:
+    """Whether a folder holds everybody's files: it is no workspace, nor one that was meant."""
+    home = Path.home()
+    common = {home, home.parent, Path(tempfile.gettempdir()), Path(folder.anchor)}
+    return folder in common
+
+
+def run_folders(files: Iterable[str]) -> Iterator[Path]:
+    """The folders of a run: that in which it was started, and those of its files."""
+    for folder in (Path.cwd(), *(Path(file).absolute().parent for file in files)):
+        if not is_common(folder):
+            yield folder
+
+
+def is_named(path: Path, values: Iterable[str], folder: Path) -> bool:
+    """Whether one of the user's arguments names a file, or a folder that it is in.
+
+    Args:
+        path: Of the file.
+        values: Of the arguments.
+        folder: Where relative values may begin, besides the current folder.
+    """
+    wanted = real(path)
+    for value in values:
+        text = value.removeprefix("file://")
+        if "/" not in text or "\0" in text:
+            continue
+        for given in (Path(text).expanduser(), folder / text):
+            meant = real(given)
+            if meant is None:
+                continue
+            if meant == wanted:
+                return True
+            if len(meant.parts) > 2 and not is_common(meant) and is_below(path, meant):
+                return True
+    return False

@@ -1,0 +1,176 @@
+"""Which files a description may read: those of its workspace, of packages, and of arguments."""
+
+import os
+from pathlib import Path
+
+import pytest
+
+from cartwheel.description import load
+from cartwheel.description.loading import open_description
+from cartwheel.errors import DescriptionError
+
+NS = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
+PART = f'<robot {NS}><link name="part"/></robot>'
+
+
+@pytest.fixture
+def workspace(tmp_path, monkeypatch):
+    """A workspace with two packages, and things beside it."""
+    for name in ("ONE", "HOME"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setenv("HOME", str(tmp_path / "home"))
+    files = {
+        "ws/src/one/package.xml": "<package><name>one</name></package>",
+        "ws/src/one/config/a.yaml": "word: a",
+        "ws/src/one/urdf/part.xacro": PART,
+        "ws/src/two/package.xml": "<package><name>two</name></package>",
+        "ws/src/two/config/a.yaml": "word: two",
+        "ws/src/two/urdf/part.xacro": PART,
+        "beside/a.yaml": "word: beside",
+        "beside/part.xacro": PART,
+        "home/.ssh/a.yaml": "word: key",
+        "away/three/package.xml": "<package><name>three</name></package>",
+        "away/three/a.yaml": "word: three",
+        "installed/share/four/package.xml": "<package><name>four</name></package>",
+        "source/four/a.yaml": "word: four",
+    }
+    for name, content in files.items():
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text(content)
+    one = tmp_path / "ws/src/one"
+    (one / "link.yaml").symlink_to(tmp_path / "beside/a.yaml")
+    (one / "folder").symlink_to(tmp_path / "beside")
+    (one / "near.yaml").symlink_to(one / "config/a.yaml")
+    (one / ".git").mkdir()
+    (one / ".git" / "a.yaml").write_text("word: token")
+    (tmp_path / "installed/share/four/a.yaml").symlink_to(tmp_path / "source/four/a.yaml")
+    monkeypatch.setenv("AMENT_PREFIX_PATH", str(tmp_path / "installed"))
+    return tmp_path
+
+
+def loaded(workspace, body, **arguments):
+    path = workspace / "ws/src/one/urdf/robot.xacro"
+    # Far from the workspace's top, so that what is beside it is out of reach.
+    path.write_text(f'<robot name="r" {NS}>{body}</robot>')
+    return open_description(path, arguments).root
+
+
+def word(workspace, path, **arguments):
+    body = f"""<xacro:arg name="file" default=""/>
+    <link name="${{xacro.load_yaml('{path}')['word']}}"/>"""
+    return loaded(workspace, body, **arguments).children[0].attributes["name"]
+
+
+@pytest.mark.parametrize(
+    ("path", "expected"),
+    [
+        ("../config/a.yaml", "a"),
+        ("$(find one)/config/a.yaml", "a"),
+        ("$(find two)/config/a.yaml", "two"),
+        ("../../two/config/a.yaml", "two"),
+        ("../near.yaml", "a"),
+        ("$(find four)/a.yaml", "four"),
+    ],
+)
+def test_workspace_and_packages_are_read(workspace, path, expected):
+    assert word(workspace, path) == expected
+
+
+@pytest.mark.parametrize(
+    "path",
+    [
+        "{0}/beside/a.yaml",
+        "../../../../beside/a.yaml",
+        "$(find one)/../../../beside/a.yaml",
+        "$(find four)/../../../beside/a.yaml",
+        "../link.yaml",
+        "../folder/a.yaml",
+        "../.git/a.yaml",
+        "{0}/home/.ssh/a.yaml",
+        "/etc/passwd",
+        "/proc/self/environ",
+    ],
+)
+def test_files_elsewhere_are_refused(workspace, path, monkeypatch):
+    monkeypatch.setattr("cartwheel.description.packages.MAX_LEVELS_UP", 2)
+    with pytest.raises(DescriptionError, match="outside of the folders that the description"):
+        word(workspace, path.format(workspace))
+    include = f'<xacro:include filename="{path.format(workspace)}"/>'
+    with pytest.raises(DescriptionError, match="outside of the folders that the description"):
+        loaded(workspace, include.replace("a.yaml", "part.xacro") if "beside" in path else include)
+
+
+@pytest.mark.parametrize("pattern", ["/etc/*", "{0}/beside/*.xacro", "../folder/*.xacro"])
+def test_wildcards_stay_inside(workspace, pattern, monkeypatch):
+    monkeypatch.setattr("cartwheel.description.packages.MAX_LEVELS_UP", 2)
+    with pytest.raises(DescriptionError, match="outside of the folders that the description"):
+        loaded(workspace, f'<xacro:include filename="{pattern.format(workspace)}"/>')
+    with pytest.raises(DescriptionError, match="after a wildcard"):
+        loaded(workspace, '<xacro:include filename="../*/../../../beside/part.xacro"/>')
+    assert loaded(workspace, '<xacro:include filename="p*.xacro"/>').children[0].tag == "link"
+
+
+def test_files_that_arguments_name_are_read(workspace, monkeypatch):
+    monkeypatch.setattr("cartwheel.description.packages.MAX_LEVELS_UP", 2)
+    file = str(workspace / "beside/a.yaml")
+    assert word(workspace, "$(arg file)", file=file) == "beside"
+    assert word(workspace, "$(arg file)/a.yaml", file=str(workspace / "beside")) == "beside"
+    for value in ("/", str(workspace / "home"), "/etc"):
+        with pytest.raises(DescriptionError, match="outside of the folders"):
+            word(workspace, f"{workspace}/home/.ssh/a.yaml", file=value)
+    # What the file itself gives an argument names nothing.
+    with pytest.raises(DescriptionError, match="outside of the folders"):
+        loaded(
+            workspace,
+            f"""<xacro:arg name="x" default="{file}"/>
+            <link name="${{xacro.load_yaml('$(arg x)')}}"/>""",
+        )
+
+
+@pytest.mark.parametrize("path", ["pipe", "zero", "large"])
+def test_only_regular_files_of_some_size_are_read(workspace, path):
+    folder = workspace / "ws/src/one/urdf"
+    os.mkfifo(folder / "pipe")
+    (folder / "zero").symlink_to("/dev/zero")
+    with (folder / "large").open("wb") as file:
+        file.truncate(10**10)
+    with pytest.raises(DescriptionError):
+        word(workspace, path)
+    with pytest.raises(DescriptionError):
+        loaded(workspace, f'<xacro:include filename="{path}"/>')
+
+
+@pytest.mark.parametrize("path", ["/dev/zero", "/etc/passwd", "pipe", "/proc/self/mem"])
+@pytest.mark.parametrize("tag", ["mesh", "texture"])
+def test_meshes_and_pictures_are_regular_files(workspace, path, tag):
+    folder = workspace / "ws/src/one/urdf"
+    os.mkfifo(folder / "pipe")
+    part = (
+        f'<geometry><mesh filename="{path}"/></geometry>'
+        if tag == "mesh"
+        else f'<geometry><sphere radius="1"/></geometry>'
+        f'<material name="m"><texture filename="{path}"/></material>'
+    )
+    path = folder / "robot.urdf"
+    path.write_text(f'<robot name="r"><link name="l"><visual>{part}</visual></link></robot>')
+    try:
+        found = load(path)
+    except DescriptionError as error:
+        assert "root:" not in str(error)
+    else:
+        assert found.diagnostics
+        assert not any("root:" in each.message for each in found.diagnostics)
+
+
+def test_a_description_in_the_home_folder_reads_nothing_hidden(workspace, monkeypatch):
+    home = Path(os.environ["HOME"])
+    (home / "ok.yaml").write_text("word: ok")
+    for path, readable in (("ok.yaml", True), (".ssh/a.yaml", False)):
+        (home / "robot.xacro").write_text(
+            f"<robot name='r' {NS}><link name=\"${{xacro.load_yaml('{path}')['word']}}\"/></robot>"
+        )
+        if readable:
+            assert open_description(home / "robot.xacro", {}).root.children[0].get("name") == "ok"
+        else:
+            with pytest.raises(DescriptionError, match="outside of the folders"):
+                open_description(home / "robot.xacro", {})
