@@ -8,6 +8,8 @@ import pytest
 import viser
 from websockets.sync.client import connect
 
+from cartwheel.viewer.panels.drive import DrivePanel
+
 from .conftest import TWIST, eventually
 
 IMAGE = "/rosbots/camera1/image_raw"
@@ -83,9 +85,9 @@ def test_sensors_are_read_while_somebody_looks(fresh):
 
 def test_a_client_that_does_not_read_stalls_nobody(fresh):
     with client(fresh):
-        eventually(lambda: fresh.viewer._page.clients, what="the client")
-        twist = fresh.viewer._desk._panels[2]
-        fresh.viewer._page.post(lambda: twist.press("j"))
+        eventually(lambda: fresh.viewer._desk._places, what="the client")
+        drive = fresh.viewer._desk.panel(DrivePanel)
+        fresh.viewer._page.post(lambda: drive.press("j"))
         wait(fresh, 2.0)
         # The page's own thread keeps up, and keeps one state of each thing, not a queue of them.
         assert fresh.viewer._page._jobs.qsize() < 10

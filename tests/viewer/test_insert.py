@@ -89,7 +89,7 @@ def test_four_inserts_at_once_stand_apart_and_stay(running):
     """Each is placed against those before it, which no picture has shown yet."""
     session, viewer = running
     simulation = session.simulation
-    panel = next(p for p in viewer._desk._panels if isinstance(p, InsertPanel))
+    panel = viewer._desk.panel(InsertPanel)
     names = ("barrel", "box_small", "traffic_cone", "barrel")
     done = queue.Queue()
     panel._inserted = done.put

@@ -4,6 +4,8 @@ import math
 
 import pytest
 
+from cartwheel.viewer.panels.drive import DrivePanel
+
 from .conftest import TWIST, close_search, eventually, open_page
 
 
@@ -50,10 +52,8 @@ def test_the_camera_does_not_fly_along_with_the_speed_keys(page, arena):
     press(page, arena, "j")
     assert arena.twists[-1][1] == pytest.approx((1.1 * 0.9) ** 2)
     # Back to the speeds that the other tests expect.
-    for viewer_panel in arena.viewer._desk._panels:
-        teleop = getattr(viewer_panel, "_teleop", None)
-        if teleop is not None:
-            teleop.linear_speed, teleop.angular_speed = 0.5, 1.0
+    teleop = arena.viewer._desk.panel(DrivePanel)._teleop
+    teleop.linear_speed, teleop.angular_speed = 0.5, 1.0
     press(page, arena, "k")
 
 

@@ -8,7 +8,7 @@ from .conftest import CART, close_notes, eventually, project, write
 
 
 def world_panel(arena):
-    return next(panel for panel in arena.viewer._desk._panels if isinstance(panel, WorldPanel))
+    return arena.viewer._desk.panel(WorldPanel)
 
 
 @pytest.fixture(autouse=True)
@@ -69,7 +69,7 @@ def test_a_broken_file_is_explained_and_disturbs_nothing(page, arena, tmp_path):
     before = arena.ask(lambda: arena.simulation.time_ns)
     text = BALL.replace('radius="0.1"', 'radius="big"')
     upload(page, write(tmp_path, "broken.urdf", text))
-    note = page.locator(".mantine-Notification-root", has_text="That did not work")
+    note = page.locator(".mantine-Notification-root", has_text="Error")
     note.first.wait_for()
     assert "broken.urdf:4" in note.first.inner_text()
     assert "big" in note.first.inner_text()

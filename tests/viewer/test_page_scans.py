@@ -24,7 +24,7 @@ POST = (2.4, 0.0, 0.1)
 
 def drawn(arena):
     """The cloud of the scan as the page has it; None without."""
-    scans = next(panel for panel in arena.viewer._desk._panels if isinstance(panel, Scans))
+    scans = arena.viewer._desk.panel(Scans)
     cloud = scans._clouds.get(TOPIC)
     return cloud if cloud is not None and len(cloud.points) else None
 

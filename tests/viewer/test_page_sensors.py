@@ -56,7 +56,7 @@ def test_nothing_is_rendered_while_the_image_is_off(page, arena):
 
 def test_the_bumper_names_what_it_hits_and_goes_out(page, arena):
     light = page.locator(".cw-bumper")
-    assert "free" in light.inner_text()
+    assert "No contact" in light.inner_text()
     turn(arena, 0.0, x=1.2)
     page.keyboard.press("i")
     page.locator(".cw-bumper.cw-hit").wait_for()

@@ -12,7 +12,7 @@ from cartwheel.errors import Diagnostic, Origin
 from cartwheel.graph import Graph, TopicInfo
 from cartwheel.messages import header, message_class
 from cartwheel.viewer.every import Every
-from cartwheel.viewer.panels.bumper import light_html, other_side
+from cartwheel.viewer.panels.bumper import CONTACTS, BumperPanel, light_html, other_side
 from cartwheel.viewer.panels.camera import pixels_of
 from cartwheel.viewer.panels.drive import DrivePanel
 from cartwheel.viewer.panels.imu import IMU, ImuPanel, row_of, thin
@@ -34,8 +34,9 @@ def image(encoding, data, *, width, height, step):
 def test_a_key_drives_what_reads_commands_with_a_stamp_too():
     graph, stage = Graph(), MagicMock()
     stage.session.graph = graph
-    stage.page.gui.add_dropdown.return_value = SimpleNamespace(value="", options=())
-    panel = DrivePanel(stage)
+    seat = MagicMock()
+    seat.gui.add_dropdown.return_value = SimpleNamespace(value="", options=())
+    panel = DrivePanel(stage, seat)
     plain, stamped = [], []
     graph.subscribe("/a", plain.append, type_name="geometry_msgs/msg/Twist")
     graph.subscribe("/b", stamped.append, type_name="geometry_msgs/msg/TwistStamped")
@@ -115,6 +116,51 @@ def test_the_light_names_the_models_hit_and_escapes_them():
 def test_what_is_hit_is_not_the_sensors_own_collision():
     state = SimpleNamespace(collision1_name="cart::base::c", collision2_name="post::link::c")
     assert other_side(state) == "post::link::c"
+
+
+def contact(force):
+    """A state of a bumper with one contact at (1, 2, 3) m."""
+    vector = SimpleNamespace(x=1.0, y=2.0, z=3.0)
+    wrench = SimpleNamespace(force=SimpleNamespace(x=0.0, y=0.0, z=force))
+    return SimpleNamespace(
+        collision1_name="cart::base::c",
+        collision2_name="post::link::c",
+        contact_positions=[vector],
+        wrenches=[wrench],
+    )
+
+
+def test_two_bumpers_have_their_arrows_and_each_takes_its_own_away():
+    graph, stage = Graph(), MagicMock()
+    stage.session.graph = graph
+    stage.page.clients = {1}
+    kind = message_class(CONTACTS)
+    left, right = (graph.advertise(name, CONTACTS) for name in ("/left", "/right"))
+    seat = MagicMock()
+    seat.display.contacts = True
+    stage.seats = {1: seat}
+    panel = BumperPanel(stage)
+    panel.show_topics(graph.topics())
+
+    def publish(topic, states):
+        # What the panel reads of it is made here.
+        message = kind(header=header(0, ""), states=states)
+        topic.publish(message)
+        panel.update(None, 10.0)
+
+    def drawn():
+        return seat.scene.add_arrows.call_args.args[1][:, 1, 2].tolist()
+
+    publish(left, [contact(50.0)])
+    publish(right, [contact(100.0)])
+    assert drawn() == pytest.approx([3.2, 3.4])
+    publish(left, [])
+    assert drawn() == pytest.approx([3.4])
+    publish(right, [])
+    seat.scene.add_arrows.return_value.remove.assert_called_once()
+    seat.display.contacts = False
+    publish(left, [contact(50.0)])
+    assert seat.scene.add_arrows.call_count == 3, "nobody shows it"
 
 
 def test_topics_show_type_and_stated_rate():

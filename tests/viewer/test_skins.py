@@ -8,11 +8,12 @@ import pytest
 import trimesh
 from PIL import Image
 
-from cartwheel.description.model import Box, Material, Visual
+from cartwheel.description.model import Box, Link, Material, RobotDescription, Visual
 from cartwheel.errors import Origin
 from cartwheel.geometry import Pose
+from cartwheel.viewer.model_view import ModelView
 from cartwheel.viewer.shapes import DEFAULT, merge, surfaces_of_visual
-from cartwheel.viewer.skins import PicturedSkin, glb_of
+from cartwheel.viewer.skins import glb_of
 
 ORIGIN = Origin(file="<test>")
 LEFT, RIGHT = (200, 40, 20), (20, 60, 180)
@@ -106,31 +107,37 @@ def test_large_images_are_sent_smaller(tmp_path):
     assert mesh.visual.material.baseColorTexture.size == (1024, 512)
 
 
-def test_see_through_and_as_wires_it_is_plain():
-    image = SimpleNamespace(visible=True, on_click=lambda _: None)
-    made = []
+class Scene:
+    """Stands for a browser's own scene."""
 
-    def add_plain():
-        made.append(
-            SimpleNamespace(visible=True, opacity=None, wireframe=False, on_click=clicked.append)
-        )
-        return made[-1]
+    def __init__(self):
+        self.added = {}
 
-    clicked = []
-    skin = PicturedSkin(image, add_plain)
-    skin.on_click("callback")
-    skin.show(True)
-    skin.draw(None, False)
-    assert image.visible and not made
-    skin.draw(0.35, False)
-    (plain,) = made
-    assert (image.visible, plain.visible, plain.opacity) == (False, True, 0.35)
-    assert clicked == ["callback"]
-    skin.show(False)
-    assert (image.visible, plain.visible) == (False, False)
-    skin.draw(None, True)
-    skin.show(True)
-    assert (image.visible, plain.visible, plain.wireframe) == (False, True, True)
-    skin.draw(None, False)
-    assert (image.visible, plain.visible) == (True, False)
-    assert len(made) == 1
+    def add_frame(self, name, **_):
+        return SimpleNamespace(name=name)
+
+    def add_glb(self, name, _, **options):
+        return self._add("glb", name, options)
+
+    def add_mesh_simple(self, name, *_, **options):
+        return self._add("mesh", name, options)
+
+    def _add(self, kind, name, options):
+        self.added[name] = kind, options
+        return SimpleNamespace(name=name, on_click=lambda _: None)
+
+
+def test_see_through_and_as_wires_it_is_plain(image):
+    link = Link(name="link", visuals=(box(image),), origin=ORIGIN)
+    model = RobotDescription(name="m", links=(link,), canonical_link="link", origin=ORIGIN)
+    view = ModelView(Scene(), "m", model)
+    for options, kind, opacity in (
+        ({}, "glb", None),
+        ({"opacity": 0.35}, "mesh", 0.35),
+        ({"wireframe": True}, "mesh", None),
+    ):
+        scene = Scene()
+        view.add_visuals(scene, **options)
+        ((found, given),) = scene.added.values()
+        assert (found, given.get("opacity")) == (kind, opacity)
+        assert given.get("wireframe", False) == options.get("wireframe", False)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -13,14 +14,15 @@ from cartwheel.description.model import RobotDescription
 from cartwheel.gate.access import Access
 from cartwheel.gate.listening import listen
 from cartwheel.geometry import Pose, to_wxyz
-from cartwheel.viewer.display import Display
+from cartwheel.viewer.look import Look
 from cartwheel.viewer.model_view import ModelView, footprint
 from cartwheel.viewer.page import Page
 from cartwheel.viewer.panels.base import escape, facts, rows_html
 from cartwheel.viewer.panels.joints import add_slider
 from cartwheel.viewer.panels.notes import notes_html
-from cartwheel.viewer.panels.view import LABELS
-from cartwheel.viewer.scene_view import add_grid, set_stage
+from cartwheel.viewer.panels.view import add_toggles
+from cartwheel.viewer.scene_view import GRID, add_grid, set_stage
+from cartwheel.viewer.seat import Seat
 
 _TOGGLES = (
     "visual",
@@ -62,10 +64,10 @@ class DescriptionViewer:
         listener = listen(access.host, port, title="the viewer", option="--port")
         title = f"Cartwheel: {description.name}"
         self._page = Page(listener, access, title=title, refused=refused)
-        self._display = Display()
+        self._seats: dict[int, Seat] = {}
         self._sliders: dict[str, Any] = {}
         set_stage(self._page)
-        self._grid = add_grid(self._page)
+        add_grid(self._page)
         self._model = ModelView(
             self._page.scene, description.name, description, problem=self._page.show_error
         )
@@ -73,8 +75,8 @@ class DescriptionViewer:
         self._lift = Pose((0.0, 0.0, below))
         self._set_camera()
         self._build()
-        self._model.show(self._display)
         self._move()
+        self._page.on_clients = self._clients_changed
 
     @property
     def url(self) -> str:
@@ -105,7 +107,7 @@ class DescriptionViewer:
         camera.look_at = (0.0, 0.0, 0.3 * size)
 
     def _build(self) -> None:
-        gui, page, icons = self._page.gui, self._page, self._page.viser.Icon
+        gui, icons = self._page.gui, self._page.viser.Icon
         gui.main_panel.dock_right()
         gui.main_panel.set_width(330)
         rows = {"name": escape(self._description.name)} | facts(self._description)
@@ -113,10 +115,7 @@ class DescriptionViewer:
         tabs = gui.add_tab_group()
         with tabs.add_tab("Joints", icons.ADJUSTMENTS):
             self._build_joints()
-        with tabs.add_tab("View", icons.EYE):
-            for name in _TOGGLES:
-                box = gui.add_checkbox(LABELS[name], initial_value=getattr(self._display, name))
-                box.on_update(page.do(self._toggle, name, box))
+        self._view = tabs.add_tab("View", icons.EYE)
         with tabs.add_tab("Warnings", icons.ALERT_TRIANGLE):
             gui.add_html(notes_html(self._description.diagnostics))
 
@@ -137,10 +136,20 @@ class DescriptionViewer:
             slider.value = min(slider.max, max(slider.min, 0.0))
         self._move()
 
-    def _toggle(self, name: str, box: Any) -> None:
-        setattr(self._display, name, bool(box.value))
-        self._grid.visible = self._display.grid
-        self._model.show(self._display)
+    def _clients_changed(self) -> None:
+        """Each browser has toggles of its own."""
+        handles = self._page.server.get_clients()
+        self._seats = {n: seat for n, seat in self._seats.items() if n in self._page.clients}
+        for number in sorted(self._page.clients - set(self._seats)):
+            if number in handles:
+                self._seats[number] = seat = Seat(handles[number])
+                show = partial(self._show, seat, Look(seat))
+                with self._view:
+                    add_toggles(self._page, seat, _TOGGLES, show)
+
+    def _show(self, seat: Seat, look: Look) -> None:
+        look.show({self._description.name: self._model})
+        seat.hide("grid", () if seat.display.grid else (GRID,))
 
     def _move(self) -> None:
         positions = {name: float(slider.value) for name, slider in self._sliders.items()}

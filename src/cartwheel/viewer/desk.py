@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import time
-from typing import Any
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, TypeVar
 
 from cartwheel.session import Session
 from cartwheel.simulation.snapshot import Snapshot
 from cartwheel.viewer.framing import robot_of
+from cartwheel.viewer.look import Look
+from cartwheel.viewer.overlays import Overlays
 from cartwheel.viewer.page import Page
 from cartwheel.viewer.panels.base import Panel
 from cartwheel.viewer.panels.bumper import BumperPanel
@@ -15,18 +19,35 @@ from cartwheel.viewer.panels.camera import CameraPanel
 from cartwheel.viewer.panels.clock import ClockPanel
 from cartwheel.viewer.panels.drive import DrivePanel
 from cartwheel.viewer.panels.imu import ImuPanel
-from cartwheel.viewer.panels.insert import InsertPanel
+from cartwheel.viewer.panels.insert import InsertPanel, UploadPanel
 from cartwheel.viewer.panels.joints import JointsPanel
 from cartwheel.viewer.panels.notes import NotesPanel
 from cartwheel.viewer.panels.topics import TopicsPanel
 from cartwheel.viewer.panels.view import ViewPanel
 from cartwheel.viewer.panels.world import WorldPanel
 from cartwheel.viewer.scans import Scans
+from cartwheel.viewer.scene_view import GRID
+from cartwheel.viewer.seat import Seat
 from cartwheel.viewer.stage import Stage
+
+P = TypeVar("P", bound=Panel)
+
+
+@dataclass
+class _Place:
+    """What belongs to one browser."""
+
+    seat: Seat
+    look: Callable[[], None]
+    overlays: Overlays
+    panels: list[Panel]
 
 
 class Desk:
     """The page of a session: scene in the middle, control to the right, world to the left.
+
+    What shows the simulation is made once and is the same in all browsers; what a user chooses,
+    selects or drives with is made for each of them, in the tabs that they share.
 
     Args:
         page: To build it on.
@@ -37,64 +58,116 @@ class Desk:
         self.page = page
         self.stage = Stage(page, session)
         self._graph = session.graph
+        self._tabs: dict[str, Any] = {}
         self._panels = self.build()
+        self._places: dict[int, _Place] = {}
         self._graph_changed = -1
-        self._watched = False
         page.on_clients = self._clients_changed
+        page.on_silence = self._stop
 
     def update(self, snapshot: Snapshot) -> None:
         """Shows a state."""
         now = time.monotonic()
+        stage = self.stage
+        panels = self._all_panels()
         if self._graph.changed != self._graph_changed:
             self._graph_changed = self._graph.changed
             topics = self._graph.topics()
-            for panel in self._panels:
+            for panel in panels:
                 panel.show_topics(topics)
-        if self.stage.scene.update(snapshot):
-            self.stage.robot = robot_of(snapshot.scene)
-            for panel in self._panels:
+        if stage.scene.update(snapshot):
+            stage.robot = robot_of(snapshot.scene)
+            stage.frustums.show()
+            for panel in panels:
                 panel.show_models(snapshot)
-        for panel in self._panels:
+            for place in self._places.values():
+                place.look()
+        for panel in panels:
             panel.update(snapshot, now)
-        self.stage.overlays.update(snapshot, self.stage.robot, now)
+        pose = stage.scene.pose(stage.robot) if stage.robot is not None else None
+        stage.trail.update(snapshot, pose)
+        for place in self._places.values():
+            place.overlays.update(pose, now)
 
     def close(self) -> None:
         """Lets go of all subscriptions."""
-        for panel in self._panels:
+        for panel in self._all_panels():
             panel.leave()
 
+    def panel(self, kind: type[P], number: int | None = None) -> P:
+        """The panel of a kind, of all browsers or of one; of the first one by default."""
+        places = self._places.values() if number is None else [self._places[number]]
+        own = [panel for place in places for panel in place.panels]
+        return next(panel for panel in (*self._panels, *own) if isinstance(panel, kind))
+
+    def _all_panels(self) -> list[Panel]:
+        return [*self._panels, *(p for place in self._places.values() for p in place.panels)]
+
     def _clients_changed(self) -> None:
-        watched = bool(self.page.clients)
-        if watched == self._watched:
-            return
-        self._watched = watched
-        for panel in self._panels:
-            (panel.watch if watched else panel.leave)()
+        clients = self.page.clients
+        before = bool(self._places)
+        for number in set(self._places) - clients:
+            place = self._places.pop(number)
+            del self.stage.seats[number]
+            for panel in place.panels:
+                panel.leave()
+        handles = self.page.server.get_clients()
+        for number in sorted(clients - set(self._places)):
+            if number in handles:
+                self._places[number] = self._welcome(Seat(handles[number]))
+        if before != bool(self._places):
+            for panel in self._panels:
+                (panel.watch if self._places else panel.leave)()
+
+    def _welcome(self, seat: Seat) -> _Place:
+        """Makes what belongs to a browser, as things are now."""
+        stage = self.stage
+        stage.seats[seat.number] = seat
+        look = Look(seat)
+
+        def show() -> None:
+            world = [panel for panel in panels if isinstance(panel, WorldPanel)]
+            look.show(stage.scene.models, through=world[0].selected if world else None)
+            seat.hide("camera", () if seat.display.camera else stage.frustums.nodes)
+            seat.hide("grid", () if seat.display.grid else (GRID,))
+
+        panels: list[Panel] = []
+        self.build_own(seat, show, panels)
+        topics = self._graph.topics()
+        snapshot = stage.scene.snapshot
+        for panel in panels:
+            panel.show_topics(topics)
+            if snapshot is not None:
+                panel.show_models(snapshot)
+            panel.watch()
+        return _Place(seat, show, Overlays(seat, stage.trail), panels)
+
+    def _stop(self, number: int) -> None:
+        """A browser does not answer any more: what it drives is stopped."""
+        if number in self._places:
+            self.panel(DrivePanel, number).leave()
 
     def build(self) -> list[Panel]:
-        """Makes all panels."""
+        """Makes what all browsers share."""
         gui, icons = self.page.gui, self.page.viser.Icon
         gui.main_panel.dock_right()
         gui.main_panel.set_width(320)
         panels = self.build_main()
 
         camera = gui.add_panel()
-        with camera.add_tab("Camera", icons.CAMERA):
-            panels.append(CameraPanel(self.stage))
+        self._tabs["camera"] = camera.add_tab("Camera", icons.CAMERA)
         camera.dock_below(gui.main_panel)
 
         left = gui.add_panel()
         panels += self.build_left(left)
-        with left.add_tab("View", icons.EYE):
-            panels.append(ViewPanel(self.stage))
+        self._tabs["view"] = left.add_tab("View", icons.EYE)
         left.dock_left()
         left.set_width(300)
 
         lower = gui.add_panel()
         with lower.add_tab("IMU", icons.CHART_LINE):
             panels.append(ImuPanel(self.stage))
-        with lower.add_tab("Topics", icons.LIST):
-            panels.append(TopicsPanel(self.stage))
+        self._tabs["topics"] = lower.add_tab("Topics", icons.LIST)
         with lower.add_tab("Warnings", icons.ALERT_TRIANGLE):
             panels.append(NotesPanel(self.stage))
         lower.dock_below(left)
@@ -103,18 +176,45 @@ class Desk:
 
     def build_main(self) -> list[Panel]:
         """The panels of the main column, above the camera."""
-        return [ClockPanel(self.stage), BumperPanel(self.stage), DrivePanel(self.stage)]
+        return [ClockPanel(self.stage), BumperPanel(self.stage)]
 
     def build_left(self, left: Any) -> list[Panel]:
         """The panels to the left, above the toggles of the scene."""
         icons = self.page.viser.Icon
-        tab = left.add_tab("World", icons.WORLD)
-        with tab:
-            world = WorldPanel(self.stage, tab)
-            self.stage.scene.selected = world.select
-        with left.add_tab("Insert", icons.PLUS):
+        self._tabs["world"] = left.add_tab("World", icons.WORLD)
+        self.stage.scene.clicked = self._clicked
+        self._tabs["insert"] = left.add_tab("Insert", icons.PLUS)
+        with self._tabs["insert"]:
             insert = InsertPanel(self.stage)
         tab = left.add_tab("Joints", icons.ADJUSTMENTS)
         with tab:
             joints = JointsPanel(self.stage, tab)
-        return [world, insert, joints]
+        return [insert, joints]
+
+    def build_own(self, seat: Seat, look: Callable[[], None], panels: list[Panel]) -> None:
+        """Adds what belongs to one browser: driving, selecting and choosing.
+
+        Args:
+            seat: The browser.
+            look: Draws its scene anew.
+            panels: To add to.
+        """
+        panels.append(DrivePanel(self.stage, seat))
+        with self._tabs["world"]:
+            panels.append(WorldPanel(self.stage, seat, look, self._tabs["world"]))
+        with self._tabs["insert"]:
+            panels.append(UploadPanel(self.stage, seat, self.panel(InsertPanel)))
+        self.build_looking(seat, look, panels)
+
+    def build_looking(self, seat: Seat, look: Callable[[], None], panels: list[Panel]) -> None:
+        """Adds what chooses what one browser shows."""
+        with self._tabs["camera"]:
+            panels.append(CameraPanel(self.stage, seat))
+        with self._tabs["view"]:
+            panels.append(ViewPanel(self.stage, seat, look))
+        with self._tabs["topics"]:
+            panels.append(TopicsPanel(self.stage, seat))
+
+    def _clicked(self, number: int, name: str) -> None:
+        if number in self._places:
+            self.panel(WorldPanel, number).select(name)

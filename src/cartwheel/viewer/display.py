@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(kw_only=True, slots=True)
 class Display:
-    """The toggles, shared by all browsers."""
+    """The toggles of one browser."""
 
     visual: bool = True
     collision: bool = False

@@ -8,6 +8,7 @@ the rest is dropped and counted, with one warning.
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import logging
 import math
 from collections.abc import Callable
@@ -15,6 +16,7 @@ from functools import partial
 from typing import Annotated, Any
 
 import msgspec
+from websockets.exceptions import WebSocketException
 
 from cartwheel.viewer.uploads import PART_BYTES, UploadError, Uploads
 
@@ -24,6 +26,11 @@ MOST_WAITING = 500
 """Jobs of the page's thread; while there are more, nothing is read from any browser."""
 _PATIENCE = 0.02
 """s between two looks whether there are fewer."""
+
+SILENCE = 10.0
+"""s without an answer after which a browser counts as gone, and nothing is driven for it."""
+_ASKED_EVERY = 2.0
+"""s."""
 
 _log = logging.getLogger(__name__)
 
@@ -137,10 +144,15 @@ class Inbox:
         server: viser's.
         waiting: How many jobs the page's thread has still to do.
         refused: Called with a browser's number and a text for its user.
+        silent: Called with a browser's number when it has not answered for `SILENCE` s.
     """
 
     def __init__(
-        self, server: Any, waiting: Callable[[], int], refused: Callable[[int, str], None]
+        self,
+        server: Any,
+        waiting: Callable[[], int],
+        refused: Callable[[int, str], None],
+        silent: Callable[[int], None],
     ) -> None:
         self.dropped = 0
         """Messages that were not handed on."""
@@ -148,7 +160,9 @@ class Inbox:
         self._waiting = waiting
         self._refused = refused
         self._uploads = Uploads(server)
+        self._silent = silent
         self._known: set[int] = set()
+        self._watches: dict[int, asyncio.Task[None]] = {}
         websocks = server._websock_server
         websocks.on_client_connect(self._attach)
         websocks.on_client_disconnect(self._detach)
@@ -227,8 +241,10 @@ class Inbox:
         websocket = self._server._websock_server._live_connections[client]
         websocket.protocol.max_message_size = MOST_BYTES
         websocket.recv = partial(self._receive, client, websocket.recv)
+        self._watches[client] = asyncio.create_task(self._watch(client, websocket))
 
     async def _detach(self, connection: Any) -> None:
+        self._watches.pop(connection.client_id).cancel()
         self._known.discard(connection.client_id)
         self._uploads.drop(connection.client_id)
 
@@ -247,6 +263,18 @@ class Inbox:
                 self._drop(str(error))
             else:
                 return raw
+
+    async def _watch(self, client: int, websocket: Any) -> None:
+        """Asks the browser itself, no script of the page, whether it is still there."""
+        with contextlib.suppress(WebSocketException):
+            while True:
+                pong = await websocket.ping()
+                try:
+                    await asyncio.wait_for(asyncio.shield(pong), SILENCE)
+                except TimeoutError:
+                    self._silent(client)
+                    await pong
+                await asyncio.sleep(_ASKED_EVERY)
 
     def _failed(self, _loop: object, context: dict[str, Any]) -> None:
         _log.debug("viser failed: %s", context.get("message"), exc_info=context.get("exception"))

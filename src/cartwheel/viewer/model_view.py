@@ -19,7 +19,6 @@ from cartwheel.geometry import (
     quat_multiply,
     to_wxyz,
 )
-from cartwheel.viewer.display import Display
 from cartwheel.viewer.shapes import (
     Surface,
     bounds_of,
@@ -29,11 +28,10 @@ from cartwheel.viewer.shapes import (
     surfaces_of_visual,
     triangles_of,
 )
-from cartwheel.viewer.skins import PicturedSkin, Skin, glb_of
+from cartwheel.viewer.skins import glb_of
 
 COLLISION: Rgba = (0.96, 0.55, 0.15, 0.45)
 INERTIA: Rgba = (0.55, 0.30, 0.75, 0.30)
-_SEE_THROUGH = 0.35
 _STILL = 1e-5
 """m, and parts of a unit quaternion: no screen shows less, and resting bodies shiver less."""
 
@@ -42,7 +40,8 @@ class ModelView:
     """A model's nodes, under ``/models/<name>``.
 
     The root node is the canonical link's frame; the other links are given in it. What is fixed
-    to that link, on a driving robot nearly everything, then moves with a single message.
+    to that link, on a driving robot nearly everything, then moves with a single message. All
+    browsers get the links and their visual shapes; `Look` adds more to the scene of one.
 
     Args:
         scene: viser's.
@@ -74,10 +73,23 @@ class ModelView:
         """m, of its largest extent: for things drawn in proportion."""
         self._frames = [self._frame(link) for link in description.links]
         self._shown = np.full((len(self._frames), 7), np.nan)
-        self._layers: dict[str, list[tuple[Skin, float]]] = {}
-        self._grounds: list[Skin] = []
-        self._solids: list[Skin] = []
-        self._clickable = True
+        self._told: set[str] = set()
+        self._visuals = self.add_visuals(scene)
+
+    @property
+    def visual_nodes(self) -> list[str]:
+        """The scene nodes of the visual shapes."""
+        return [handle.name for handle in self._visuals]
+
+    @property
+    def solids(self) -> list[Any]:
+        """viser's handles of the visual shapes that take clicks."""
+        names = (handle.name.rsplit("/", 1)[1] for handle in self._visuals)
+        return [
+            handle
+            for handle, name in zip(self._visuals, names, strict=True)
+            if name.startswith("visual")
+        ]
 
     def path(self, link: str) -> str:
         """The scene node of a link's frame."""
@@ -103,161 +115,178 @@ class ModelView:
             self._shown[i] = poses[i]
         return bool(len(moved))
 
-    def show(self, display: Display) -> None:
-        """Makes visible what is wanted; a layer is sent when it is first wanted."""
-        opacity = _SEE_THROUGH if display.transparent else 1.0
-        self._show_layer("visual", display.visual, self._visuals, opacity, display.wireframe)
-        self._show_layer("collision", display.collision, self._collisions, 1.0, display.wireframe)
-        self._show_layer("inertia", display.inertia, self._inertias, 1.0, False)
-        self._show_layer("names", display.names, self._names, 1.0, False)
-        if not self.description.static:
-            for frame in self._frames:
-                if frame.show_axes != display.axes:
-                    frame.show_axes = display.axes
-
-    def set_clickable(self, clickable: bool) -> None:
-        """Lets clicks through while a gizmo stands inside: the nearest surface would take them."""
-        if self._clicked is None or clickable == self._clickable:
-            return
-        self._clickable = clickable
-        for skin in self._solids:
-            if clickable:
-                skin.on_click(self._clicked)
-            else:
-                skin.remove_click_callback(self._clicked)
-
     def remove(self) -> None:
         """Takes everything out of the scene."""
         self._frames[self._canonical].remove()
 
-    # -- layers
+    # -- layers, in the scene of all or of one browser
 
-    def _show_layer(
+    def add_visuals(
         self,
-        name: str,
-        wanted: bool,
-        make: Callable[[Link], list[tuple[Skin, float]]],
-        opacity: float,
-        wireframe: bool,
-    ) -> None:
-        if not wanted and name not in self._layers:
-            return
-        if name not in self._layers:
-            self._layers[name] = [node for link in self.description.links for node in make(link)]
-        for skin, own in self._layers[name]:
-            skin.show(wanted)
-            if name in ("names", "inertia"):
-                continue
-            value = own if skin in self._grounds else own * opacity
-            skin.draw(None if value >= 1.0 else value, wireframe)
+        scene: Any,
+        *,
+        opacity: float = 1.0,
+        wireframe: bool = False,
+        clickable: bool = True,
+    ) -> list[Any]:
+        """Adds the visual shapes; in a browser's own scene they hide those that all have.
 
-    def _visuals(self, link: Link) -> list[tuple[Skin, float]]:
-        # A plane that is the ground receives shadows and takes no clicks: it is everywhere.
-        ground = [v for v in link.visuals if isinstance(v.shape, Plane)]
-        solid = [v for v in link.visuals if not isinstance(v.shape, Plane)]
+        Args:
+            scene: viser's.
+            opacity: Of what is opaque otherwise; the ground stays as it is.
+            wireframe: Draws edges only.
+            clickable: Whether a click selects the model.
+        """
         nodes = []
-        for kind, visuals in (("ground", ground), ("visual", solid)):
-            surfaces: list[Surface] = []
-            for visual in visuals:
-                try:
-                    surfaces += surfaces_of_visual(visual)
-                except CartwheelError as error:
-                    self._problem(error)
-            for i, surface in enumerate(merge(surfaces)):
-                nodes.append(self._mesh(link, f"{kind}_{i}", surface, ground=kind == "ground"))
+        for link in self.description.links:
+            for kind in ("ground", "visual"):
+                for i, surface in enumerate(merge(self._surfaces(link, kind))):
+                    ground = kind == "ground"
+                    nodes.append(
+                        self._mesh(
+                            scene,
+                            f"{self.path(link.name)}/{kind}_{i}",
+                            surface,
+                            ground=ground,
+                            opacity=1.0 if ground else opacity,
+                            wireframe=wireframe,
+                            clickable=clickable and not ground,
+                        )
+                    )
         return nodes
 
-    def _collisions(self, link: Link) -> list[tuple[Skin, float]]:
+    def add_collisions(self, scene: Any, *, wireframe: bool, clickable: bool) -> list[Any]:
+        """Adds the collision shapes."""
+        nodes = []
+        for link in self.description.links:
+            surfaces: list[Surface] = []
+            for collision in link.collisions:
+                if isinstance(collision.shape, Plane):
+                    continue  # without end: it would only colour the ground
+                try:
+                    surfaces += surfaces_of_collision(collision, COLLISION)
+                except CartwheelError as error:
+                    self._say(error)
+            for i, surface in enumerate(merge(surfaces)):
+                name = f"{self.path(link.name)}/collision_{i}"
+                nodes.append(
+                    self._mesh(scene, name, surface, wireframe=wireframe, clickable=clickable)
+                )
+        return nodes
+
+    def add_inertias(self, scene: Any) -> list[Any]:
+        """Adds the centres of mass, and boxes of the same inertia."""
+        nodes = []
+        for link in self.description.links:
+            if link.inertial is None or self.description.static:
+                continue
+            pose, size = inertia_box(link.inertial)
+            vertices, faces = triangles_of(Box(size=size))
+            nodes.append(
+                scene.add_mesh_simple(
+                    f"{self.path(link.name)}/inertia",
+                    vertices,
+                    faces,
+                    color=_rgb(INERTIA),
+                    opacity=INERTIA[3],
+                    cast_shadow=False,
+                    receive_shadow=False,
+                    position=pose.position,
+                    wxyz=to_wxyz(pose.orientation),
+                )
+            )
+            nodes.append(
+                scene.add_icosphere(
+                    f"{self.path(link.name)}/centre_of_mass",
+                    radius=max(0.004, 0.02 * self.size),
+                    color=(120, 40, 170),
+                    position=link.inertial.pose.position,
+                    cast_shadow=False,
+                )
+            )
+        return nodes
+
+    def add_names(self, scene: Any) -> list[Any]:
+        """Adds the names of the links."""
+        return [
+            scene.add_label(f"{self.path(link.name)}/name", link.name, font_screen_scale=0.75)
+            for link in self._shown_links()
+        ]
+
+    def add_axes(self, scene: Any) -> list[Any]:
+        """Adds the frames of the links."""
+        length = min(0.4, max(0.04, 0.18 * self.size))
+        return [
+            scene.add_frame(
+                f"{self.path(link.name)}/axes",
+                axes_length=length,
+                axes_radius=length / 24,
+                origin_radius=length / 12,
+            )
+            for link in self._shown_links()
+        ]
+
+    def _shown_links(self) -> tuple[Link, ...]:
+        return () if self.description.static else self.description.links
+
+    def _surfaces(self, link: Link, kind: str) -> list[Surface]:
+        # A plane that is the ground receives shadows and takes no clicks: it is everywhere.
         surfaces: list[Surface] = []
-        for collision in link.collisions:
-            if isinstance(collision.shape, Plane):
-                continue  # without end: it would only colour the ground
+        for visual in link.visuals:
+            if isinstance(visual.shape, Plane) != (kind == "ground"):
+                continue
             try:
-                surfaces += surfaces_of_collision(collision, COLLISION)
+                surfaces += surfaces_of_visual(visual)
             except CartwheelError as error:
-                self._problem(error)
-        return [self._mesh(link, "collision", surface) for surface in merge(surfaces)]
+                self._say(error)
+        return surfaces
 
-    def _inertias(self, link: Link) -> list[tuple[Skin, float]]:
-        if link.inertial is None or self.description.static:
-            return []
-        pose, size = inertia_box(link.inertial)
-        vertices, faces = triangles_of(Box(size=size))
-        box = self._scene.add_mesh_simple(
-            f"{self.path(link.name)}/inertia",
-            vertices,
-            faces,
-            color=_rgb(INERTIA),
-            opacity=INERTIA[3],
-            cast_shadow=False,
-            receive_shadow=False,
-            position=pose.position,
-            wxyz=to_wxyz(pose.orientation),
-        )
-        ball = self._scene.add_icosphere(
-            f"{self.path(link.name)}/centre_of_mass",
-            radius=max(0.004, 0.02 * self.size),
-            color=(120, 40, 170),
-            position=link.inertial.pose.position,
-            cast_shadow=False,
-        )
-        return [(Skin(box), 1.0), (Skin(ball), 1.0)]
-
-    def _names(self, link: Link) -> list[tuple[Skin, float]]:
-        if self.description.static:
-            return []
-        label = self._scene.add_label(
-            f"{self.path(link.name)}/name", link.name, font_screen_scale=0.75
-        )
-        return [(Skin(label), 1.0)]
+    def _say(self, error: CartwheelError) -> None:
+        """Tells once of what cannot be drawn, however many browsers ask for it."""
+        if str(error) not in self._told:
+            self._told.add(str(error))
+            self._problem(error)
 
     def _mesh(
-        self, link: Link, name: str, surface: Surface, *, ground: bool = False
-    ) -> tuple[Skin, float]:
-        alpha = surface.rgba[3]
-        node = f"{self.path(link.name)}/{name}"
+        self,
+        scene: Any,
+        node: str,
+        surface: Surface,
+        *,
+        ground: bool = False,
+        opacity: float = 1.0,
+        wireframe: bool = False,
+        clickable: bool = False,
+    ) -> Any:
+        alpha = surface.rgba[3] * opacity
         common: dict[str, Any] = {
-            "cast_shadow": not ground and alpha >= 1.0,
+            "cast_shadow": not ground and surface.rgba[3] >= 1.0,
             # On a large plane the browser's cascades of shadows differ in darkness; a fixed one
             # has no seams.
             "receive_shadow": 0.28 if ground else True,
             # Just below the height that it collides at, and below the grid that lies there.
             "position": (0.0, 0.0, -0.004 if ground else 0.0),
         }
-
-        def plain(node: str) -> Any:
-            return self._scene.add_mesh_simple(
+        # The browser draws images neither see-through nor as wires: their mean colour then.
+        if surface.picture is not None and opacity >= 1.0 and not wireframe:
+            handle = scene.add_glb(node, glb_of(surface), **common)
+        else:
+            handle = scene.add_mesh_simple(
                 node,
                 surface.vertices,
                 surface.faces,
                 color=_rgb(_lighten(surface.rgba) if ground else surface.rgba),
                 opacity=None if alpha >= 1.0 else alpha,
-                side="double" if alpha < 1.0 else "front",
+                wireframe=wireframe,
+                side="double" if surface.rgba[3] < 1.0 else "front",
                 **common,
             )
-
-        if surface.picture is None:
-            skin = Skin(plain(node))
-        else:
-            pictured = self._scene.add_glb(node, glb_of(surface), **common)
-            skin = PicturedSkin(pictured, lambda: plain(f"{node}_plain"))
-        if ground:
-            self._grounds.append(skin)
-        elif self._clicked is not None:
-            self._solids.append(skin)
-            if self._clickable:
-                skin.on_click(self._clicked)
-        return skin, alpha
+        if clickable and self._clicked is not None:
+            handle.on_click(self._clicked)
+        return handle
 
     def _frame(self, link: Link) -> Any:
-        length = min(0.4, max(0.04, 0.18 * self.size))
-        return self._scene.add_frame(
-            self.path(link.name),
-            show_axes=False,
-            axes_length=length,
-            axes_radius=length / 24,
-            origin_radius=length / 12,
-        )
+        return self._scene.add_frame(self.path(link.name), show_axes=False)
 
 
 def inertia_box(inertial: Inertial) -> tuple[Pose, tuple[float, float, float]]:

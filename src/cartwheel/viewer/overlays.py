@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import time
 from collections import deque
 from typing import Any
 
@@ -14,6 +15,7 @@ from cartwheel.simulation.snapshot import Snapshot
 from cartwheel.viewer.every import Every
 from cartwheel.viewer.page import Page
 from cartwheel.viewer.scene_view import SceneView
+from cartwheel.viewer.seat import Seat
 
 _TRAIL_STEP = 0.03
 """m between two points of the trail."""
@@ -22,70 +24,49 @@ _OPTICAL = Pose.from_xyz_rpy((0, 0, 0), (-math.pi / 2, 0, -math.pi / 2))
 """REP 103's optical axes, z ahead and y down, within the camera's x-ahead ones."""
 
 
-class Overlays:
-    """Follows the robot, the model that the page is about.
+class Frustums:
+    """What the cameras see, as pyramids with the image at their end; browsers may hide them.
 
     Args:
         page: To draw on.
-        scene: With the models and the toggles.
+        scene: With the models.
     """
 
     def __init__(self, page: Page, scene: SceneView) -> None:
         self._page = page
         self._scene = scene
         self._pyramids: dict[tuple[str, str, str], Any] = {}
-        self._trail: deque[Array] = deque(maxlen=_TRAIL_POINTS)
-        self._line: Any = None
-        self._line_due = Every(4)
         self._image_due = Every(4)
-        self._followed: Array | None = None
-        self._time_ns = 0
-        self._now = 0.0
-
-    def update(self, snapshot: Snapshot, robot: str | None, now: float) -> None:
-        """Moves the trail and the following camera on, those of the model `robot`."""
-        self._now = now
-        if snapshot.time_ns < self._time_ns:
-            self._trail.clear()
-        self._time_ns = snapshot.time_ns
-        pose = self._scene.pose(robot) if robot else None
-        if pose is None:
-            self._followed = None
-            return
-        place = np.array(pose.position)
-        if not self._trail or float(np.linalg.norm(place - self._trail[-1])) > _TRAIL_STEP:
-            self._trail.append(place)
-            self._draw_trail(now)
-        elif self._scene.display.trail != (self._line is not None):
-            self._draw_trail(now)
-        self._follow(place)
 
     def show(self) -> None:
-        """Makes the camera pyramids those of the models that stand there."""
+        """Makes the pyramids those of the models that stand there."""
+        present = self._scene.models
+        # Models that have left took their pyramids with them.
+        self._pyramids = {k: v for k, v in self._pyramids.items() if k[0] in present}
         wanted: dict[tuple[str, str, str], tuple[RobotDescription, Pose, CameraIntrinsics]] = {}
-        if self._scene.display.camera:
-            for name, view in self._scene.models.items():
-                for link in view.description.links:
-                    for sensor in link.sensors:
-                        for lens in sensor.cameras[:1]:
-                            wanted[name, link.name, sensor.name] = (
-                                view.description,
-                                sensor.pose @ lens.pose @ _OPTICAL,
-                                lens,
-                            )
+        for name, view in self._scene.models.items():
+            for link in view.description.links:
+                for sensor in link.sensors:
+                    for lens in sensor.cameras[:1]:
+                        wanted[name, link.name, sensor.name] = (
+                            view.description,
+                            sensor.pose @ lens.pose @ _OPTICAL,
+                            lens,
+                        )
         for key in set(self._pyramids) - set(wanted):
             self._pyramids.pop(key).remove()
         for key, (_, pose, lens) in wanted.items():
             if key not in self._pyramids:
                 self._pyramids[key] = self._pyramid(key, pose, lens)
 
-    def forget(self, models: set[str]) -> None:
-        """Models that have left took their pyramids with them."""
-        self._pyramids = {k: v for k, v in self._pyramids.items() if k[0] in models}
+    @property
+    def nodes(self) -> list[str]:
+        """Their scene nodes."""
+        return [pyramid.name for pyramid in self._pyramids.values()]
 
     def show_image(self, topic: str, picture: Any) -> None:
         """Hangs a camera's image into its pyramid, a few times a second."""
-        if not self._pyramids or not self._image_due(self._now):
+        if not self._pyramids or not self._image_due(time.monotonic()):
             return
         parts = topic.split("/")
         named = [pyramid for key, pyramid in self._pyramids.items() if key[2] in parts]
@@ -111,35 +92,80 @@ class Overlays:
             wxyz=to_wxyz(pose.orientation),
         )
 
+
+class Trail:
+    """Where the robot has been, the model that the page is about."""
+
+    def __init__(self) -> None:
+        self.points: deque[Array] = deque(maxlen=_TRAIL_POINTS)
+        self._time_ns = 0
+
+    def update(self, snapshot: Snapshot, pose: Pose | None) -> None:
+        """Goes on to where the robot is; None where there is none."""
+        if snapshot.time_ns < self._time_ns:
+            self.points.clear()
+        self._time_ns = snapshot.time_ns
+        if pose is None:
+            return
+        place = np.array(pose.position)
+        if not self.points or float(np.linalg.norm(place - self.points[-1])) > _TRAIL_STEP:
+            self.points.append(place)
+
+
+class Overlays:
+    """One browser's trail, and its camera where that follows the robot.
+
+    Args:
+        seat: The browser.
+        trail: Of the robot.
+    """
+
+    def __init__(self, seat: Seat, trail: Trail) -> None:
+        self._seat = seat
+        self._trail = trail
+        self._line: Any = None
+        self._drawn: Array | None = None
+        self._line_due = Every(4)
+        self._followed: Array | None = None
+
+    def update(self, pose: Pose | None, now: float) -> None:
+        """Moves the trail and the following camera on.
+
+        Args:
+            pose: The robot's; None where there is none.
+            now: s of wall time.
+        """
+        self._draw_trail(now)
+        self._follow(None if pose is None else np.array(pose.position))
+
     def _draw_trail(self, now: float) -> None:
-        if not self._scene.display.trail:
+        points = self._trail.points
+        if not self._seat.display.trail or len(points) < 2:
             if self._line is not None:
                 self._line.remove()
-                self._line = None
+                self._line = self._drawn = None
             return
-        if len(self._trail) < 2 or not self._line_due(now):
+        if points[-1] is self._drawn or not self._line_due(now):
             return
-        points = np.array(self._trail, dtype=np.float32)
-        points[:, 2] = 0.012  # on the ground, where the robot has been and not what it hides
-        segments = np.stack([points[:-1], points[1:]], axis=1)
-        self._line = self._page.scene.add_line_segments(
+        self._drawn = points[-1]
+        flat = np.array(points, dtype=np.float32)
+        flat[:, 2] = 0.012  # on the ground, where the robot has been and not what it hides
+        segments = np.stack([flat[:-1], flat[1:]], axis=1)
+        self._line = self._seat.scene.add_line_segments(
             "/trail", segments, (240, 140, 0), thickness=0.015
         )
 
-    def _follow(self, place: Array) -> None:
-        if not self._scene.display.follow:
-            self._followed = None
-            return
-        if self._followed is None:
+    def _follow(self, place: Array | None) -> None:
+        if not self._seat.display.follow or place is None or self._followed is None:
             self._followed = place
             return
         step = place - self._followed
         if float(np.linalg.norm(step)) < 1e-3:
             return
         self._followed = place
-        for client in self._page.server.get_clients().values():
-            with client.atomic():
-                # Position first: setting it would turn the view, and the target turns it back.
-                position, target = client.camera.position + step, client.camera.look_at + step
-                client.camera.position = position
-                client.camera.look_at = target
+        client = self._seat.client
+        with client.atomic():
+            # Position first: setting it would turn the view, and the target turns it back.
+            position, target = client.camera.position + step, client.camera.look_at + step
+            client.camera.position = position
+            client.camera.look_at = target

@@ -69,13 +69,15 @@ class Page:
         """Where browsers find it."""
         self._jobs: queue.SimpleQueue[tuple[Callable[[], object], int | None] | None]
         self._jobs = queue.SimpleQueue()
-        self.inbox = Inbox(self.server, self._jobs.qsize, self._refuse)
+        self.inbox = Inbox(self.server, self._jobs.qsize, self._refuse, self._silent)
         self.gui: Any = self.server.gui
         self.scene: Any = self.server.scene
         self.clients: frozenset[int] = frozenset()
         """Browsers that are connected now."""
         self.on_clients: Callable[[], None] = lambda: None
         """Called when `clients` has changed."""
+        self.on_silence: Callable[[int], None] = lambda _: None
+        """Called with a browser's number when it does not answer any more, though connected."""
         self._client: int | None = None
         self.gui.configure_theme(
             show_logo=False, show_share_button=False, brand_color=(37, 99, 176)
@@ -88,14 +90,14 @@ class Page:
         )
         self._lightly: set[int] = set()
         lightly = self.gui.add_command(
-            "Draw lightly or fully",
+            "Toggle shadows",
             description="Without shadows: twice as fast where no GPU draws",
             hotkey=_LIGHTLY,
         )
         lightly.on_trigger(self.on(self._draw_lightly))
         self._beats = 0
         self._beat_due = Every(1 / _BEAT)
-        self._pulse = self.gui.add_html(_pulse(0))
+        self._pulses: dict[int, Any] = {}
         self.server.on_client_connect(self.on(self._connected))
         self.server.on_client_disconnect(self.on(self._disconnected))
         # On viser's own loop: no other thread takes Python's lock from the simulation.
@@ -162,13 +164,14 @@ class Page:
         """Lets the browsers know that they are still connected, also while nothing changes."""
         if self.clients and self._beat_due(now):
             self._beats += 1
-            self._pulse.content = _pulse(self._beats)
+            for pulse in self._pulses.values():
+                pulse.content = _pulse(self._beats)
 
     # -- notes
 
     def show_error(self, error: CartwheelError) -> None:
         """Tells whoever asked what went wrong."""
-        self.notify("That did not work", str(error), color="red", seconds=12.0)
+        self.notify("Error", str(error), color="red", seconds=12.0)
 
     def notify(
         self,
@@ -188,15 +191,20 @@ class Page:
         """Says, from viser's thread, why a file was not taken."""
         self.post(partial(self.notify, "Error", reason, color="red"), client=client)
 
+    def _silent(self, client: int) -> None:
+        self.post(lambda: self.on_silence(client))
+
     # -- browsers
 
     def _connected(self, client: Any) -> None:
         self.clients |= {client.client_id}
+        self._pulses[client.client_id] = client.gui.add_html(_pulse(0))
         self.on_clients()
 
     def _disconnected(self, client: Any) -> None:
         self.clients -= {client.client_id}
         self._lightly.discard(client.client_id)
+        self._pulses.pop(client.client_id, None)
         self.on_clients()
 
     def _draw_lightly(self, event: Any) -> None:

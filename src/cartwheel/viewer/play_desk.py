@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 from cartwheel.viewer.desk import Desk
 from cartwheel.viewer.panels.base import Panel
 from cartwheel.viewer.panels.timeline import TimelinePanel
+from cartwheel.viewer.seat import Seat
 
 
 class PlayDesk(Desk):
@@ -17,3 +19,6 @@ class PlayDesk(Desk):
 
     def build_left(self, left: Any) -> list[Panel]:  # noqa: ARG002 - nothing can be moved
         return []
+
+    def build_own(self, seat: Seat, look: Callable[[], None], panels: list[Panel]) -> None:
+        self.build_looking(seat, look, panels)

@@ -70,11 +70,12 @@ class Scans(Panel):
 
     def _choose(self) -> None:
         """Reads what is switched on; a topic that is not read is not measured."""
-        display = self.stage.scene.display
-        on = {SCAN: display.scans, CLOUD: display.clouds}
-        wanted = {name for name, topic in self._topics.items() if on[topic.type]}
-        if not self.page.clients:
-            wanted = set()
+        wanted = set()
+        for seat in self.stage.seats.values():
+            on = {SCAN: seat.display.scans, CLOUD: seat.display.clouds}
+            shown = {name for name, topic in self._topics.items() if on[topic.type]}
+            seat.hide("scans", {_node(name) for name in set(self._topics) - shown})
+            wanted |= shown
         for topic in set(self._taps) - wanted:
             self._drop(topic)
         for topic in wanted - set(self._taps):
@@ -109,7 +110,7 @@ class Scans(Panel):
         if cloud is None:
             color = _COLORS[len(self._clouds) % len(_COLORS)]
             self._clouds[topic] = self.page.scene.add_point_cloud(
-                f"/scans{topic}",
+                _node(topic),
                 points,
                 color,
                 point_size=0.03,
@@ -124,6 +125,10 @@ class Scans(Panel):
         if topic not in self._told:
             self._told.add(topic)
             self.page.notify(f"{topic} is not drawn", f'its frame "{frame}" is no link of {model}')
+
+
+def _node(topic: str) -> str:
+    return f"/scans{topic}"
 
 
 def row_of_frame(links: Sequence[tuple[str, str]], model: str, frame: str) -> int | None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 
@@ -11,9 +10,10 @@ from cartwheel.description.model import RobotDescription
 from cartwheel.errors import CartwheelError
 from cartwheel.geometry import Pose, from_wxyz
 from cartwheel.simulation.snapshot import Scene, Snapshot
-from cartwheel.viewer.display import Display
 from cartwheel.viewer.model_view import ModelView
 from cartwheel.viewer.page import Page
+
+GRID = "/grid"
 
 
 class SceneView:
@@ -25,16 +25,15 @@ class SceneView:
 
     def __init__(self, page: Page) -> None:
         self._page = page
-        self.selected: Callable[[str], None] = lambda _: None
-        """Called with a model's name when it is clicked."""
-        self.display = Display()
+        self.clicked: Callable[[int, str], None] = lambda _, __: None
+        """Called with a browser's number and a model's name when it is clicked there."""
         self.models: dict[str, ModelView] = {}
         self.snapshot: Snapshot | None = None
         """The newest shown."""
         self._version = -1
         self._rows: dict[str, slice] = {}
         set_stage(page)
-        self._grid = add_grid(page)
+        add_grid(page)
 
     def update(self, snapshot: Snapshot) -> bool:
         """Shows a state; says whether the set of models has changed."""
@@ -46,13 +45,6 @@ class SceneView:
                 self.models[name].move(snapshot.positions[rows], snapshot.quaternions[rows])
         self.snapshot = snapshot
         return changed
-
-    def show(self) -> None:
-        """Applies the toggles of `display`."""
-        with self._page.server.atomic():
-            self._grid.visible = self.display.grid
-            for model in self.models.values():
-                model.show(self.display)
 
     def pose(self, name: str) -> Pose | None:
         """Where a model's frame is; None where there is no such model."""
@@ -78,15 +70,13 @@ class SceneView:
         def problem(error: CartwheelError) -> None:
             self._page.show_error(error)
 
-        view = ModelView(
+        return ModelView(
             self._page.scene,
             name,
             description,
             problem=problem,
-            clicked=self._page.on(lambda _: self.selected(name)),
+            clicked=self._page.on(lambda event: self.clicked(event.client_id, name)),
         )
-        view.show(self.display)
-        return view
 
 
 def pose_in(snapshot: Snapshot, name: str) -> Pose:
@@ -109,10 +99,10 @@ def set_stage(page: Page) -> None:
     camera.fov = np.deg2rad(45.0)
 
 
-def add_grid(page: Page) -> Any:
+def add_grid(page: Page) -> None:
     """Metres, and halves of them, on the ground."""
-    return page.scene.add_grid(
-        "/grid",
+    page.scene.add_grid(
+        GRID,
         infinite_grid=True,
         cell_size=0.5,
         section_size=1.0,

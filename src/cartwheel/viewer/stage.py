@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from cartwheel.session import Session
 from cartwheel.viewer.framing import Framing
-from cartwheel.viewer.overlays import Overlays
+from cartwheel.viewer.overlays import Frustums, Trail
 from cartwheel.viewer.page import Page
 from cartwheel.viewer.scene_view import SceneView
+from cartwheel.viewer.seat import Seat
 
 
 class Stage:
@@ -24,4 +25,9 @@ class Stage:
         """The model that the camera follows and that things are inserted in front of."""
         self.scene = SceneView(page)
         self.framing = Framing(page, session.simulation)
-        self.overlays = Overlays(page, self.scene)
+        self.frustums = Frustums(page, self.scene)
+        self.trail = Trail()
+        self.seats: dict[int, Seat] = {}
+        """The browsers that are connected, by number."""
+        self.drivers: dict[str, int] = {}
+        """The browser that was the last to drive on a topic."""

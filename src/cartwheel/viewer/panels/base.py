@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import html
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 from cartwheel.description.model import RobotDescription
 from cartwheel.graph import TopicInfo
 from cartwheel.simulation.snapshot import Snapshot
+from cartwheel.viewer.seat import Seat
 from cartwheel.viewer.stage import Stage
 
 
@@ -16,21 +18,22 @@ class Panel:
 
     Args:
         stage: What the panels share.
+        seat: The browser that it is for; None is for all of them.
     """
 
-    def __init__(self, stage: Stage) -> None:
+    def __init__(self, stage: Stage, seat: Seat | None = None) -> None:
         self.stage = stage
         self.page = stage.page
-        self.gui = stage.page.gui
+        self.gui: Any = stage.page.gui if seat is None else seat.gui
         self.session = stage.session
         self.graph = stage.session.graph
         self.simulation = stage.session.simulation
 
     def watch(self) -> None:
-        """The first browser came: subscribe."""
+        """The first browser came, or that whose panel it is: subscribe."""
 
     def leave(self) -> None:
-        """The last browser went: let go of everything that makes work."""
+        """The last browser went, or that whose panel it is: let go of everything."""
 
     def show_topics(self, topics: Sequence[TopicInfo]) -> None:
         """The graph has changed."""
@@ -64,9 +67,15 @@ def facts(description: RobotDescription) -> dict[str, str]:
     """What a description is, for `rows_html`."""
     return {
         "mass": "fixed" if description.static else f"{description.mass:.4g} kg",
-        "parts": f"{len(description.links)} links, {len(description.joints)} joints",
+        "parts": f"{counted(len(description.links), 'link')}, "
+        f"{counted(len(description.joints), 'joint')}",
         "file": escape(description.origin.file.rsplit("/", 1)[-1]),
     }
+
+
+def counted(number: int, noun: str) -> str:
+    """A number with its noun."""
+    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
 
 
 def of_type(topics: Sequence[TopicInfo], type_name: str) -> list[str]:

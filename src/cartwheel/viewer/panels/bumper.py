@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from cartwheel.graph import Mailbox, TopicInfo
 from cartwheel.simulation.snapshot import Snapshot
@@ -27,7 +28,10 @@ class BumperPanel(Panel):
         self._boxes: dict[str, Mailbox] = {}
         self._topics: tuple[str, ...] = ()
         self._seen: dict[str, float] = {}
-        self._arrows: Any = None
+        self._states: dict[str, Sequence[Any]] = {}
+        """The newest of each topic."""
+        self._arrows: dict[int, Any] = {}
+        """Of each browser that shows contacts."""
         self._light = self.gui.add_html(light_html((), known=False))
         self._shown = self._light.content
 
@@ -40,6 +44,7 @@ class BumperPanel(Panel):
         for box in self._boxes.values():
             box.close()
         self._boxes.clear()
+        self._states.clear()
 
     def show_topics(self, topics: Sequence[TopicInfo]) -> None:
         found = tuple(of_type(topics, CONTACTS))
@@ -48,46 +53,62 @@ class BumperPanel(Panel):
         self._topics = found
         for topic in set(self._boxes) - set(found):
             self._boxes.pop(topic).close()
+            self._states.pop(topic, None)
         if self.page.clients:
             self.watch()
 
     def update(self, snapshot: Snapshot, now: float) -> None:  # noqa: ARG002
-        states: list[Any] = []
-        for box in self._boxes.values():
+        news = False
+        for topic, box in self._boxes.items():
             messages = box.drain()
             for message in messages:
                 for state in message.states:
                     self._seen[other_side(state)] = now
             if messages:
-                states += messages[-1].states
-                self._show_forces(messages[-1].states)
+                news = True
+                self._states[topic] = messages[-1].states
+        self._show_forces(news)
         self._seen = {name: at for name, at in self._seen.items() if now - at < LATCH}
         content = light_html(tuple(sorted(self._seen)), known=bool(self._topics))
         if content != self._shown:
             self._light.content = self._shown = content
 
-    def _show_forces(self, states: Sequence[Any]) -> None:
-        if not self.stage.scene.display.contacts or not states:
-            if self._arrows is not None:
-                self._arrows.remove()
-                self._arrows = None
-            return
+    def _show_forces(self, news: bool) -> None:
+        """Draws the forces of all bumpers where a browser shows them.
+
+        Args:
+            news: Whether they have changed.
+        """
+        seats = self.stage.seats
+        points = self._points() if any(seat.display.contacts for seat in seats.values()) else None
+        for number in set(self._arrows) - set(seats):
+            del self._arrows[number]
+        for number, seat in seats.items():
+            arrows = self._arrows.get(number)
+            if points is None or not len(points) or not seat.display.contacts:
+                if arrows is not None:
+                    self._arrows.pop(number).remove()
+            elif news or arrows is None:
+                self._arrows[number] = seat.scene.add_arrows(
+                    "/contacts",
+                    points,
+                    (224, 49, 49),
+                    shaft_radius=0.008,
+                    head_radius=0.02,
+                    head_length=0.04,
+                )
+
+    def _points(self) -> NDArray[np.float32]:
+        """Where the arrows begin and end, shape (n, 2, 3), m."""
         points = []
-        for state in states:
+        for state in (state for states in self._states.values() for state in states):
             for position, wrench in zip(state.contact_positions, state.wrenches, strict=False):
                 start = np.array([position.x, position.y, position.z])
                 force = np.array([wrench.force.x, wrench.force.y, wrench.force.z])
                 length = float(np.linalg.norm(force)) * _METRES_PER_NEWTON
                 arrow = force / (np.linalg.norm(force) or 1.0) * min(_LONGEST, max(0.06, length))
                 points.append((start, start + arrow))
-        self._arrows = self.page.scene.add_arrows(
-            "/contacts",
-            np.array(points, dtype=np.float32).reshape(-1, 2, 3),
-            (224, 49, 49),
-            shaft_radius=0.008,
-            head_radius=0.02,
-            head_length=0.04,
-        )
+        return np.array(points, dtype=np.float32).reshape(-1, 2, 3)
 
 
 def other_side(state: Any) -> str:
@@ -102,7 +123,7 @@ def light_html(hit: Sequence[str], *, known: bool) -> str:
         full = escape("\n".join(hit))
         return (
             f'<div class="cw"><div class="cw-bumper cw-hit" title="{full}">'
-            f"<i></i><span>Bumper: <b>{models}</b></span></div></div>"
+            f"<i></i><span>Contact: <b>{models}</b></span></div></div>"
         )
-    text = "Bumper free" if known else "No bumper"
+    text = "No contact" if known else "No bumper"
     return f'<div class="cw"><div class="cw-bumper"><i></i><span>{text}</span></div></div>'

@@ -13,6 +13,7 @@ from cartwheel.messages import nanoseconds
 from cartwheel.simulation.snapshot import Snapshot
 from cartwheel.viewer.every import Every
 from cartwheel.viewer.panels.base import Panel, escape, of_type
+from cartwheel.viewer.seat import Seat
 from cartwheel.viewer.stage import Stage
 from cartwheel.viewer.tap import Tap
 
@@ -43,10 +44,10 @@ _DARKEST = 30
 
 
 class CameraPanel(Panel):
-    """Shows one image topic; nothing is rendered for it while nobody looks."""
+    """Shows one browser one image topic; nothing is rendered for it while nobody looks."""
 
-    def __init__(self, stage: Stage) -> None:
-        super().__init__(stage)
+    def __init__(self, stage: Stage, seat: Seat) -> None:
+        super().__init__(stage, seat)
         self._topics: tuple[str, ...] = ()
         self._tap: Tap | None = None
         self._due = Every(_RATE)
@@ -96,7 +97,7 @@ class CameraPanel(Panel):
         if not self._image.visible:
             self._image.visible = True
         self._say(f"{size} · {self._rate:.1f} Hz" if self._rate else size)
-        self.stage.overlays.show_image(self._topic.value, picture)
+        self.stage.frustums.show_image(self._topic.value, picture)
 
     def _choose(self) -> None:
         wanted = self._topic.value
@@ -110,7 +111,7 @@ class CameraPanel(Panel):
         elif not self._on.value:
             self._image.visible = False
             self._say("Switched off: nothing is rendered.")
-        elif self.page.clients:
+        else:
             self._tap = Tap(self.graph, wanted)
 
     def _measure(self, count: int, time_ns: int) -> None:

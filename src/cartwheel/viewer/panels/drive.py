@@ -10,17 +10,18 @@ that a button and its key cannot differ.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 from cartwheel.graph import TWIST, TWIST_STAMPED, TopicInfo
 from cartwheel.messages import header, message_class
 from cartwheel.viewer.panels.base import Panel
+from cartwheel.viewer.seat import Seat
 from cartwheel.viewer.stage import Stage
 from cartwheel.viewer.teleop import MOVES, Teleop
 
-_ALL = "all that listen"
-_NONE = "nothing listens"
+_ALL = "all subscribers"
+_NONE = "no subscribers"
 _LABELS = {
     "u": "forward left",
     "i": "forward",
@@ -42,10 +43,11 @@ _ANGLES = {"u": -45, "i": 0, "o": 45, "j": -90, "l": 90, "m": -135, ",": 180, ".
 
 
 class DrivePanel(Panel):
-    """Publishes Twists on the topics that drive."""
+    """Publishes Twists on the topics that drive, for one browser."""
 
-    def __init__(self, stage: Stage) -> None:
-        super().__init__(stage)
+    def __init__(self, stage: Stage, seat: Seat) -> None:
+        super().__init__(stage, seat)
+        self._seat = seat
         self._teleop = Teleop()
         self._drivable: dict[str, str] = {}
         self._topic = self.gui.add_dropdown("Drive", (_NONE,))
@@ -58,7 +60,8 @@ class DrivePanel(Panel):
         """What a key does."""
         publish = self._teleop.press(key)
         if publish:
-            self._publish()
+            chosen = self._topic.value
+            self._publish(self._drivable if chosen == _ALL else (chosen,))
         self._pad.content = self._html()
 
     def show_topics(self, topics: Sequence[TopicInfo]) -> None:
@@ -72,18 +75,22 @@ class DrivePanel(Panel):
         self._topic.value = chosen if chosen in options else options[0]
 
     def leave(self) -> None:
-        # Nobody can see it any more, nor stop it.
-        if self._teleop.key != "k":
-            self.press("k")
+        """Stops what this browser drives; what another one drives by now goes on."""
+        if self._teleop.key == "k":
+            return
+        self._teleop.press("k")
+        drivers = self.stage.drivers
+        self._publish([name for name, number in drivers.items() if number == self._seat.number])
+        self._pad.content = self._html()
 
-    def _publish(self) -> None:
+    def _publish(self, topics: Iterable[str]) -> None:
         vector = message_class("geometry_msgs/msg/Vector3")
         twist: Any = message_class(TWIST)(
             linear=vector(x=float(self._teleop.linear), y=0.0, z=0.0),
             angular=vector(x=0.0, y=0.0, z=float(self._teleop.angular)),
         )
-        chosen = self._topic.value
-        for topic in self._drivable if chosen == _ALL else (chosen,):
+        for topic in topics:
+            self.stage.drivers[topic] = self._seat.number
             kind = self._drivable.get(topic)
             if kind == TWIST:
                 self.graph.publish(topic, TWIST, twist)
@@ -98,8 +105,8 @@ class DrivePanel(Panel):
         return (
             f'<div class="cw"><div class="cw-pad">{caps}</div>'
             '<div class="cw-speeds">'
-            f"<span>straight <b>{teleop.linear_speed:.2f} m/s</b></span>{_speed('x', 'w')}"
-            f"<span>turning <b>{teleop.angular_speed:.2f} rad/s</b></span>{_speed('c', 'e')}"
+            f"<span>linear <b>{teleop.linear_speed:.2f} m/s</b></span>{_speed('x', 'w')}"
+            f"<span>angular <b>{teleop.angular_speed:.2f} rad/s</b></span>{_speed('c', 'e')}"
             f'<span class="cw-dim">both</span>{_speed("z", "q")}</div></div>'
         )
 

@@ -19,6 +19,7 @@ from cartwheel.simulation.naming import free_name
 from cartwheel.simulation.space import Space
 from cartwheel.viewer.model_view import bounds, footprint
 from cartwheel.viewer.panels.base import Panel
+from cartwheel.viewer.seat import Seat
 from cartwheel.viewer.stage import Stage
 from cartwheel.viewer.uploads import MOST_BYTES
 
@@ -44,12 +45,6 @@ class InsertPanel(Panel):
             button.on_click(page.do(self.insert, path))
             command = gui.add_command(f"Insert: {label}")
             command.on_trigger(page.do(self.insert, path))
-        most = MOST_BYTES // 1_000_000
-        gui.add_html(
-            f'<div class="cw cw-dim">URDF, xacro or SDF of your own, up to {most} MB</div>'
-        )
-        upload = gui.add_upload_button("Open a file", icon=page.viser.Icon.UPLOAD)
-        upload.on_upload(page.on(lambda event: self._upload(event.target.value)))
 
     def insert(self, path: Path, *, name: str | None = None, reach: Reach | None = None) -> None:
         """Spawns what a file describes.
@@ -76,6 +71,27 @@ class InsertPanel(Panel):
     def _inserted(self, name: str) -> None:
         self.page.notify("Inserted", f"{name} stands in the world.", color="green", seconds=3.0)
 
+
+class UploadPanel(Panel):
+    """A browser's button for a file of its user's own.
+
+    Args:
+        stage: What the panels share.
+        seat: The browser.
+        inserting: Puts into the world what a file describes.
+    """
+
+    def __init__(self, stage: Stage, seat: Seat, inserting: InsertPanel) -> None:
+        super().__init__(stage, seat)
+        page, gui = self.page, self.gui
+        self._inserting = inserting
+        most = MOST_BYTES // 1_000_000
+        gui.add_html(
+            f'<div class="cw cw-dim">URDF, xacro or SDF of your own, up to {most} MB</div>'
+        )
+        upload = gui.add_upload_button("Open a file", icon=page.viser.Icon.UPLOAD)
+        upload.on_upload(page.on(lambda event: self._upload(event.target.value)))
+
     def _upload(self, file: Any) -> None:
         name = Path(file.name.replace("\\", "/")).name
         if not file.content:
@@ -85,7 +101,9 @@ class InsertPanel(Panel):
             path.write_bytes(file.content)
             try:
                 # A browser's file may read what came with it, and no more of this machine.
-                self.insert(path, reach=Reach(folders=(Path(folder),), environment=False))
+                self._inserting.insert(
+                    path, reach=Reach(folders=(Path(folder),), environment=False)
+                )
             except CartwheelError as error:
                 # The folder is nothing to the user, who knows the file by its name.
                 raise DescriptionError(str(error).replace(f"{folder}/", "")) from error

@@ -9,6 +9,7 @@ from cartwheel.messages import to_yaml
 from cartwheel.simulation.snapshot import Snapshot
 from cartwheel.viewer.every import Every
 from cartwheel.viewer.panels.base import Panel, escape
+from cartwheel.viewer.seat import Seat
 from cartwheel.viewer.stage import Stage
 from cartwheel.viewer.tap import Tap
 
@@ -20,8 +21,8 @@ _LONGEST = 6000
 class TopicsPanel(Panel):
     """The list of topics and an echo."""
 
-    def __init__(self, stage: Stage) -> None:
-        super().__init__(stage)
+    def __init__(self, stage: Stage, seat: Seat) -> None:
+        super().__init__(stage, seat)
         self._tap: Tap | None = None
         self._due = Every(5)
         self._list_due = Every(1)
@@ -50,7 +51,7 @@ class TopicsPanel(Panel):
             self._topic.value = chosen if chosen in names else _NONE
 
     def update(self, snapshot: Snapshot, now: float) -> None:  # noqa: ARG002
-        if self.page.clients and self._list_due(now):
+        if self._list_due(now):
             # What is dropped changes without the graph.
             self.show_topics(self.graph.topics())
         tap = self._tap
@@ -72,7 +73,7 @@ class TopicsPanel(Panel):
         self._shown = 0
         if wanted == _NONE:
             self._text.content = ""
-        elif self.page.clients:
+        else:
             self._text.content = '<div class="cw cw-dim">Waiting for a message.</div>'
             self._tap = Tap(self.graph, wanted)
 

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from functools import partial
 from typing import Any
 
-from cartwheel.simulation.snapshot import Snapshot
+from cartwheel.viewer.display import Display
+from cartwheel.viewer.page import Page
 from cartwheel.viewer.panels.base import Panel
+from cartwheel.viewer.seat import Seat
 from cartwheel.viewer.stage import Stage
 
 LABELS = {
@@ -26,38 +29,48 @@ LABELS = {
     "grid": "Grid",
     "follow": "Follow the robot",
 }
+"""Of each field of `Display`."""
+
+
+def add_toggles(
+    page: Page, seat: Seat, names: Iterable[str], changed: Callable[[], None]
+) -> dict[str, Any]:
+    """A checkbox for each of these fields of a browser's `Display`.
+
+    Args:
+        page: That they are on.
+        seat: The browser.
+        names: Of the fields.
+        changed: Called after one was changed.
+    """
+
+    def take(name: str, event: Any) -> None:
+        setattr(seat.display, name, bool(event.target.value))
+        changed()
+
+    boxes = {}
+    for name in names:
+        boxes[name] = seat.gui.add_checkbox(LABELS[name], initial_value=getattr(seat.display, name))
+        boxes[name].on_update(page.on(partial(take, name)))
+    return boxes
 
 
 class ViewPanel(Panel):
-    """A checkbox for each field of `Display`."""
+    """A browser's checkboxes, one for each field of `Display`.
 
-    def __init__(self, stage: Stage) -> None:
-        super().__init__(stage)
-        display = stage.scene.display
-        assert set(LABELS) == {field.name for field in dataclasses.fields(display)}
-        self._boxes = {}
-        for name, label in LABELS.items():
-            box = self.gui.add_checkbox(label, initial_value=getattr(display, name))
-            box.on_update(self.page.on(self._setter(name)))
-            self._boxes[name] = box
-        self.gui.add_command("Follow the robot").on_trigger(self.page.do(self._toggle, "follow"))
+    Args:
+        stage: What the panels share.
+        seat: The browser.
+        look: Draws its scene anew.
+    """
 
-    def show_models(self, snapshot: Snapshot) -> None:
-        self.stage.overlays.forget({model.name for model in snapshot.scene.models})
-        self.stage.overlays.show()
+    def __init__(self, stage: Stage, seat: Seat, look: Callable[[], None]) -> None:
+        super().__init__(stage, seat)
+        assert set(LABELS) == {field.name for field in dataclasses.fields(Display)}
+        self._boxes = add_toggles(self.page, seat, LABELS, look)
+        follow = self.gui.add_command("Follow the robot")
+        follow.on_trigger(self.page.do(self._toggle, "follow"))
 
     def _toggle(self, name: str) -> None:
+        # Its callback is called as if the user had clicked.
         self._boxes[name].value = not self._boxes[name].value
-        self._apply(name)
-
-    def _setter(self, name: str) -> Callable[[Any], None]:
-        def set_from(event: Any) -> None:
-            if event.client is not None:
-                self._apply(name)
-
-        return set_from
-
-    def _apply(self, name: str) -> None:
-        setattr(self.stage.scene.display, name, bool(self._boxes[name].value))
-        self.stage.scene.show()
-        self.stage.overlays.show()

@@ -3,20 +3,31 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any
 
 from cartwheel.geometry import Pose, from_wxyz, to_wxyz
 from cartwheel.simulation.snapshot import PlacedModel, Snapshot
 from cartwheel.viewer.every import Every
 from cartwheel.viewer.panels.base import Panel, escape, facts, rows_html
+from cartwheel.viewer.seat import Seat
 from cartwheel.viewer.stage import Stage
 
 
 class WorldPanel(Panel):
-    """The list of models and the gizmo of the selected one."""
+    """The list of models, and the gizmo of the one that this browser has selected.
 
-    def __init__(self, stage: Stage, tab: Any) -> None:
-        super().__init__(stage)
+    Args:
+        stage: What the panels share.
+        seat: The browser.
+        look: Draws its scene anew: clicks pass through what is selected.
+        tab: Where the list is.
+    """
+
+    def __init__(self, stage: Stage, seat: Seat, look: Callable[[], None], tab: Any) -> None:
+        super().__init__(stage, seat)
+        self._seat = seat
+        self._look = look
         self._tab = tab
         self.selected: str | None = None
         self._rows: dict[str, Any] = {}
@@ -42,9 +53,8 @@ class WorldPanel(Panel):
         """Selects a model, or none; selecting the selected one lets go of it."""
         if name == self.selected:
             name = None
-        self._let_clicks_through(self.selected, False)
-        self._let_clicks_through(name, True)
         self.selected = name
+        self._look()
         if self._gizmo is not None:
             self._gizmo.remove()
             self._gizmo = None
@@ -59,7 +69,7 @@ class WorldPanel(Panel):
             return
         self._delete.label = f"Delete {name}"
         size = self.stage.scene.models[name].size
-        self._gizmo = self.page.scene.add_transform_controls(
+        self._gizmo = self._seat.scene.add_transform_controls(
             "/gizmo",
             scale=min(1.2, max(0.25, 0.8 * size)),
             line_width=3.0,
@@ -71,11 +81,6 @@ class WorldPanel(Panel):
         self._shown = pose
         self._describe(snapshot)
 
-    def _let_clicks_through(self, name: str | None, through: bool) -> None:
-        view = self.stage.scene.models.get(name) if name is not None else None
-        if view is not None:
-            view.set_clickable(not through)
-
     def delete(self) -> None:
         """Takes the selected model out of the world."""
         name, simulation = self.selected, self.simulation
@@ -83,6 +88,10 @@ class WorldPanel(Panel):
             return
         self.select(None)
         self.page.then(simulation.call(lambda: simulation.delete(name)))
+
+    def leave(self) -> None:
+        # A drag ends with its browser: nothing may hold the model in the air for ever.
+        self._held = None
 
     def show_models(self, snapshot: Snapshot) -> None:
         names = [model.name for model in snapshot.scene.models]
@@ -110,7 +119,7 @@ class WorldPanel(Panel):
             pose = self.stage.scene.pose(self.selected)
             if pose is not None and pose != self._shown:
                 self._shown = pose
-                with self.page.server.atomic():
+                with self._seat.client.atomic():
                     self._gizmo.position = pose.position
                     self._gizmo.wxyz = to_wxyz(pose.orientation)
         if self._due(now):
