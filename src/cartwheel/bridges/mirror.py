@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import Any
@@ -15,6 +16,7 @@ BRIDGES = frozenset({"ros1", "ros2"})
 ONLOOKERS = frozenset({"viewer", "cartwheel topic", "recorder", "foxglove"})
 """Nodes of the graph that read what it publishes, and expect nothing of other publishers."""
 _BACKLOG = 1000
+_BACKLOG_BYTES = 128 << 20
 """Messages from outside that the simulation has not taken yet."""
 
 _CALL = 120.0
@@ -92,18 +94,37 @@ class Arrivals:
         self._graph = graph
         self._tell = tell
         self._under_way: dict[int, Any] = {}
+        self._bytes = 0
+        self._counting = threading.Lock()
 
     def __contains__(self, message: object) -> bool:
         return id(message) in self._under_way
 
-    def deliver(self, topic: str, type_name: str, message: Any) -> None:
-        """Publishes a message in the graph; from any thread."""
-        if len(self._under_way) >= _BACKLOG:
+    def deliver(self, topic: str, type_name: str, message: Any, *, size: int = 0) -> None:
+        """Publishes a message in the graph; from any thread.
+
+        Args:
+            topic: Its name in the graph.
+            type_name: Of the message.
+            message: As the graph has it.
+            size: In bytes, as far as that is known.
+        """
+        if len(self._under_way) >= _BACKLOG or self._bytes + size > _BACKLOG_BYTES:
             self._tell("the simulation does not keep up with what ROS sends: it is dropped")
             return
         self._under_way[id(message)] = message
+        self._count(size)
         try:
             self._graph.publish(topic, type_name, message)
         except CartwheelError as error:
             self._tell(f"{topic}: {error}")
-        self._graph.post(lambda: self._under_way.pop(id(message), None) and None)
+
+        def taken() -> None:
+            self._under_way.pop(id(message), None)
+            self._count(-size)
+
+        self._graph.post(taken)
+
+    def _count(self, size: int) -> None:
+        with self._counting:
+            self._bytes += size

@@ -17,7 +17,9 @@ from cartwheel.messages.store import loaded, message_class, type_name
 
 _COUNT = struct.Struct("<I")
 _EMPTIES = 1 << 16
-"""Messages without any bytes that an array may hold."""
+"""Messages without any bytes that the lists of a message may hold."""
+_NESTED = 8
+"""Lists within each other at most, each element of which has a byte."""
 
 _Reader = Callable[["_Source"], Any]
 
@@ -25,11 +27,14 @@ _Reader = Callable[["_Source"], Any]
 class _Source:
     """Bytes and how far they are read."""
 
-    __slots__ = ("data", "offset")
+    __slots__ = ("data", "elements", "offset")
 
-    def __init__(self, data: bytes | memoryview) -> None:
+    def __init__(self, data: bytes | memoryview, elements: int | None) -> None:
         self.data = memoryview(data)
         self.offset = 0
+        most = _NESTED * len(self.data) + _EMPTIES
+        self.elements = most if elements is None else min(elements, most)
+        """That lists may still have."""
 
     def take(self, size: int) -> memoryview:
         end = self.offset + size
@@ -44,15 +49,21 @@ class _Source:
         return int(count)
 
 
-def decode_ros1(data: bytes | memoryview, type_name: str) -> Any:
+def decode_ros1(data: bytes | memoryview, type_name: str, *, elements: int | None = None) -> Any:
     """The graph's message of ROS 1 bytes; its arrays are views of them.
+
+    Args:
+        data: The bytes.
+        type_name: The graph's name of the type.
+        elements: That the lists of messages and strings may have together, which take time;
+            arrays of numbers do not. None is as many as there are bytes for.
 
     Raises:
         UnknownNameError: There is no such type.
         GraphError: The bytes are none of that type.
     """
     read = _reader(message_class(type_name).__msgtype__)
-    source = _Source(data)
+    source = _Source(data, elements)
     try:
         message = read(source)
     except (ValueError, struct.error) as error:
@@ -111,13 +122,10 @@ def _read_text(source: _Source) -> str:
 def _list_reader(field: Field, read: _Reader) -> _Reader:
     def read_list(source: _Source) -> list[Any]:
         count = source.count() if field.length is None else field.length
-        found = []
-        for i in range(count):
-            before = source.offset
-            found.append(read(source))
-            if source.offset == before and i >= _EMPTIES:
-                raise ValueError(f"{count} empty messages")
-        return found
+        if count > source.elements:
+            raise ValueError(f"a list of {count} elements, where {source.elements} are left")
+        source.elements -= count
+        return [read(source) for _ in range(count)]
 
     return read_list
 

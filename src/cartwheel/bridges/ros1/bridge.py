@@ -37,6 +37,8 @@ _FIRST_ANSWER = 3.0
 """s that the master may take at the start."""
 _TOLD = 500
 """Different warnings; they name nodes, of which any number may come."""
+_LONGEST = 1000
+"""Characters of a warning."""
 
 Report = Callable[[Diagnostic], None]
 
@@ -89,6 +91,7 @@ class Ros1Bridge:
             address=bind_address(host),
             master_uri=self.master_uri,
             on_shutdown=self._shut_down,
+            tell=self._warn,
         )
         self._log = Log(self._loop, node=self.name, time_ns=time_ns, tell=self._warn)
         self._parameters = MasterParameters(
@@ -209,7 +212,7 @@ class Ros1Bridge:
 
     def _finish(self, reason: str) -> None:
         if not self._closed:
-            self._on_end(reason)
+            self._on_end(_printable(reason))
 
     def _wake(self) -> None:
         self._registrar.wake()
@@ -270,6 +273,8 @@ class Ros1Bridge:
             if name not in known:
                 known[name] = TopicSubscription(
                     self._loop,
+                    self._node.traffic,
+                    self._node.attempts,
                     topic=name,
                     type_name=info.type,
                     type_=ros1_type(info.type),
@@ -301,14 +306,15 @@ class Ros1Bridge:
             if name not in known:
                 known[name] = OfferedService(
                     self._loop,
+                    self._node.calls,
                     name=name,
                     type_=ros1_service(type_name),
                     answer=answer,
                     node=self.name,
                 )
 
-    def _deliverer(self, topic: str, type_name: str) -> Callable[[Any], None]:
-        return lambda message: self._arrivals.deliver(topic, type_name, message)
+    def _deliverer(self, topic: str, type_name: str) -> Callable[[Any, int], None]:
+        return lambda message, size: self._arrivals.deliver(topic, type_name, message, size=size)
 
     def _found_publishers(self, topic: str, uris: list[str]) -> None:
         def update() -> None:
@@ -349,9 +355,14 @@ class Ros1Bridge:
         self._tell("warning", text)
 
     def _tell(self, severity: Any, text: str) -> None:
-        """Once for each text that warns."""
+        """Once for each text that warns; what strangers wrote in it moves no cursor."""
+        text = _printable(text)
         if severity == "info" or self._is_new(text):
             self._report(Diagnostic(severity=severity, message=f"ROS: {text}"))
 
     def _fault(self, error: Exception) -> None:
         self._warn(f"a fault of the bridge: {one_line(error)}")
+
+
+def _printable(text: str) -> str:
+    return "".join(c if c.isprintable() else "?" for c in text[:_LONGEST])

@@ -7,8 +7,9 @@ from collections.abc import Mapping
 
 _LENGTH = struct.Struct("<I")
 
-LIMIT = 1 << 20
+LIMIT = 128 << 10
 """Bytes; a definition with all its parts takes some ten thousand."""
+FIELDS = 100
 
 
 class HeaderError(ValueError):
@@ -31,10 +32,12 @@ def decode_header(body: bytes | memoryview) -> dict[str, str]:
     Raises:
         HeaderError: It is none.
     """
-    fields = {}
+    fields: dict[str, str] = {}
     data = bytes(body)
     offset = 0
     while offset < len(data):
+        if len(fields) >= FIELDS:
+            raise HeaderError(f"more than {FIELDS} fields")
         if offset + 4 > len(data):
             raise HeaderError("a field is cut off")
         (length,) = _LENGTH.unpack_from(data, offset)

@@ -50,6 +50,8 @@ class MasterParameters:
         try:
             return self._peer.call("getParam", self._node, name)
         except UnreachableError:
+            # Nobody else is to wait for it, until the registrar has found one that answers.
+            self.reachable = False
             with self._lock:
                 return self._ours.get(name)
         except RpcError:

@@ -4,20 +4,24 @@ from __future__ import annotations
 
 import os
 import socket
+import time
 from collections.abc import Callable
 from typing import Any
 
 from cartwheel.bridges.loop import Loop
-from cartwheel.bridges.ros1.connection import Connection, Listener
+from cartwheel.bridges.ros1.attempts import Attempts
+from cartwheel.bridges.ros1.connection import Connection, Listener, Traffic
 from cartwheel.bridges.ros1.http import RpcConnection
 from cartwheel.bridges.ros1.publication import Publication
-from cartwheel.bridges.ros1.service import OfferedService
+from cartwheel.bridges.ros1.service import Calls, OfferedService
 from cartwheel.bridges.ros1.subscription import TopicSubscription
 
 _UNKNOWN = 100
 """Connections that have not told yet what they are for."""
 _CALLERS = 200
 """Connections to the XML-RPC interface; a caller that loses one opens it again."""
+_SWEEP = 2.0
+"""s between two looks at peers that take too long."""
 
 
 class Node:
@@ -30,6 +34,7 @@ class Node:
         address: To listen on.
         master_uri: Of the master.
         on_shutdown: Told why another wants this node to end.
+        tell: Takes a warning.
     """
 
     def __init__(
@@ -41,20 +46,28 @@ class Node:
         address: str,
         master_uri: str,
         on_shutdown: Callable[[str], None],
+        tell: Callable[[str], None],
     ) -> None:
         self._loop = loop
         self.name = name
         self._host = host
         self._master_uri = master_uri
         self._on_shutdown = on_shutdown
+        self._tell = tell
+        self.traffic = Traffic()
+        self.attempts = Attempts()
+        self.calls = Calls()
         self.publications: dict[str, Publication] = {}
         self.subscriptions: dict[str, TopicSubscription] = {}
         self.services: dict[str, OfferedService] = {}
         self._unknown: dict[Connection, None] = {}
         self._callers: dict[RpcConnection, None] = {}
         self._streams = Listener(loop, address, self._take_stream)
-        self._calls = Listener(loop, address, self._take_caller)
-        self.uri = f"http://{host}:{self._calls.port}/"
+        self._callers_door = Listener(loop, address, self._take_caller)
+        self.ports = self._callers_door.port, self._streams.port
+        """Of the XML-RPC interface and of topics and services."""
+        loop.post(self._sweep)
+        self.uri = f"http://{host}:{self._callers_door.port}/"
         self.service_uri = f"rosrpc://{host}:{self._streams.port}"
         self._methods: dict[str, Callable[..., Any]] = {
             "getBusInfo": self._bus_info,
@@ -71,6 +84,7 @@ class Node:
 
     def close(self) -> None:
         """Ends all connections."""
+        self.attempts.close()
         for publication in self.publications.values():
             publication.close()
         for subscription in self.subscriptions.values():
@@ -83,9 +97,16 @@ class Node:
             caller.close()
 
     def _take_stream(self, sock: socket.socket) -> None:
-        if len(self._unknown) >= _UNKNOWN:
+        if len(self._unknown) >= _UNKNOWN or (self.traffic.full and self._unknown):
             next(iter(self._unknown)).close()
-        connection = Connection(self._loop, sock, on_header=self._assign)
+        if self.traffic.full:
+            sock.close()
+            self._tell(
+                f"{self.traffic.most} connections of other nodes are all there can be: more are"
+                " refused"
+            )
+            return
+        connection = Connection(self._loop, sock, self.traffic, on_header=self._assign)
         self._unknown[connection] = None
         connection.on_close = lambda: self._unknown.pop(connection, None) and None
 
@@ -117,6 +138,14 @@ class Node:
             self._loop, sock, self._handle, lambda gone: self._callers.pop(gone, None) and None
         )
         self._callers[caller] = None
+
+    def _sweep(self) -> None:
+        self.traffic.sweep()
+        now = time.monotonic()
+        for caller in list(self._callers):
+            if caller.overdue(now):
+                caller.close()
+        self._loop.after(_SWEEP, self._sweep)
 
     def _handle(self, method: str, arguments: tuple[Any, ...]) -> Any:
         known = self._methods.get(method)

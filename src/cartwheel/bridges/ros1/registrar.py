@@ -129,12 +129,12 @@ class Registrar:
             raise
         except RpcError:
             known = None
+        self._parameters.reachable = True
         if known is None and self._registered:
             self._registered.clear()
             self._parameters.remember()
         if self._lost or (known is None and self._wanted):
             was_lost, self._lost = self._lost, False
-            self._parameters.reachable = True
             if was_lost or known is None:
                 self._on_found()
         if known is not None and known != self._uri:

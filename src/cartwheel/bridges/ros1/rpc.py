@@ -3,15 +3,22 @@
 from __future__ import annotations
 
 import http.client
+import socket
 import threading
+import time
 import xmlrpc.client
 from collections.abc import Sequence
 from typing import Any
 
+from cartwheel.bridges.ros1.marshalling import read_values
 from cartwheel.errors import CartwheelError
 
 TIMEOUT = 5.0
 """s that another node may take to answer."""
+LARGEST = 32 << 20
+"""Bytes of an answer; a master keeps descriptions of robots as parameters."""
+_ADDRESSES = 4
+"""Of a name, that are tried."""
 
 
 class RpcError(CartwheelError):
@@ -31,22 +38,101 @@ class UnreachableError(RpcError):
         self.silent = silent
 
 
-class _Transport(xmlrpc.client.Transport):
-    """Waits no longer than a time-out."""
+def connect(host: str, port: int, seconds: float) -> socket.socket:
+    """A connection, made within a time whatever addresses the name has.
 
-    def __init__(self, timeout: float) -> None:
+    Raises:
+        OSError: Nobody is there.
+    """
+    deadline = time.monotonic() + seconds
+    try:
+        addresses = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)
+    except (UnicodeError, OverflowError, ValueError) as error:
+        raise OSError(f"no name of a computer: {error}") from None
+    failure = OSError("it has no address")
+    for family, kind, protocol, _, address in addresses[:_ADDRESSES]:
+        rest = deadline - time.monotonic()
+        if rest <= 0:
+            raise TimeoutError("timed out")
+        sock = socket.socket(family, kind, protocol)
+        sock.settimeout(rest)
+        try:
+            sock.connect(address)
+        except OSError as error:
+            sock.close()
+            failure = error
+        else:
+            return sock
+    raise failure
+
+
+class _Socket(socket.socket):
+    """Fails where a whole answer takes too long or is too large, however it is dealt out."""
+
+    deadline = 0.0
+    left = 0
+    """Bytes."""
+
+    def sendall(self, data: Any, flags: int = 0) -> None:
+        self._hurry()
+        super().sendall(data, flags)
+
+    def recv_into(self, buffer: Any, nbytes: int = 0, flags: int = 0) -> int:
+        self._hurry()
+        count = super().recv_into(buffer, nbytes, flags)
+        self.left -= count
+        if self.left < 0:
+            raise ValueError("it is too long")
+        return count
+
+    def _hurry(self) -> None:
+        rest = self.deadline - time.monotonic()
+        if rest <= 0:
+            raise TimeoutError("timed out")
+        self.settimeout(rest)
+
+
+class _HttpConnection(http.client.HTTPConnection):
+    """A connection with limits for each call; see `begin`."""
+
+    def begin(self, seconds: float, size: int) -> None:
+        """Starts the time of a call and the count of its bytes."""
+        self._deadline = time.monotonic() + seconds
+        self._size = size
+        if isinstance(self.sock, _Socket):
+            self.sock.deadline, self.sock.left = self._deadline, size
+
+    def connect(self) -> None:
+        made = connect(self.host, self.port, self._deadline - time.monotonic())
+        made.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        self.sock = _Socket(fileno=made.detach())
+        self.sock.deadline, self.sock.left = self._deadline, self._size
+
+
+class _Transport(xmlrpc.client.Transport):
+    """Limits the time of a call and the size of its answer."""
+
+    def __init__(self, timeout: float, largest: int) -> None:
         super().__init__()
         self._timeout = timeout
+        self._largest = largest
         # Requests go in one packet each, but for this.
         self.accept_gzip_encoding = False
 
     def make_connection(self, host: Any) -> http.client.HTTPConnection:
-        if self._connection and host == self._connection[0] and self._connection[1]:
-            return self._connection[1]
-        chost, self._extra_headers, _ = self.get_host_info(host)
-        made = http.client.HTTPConnection(chost, timeout=self._timeout)
-        self._connection = host, made
+        made = self._connection[1] if self._connection else None
+        if host != self._connection[0] or not isinstance(made, _HttpConnection):
+            chost, self._extra_headers, _ = self.get_host_info(host)
+            made = _HttpConnection(chost)
+            self._connection = host, made
+        made.begin(self._timeout, self._largest)
         return made
+
+    def parse_response(self, file: Any) -> Any:
+        if file.getheader("Content-Encoding"):
+            # A few bytes could be unpacked to any number.
+            raise ValueError("it is encoded, though nothing else was asked for than plain text")
+        return read_values(file.read())[0]
 
 
 class Peer:
@@ -55,13 +141,14 @@ class Peer:
     Args:
         uri: Its address.
         timeout: s for a call.
+        largest: Bytes of an answer.
     """
 
-    def __init__(self, uri: str, *, timeout: float = TIMEOUT) -> None:
+    def __init__(self, uri: str, *, timeout: float = TIMEOUT, largest: int = LARGEST) -> None:
         self.uri = uri
         self._lock = threading.Lock()
         self._proxy = xmlrpc.client.ServerProxy(
-            uri, transport=_Transport(timeout), allow_none=False
+            uri, transport=_Transport(timeout, largest), allow_none=False
         )
 
     def call(self, method: str, *arguments: Any) -> Any:
@@ -81,20 +168,30 @@ class Peer:
             RpcError: It does not know such calls, or fails.
         """
         packed = [{"methodName": method, "params": list(rest)} for method, rest in calls]
+        found = self._answer("system.multicall", (packed,))
+        if not isinstance(found, list) or len(found) != len(calls):
+            raise RpcError(f"{self.uri} gives no answer for each of {len(calls)} calls")
         answers = []
-        for answer in self._answer("system.multicall", (packed,)):
-            if isinstance(answer, dict):
-                answers.append([-1, str(answer.get("faultString", "refused")), 0])
-            else:
+        for answer in found:
+            if isinstance(answer, list) and len(answer) == 1:
                 answers.append(answer[0])
+            else:
+                said = answer.get("faultString") if isinstance(answer, dict) else None
+                answers.append([-1, str(said or "refused"), 0])
         return answers
+
+    def close(self) -> None:
+        """Ends the connection."""
+        with self._lock:
+            self._proxy("close")()
 
     def _answer(self, method: str, arguments: tuple[Any, ...]) -> Any:
         with self._lock:
             try:
                 return getattr(self._proxy, method)(*arguments)
             except xmlrpc.client.Fault as fault:
-                raise RpcError(f"{self.uri} refuses {method}: {fault.faultString}") from None
+                said = str(fault.faultString)[:500]
+                raise RpcError(f"{self.uri} refuses {method}: {said}") from None
             except OSError as error:
                 self._proxy("close")()
                 raise UnreachableError(
@@ -104,7 +201,7 @@ class Peer:
             except Exception as error:  # noqa: BLE001
                 # Whatever the parsers of HTTP and XML meet in an answer that is none.
                 self._proxy("close")()
-                raise RpcError(f"{self.uri} answers {method} with nonsense: {error}") from None
+                raise RpcError(f"{self.uri} sent an invalid answer to {method}: {error}") from None
 
 
 def value_of(answer: Any) -> Any:
@@ -117,7 +214,7 @@ def value_of(answer: Any) -> Any:
         raise RpcError(f"an answer of ROS has three parts, not {str(answer)[:80]}")
     code, message, value = answer
     if code != 1:
-        raise RpcError(str(message))
+        raise RpcError(str(message)[:500])
     return value
 
 

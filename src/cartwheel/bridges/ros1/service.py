@@ -17,15 +17,33 @@ from cartwheel.messages.ros1 import Ros1Service, decode_ros1, encode_ros1
 _LENGTH = struct.Struct("<I")
 _MOST = 32
 """Calls at a time."""
+_MOST_OF_ALL = 64
+_ELEMENTS = 200_000
+"""Of the lists of a request; numbers do not count."""
 
 Answer = Callable[[Any], Any]
+
+
+class Calls:
+    """Counts the calls of all services of a node; on the loop's thread."""
+
+    def __init__(self) -> None:
+        self.running = 0
+
+    @property
+    def full(self) -> bool:
+        """Whether there can be no further call now."""
+        return self.running >= _MOST_OF_ALL
 
 
 class OfferedService:
     """One service; on the loop's thread, but for each call, which has one of its own.
 
+    A client gets the answer of one call before its next one is taken.
+
     Args:
         loop: Runs it.
+        calls: Of the node.
         name: ROS's.
         type_: Of its requests and responses.
         answer: Takes a request and returns the response; may take long, and raise.
@@ -33,9 +51,17 @@ class OfferedService:
     """
 
     def __init__(
-        self, loop: Loop, *, name: str, type_: Ros1Service, answer: Answer, node: str
+        self,
+        loop: Loop,
+        calls: Calls,
+        *,
+        name: str,
+        type_: Ros1Service,
+        answer: Answer,
+        node: str,
     ) -> None:
         self._loop = loop
+        self._calls = calls
         self.name = name
         self.type = type_
         self._answer = answer
@@ -77,17 +103,19 @@ class OfferedService:
             link.close()
 
     def _call(self, link: Connection, data: bytes, persistent: bool) -> None:
-        if self._running >= _MOST:
+        if self._running >= _MOST or self._calls.full:
             self._respond(link, _failure("too many calls at a time"), persistent)
             return
         self._running += 1
+        self._calls.running += 1
+        link.hold()
         threading.Thread(
             target=self._work, args=(link, data, persistent), name="ros1 service", daemon=True
         ).start()
 
     def _work(self, link: Connection, data: bytes, persistent: bool) -> None:
         try:
-            response = self._answer(decode_ros1(data, self.type.request))
+            response = self._answer(decode_ros1(data, self.type.request, elements=_ELEMENTS))
             body = encode_ros1(response)
             reply = b"\1" + _LENGTH.pack(len(body)) + body
         except (CartwheelError, CancelledError) as error:
@@ -97,7 +125,9 @@ class OfferedService:
 
         def done() -> None:
             self._running -= 1
+            self._calls.running -= 1
             self._respond(link, reply, persistent)
+            link.go_on()
 
         self._loop.post(done)
 

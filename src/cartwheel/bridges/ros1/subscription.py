@@ -4,26 +4,36 @@ from __future__ import annotations
 
 import contextlib
 import socket
-import threading
 from collections.abc import Callable, Sequence
 from typing import Any
 
 from cartwheel.bridges.loop import Loop
-from cartwheel.bridges.ros1.connection import Connection
+from cartwheel.bridges.ros1.address import host_and_port
+from cartwheel.bridges.ros1.attempts import Attempts
+from cartwheel.bridges.ros1.connection import Connection, Traffic
 from cartwheel.bridges.ros1.header import encode_header
-from cartwheel.bridges.ros1.rpc import TIMEOUT, Peer
+from cartwheel.bridges.ros1.rpc import TIMEOUT, Peer, connect
 from cartwheel.errors import CartwheelError
 from cartwheel.messages.ros1 import Ros1Type, decode_ros1
 
 _AGAIN = (0.2, 1.0, 2.0, 5.0)
 """s until the next attempt to reach a publisher, the last one for all further attempts."""
+MOST = 256
+"""Publishers of a topic."""
+_LONGEST = 300
+"""Characters of a publisher's URI."""
+_ANSWER = 64 << 10
+"""Bytes of a publisher's answer."""
+_ELEMENTS = 200_000
+"""Of the lists of a message: names, points, transforms; numbers do not count."""
 
 
 class _Link:
     """A publisher and the way to it."""
 
-    def __init__(self, uri: str) -> None:
+    def __init__(self, uri: str, host: str) -> None:
         self.uri = uri
+        self.host = host
         self.connection: Connection | None = None
         self.attempts = 0
         self.wanted = True
@@ -34,28 +44,34 @@ class TopicSubscription:
 
     Args:
         loop: Runs it.
+        traffic: Of the node.
+        attempts: Of the node.
         topic: ROS's name.
         type_name: The graph's name of its type.
         type_: ROS's.
         node: Our name.
         own_uri: Ours, which is not subscribed to.
-        deliver: Takes each message.
+        deliver: Takes each message, and the bytes that it had.
         tell: Takes a warning.
     """
 
     def __init__(
         self,
         loop: Loop,
+        traffic: Traffic,
+        attempts: Attempts,
         *,
         topic: str,
         type_name: str,
         type_: Ros1Type,
         node: str,
         own_uri: str,
-        deliver: Callable[[Any], None],
+        deliver: Callable[[Any, int], None],
         tell: Callable[[str], None],
     ) -> None:
         self._loop = loop
+        self._traffic = traffic
+        self._attempts = attempts
         self.topic = topic
         self.type_name = type_name
         self.type = type_
@@ -64,7 +80,6 @@ class TopicSubscription:
         self._deliver = deliver
         self._tell = tell
         self._links: dict[str, _Link] = {}
-        self._told: set[str] = set()
 
     @property
     def connections(self) -> list[tuple[str, Connection]]:
@@ -78,12 +93,27 @@ class TopicSubscription:
             uris: Of the nodes that publish.
             drop: Leave those that are not named.
         """
-        named = {uri for uri in uris if uri != self._own_uri}
-        for uri in set(self._links) - named if drop else ():
+        named = dict.fromkeys(uri for uri in uris if uri != self._own_uri)
+        for uri in [uri for uri in self._links if uri not in named] if drop else ():
             self._drop(self._links.pop(uri))
-        for uri in named - set(self._links):
-            link = self._links[uri] = _Link(uri)
-            self._reach(link)
+        for uri in named:
+            if uri not in self._links:
+                self._add(uri)
+
+    def _add(self, uri: str) -> None:
+        if len(self._links) >= MOST:
+            self._tell(f"{self.topic} has more than {MOST} publishers: the rest are left out")
+            return
+        try:
+            host, _ = host_and_port(uri[: _LONGEST + 1])
+        except CartwheelError as error:
+            self._tell(f"{self.topic}: {error}")
+            return
+        if len(uri) > _LONGEST or not uri.startswith("http://"):
+            self._tell(f"{self.topic}: {uri[:_LONGEST]} is no address of a publisher")
+            return
+        link = self._links[uri] = _Link(uri, host)
+        self._reach(link)
 
     def close(self) -> None:
         """Leaves all publishers."""
@@ -99,21 +129,24 @@ class TopicSubscription:
 
     def _reach(self, link: _Link) -> None:
         if link.wanted and link.connection is None:
-            threading.Thread(
-                target=self._negotiate, args=(link,), name="ros1 connect", daemon=True
-            ).start()
+            self._attempts.add(link.host, lambda: self._negotiate(link), hopeless=link.attempts > 0)
 
     def _negotiate(self, link: _Link) -> None:
-        """Asks a publisher for its port and connects; on a thread of its own."""
+        """Asks a publisher for its port and connects; on a thread of the attempts."""
+        if not link.wanted:
+            return
+        peer = Peer(link.uri, largest=_ANSWER)
         try:
-            answer = Peer(link.uri).call("requestTopic", self._node, self.topic, [["TCPROS"]])
+            answer = peer.call("requestTopic", self._node, self.topic, [["TCPROS"]])
             protocol, host, port = answer[:3]
             if protocol != "TCPROS":
                 raise ValueError(protocol)
-            sock = socket.create_connection((str(host), int(port)), timeout=TIMEOUT)
+            sock = connect(str(host), int(port), TIMEOUT)
         except (CartwheelError, OSError, ValueError, TypeError, IndexError, OverflowError):
             self._loop.post(lambda: self._retry(link))
             return
+        finally:
+            peer.close()
         self._loop.post(lambda: self._connected(link, sock))
 
     def _retry(self, link: _Link) -> None:
@@ -123,11 +156,12 @@ class TopicSubscription:
             self._loop.after(wait, lambda: self._reach(link))
 
     def _connected(self, link: _Link, sock: socket.socket) -> None:
-        if not link.wanted:
+        if not link.wanted or self._traffic.full:
             with contextlib.suppress(OSError):
                 sock.close()
+            self._retry(link)
             return
-        connection = Connection(self._loop, sock, on_header=self._begun)
+        connection = Connection(self._loop, sock, self._traffic, on_header=self._begun)
         link.connection = connection
         connection.peer = link.uri
 
@@ -160,7 +194,7 @@ class TopicSubscription:
         if refused is None and theirs not in ("*", self.type.md5):
             refused = f"it sends {fields.get('type')} with md5 sum {theirs}"
         if refused is not None:
-            self._warn(
+            self._tell(
                 f"{self.topic} is {self.type.name} ({self.type.md5}) here, and a publisher"
                 f" does not fit: {refused}"
             )
@@ -168,14 +202,9 @@ class TopicSubscription:
 
     def _take(self, connection: Connection, data: bytes) -> None:
         try:
-            message = decode_ros1(data, self.type_name)
+            message = decode_ros1(data, self.type_name, elements=_ELEMENTS)
         except CartwheelError as error:
-            self._warn(f"{self.topic}: {connection.peer} sends nonsense: {error}")
+            self._tell(f"{self.topic}: {connection.peer} sends nonsense: {error}")
             connection.close()
             return
-        self._deliver(message)
-
-    def _warn(self, text: str) -> None:
-        if text not in self._told:
-            self._told.add(text)
-            self._tell(text)
+        self._deliver(message, len(data))
