@@ -9,6 +9,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -28,6 +29,16 @@ Load = Callable[[Path, Mapping[str, str], Sequence[Path]], RobotDescription]
 """Reads the description in a file, given ``name:=value`` and folders to look for packages in."""
 
 
+@dataclass(frozen=True, kw_only=True, slots=True)
+class PageOffer:
+    """The viewer of a simulation, for clients that ask for it; from any thread but its own."""
+
+    show: Callable[[], str]
+    """Gives its URL, and brings it up where it is not."""
+    browsers: Callable[[], int]
+    """How many are connected."""
+
+
 class Operations:
     """The requests by name; each takes parameters and a payload and gives an answer.
 
@@ -41,8 +52,7 @@ class Operations:
         self._simulation = session.simulation
         self._graph = session.graph
         self._load = load
-        self.show_page: Callable[[], str] | None = None
-        """Brings the viewer up and tells its URL; None where there is none to bring up."""
+        self._page: Future[PageOffer | None] = Future()
         self._by_name: dict[str, Callable[[Parameters, bytes], Answer]] = {
             "status": self.status,
             "pause": self.pause,
@@ -224,10 +234,15 @@ class Operations:
     # -- the viewer
 
     def page(self, _: Parameters, __: bytes) -> Answer:
-        """The URL of the viewer, which is brought up where it is not."""
-        if self.show_page is None:
+        """The URL of the viewer, which is brought up where it is not, and its browsers."""
+        offer = _in_time(self._page, cancel=False)
+        if offer is None:
             raise ControlError("this simulation has no page to show")
-        return {"url": self.show_page()}
+        return {"url": offer.show(), "browsers": offer.browsers()}
+
+    def offer_page(self, offer: PageOffer | None) -> None:
+        """States what page there is; requests wait until this was called."""
+        self._page.set_result(offer)
 
     # -- the simulation's thread
 
@@ -243,11 +258,12 @@ class Operations:
         return self._on_simulation(run)
 
 
-def _in_time(future: Future[T]) -> T:
+def _in_time(future: Future[T], *, cancel: bool = True) -> T:
     try:
         return future.result(PATIENCE)
     except TimeoutError as error:
-        future.cancel()
+        if cancel:
+            future.cancel()
         raise ControlError(f"the simulation did not answer in {PATIENCE:.0f} s") from error
 
 

@@ -36,7 +36,7 @@ class Running:
     """Of the viewer; None without one."""
     port: int | None = None
     ros_master: str | None = None
-    """URI of the ROS 1 master that it is known to; None without ROS."""
+    """URI of the ROS 1 master that it is known to; empty until it is, None without ROS."""
     started: float = field(default_factory=time.time)
     """Seconds since 1970."""
     path: Path

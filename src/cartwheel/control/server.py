@@ -6,12 +6,11 @@ import contextlib
 import logging
 import os
 import threading
-from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
 from cartwheel.control import registry
-from cartwheel.control.operations import Load, Operations
+from cartwheel.control.operations import Load, Operations, PageOffer
 from cartwheel.control.parameters import Parameters
 from cartwheel.control.protocol import Connection, Frame
 from cartwheel.control.registry import Running
@@ -36,12 +35,13 @@ class ControlServer:
         session: To be reached.
         title: What it simulates, in a few words.
         load: Reads the file of a ``spawn``.
+        ros: Whether it is about to join a ROS 1 master; see `announce_ros`.
 
     Raises:
         ControlError: No socket can be made.
     """
 
-    def __init__(self, session: Session, *, title: str, load: Load) -> None:
+    def __init__(self, session: Session, *, title: str, load: Load, ros: bool = False) -> None:
         self._session = session
         self._operations = Operations(session, load)
         self._closed = threading.Event()
@@ -50,7 +50,11 @@ class ControlServer:
         self._clients: set[Connection] = set()
         self._socket, path = registry.listen()
         self.entry = Running(
-            pid=os.getpid(), title=title, world=session.simulation.world.name, path=path
+            pid=os.getpid(),
+            title=title,
+            world=session.simulation.world.name,
+            ros_master="" if ros else None,
+            path=path,
         )
         registry.announce(self.entry)
         self._thread = threading.Thread(target=self._accept, name="control", daemon=True)
@@ -69,9 +73,9 @@ class ControlServer:
         if not self._closed.is_set():
             registry.announce(self.entry)
 
-    def offer_page(self, show: Callable[[], str]) -> None:
-        """Lets clients ask for the viewer: `show` brings it up and tells its URL."""
-        self._operations.show_page = show
+    def offer_page(self, offer: PageOffer | None) -> None:
+        """States what page there is, None for none; clients that ask before wait for that."""
+        self._operations.offer_page(offer)
 
     def close(self) -> None:
         """Sends all clients away and removes the socket."""

@@ -82,6 +82,11 @@ class Viewer:
         assert self._page is not None
         return self._page.url
 
+    @property
+    def browsers(self) -> int:
+        """How many are connected now."""
+        return 0 if self._page is None else len(self._page.clients)
+
     def start(self, pacer: Pacer) -> None:
         """Serves the page and shows what `pacer` runs."""
         pacer.add_listener(self._listen, rate=RATE)

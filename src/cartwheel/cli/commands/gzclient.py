@@ -3,29 +3,32 @@
 from __future__ import annotations
 
 import contextlib
+import functools
 import os
-import socket
 import time
 import webbrowser
 from collections.abc import Sequence
 from urllib.parse import urlsplit
 
+from cartwheel.bridges.ros1.address import MASTER_URI, is_local
 from cartwheel.cli import interrupts
 from cartwheel.cli.commands.desktop import has_display
 from cartwheel.cli.commands.gazebo_arguments import parse_client
 from cartwheel.cli.console import note, paint, say
 from cartwheel.control import ControlClient, Running, find, running
+from cartwheel.control.registry import VARIABLE
 from cartwheel.errors import ControlError
 
-PATIENCE = 60.0
-"""s to wait for a simulation that is about to start."""
-_ALONE = 4.0
-"""s after which a simulation that is no part of our ROS will do."""
-_TELL = 3.0
+_TELL = 1.0
+"""s of waiting after which the user should know what for."""
+_LOOKS = 0.1
+"""s between two looks."""
+_BROWSER = 60.0
+"""s in which a browser that was opened is looked for on the page."""
 
 
 def show(words: Sequence[str]) -> None:
-    """Opens the page in a browser, or tells its address, until the simulation ends.
+    """Opens the page in a browser, or prints its address, until the simulation ends.
 
     Raises:
         CartwheelError: No simulation runs, or it has no page.
@@ -33,55 +36,83 @@ def show(words: Sequence[str]) -> None:
     arguments = parse_client(words)
     if arguments.tell():
         return
+    special = dict(word.split(":=", 1) for word in arguments.ros)
+    master = special.get("__master") or os.environ.get("ROS_MASTER_URI")
+    simulation = find() if os.environ.get(VARIABLE) else wait_for_simulation(master or None)
     with contextlib.suppress(interrupts.Interrupted):  # The way to end it.
-        _stay(wait_for_simulation(os.environ.get("ROS_MASTER_URI")))
+        _stay(simulation)
 
 
-def wait_for_simulation(master: str | None, *, patience: float = PATIENCE) -> Running:
-    """The simulation to show: the newest of this ROS, or the only one where none is.
+def wait_for_simulation(master: str | None) -> Running:
+    """The simulation to show: the newest of a ROS master, for which this waits.
 
     Args:
-        master: Its URI; None without ROS.
-        patience: s to wait for one.
+        master: Its URI. None where the user has named none: then a simulation of the default
+            master will do, or one without ROS, and there must be one.
 
     Raises:
-        ControlError: There is none, or there are several and none is of this ROS.
+        ControlError: There is no such simulation where none is waited for, or several; or the
+            process that started this one has ended.
     """
-    if master is None:
-        return find()
-    began = time.monotonic()
-    told = False
+    began, parent, told = time.monotonic(), os.getppid(), False
     while True:
-        ours = [entry for entry in running() if is_same(entry.ros_master, master)]
+        known = running()
+        ours = [entry for entry in known if is_same(entry.ros_master, master or MASTER_URI)]
         if ours:
             return ours[-1]
-        waited = time.monotonic() - began
-        if waited > _ALONE:
-            try:
-                return find()
-            except ControlError:
-                if running() or waited > patience:
-                    raise
-        if waited > _TELL and not told:
+        if master is None and not any(entry.ros_master == "" for entry in known):
+            return _without_ros(known)
+        if os.getppid() != parent:
+            raise ControlError("the process that started this one has ended")
+        if time.monotonic() - began > _TELL and not told:
             told = True
-            note("waiting for a simulation: none runs yet")
-        time.sleep(0.05)
+            note(f"waiting for a simulation of the ROS master {master or MASTER_URI}")
+            if known:
+                note(f"others run: {VARIABLE}=PID shows one of them\n{_listing(known)}")
+        time.sleep(_LOOKS)
+
+
+def _without_ros(known: Sequence[Running]) -> Running:
+    """The only simulation without ROS."""
+    found = [entry for entry in known if entry.ros_master is None]
+    if len(found) == 1:
+        return found[0]
+    if not known:
+        raise ControlError("no simulation is running; start one with: cartwheel run")
+    problem = (
+        f"{len(found)} simulations without ROS are running"
+        if found
+        else f"no simulation of the ROS master {MASTER_URI} is running, and none without ROS"
+    )
+    raise ControlError(
+        problem, hint=f"Name one with {VARIABLE}=PID. Running are:\n{_listing(known)}"
+    )
+
+
+def _listing(known: Sequence[Running]) -> str:
+    return "\n".join(
+        f"    {entry}{f', ROS master {entry.ros_master}' if entry.ros_master else ''}"
+        for entry in known
+    )
 
 
 def is_same(uri: str | None, other: str) -> bool:
     """Whether two URIs mean the same ROS master; one computer has several names."""
-    return uri is not None and _place(uri) == _place(other)
+    return bool(uri) and uri is not None and _place(uri) == _place(other)
 
 
+@functools.cache
 def _place(uri: str) -> tuple[str, int | None]:
-    parts = urlsplit(uri)
-    host = parts.hostname or ""
-    local = host.startswith("127.") or host in ("localhost", "::1", socket.gethostname())
-    return "localhost" if local else host, parts.port
+    try:
+        parts = urlsplit(uri)
+        host, port = parts.hostname or "", parts.port
+        return "localhost" if is_local(host) else host, port
+    except ValueError:
+        return uri, None
 
 
 def _open(url: str) -> bool:
-    """Whether a browser was there to be opened."""
+    """Whether a program was there to open it with."""
     try:
         return webbrowser.open(url)
     except webbrowser.Error:
@@ -90,8 +121,20 @@ def _open(url: str) -> bool:
 
 def _stay(simulation: Running) -> None:
     with ControlClient(simulation) as client:
-        url = client.request("page")["url"]
-        opened = has_display() and _open(url)
-        what = "shown in the browser" if opened else "the page is at"
-        say(f"{what}  {paint(url, 'bold', 'cyan')}")
+        page = client.request("page")
+        say(f"the page is at  {paint(page['url'], 'bold', 'cyan')}")
+        if has_display() and _open(page["url"]):
+            with contextlib.suppress(ControlError):  # It has ended, which is seen below.
+                _look_for_browser(client, page["browsers"])
         client.wait_for_end()
+
+
+def _look_for_browser(client: ControlClient, before: int) -> None:
+    """Says whether a browser shows the page: a program that was started may show nothing."""
+    deadline = time.monotonic() + _BROWSER
+    while time.monotonic() < deadline:
+        if client.request("page")["browsers"] > before:
+            say("shown in the browser")
+            return
+        time.sleep(_LOOKS)
+    note("no browser has loaded the page")

@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING
 
 from cartwheel.cli.commands.desktop import is_desktop
 from cartwheel.cli.commands.report import Report
+from cartwheel.control.operations import PageOffer
+from cartwheel.control.protocol import PATIENCE
 from cartwheel.control.server import ControlServer
-from cartwheel.errors import CartwheelError
+from cartwheel.errors import CartwheelError, ControlError
 from cartwheel.gate.access import Access
 from cartwheel.session import Session
 from cartwheel.simulation.pacing import Pacer
@@ -49,10 +51,15 @@ class Page:
         self._report = report
         self._viewer = Viewer(session, access=access, port=port, desk=desk, refused=report.refused)
         self._failure: CartwheelError | None = None
+        self._started = threading.Event()
+        server.offer_page(
+            PageOffer(show=self._url, browsers=lambda: self._viewer.browsers),
+        )
 
     def start(self, pacer: Pacer) -> None:
         """Brings the page up, while the simulation begins."""
         self._viewer.start(pacer)
+        self._started.set()
         threading.Thread(target=self._announce, name="announce", daemon=True).start()
 
     def raise_failure(self) -> None:
@@ -63,6 +70,12 @@ class Page:
         """
         if self._failure is not None:
             raise self._failure
+
+    def _url(self) -> str:
+        """Where the page is, once it is up."""
+        if not self._started.wait(PATIENCE):
+            raise ControlError(f"the page is not up after {PATIENCE:g} s")
+        return self._viewer.url
 
     def _announce(self) -> None:
         try:

@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 import threading
+from typing import TYPE_CHECKING
 
 from cartwheel.cli.commands.ports import free_port
 from cartwheel.cli.commands.report import Report
+from cartwheel.control.operations import PageOffer
 from cartwheel.control.protocol import PATIENCE
 from cartwheel.control.server import ControlServer
 from cartwheel.gate.access import Access
 from cartwheel.session import Session
 from cartwheel.simulation.pacing import Pacer
+
+if TYPE_CHECKING:
+    from cartwheel.viewer import Viewer
 
 
 class PageOnDemand:
@@ -41,7 +46,9 @@ class PageOnDemand:
         self._report = report
         self._access, self._port = access, port
         self._lock = threading.Lock()
+        self._viewer: Viewer | None = None
         self._url: str | None = None
+        server.offer_page(PageOffer(show=self.show, browsers=self._browsers))
 
     def show(self) -> str:
         """Where the page is; it is up when this returns. From any thread but the simulation's.
@@ -55,7 +62,7 @@ class PageOnDemand:
                 from cartwheel.viewer import Viewer
 
                 port = free_port(self._access.host, self._port)
-                viewer = Viewer(
+                viewer = self._viewer = Viewer(
                     self._session, access=self._access, port=port, refused=self._report.refused
                 )
                 starting = self._session.simulation.call(lambda: viewer.start(self._pacer))
@@ -63,3 +70,6 @@ class PageOnDemand:
                 self._url = viewer.url
                 self._server.announce(url=self._url, port=port)
             return self._url
+
+    def _browsers(self) -> int:
+        return 0 if self._viewer is None else self._viewer.browsers

@@ -98,6 +98,8 @@ def play(options: Options) -> None:
                     desk=PlayDesk,
                 )
                 page.start(cast("Pacer", player))
+            else:
+                server.offer_page(None)
             player.run()
             if page is not None:
                 page.raise_failure()

@@ -90,13 +90,14 @@ def _simulate(options: Options, access: Access, bridges: Bridges) -> None:
     endless = options.seconds is None and options.steps is None
     # From the moment on at which others can see that it runs.
     with interrupts.handled_by(session.simulation.stop, status=0 if endless else None):
-        server = ControlServer(session, title=title, load=_load_robot)
+        ros = options.ros1_node is not None
+        server = ControlServer(session, title=title, load=_load_robot, ros=ros)
         with interrupts.finally_do(server.close):
             pacer = _pacer(session, options)
             page = _page(session, server, pacer, options, report, access=access)
             if others:
                 report.others(others)
-            report.loaded(session, name, ros=options.ros1_node is not None)
+            report.loaded(session, name, ros=ros)
             with (
                 _joined_to_ros1(
                     session, bridges.ros1, server, options, report, remappings=remappings
@@ -268,8 +269,7 @@ def _page(
     if options.headless:
         from cartwheel.cli.commands.page_on_demand import PageOnDemand
 
-        demanded = PageOnDemand(session, server, pacer, report, access=access, port=options.port)
-        server.offer_page(demanded.show)
+        PageOnDemand(session, server, pacer, report, access=access, port=options.port)
         return None
     from cartwheel.cli.commands.page import Page
 
