@@ -3,6 +3,7 @@
 import re
 import signal
 import socket
+import sys
 import time
 import urllib.request
 
@@ -20,6 +21,12 @@ def headless(program, monkeypatch):
     program.wait_until_up(process)
     yield process
     process.kill()
+
+
+def free_port() -> int:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
 
 
 def url_of(client) -> str:
@@ -90,16 +97,71 @@ def test_the_client_ends_by_a_signal_and_the_simulation_goes_on(program, headles
     assert client.stderr.read() == ""
 
 
-def test_a_client_that_is_early_waits(program):
-    program.environment.pop("DISPLAY", None)
-    program.environment["ROS_MASTER_URI"] = "http://localhost:1"
+def test_the_client_finds_the_page_of_a_run_that_has_one_from_its_start(program):
+    for name in ("DISPLAY", "WAYLAND_DISPLAY", "ROS_MASTER_URI"):
+        program.environment.pop(name, None)
+    process = program.start("run", "--port", str(free_port()))
+    try:
+        # As soon as it is known, which is before its page is up.
+        program.wait_until_up(process)
+        client = program.start("gzclient")
+        url = url_of(client)
+        with urllib.request.urlopen(url, timeout=120) as page:
+            assert page.status == 200
+        client.kill()
+        client.communicate()
+    finally:
+        process.kill()
+        process.communicate()
+
+
+def test_a_recording_without_a_page_is_refused(program, monkeypatch):
+    program.environment.pop("ROS_MASTER_URI", None)
+    monkeypatch.setenv("XDG_RUNTIME_DIR", program.environment["XDG_RUNTIME_DIR"])
+    program("run", "--headless", "--for", "0.2", "--record", "a.mcap")
+    process = program.start("play", "a.mcap", "--headless", "--speed", "0.001")
+    try:
+        program.wait_until_up(process)
+        assert "has no page to show" in program("gzclient", status=2).stderr
+    finally:
+        process.kill()
+        process.communicate()
+
+
+BROWSER = """#!{python}
+import sys
+import msgspec, viser
+from websockets.sync.client import connect
+with connect(
+    sys.argv[1].replace("http", "ws"),
+    subprotocols=["viser-v" + viser.__version__], max_size=None, compression=None,
+) as page:
+    # A browser counts from the moment it says how large its canvas is.
+    page.send(msgspec.msgpack.encode(dict(
+        type="ViewerCameraMessage", wxyz=(1.0, 0.0, 0.0, 0.0), position=(-2.0, 0.0, 1.0),
+        fov=0.8, near=0.01, far=1000.0, image_height=600, image_width=800,
+        look_at=(0.0, 0.0, 0.0), up_direction=(0.0, 0.0, 1.0),
+    )))
+    for _ in page:
+        pass
+"""
+
+
+@pytest.mark.parametrize("shows", [True, False])
+def test_shown_is_said_where_a_browser_has_come(program, headless, monkeypatch, shows):
+    """A program that was started may be a browser that shows nothing."""
+    browser = program.folder / "browser"
+    browser.write_text(BROWSER.format(python=sys.executable) if shows else "#!/bin/sh\n")
+    browser.chmod(0o755)
+    program.environment.pop("SSH_CONNECTION", None)
+    program.environment |= {"DISPLAY": ":99", "BROWSER": f"{browser} %s &"}
     client = program.start("gzclient")
-    assert "waiting for a simulation" in client.stderr.readline()
-    simulation = program.start("run", "--headless")
-    assert url_of(client)
-    client.send_signal(signal.SIGTERM)
+    assert client.stdout.readline().startswith("the page is at")
+    if shows:
+        assert client.stdout.readline() == "shown in the browser\n"
+    headless.send_signal(signal.SIGINT)
     assert client.wait(timeout=120) == 0
-    simulation.kill()
+    assert client.stdout.read() == ""
 
 
 def test_without_a_simulation_there_is_nothing_to_show(program):
