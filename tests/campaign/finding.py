@@ -21,7 +21,7 @@ class Finding:
 
     target: str
     kind: str
-    """``exception``, ``traceback``, ``time``, ``memory`` or ``death``."""
+    """``exception``, ``traceback``, ``time``, ``memory``, ``death``, or ``start`` without input."""
     where: str
     """One line that findings of the same cause share."""
     text: str

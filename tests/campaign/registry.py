@@ -8,6 +8,8 @@ from tests.campaign.target import Target
 
 MODULES: dict[str, tuple[str, ...]] = {
     "fuzz_meshes": ("stl", "obj", "dae", "glb", "ply"),
+    "fuzz_pictures": ("pictures",),
+    "fuzz_recordings": ("bag", "mcap", "db3", "db3-tables", "bag2-folder", "definitions"),
 }
 """Modules, and the targets of each: known without an import, which takes seconds."""
 

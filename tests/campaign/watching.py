@@ -86,10 +86,8 @@ def watch(target: Target, task: Mapping[str, Any], room: Path) -> Watched:
         shutil.rmtree(room / "tmp", ignore_errors=True)
     loaded, begun, accepted, refused, faulty, slowest = COUNTERS.unpack(counters.read_bytes())
     if not loaded or (begun == 0 and process.returncode):
-        raise RuntimeError(
-            f'the target "{target.name}" does not start:\n{_text(room / "starting")}'
-            f"{_text(room / 'output')}"
-        )
+        _startless(target, room).save(room.parent / "findings")
+        return Watched(begun=0, accepted=0, refused=0, faulty=1, slowest_ms=0, ended=True)
     if not reason and process.returncode:
         reason = "death"
     if reason:
@@ -103,6 +101,12 @@ def watch(target: Target, task: Mapping[str, Any], room: Path) -> Watched:
         slowest_ms=slowest,
         ended=not reason,
     )
+
+
+def _startless(target: Target, room: Path) -> Finding:
+    """That the target's module or seeds fail, before any input."""
+    text = _text(room / "starting") + _text(room / "output")
+    return Finding(target=target.name, kind="start", where="start", text=text, inputs=())
 
 
 def _guard(process: subprocess.Popen[bytes], target: Target, counters: Path) -> str:

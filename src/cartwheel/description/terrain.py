@@ -8,11 +8,13 @@ from __future__ import annotations
 
 from functools import lru_cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from cartwheel.description.model import Heightmap
+from cartwheel.description.pictures import PictureError, open_picture
 from cartwheel.errors import CartwheelError, Origin
 
 MOST_SAMPLES = 513
@@ -36,16 +38,18 @@ def heights_of(
         origin: The element, for the error.
 
     Raises:
-        TerrainError: The file is no image.
+        TerrainError: The file is no image that can be read, or too large.
     """
     try:
         changed = shape.path.stat().st_mtime_ns
         grey = _grey(shape.path, changed, most)
-    except OSError as error:
+    except (OSError, PictureError) as error:
+        reason = error.reason if isinstance(error, PictureError) else error.strerror
+        hint = error.hint if isinstance(error, PictureError) else None
         raise TerrainError(
-            f'the heightmap "{shape.path.name}" is no image that can be read: {error}',
+            f'the heightmap "{shape.path.name}" cannot be read: {reason}',
             origin=origin,
-            hint="Save the heights as a PNG in grey.",
+            hint=hint or "Save the heights as a PNG in grey.",
         ) from None
     return grey * shape.size[2] if shape.size[2] >= 0 else (1.0 - grey) * -shape.size[2]
 
@@ -53,17 +57,18 @@ def heights_of(
 @lru_cache(maxsize=8)
 def _grey(path: Path, _changed: int, most: int) -> NDArray[np.float64]:
     """Brightness, 1 at the brightest pixel, shape (rows, columns)."""
-    from PIL import Image
-
-    with Image.open(path) as image:
+    with open_picture(path) as image:
         # A colour counts by its red, as in Gazebo.
-        channel = image.getchannel(0) if len(image.getbands()) > 1 else image
         if image.mode == "P":
             channel = image.convert("RGB").getchannel(0)
-        grey = np.asarray(channel.convert("F"), dtype=np.float64)
-    rows = _samples(grey.shape[0], most)
-    columns = _samples(grey.shape[1], most)
-    grey = _interpolated(_interpolated(grey, rows).T, columns).T
+        else:
+            channel = image.getchannel(0) if len(image.getbands()) > 1 else image
+        pixels = np.asarray(channel)
+    if pixels.dtype.kind == "f" and not np.isfinite(pixels).all():
+        raise PictureError(path.name, "a height is not a finite number")
+    rows = _samples(pixels.shape[0], most)
+    columns = _samples(pixels.shape[1], most)
+    grey = _interpolated(_interpolated(pixels, rows).T, columns).T
     top = float(grey.max())
     grey = grey / top if top > 0 else grey
     grey.flags.writeable = False
@@ -77,7 +82,8 @@ def _samples(count: int, most: int) -> NDArray[np.float64]:
     return np.linspace(0, count - 1, min(count, most))
 
 
-def _interpolated(grey: NDArray[np.float64], at: NDArray[np.float64]) -> NDArray[np.float64]:
+def _interpolated(grey: NDArray[Any], at: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The rows at `at`; only these become floats, since there may be many others."""
     low = np.floor(at).astype(int)
     high = np.minimum(low + 1, len(grey) - 1)
     part = (at - low)[:, None]

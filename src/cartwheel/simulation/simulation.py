@@ -25,7 +25,7 @@ from cartwheel.simulation.separation import Separation, told
 from cartwheel.simulation.sight import in_sight
 from cartwheel.simulation.snapshot import RunState, Scene, Snapshot
 from cartwheel.simulation.space import Space, occupied
-from cartwheel.world import build, unused
+from cartwheel.world import build, unreadable, unused
 from cartwheel.world.build import step_of
 from cartwheel.world.entry import ModelEntry
 
@@ -592,8 +592,8 @@ class Simulation(Run):
         resident = self._residents[name]
         resident.part.spawned = True
         description = resident.entry.description
-        notes = (*description.diagnostics, *resident.part.diagnostics, *unused(description))
-        for diagnostic in notes:
+        notes = (*description.diagnostics, *resident.part.diagnostics)
+        for diagnostic in (*notes, *unused(description), *unreadable(description)):
             self.engine.report(diagnostic)
         self._separate(name, before=before)
 

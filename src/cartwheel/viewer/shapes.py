@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import math
 from collections.abc import Hashable, Iterable
 from dataclasses import dataclass, replace
@@ -33,6 +32,7 @@ from cartwheel.description.model import (
     Visual,
 )
 from cartwheel.description.paint import Paint, paint_of
+from cartwheel.description.pictures import PictureError, thumbnail
 from cartwheel.description.terrain import heights_of
 from cartwheel.description.wrapping import scaled, wrapped
 from cartwheel.geometry import Pose, matrix_from_quat, quat_between
@@ -174,20 +174,13 @@ def _painted(vertices: Floats, faces: Ints, paint: Paint, uv: Any, material: Mat
 
 @lru_cache(maxsize=128)
 def _mean_colour(image: Path | bytes) -> Rgba | None:
-    from PIL import Image
-
     try:
-        with Image.open(opened(image)) as read:
-            mean = np.asarray(read.convert("RGBA").resize((16, 16))).reshape(-1, 4).mean(axis=0)
-    except OSError:
+        small = thumbnail(image, 64, "RGBA").resize((16, 16))
+    except PictureError:
         return None
+    mean = np.asarray(small).reshape(-1, 4).mean(axis=0)
     red, green, blue, alpha = (float(channel) / 255 for channel in mean)
     return (red, green, blue, alpha)
-
-
-def opened(image: Path | bytes) -> Path | io.BytesIO:
-    """What Pillow reads an image from."""
-    return io.BytesIO(image) if isinstance(image, bytes) else image
 
 
 @lru_cache(maxsize=256)

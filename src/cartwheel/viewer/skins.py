@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from cartwheel.viewer.shapes import Surface, opened
+from cartwheel.description.pictures import thumbnail
+from cartwheel.viewer.shapes import Surface
 
 _LARGEST = 1024
 """Pixels of an image's longer edge: a browser without a GPU has to draw it too."""
@@ -18,7 +19,7 @@ def glb_of(surface: Surface) -> bytes:
     """A surface with its image, as the browser reads it.
 
     Raises:
-        OSError: The image cannot be read.
+        PictureError: The image cannot be read.
     """
     import trimesh
 
@@ -45,12 +46,7 @@ def glb_of(surface: Surface) -> bytes:
 
 @lru_cache(maxsize=8)
 def _reduced(source: Path | bytes) -> Any:
-    from PIL import Image
-
-    with Image.open(opened(source)) as image:
-        image.load()
-        reduced = image.convert("RGB")
-    reduced.thumbnail((_LARGEST, _LARGEST))
+    reduced = thumbnail(source, _LARGEST)
     # By this name it is written into the file: a photograph takes a tenth of what it would as PNG.
     reduced.format = "JPEG"
     return reduced

@@ -3,6 +3,6 @@
 from cartwheel.world import mujoco_import  # noqa: F401 - before all others
 from cartwheel.world.build import Build, build
 from cartwheel.world.entry import CameraMount, ModelEntry, Motor
-from cartwheel.world.unused import unused
+from cartwheel.world.unused import unreadable, unused
 
-__all__ = ["Build", "CameraMount", "ModelEntry", "Motor", "build", "unused"]
+__all__ = ["Build", "CameraMount", "ModelEntry", "Motor", "build", "unreadable", "unused"]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import math
 from functools import lru_cache
 from pathlib import Path
@@ -25,6 +24,7 @@ from cartwheel.description.model import (
     Shape,
     Sphere,
 )
+from cartwheel.description.pictures import PictureError, thumbnail
 from cartwheel.description.terrain import heights_of
 from cartwheel.errors import Origin
 from cartwheel.geometry import Array, Pose, quat_between, to_wxyz
@@ -98,24 +98,27 @@ class Assets:
         """The name of a material that shows an image, its path or encoded bytes, and glows.
 
         Args:
-            image: None is none.
+            image: None is none; one that cannot be read is left out.
             emission: Light of its own, as a factor on its colour.
         """
         key = (image, emission)
         if key not in self._materials:
             name = f"material_{len(self._materials)}"
             material = self._spec.add_material(name=name, emission=emission)
-            if image is not None:
+            texture = self._texture(image) if image is not None else None
+            if texture is not None:
                 role = mujoco.mjtTextureRole.mjTEXROLE_RGB
-                material.textures[role] = self._texture(image)
+                material.textures[role] = texture
             self._materials[key] = name
         return self._materials[key]
 
-    def _texture(self, image: Path | bytes) -> str:
+    def _texture(self, image: Path | bytes) -> str | None:
+        """Of an image; None where it cannot be read, for which `picture_error` has the reason."""
         if image not in self._textures:
             name = f"texture_{len(self._textures)}"
-            changed = image.stat().st_mtime_ns if isinstance(image, Path) else 0
-            pixels = _pixels(image, changed)
+            pixels = _pixels(image, _changed(image))
+            if isinstance(pixels, PictureError):
+                return None
             texture = self._spec.add_texture(
                 name=name,
                 type=mujoco.mjtTexture.mjTEXTURE_2D,
@@ -134,15 +137,31 @@ def _four(rows: Any) -> Any:
     return np.concatenate([some, np.repeat(some[-1:], max(0, 4 - len(some)), axis=0)])
 
 
+def picture_error(image: Path | bytes) -> PictureError | None:
+    """Why an image is not shown."""
+    found = _pixels(image, _changed(image))
+    return found if isinstance(found, PictureError) else None
+
+
+def _changed(image: Path | bytes) -> int:
+    """When a file was written, ns; 0 where it is gone."""
+    try:
+        return image.stat().st_mtime_ns if isinstance(image, Path) else 0
+    except OSError:
+        return 0
+
+
 @lru_cache(maxsize=256)
 def _pixels(image: Path | bytes, _changed: int) -> Any:
-    """An image as the engine wants it, shape (height, width, 3); kept, since each spawn asks."""
-    from PIL import Image
+    """An image as the engine wants it, shape (height, width, 3); kept, since each spawn asks.
 
-    with Image.open(io.BytesIO(image) if isinstance(image, bytes) else image) as opened:
-        opened.thumbnail((_LARGEST_TEXTURE, _LARGEST_TEXTURE))
-        flipped = opened.convert("RGB").transpose(Image.Transpose.FLIP_TOP_BOTTOM)
-        return np.ascontiguousarray(flipped)
+    One that cannot be read is the error.
+    """
+    try:
+        small = thumbnail(image, _LARGEST_TEXTURE)
+    except PictureError as error:
+        return error
+    return np.ascontiguousarray(np.asarray(small)[::-1])
 
 
 def place(

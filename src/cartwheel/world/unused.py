@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from pathlib import Path
 
-from cartwheel.description.meshes import standing_parts
+from cartwheel.description.meshes import load_mesh, standing_parts
 from cartwheel.description.model import Joint, Mesh, RobotDescription
+from cartwheel.description.paint import paint_of
 from cartwheel.errors import Diagnostic, Origin
 from cartwheel.world import contact
+from cartwheel.world.shapes import picture_error
 
 _SURFACE = {
     "slip1": "friction is Coulomb's",
@@ -71,6 +74,22 @@ def unused(description: RobotDescription) -> Iterator[Diagnostic]:
         yield Diagnostic(
             severity="info", message=f"{what} has no effect{times}: {why}", origin=origin
         )
+
+
+def unreadable(description: RobotDescription) -> Iterator[Diagnostic]:
+    """A warning for each picture that is not shown, at the first visual that has it."""
+    seen: set[Path | bytes | None] = {None}
+    for visual in (visual for link in description.links for visual in link.visuals):
+        images = {visual.material.texture}
+        if isinstance(visual.shape, Mesh):
+            images = {paint_of(visual.material, part).image for part in load_mesh(visual.shape)}
+        for image in images - seen:
+            seen.add(image)
+            error = picture_error(image)
+            if error is not None:
+                hint = f" {error.hint}" if error.hint else ""
+                message = f"{error.message}; the surface has its colour alone.{hint}"
+                yield Diagnostic(severity="warning", message=message, origin=visual.origin)
 
 
 def _closing(description: RobotDescription) -> Iterator[Joint]:

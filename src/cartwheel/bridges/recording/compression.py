@@ -3,7 +3,11 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable
 from typing import Any
+
+MOST_BYTES = 1 << 28
+"""Of one chunk, unpacked: a hundred times what recorders make, and four large point clouds."""
 
 
 def _zstd() -> Any:
@@ -24,28 +28,54 @@ def decompress(data: bytes, kind: str) -> bytes:
     """Bytes as they were before ``zstd``, ``lz4``, ``bz2`` or nothing (``""``, ``none``).
 
     Raises:
-        ValueError: They are damaged, or the kind is unknown.
+        ValueError: They are damaged, unpack to more than `MOST_BYTES`, or the kind is unknown.
     """
     if kind in ("", "none"):
         return data
+    make, damage = _unpacker(kind)
+    try:
+        if kind == "zstd" and _is_stated(data):
+            return bytes(_zstd().decompress(data))
+        return _unpacked(data, make)
+    except damage as error:
+        raise ValueError(str(error)) from error
+
+
+def _is_stated(data: bytes) -> bool:
+    """Whether the data is one frame of zstd's that states a size within bounds."""
+    zstd = _zstd()
+    size = zstd.get_frame_info(data).decompressed_size
+    return size is not None and size <= MOST_BYTES and zstd.get_frame_size(data) == len(data)
+
+
+def _unpacker(kind: str) -> tuple[Callable[[], Any], type[Exception]]:
+    """What unpacks one frame step by step, and its error for damage."""
     if kind == "zstd":
         zstd = _zstd()
-        try:
-            return bytes(zstd.decompress(data))
-        except zstd.ZstdError as error:
-            raise ValueError(str(error)) from error
+        return zstd.ZstdDecompressor, zstd.ZstdError
     if kind == "lz4":
         from lz4 import frame
 
-        try:
-            return bytes(frame.decompress(data))
-        except RuntimeError as error:
-            raise ValueError(str(error)) from error
+        return frame.LZ4FrameDecompressor, RuntimeError
     if kind == "bz2":
         import bz2
 
-        try:
-            return bz2.decompress(data)
-        except OSError as error:
-            raise ValueError(str(error)) from error
+        return bz2.BZ2Decompressor, OSError
     raise ValueError(f'"{kind}" is no compression that is known')
+
+
+def _unpacked(data: bytes, make: Callable[[], Any]) -> bytes:
+    parts: list[bytes] = []
+    left = MOST_BYTES
+    while data:
+        unpacker = make()
+        while not unpacker.eof:
+            if unpacker.needs_input and not data:
+                raise ValueError("it ends in the middle")
+            parts.append(unpacker.decompress(data, left + 1))
+            left -= len(parts[-1])
+            data = b""
+            if left < 0:
+                raise ValueError(f"it unpacks to more than {MOST_BYTES >> 20} MiB")
+        data = unpacker.unused_data or b""
+    return b"".join(parts)

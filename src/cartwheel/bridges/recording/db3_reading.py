@@ -6,6 +6,7 @@ import sqlite3
 from collections.abc import Callable, Collection, Iterator, Mapping
 from pathlib import Path
 
+from cartwheel.bridges.recording.compression import MOST_BYTES
 from cartwheel.bridges.recording.reading import Recorded, RecordedTopic, is_latched
 from cartwheel.errors import RecordingError
 from cartwheel.messages import type_name
@@ -35,7 +36,7 @@ class Db3Recording:
         try:
             self._base = self._connect()
             self._survey()
-        except sqlite3.Error as error:
+        except (sqlite3.Error, ValueError, OverflowError) as error:
             raise RecordingError(f'"{path}" is no bag of ROS 2: {error}') from error
 
     def messages(
@@ -43,15 +44,17 @@ class Db3Recording:
     ) -> Iterator[Recorded]:
         wanted = [own for own, n in self._numbers.items() if topics is None or n in topics]
         marks = ", ".join("?" * len(wanted))
-        rows = self._base.execute(
-            "SELECT timestamp, topic_id, data FROM messages WHERE timestamp >= ?"  # noqa: S608
-            f" AND topic_id IN ({marks}) ORDER BY timestamp, id",
-            (start_ns, *wanted),
-        )
         try:
+            rows = self._base.execute(
+                "SELECT timestamp, topic_id, data FROM messages WHERE timestamp >= ?"  # noqa: S608
+                f" AND topic_id IN ({marks}) ORDER BY timestamp, id",
+                (start_ns, *wanted),
+            )
             for time_ns, own, data in rows:
+                if type(time_ns) is not int or type(data) is not bytes:
+                    raise ValueError("a message without time or data")
                 yield Recorded(time_ns, self._numbers[own], self._unpack(data))
-        except sqlite3.Error as error:
+        except (sqlite3.Error, ValueError, OverflowError) as error:
             raise RecordingError(f'"{self.path}" is damaged: {error}') from error
 
     def close(self) -> None:
@@ -71,6 +74,11 @@ class Db3Recording:
 
     def _survey(self) -> None:
         base = self._base
+        base.execute("PRAGMA trusted_schema = OFF")
+        base.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, MOST_BYTES)
+        views = base.execute("SELECT name FROM sqlite_master WHERE type = 'view'").fetchone()
+        if views:  # which can be queries without end
+            raise ValueError(f'it has a view, "{views[0]}"')
         columns = {row[1] for row in base.execute("PRAGMA table_info(topics)")}
         tables = {row[0] for row in base.execute("SELECT name FROM sqlite_master")}
         texts = {}
@@ -82,6 +90,8 @@ class Db3Recording:
         query = f"SELECT id, name, type, serialization_format, {profiles} FROM topics ORDER BY id"  # noqa: S608
         for own, name, kind, encoding, profile in base.execute(query):
             schema, text = texts.get(kind, ("", ""))
+            if not all(isinstance(text, str) for text in (name, kind, encoding, schema, text)):
+                raise ValueError("a topic without name, type or encoding")
             self._numbers[own] = len(self.topics)
             self.topics.append(
                 RecordedTopic(
@@ -90,12 +100,14 @@ class Db3Recording:
                     encoding=encoding,
                     schema=schema,
                     definition=text,
-                    latched=is_latched(profile),
+                    latched=isinstance(profile, str) and is_latched(profile),
                 )
             )
         query = "SELECT topic_id, count(*), min(timestamp), max(timestamp) FROM messages"
         for own, count, first, last in base.execute(f"{query} GROUP BY topic_id"):
             if own in self._numbers:
+                if not (isinstance(first, int) and isinstance(last, int)):
+                    raise ValueError("a message without time")
                 topic = self.topics[self._numbers[own]]
                 topic.count, topic.first_ns, topic.last_ns = count, first, last
         # Since the fourth version the metadata is written at the end; before, beside it.

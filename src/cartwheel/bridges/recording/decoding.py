@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from typing import Any
 
@@ -13,6 +14,10 @@ from cartwheel.messages.ros1 import decode_ros1, ros1_type
 from cartwheel.messages.ros1_types import ros1_store
 from cartwheel.messages.ros2_types import twin_name
 
+_LONGEST = 1 << 20
+"""Characters of a definition with all types that it needs."""
+_NO_CODE = re.compile(r'"(?:[^"\\]|\\.)*"|//[^\n]*|/\*.*?\*/', re.DOTALL)
+"""In IDL: texts and comments."""
 Decode = Callable[[bytes], Any]
 
 
@@ -47,6 +52,8 @@ def _learn(topic: RecordedTopic) -> None:
     if not topic.definition or topic.schema not in ("ros1msg", "ros2msg", "ros2idl"):
         return
     types = _parsed(topic)
+    for name, (_, fields) in types.items():
+        _check_names(topic, name, fields)
     ours = store()
     if topic.encoding == "cdr":
         for name, (_, fields) in types.items():
@@ -78,12 +85,36 @@ def _in_graph(kind: str, topic: RecordedTopic) -> str:
 def _parsed(topic: RecordedTopic) -> dict[str, Any]:
     from rosbags.typesys import get_types_from_idl, get_types_from_msg
 
+    if len(topic.definition) > _LONGEST:
+        raise RecordingError(
+            f"{topic.name}: its definition has {len(topic.definition)} characters,"
+            f" at most {_LONGEST} are read"
+        )
+    if topic.schema == "ros2idl" and _has_nested_parentheses(topic.definition):
+        raise RecordingError(f"{topic.name}: its definition has parentheses within parentheses")
     try:
         if topic.schema == "ros2idl":
             return dict(get_types_from_idl(topic.definition))
         return dict(get_types_from_msg(topic.definition, topic.type))
     except Exception as error:  # whatever the parser meets
         raise RecordingError(f"{topic.name}: its definition cannot be read: {error}") from error
+
+
+def _has_nested_parentheses(idl: str) -> bool:
+    """Whether reading it takes 70 times as long for each further pair; ROS writes none."""
+    depth = 0
+    for sign in re.findall(r"[()]", _NO_CODE.sub("", idl)):
+        depth += 1 if sign == "(" else -1
+        if depth > 1:
+            return True
+    return False
+
+
+def _check_names(topic: RecordedTopic, name: str, fields: Any) -> None:
+    """Refuses names that are none: classes are made of them, as Python's text."""
+    words = [*name.split("/"), *(field[0] for field in fields)]
+    if not all(word.isidentifier() for word in words):
+        raise RecordingError(f"{topic.name}: {name} is no name of a type, or has such a field")
 
 
 def _plain(fields: Any) -> Any:

@@ -12,6 +12,9 @@ from cartwheel.bridges.recording.db3_reading import Db3Recording
 from cartwheel.bridges.recording.reading import Recorded, RecordedTopic, Recording
 from cartwheel.errors import RecordingError
 
+_MOST_METADATA = 1 << 24
+"""Bytes of a ``metadata.yaml``, which states each topic's QoS."""
+
 
 class FolderRecording:
     """Several files as one recording."""
@@ -75,15 +78,20 @@ def open_folder(path: Path, open_file: Callable[[Path], Recording]) -> Recording
         RecordingError: There are none, or they cannot be read.
     """
     about = _metadata(path)
-    named = [path / name for name in about.get("relative_file_paths", []) if isinstance(name, str)]
-    # A bag that was moved may name folders that are no more.
-    files = [file if file.is_file() else path / file.name for file in named]
+    stated = about.get("relative_file_paths")
+    names = [Path(name).name for name in stated or () if isinstance(name, str)]
+    # All of a bag's files lie in its folder. Some versions also write the folder's name, which
+    # may have changed since, and nobody may name files elsewhere.
+    files = [path / name for name in names if isinstance(stated, list) and name]
+    for file in files:
+        if not file.is_file():
+            raise RecordingError(f'"{path}" names a file that is not there: "{file.name}"')
     files = files or sorted([*path.glob("*.mcap"), *path.glob("*.db3")])
     if not files:
         raise RecordingError(f'"{path}" is no recording: it holds neither .mcap nor .db3')
     unpack: Callable[[bytes], bytes] = lambda data: data  # noqa: E731
-    if str(about.get("compression_mode", "")).upper() == "MESSAGE":
-        kind = str(about.get("compression_format", "zstd"))
+    mode, kind = about.get("compression_mode"), about.get("compression_format", "zstd")
+    if isinstance(mode, str) and mode.upper() == "MESSAGE" and isinstance(kind, str):
         unpack = lambda data: decompress(data, kind)  # noqa: E731
     opened = [
         Db3Recording(file, unpack=unpack) if file.suffix == ".db3" else open_file(file)
@@ -96,11 +104,13 @@ def _metadata(path: Path) -> dict[str, Any]:
     import yaml
 
     file = path / "metadata.yaml"
-    if not file.exists():
+    if not file.is_file():
         return {}
+    if file.stat().st_size > _MOST_METADATA:
+        raise RecordingError(f'"{file}" is too large: at most {_MOST_METADATA >> 20} MiB are read')
     try:
         read = yaml.safe_load(file.read_text(errors="replace"))
-    except yaml.YAMLError as error:
+    except (yaml.YAMLError, ValueError, RecursionError) as error:
         what = " ".join(str(error).split())
         raise RecordingError(f'"{file}" is no YAML: {what}') from error
     about = read.get("rosbag2_bagfile_information") if isinstance(read, dict) else None

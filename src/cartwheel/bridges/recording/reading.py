@@ -10,6 +10,9 @@ from typing import Any, NamedTuple, Protocol
 
 from cartwheel.errors import RecordingError
 
+_MOST_WAITING = 1 << 30
+"""Bytes of messages that wait until those of overlapping chunks are in order."""
+
 
 class Recorded(NamedTuple):
     """A message in a recording."""
@@ -130,10 +133,17 @@ class BlockRecording:
         ]
         # Blocks may overlap in time: what may still be preceded by the next one waits.
         waiting: list[tuple[int, int, Recorded]] = []
-        count = 0
+        count = size = 0
         for block in chosen:
             while waiting and waiting[0][0] < block.first_ns:
-                yield heapq.heappop(waiting)[2]
+                message = heapq.heappop(waiting)[2]
+                size -= len(message.data)
+                yield message
+            if size > _MOST_WAITING:
+                raise RecordingError(
+                    f'"{self.path}" cannot be read: its chunks overlap in time,'
+                    f" {size >> 20} MiB of them at byte {block.position}"
+                )
             try:
                 loaded = self.load(block)
             except ValueError as error:
@@ -144,6 +154,7 @@ class BlockRecording:
                 if message.time_ns >= start_ns and (wanted is None or message.number in wanted):
                     heapq.heappush(waiting, (message.time_ns, count, message))
                     count += 1
+                    size += len(message.data)
         while waiting:
             yield heapq.heappop(waiting)[2]
 
@@ -208,7 +219,7 @@ def is_latched(profiles: str) -> bool:
 
     try:
         found = yaml.safe_load(profiles) if profiles else None
-    except yaml.YAMLError:
+    except (yaml.YAMLError, ValueError, RecursionError):
         return False
     first = found[0] if isinstance(found, list) and found else None
     # Numbers are those of rmw.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import logging
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +11,7 @@ import numpy as np
 
 from cartwheel.description.meshes.submesh import Submesh, build_submesh
 from cartwheel.description.model import Rgba
+from cartwheel.description.pictures import FORMATS, check_size
 
 
 def read_with_trimesh(path: Path, data: bytes, _notes: list[str]) -> list[Submesh]:
@@ -23,6 +25,8 @@ def read_with_trimesh(path: Path, data: bytes, _notes: list[str]) -> list[Submes
     # Imported here: it costs a tenth of a second that most robots need not pay.
     import trimesh
 
+    # It logs tracebacks of what it recovers from, which Python would print.
+    logging.getLogger("trimesh").addHandler(logging.NullHandler())
     kind = path.suffix.lower().lstrip(".")
     resolver = trimesh.resolvers.FilePathResolver(str(path))
     scene = trimesh.load_scene(io.BytesIO(data), file_type=kind, resolver=resolver, process=False)
@@ -35,15 +39,19 @@ def read_with_trimesh(path: Path, data: bytes, _notes: list[str]) -> list[Submes
         matrix = np.asarray(transform, dtype=np.float64)
         linear = matrix[:3, :3]
         faces = np.asarray(geometry.faces)
+        if faces.size and (faces.min() < 0 or faces.max() >= len(geometry.vertices)):
+            raise ValueError("a face names a vertex that does not exist")
         if np.linalg.det(linear) < 0:
             faces = faces[:, ::-1]
         rgba, texture = _look(geometry.visual)
         uv = getattr(geometry.visual, "uv", None)
+        with np.errstate(all="ignore"):  # corners of triangles without area
+            normals = np.asarray(geometry.vertex_normals) @ np.linalg.inv(linear)
         submesh = build_submesh(
             str(key),
             np.asarray(geometry.vertices) @ linear.T + matrix[:3, 3],
             faces,
-            normals=np.asarray(geometry.vertex_normals) @ np.linalg.inv(linear),
+            normals=normals,
             uv=uv,
             rgba=rgba,
             texture=texture if uv is not None else None,
@@ -74,6 +82,9 @@ def _look(visual: Any) -> tuple[Rgba | None, bytes | None]:
         rgba = (r, g, b, a)
     if image is None:
         return rgba, None
+    if image.format is not None and image.format not in FORMATS:
+        return rgba, None
+    check_size(image, "in the mesh")
     stream = io.BytesIO()
     image.save(stream, format="PNG")
     return rgba, stream.getvalue()

@@ -154,7 +154,7 @@ def _read(path: Path, _mtime_ns: int, size: int) -> _Loaded:
     notes: list[str] = []
     try:
         submeshes = reader(path, path.read_bytes(), notes)
-    except OSError:
+    except (OSError, MemoryError):
         raise
     except Exception as error:  # a damaged file may fail anywhere in its reader
         raise MeshError(path, str(error) or type(error).__name__) from error

@@ -1,0 +1,116 @@
+"""Picture files: heightmaps and textures, with bounds on what a small file may unpack to."""
+
+from __future__ import annotations
+
+import io
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from cartwheel.errors import DescriptionError
+
+FORMATS = ("PNG", "JPEG", "BMP", "GIF", "TGA", "TIFF", "WEBP", "DDS", "PPM")
+"""Pillow knows more, and starts other programs for some of them."""
+MOST_PIXELS = 8193 * 8193
+"""The largest heightmap of Gazebo's that is in use; 64 MiB in grey, 256 MiB in colour."""
+
+MOST_BYTES = 1 << 28
+"""Of a file: as many pixels of 4 bytes."""
+
+
+class PictureError(DescriptionError):
+    """A picture that cannot be used.
+
+    Args:
+        name: What users call it.
+        reason: What is wrong with it.
+        hint: The likely fix.
+    """
+
+    def __init__(self, name: str, reason: str, hint: str | None = None) -> None:
+        self.reason = reason
+        super().__init__(f'the picture "{name}" cannot be read: {reason}', hint=hint)
+
+
+@contextmanager
+def open_picture(source: Path | bytes) -> Iterator[Any]:
+    """A Pillow image of a file or its content; it is decoded when its pixels are asked for.
+
+    Raises:
+        PictureError: It is missing, damaged, too large, or of another format. Whatever Pillow
+            raises within the ``with`` block becomes one, too.
+    """
+    from PIL import Image
+
+    name = "in the mesh" if isinstance(source, bytes) else source.name
+    if isinstance(source, Path) and not source.is_file():
+        raise PictureError(name, "there is no such file")
+    try:
+        # Not opened by name: some of Pillow's readers ask a file for as much as it says it has.
+        content = source if isinstance(source, bytes) else _content(source)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", Image.DecompressionBombWarning)
+            image = Image.open(io.BytesIO(content), formats=FORMATS)
+        with image:
+            check_size(image, name)
+            yield image
+    except (PictureError, MemoryError):
+        raise
+    except Image.UnidentifiedImageError:
+        known = ", ".join(FORMATS)
+        raise PictureError(name, "unknown format", f"Supported are {known}.") from None
+    except Image.DecompressionBombError:
+        raise _too_large(name, "") from None
+    except Exception as error:  # Pillow's readers raise whatever they meet
+        raise PictureError(name, str(error) or type(error).__name__) from error
+
+
+def _content(path: Path) -> bytes:
+    if path.stat().st_size > MOST_BYTES:
+        raise PictureError(
+            path.name, "it is too large", f"At most {MOST_BYTES >> 20} MiB are read."
+        )
+    return path.read_bytes()
+
+
+def check_size(image: Any, name: str) -> None:
+    """Looks at a picture's size before it is decoded.
+
+    Raises:
+        PictureError: It is too large.
+    """
+    width, height = image.size
+    if width < 1 or height < 1:
+        raise PictureError(name, f"it has {width} x {height} pixels")
+    if width * height > MOST_PIXELS:
+        raise _too_large(name, f"{width} x {height} pixels")
+
+
+def _too_large(name: str, size: str) -> PictureError:
+    return PictureError(
+        name,
+        f"it is too large{f': {size}' if size else ''}",
+        f"At most {MOST_PIXELS // 1_000_000} million pixels are read: scale it down.",
+    )
+
+
+def thumbnail(source: Path | bytes, most: int, mode: str = "RGB") -> Any:
+    """A picture as a Pillow image with 8 bits for each channel.
+
+    Args:
+        source: A file, or its content.
+        most: Pixels of its longer edge; a larger one is scaled down.
+        mode: Pillow's; ``RGB`` or ``RGBA``.
+
+    Raises:
+        PictureError: As `open_picture`.
+    """
+    with open_picture(source) as image:
+        if image.mode.startswith("I"):  # 16 bits, which Pillow would cut off at 255
+            image = image.point(lambda value: value / 256).convert("L")  # noqa: PLW2901
+        elif image.mode in ("P", "PA", "1"):
+            image = image.convert(mode)  # noqa: PLW2901
+        image.thumbnail((most, most))
+        return image.convert(mode)

@@ -1,0 +1,147 @@
+"""Recordings that were made to hang or devour their reader."""
+
+from __future__ import annotations
+
+import bz2
+import os
+import sqlite3
+
+import mcap.writer
+import pytest
+from backports import zstd
+from lz4 import frame
+
+from cartwheel.bridges.recording import compression, reading
+from cartwheel.bridges.recording.compression import decompress
+from cartwheel.bridges.recording.decoding import decoder
+from cartwheel.bridges.recording.opening import open_recording
+from cartwheel.bridges.recording.reading import RecordedTopic
+from cartwheel.errors import RecordingError
+
+PACKERS = {"bz2": bz2.compress, "lz4": frame.compress, "zstd": zstd.compress}
+TABLES = """CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT, type TEXT,
+  serialization_format TEXT, offered_qos_profiles TEXT);
+  INSERT INTO topics VALUES(1, '/p', 'geometry_msgs/msg/Point', 'cdr', '');"""
+MESSAGES = "CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id, timestamp, data);"
+
+
+def streamed(data):
+    """As zstd packs what it does not know the size of."""
+    packer = zstd.ZstdCompressor()
+    return packer.compress(data[:10]) + packer.compress(data[10:]) + packer.flush()
+
+
+@pytest.mark.parametrize("kind", PACKERS)
+def test_what_was_packed_is_unpacked(kind):
+    data = os.urandom(1000) * 20
+    pack = PACKERS[kind]
+    assert decompress(pack(data), kind) == data
+    assert decompress(pack(b""), kind) == b""
+    # Several frames in a row are one.
+    assert decompress(pack(data) + pack(data), kind) == data * 2
+    for cut in range(1, 40):
+        with pytest.raises(ValueError, match=r"."):
+            decompress(pack(data)[:-cut], kind)
+
+
+@pytest.mark.parametrize("kind", [*PACKERS, "zstd without its size"])
+def test_a_bomb_is_refused_before_it_fills_memory(kind, monkeypatch):
+    monkeypatch.setattr(compression, "MOST_BYTES", 1 << 20)
+    pack = PACKERS.get(kind, streamed)
+    kind = kind.split()[0]
+    assert len(decompress(pack(bytes(1 << 20)), kind)) == 1 << 20
+    with pytest.raises(ValueError, match="unpacks to more than 1 MiB"):
+        decompress(pack(bytes((1 << 20) + 1)), kind)
+    with pytest.raises(ValueError, match="unpacks to more than 1 MiB"):
+        decompress(pack(bytes(1 << 19)) * 3, kind)
+
+
+def test_chunks_that_all_overlap_are_refused_where_they_would_fill_memory(tmp_path, monkeypatch):
+    monkeypatch.setattr(reading, "_MOST_WAITING", 1 << 20)
+    path = tmp_path / "a.mcap"
+    with path.open("wb") as file:
+        writer = mcap.writer.Writer(file, chunk_size=1 << 18)
+        writer.start()
+        channel = writer.register_channel("/a", "json", 0)
+        for _ in range(30):
+            writer.add_message(channel, 10**9, bytes(1 << 17), 10**9)
+            writer.add_message(channel, 1, b"", 1)
+        writer.finish()
+    recording = open_recording(path)
+    with pytest.raises(RecordingError, match="chunks overlap in time"):
+        list(recording.messages())
+
+
+@pytest.mark.parametrize(
+    ("paths", "error"),
+    [
+        ("[.]", "neither .mcap nor .db3"),  # the folder itself, for ever
+        ("[a/..]", "not there"),
+        ("[/etc/passwd]", 'not there: "passwd"'),
+        ("[fifo]", "not there"),
+        ("{a: b}", "neither .mcap nor .db3"),
+        ("&a [*a, *a]", "neither .mcap nor .db3"),
+        ("[" * 2000, "no YAML"),
+        ("2001-99-99", "no YAML"),
+    ],
+    ids=["itself", "parent", "elsewhere", "fifo", "mapping", "alias", "deep", "date"],
+)
+def test_a_folder_names_only_its_own_files(tmp_path, paths, error):
+    os.mkfifo(tmp_path / "fifo")
+    about = f"rosbag2_bagfile_information:\n  relative_file_paths: {paths}\n"
+    (tmp_path / "metadata.yaml").write_text(about)
+    with pytest.raises(RecordingError, match=error):
+        open_recording(tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("tables", "error"),
+    [
+        # Rows without end.
+        (
+            "CREATE VIEW messages AS WITH RECURSIVE c(x) AS (VALUES(1) UNION ALL SELECT x + 1"
+            " FROM c) SELECT x AS id, 1 AS topic_id, x AS timestamp, x'00' AS data FROM c",
+            'a view, "messages"',
+        ),
+        (MESSAGES + "INSERT INTO messages VALUES(1, 1, 'noon', x'00')", "without time"),
+        (MESSAGES + "INSERT INTO messages VALUES(1, 1, 5, NULL)", "without time or data"),
+        (MESSAGES + "INSERT INTO topics VALUES(2, NULL, 'a/b', 'cdr', '')", "a topic without name"),
+        ("CREATE TABLE messages(id, topic_id, timestamp)", "no such column: data"),
+    ],
+    ids=["view", "time", "data", "name", "column"],
+)
+def test_a_database_has_tables_of_the_right_types(tmp_path, tables, error):
+    path = tmp_path / "a.db3"
+    with sqlite3.connect(path) as base:
+        base.executescript(TABLES + tables)
+    with pytest.raises(RecordingError, match=error):
+        list(open_recording(path).messages())
+
+
+@pytest.mark.parametrize(
+    ("schema", "definition", "error"),
+    [
+        # Each further pair makes rosbags' parser take 70 times as long.
+        ("ros2idl", "module a { const long A = ((((1)))); };", "parentheses"),
+        ("ros2idl", "module a {" * 400, "cannot be read"),
+        ("ros2msg", "float64 x # " + "a" * (1 << 20), "at most 1048576"),
+    ],
+    ids=["parentheses", "deep", "long"],
+)
+def test_a_definition_is_read_in_bounded_time(schema, definition, error):
+    topic = RecordedTopic(
+        name="/a", type="a/msg/B", encoding="cdr", schema=schema, definition=definition
+    )
+    with pytest.raises(RecordingError, match=error):
+        decoder(topic)
+
+
+def test_parentheses_of_texts_and_comments_do_not_count():
+    text = (
+        'module shop9_msgs { module msg { @verbatim(language="comment", text="((a))")\n'
+        "// ((b\n struct Gauge { double level; }; }; };\n"
+    )
+    topic = RecordedTopic(
+        name="/a", type="shop9_msgs/msg/Gauge", encoding="cdr", schema="ros2idl", definition=text
+    )
+    assert decoder(topic)(b"\0\1\0\0" + bytes(8)).level == 0.0

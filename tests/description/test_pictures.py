@@ -1,0 +1,121 @@
+"""Pictures of all kinds, and those that a small file makes too large."""
+
+from __future__ import annotations
+
+import io
+import struct
+import zlib
+
+import numpy as np
+import pytest
+from PIL import Image
+
+import cartwheel as cw
+from cartwheel.description import load_text
+from cartwheel.description.model import Heightmap
+from cartwheel.description.pictures import MOST_PIXELS, PictureError, thumbnail
+from cartwheel.description.terrain import TerrainError, heights_of
+
+RAMP = np.tile(np.arange(0, 256, 4, dtype=np.uint8), (64, 1))
+
+
+def png(width, height):
+    """A PNG whose header states a size, and whose pixels are missing."""
+
+    def chunk(kind, data):
+        return (
+            struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+        )
+
+    head = struct.pack(">IIBBBBB", width, height, 8, 0, 0, 0, 0)
+    pixels = chunk(b"IDAT", zlib.compress(bytes(64)))
+    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) + pixels + chunk(b"IEND", b"")
+
+
+def saved(image, kind):
+    buffer = io.BytesIO()
+    image.save(buffer, format=kind)
+    return buffer.getvalue()
+
+
+DEEP = saved(Image.fromarray(RAMP.astype(np.uint16) * 257), "PNG")
+PALETTE = saved(Image.fromarray(RAMP).convert("P"), "PNG")
+
+
+@pytest.mark.parametrize("size", [(13_000, 13_000), (60_000, 60_000), (2**31 - 1, 2**31 - 1)])
+def test_a_picture_that_is_too_large_is_refused_before_it_is_decoded(tmp_path, size):
+    path = tmp_path / "bomb.png"
+    path.write_bytes(png(*size))
+    with pytest.raises(PictureError, match="too large"):
+        thumbnail(path, 100)
+    with pytest.raises(TerrainError, match=r'"bomb.png" cannot be read: it is too large') as error:
+        heights_of(Heightmap(path=path, size=(1, 1, 1)))
+    assert f"{MOST_PIXELS // 1_000_000} million" in error.value.hint
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        b"",
+        b"text",
+        png(64, 64),
+        DEEP[:60],
+        DEEP[:33] + b"\xff" * 30,
+        b"P5\n8 x 255\n",
+        # Pillow would start ghostscript for it.
+        saved(Image.fromarray(RAMP), "EPS"),
+    ],
+    ids=["empty", "text", "no pixels", "cut off", "damaged", "no number", "program"],
+)
+def test_a_picture_that_cannot_be_read_says_why(tmp_path, content):
+    path = tmp_path / "a.png"
+    path.write_bytes(content)
+    for source in (path, content):
+        with pytest.raises(PictureError, match=r"cannot be read: .") as error:
+            thumbnail(source, 100)
+        assert "None" not in str(error.value)
+    with pytest.raises(TerrainError, match=r'the heightmap "a.png" cannot be read: .'):
+        heights_of(Heightmap(path=path, size=(1, 1, 1)))
+
+
+@pytest.mark.parametrize(
+    "content",
+    [DEEP, PALETTE, saved(Image.fromarray(RAMP), "TIFF")],
+    ids=["deep", "palette", "tiff"],
+)
+def test_all_depths_are_seen_alike(tmp_path, content):
+    path = tmp_path / "a.png"
+    path.write_bytes(content)
+    pixels = np.asarray(thumbnail(path, 64)).astype(int)
+    assert np.abs(pixels - RAMP[..., None]).max() <= 4
+    heights = heights_of(Heightmap(path=path, size=(1, 1, 1)))
+    assert np.abs(heights - RAMP / RAMP.max()).max() <= 0.02
+
+
+def test_a_height_without_end_is_refused(tmp_path):
+    path = tmp_path / "a.tif"
+    path.write_bytes(saved(Image.fromarray(np.full((4, 4), np.inf, dtype=np.float32)), "TIFF"))
+    with pytest.raises(TerrainError, match="not a finite number"):
+        heights_of(Heightmap(path=path, size=(1, 1, 1)))
+
+
+@pytest.mark.parametrize(
+    "content", [png(60_000, 60_000), png(64, 64), b"text"], ids=["large", "no pixels", "text"]
+)
+def test_a_texture_that_cannot_be_read_leaves_its_surface_with_a_warning(tmp_path, content):
+    picture = tmp_path / "wood.png"
+    picture.write_bytes(content)
+    crate = load_text(
+        f"""<sdf version="1.7"><model name="crate"><link name="base"><visual name="v">
+        <geometry><box><size>1 1 1</size></box></geometry>
+        <material><pbr><metal><albedo_map>file://{picture}</albedo_map></metal></pbr></material>
+        </visual></link></model></sdf>""",
+        file=str(tmp_path / "crate.sdf"),
+    )
+    with cw.World() as world:
+        world.spawn(crate)
+        world.run(0.01)
+        (note,) = [n for n in world.session.simulation.diagnostics if "wood.png" in n.message]
+    assert note.severity == "warning"
+    assert note.origin.line == 1
+    assert "cannot be read" in note.message
