@@ -6,7 +6,7 @@ What an odd number of the outlines surrounds is filled, so an outline within ano
 from __future__ import annotations
 
 import itertools
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from functools import lru_cache
 
 import numpy as np
@@ -17,12 +17,22 @@ from cartwheel.description.model import Polyline
 Point = tuple[float, float]
 Loop = tuple[Point, ...]
 Edge = tuple[Point, Point]
+MOST_EDGES, MOST_CROSSINGS, MOST_PIECES = 2000, 1000, 6000
+"""Of all outlines of a shape; as many take two seconds, and to be built four."""
 _SAME = 1e-9
 """m, below which two heights of the plane are one."""
 
 
+class OutlineError(ValueError):
+    """Outlines that would take too long to fill."""
+
+
 def convex_pieces(shape: Polyline) -> tuple[Loop, ...]:
-    """Convex polygons, counter-clockwise, that together fill the outlines and do not overlap."""
+    """Convex polygons, counter-clockwise, that together fill the outlines and do not overlap.
+
+    Raises:
+        OutlineError: They have too many points, or cross too often.
+    """
     return _pieces(_loops(shape))
 
 
@@ -41,21 +51,23 @@ def solid(shape: Polyline) -> tuple[NDArray[np.float32], NDArray[np.int32]]:
             start = len(vertices)
             vertices += [(x, y, z) for x, y in piece[::order]]
             faces += [(start, start + i, start + i + 1) for i in range(1, len(piece) - 1)]
-    size = max(np.ptp(np.array([point for loop in loops for point in loop]), axis=0))
     edges = _edges(loops)
-    for edge in edges:
-        for a, b in itertools.pairwise(_split(edge, edges)):
-            along = np.subtract(b, a)
-            across = np.array([-along[1], along[0]]) / np.linalg.norm(along)
-            left, right = (np.add(a, b) / 2 + side * 1e-6 * size * across for side in (1, -1))
-            filled = _inside(loops, left), _inside(loops, right)
-            if filled[0] == filled[1]:
-                continue  # an edge within the solid or outside of it
-            first, second = (a, b) if filled[0] else (b, a)
-            start = len(vertices)
-            vertices += [(*first, 0.0), (*second, 0.0), (*second, shape.height)]
-            vertices.append((*first, shape.height))
-            faces += [(start, start + 1, start + 2), (start, start + 2, start + 3)]
+    parts = [part for edge in _split(edges) for part in itertools.pairwise(edge)]
+    starts, ends = np.array(parts).transpose(1, 0, 2)
+    along = ends - starts
+    size = np.ptp(np.array(edges).reshape(-1, 2), axis=0).max()
+    across = np.column_stack([-along[:, 1], along[:, 0]])
+    across *= 1e-6 * size / np.linalg.norm(along, axis=1, keepdims=True)
+    middles = (starts + ends) / 2
+    left, right = _inside(edges, middles + across), _inside(edges, middles - across)
+    for (a, b), on_left, on_right in zip(parts, left.tolist(), right.tolist(), strict=True):
+        if on_left == on_right:
+            continue  # an edge within the solid or outside of it
+        first, second = (a, b) if on_left else (b, a)
+        start = len(vertices)
+        vertices += [(*first, 0.0), (*second, 0.0), (*second, shape.height)]
+        vertices.append((*first, shape.height))
+        faces += [(start, start + 1, start + 2), (start, start + 2, start + 3)]
     return np.array(vertices, dtype=np.float32), np.array(faces, dtype=np.int32)
 
 
@@ -79,10 +91,15 @@ def fill(edges: Sequence[Edge]) -> list[Loop]:
 
     Args:
         edges: Of the outlines, in any order and direction.
+
+    Raises:
+        OutlineError: There are too many, or they cross too often.
     """
     # Cut into strips at the y of every corner and crossing: in a strip all is trapezoids.
     slanting = _slanting(edges)
-    levels = _levels(tuple(edges))
+    if len(edges) > MOST_EDGES:
+        raise OutlineError(f"the outlines have {len(edges)} points, at most {MOST_EDGES} are built")
+    levels = _levels(edges)
     open_pieces: dict[tuple[Edge, Edge], tuple[float, float]] = {}
     done: list[Loop] = []
     for low, high in itertools.pairwise(levels):
@@ -98,6 +115,8 @@ def fill(edges: Sequence[Edge]) -> list[Loop]:
         for pair in strip:
             # Between the same two edges it is the same trapezoid, one strip higher.
             open_pieces[pair] = (open_pieces.get(pair, (low, high))[0], high)
+        if len(done) > MOST_PIECES:
+            raise OutlineError(f"the outlines have more than {MOST_PIECES} convex pieces")
     done += [_trapezoid(pair, *span) for pair, span in open_pieces.items()]
     return [piece for piece in done if len(piece) >= 3]
 
@@ -111,27 +130,52 @@ def _slanting(edges: Sequence[Edge]) -> list[Edge]:
     return [(a, b) if a[1] < b[1] else (b, a) for a, b in edges if abs(a[1] - b[1]) > _SAME]
 
 
-@lru_cache(maxsize=64)
-def _levels(edges: tuple[Edge, ...]) -> tuple[float, ...]:
+def _levels(edges: Sequence[Edge]) -> list[float]:
     """The y of all corners and crossings, rising."""
-    corners = {y for edge in edges for _, y in edge}
-    return tuple(sorted(corners | set(_crossings(_slanting(edges)))))
+    found = {y for edge in edges for _, y in edge}
+    slanting = _slanting(edges)
+    count = 0
+    for i, t, u in _meetings(slanting):
+        within = (t > _SAME) & (t < 1 - _SAME) & (u > _SAME) & (u < 1 - _SAME)
+        count += int(within.sum())
+        if count > 2 * MOST_CROSSINGS:  # each is found from both of its edges
+            raise OutlineError(f"the outlines cross more than {MOST_CROSSINGS} times")
+        (_, y0), (_, y1) = slanting[i]
+        found.update((y0 + t[within] * (y1 - y0)).tolist())
+    return sorted(found)
 
 
-def _split(edge: Edge, edges: Sequence[Edge]) -> list[Point]:
-    """The ends of an edge, and between them where the side that is filled may change."""
-    a, b = edge
-    if abs(a[1] - b[1]) > _SAME:
-        low, high = sorted((a[1], b[1]))
-        between = [
-            (_x_at(edge, y), y) for y in _levels(tuple(edges)) if low + _SAME < y < high - _SAME
-        ]
-    else:
-        touching = [e for e in _slanting(edges) if e[0][1] - _SAME <= a[1] <= e[1][1] + _SAME]
-        low, high = sorted((a[0], b[0]))
-        found = {_x_at(e, a[1]) for e in touching}
-        between = [(x, a[1]) for x in sorted(found) if low + _SAME < x < high - _SAME]
-    return sorted([a, *between, b], key=lambda p: (p[0] - a[0]) ** 2 + (p[1] - a[1]) ** 2)
+def _split(edges: Sequence[Edge]) -> list[list[Point]]:
+    """The ends of each edge, and between them where others meet it: the filled side may change."""
+    corners = np.array([edge[0] for edge in edges])
+    found = []
+    for i, t, u in _meetings(edges):
+        a, b = np.array(edges[i])
+        along = b - a
+        # Corners on the edge too: parallel edges meet nowhere else.
+        offsets = corners - a
+        length = np.linalg.norm(along)
+        beside = np.abs(offsets[:, 0] * along[1] - offsets[:, 1] * along[0]) < _SAME * length
+        places = np.concatenate([t[(u > -_SAME) & (u < 1 + _SAME)], offsets[beside] @ along])
+        places[-int(beside.sum()) or len(places) :] /= length**2
+        inner = np.unique(np.round(places[(places > _SAME) & (places < 1 - _SAME)], 12))
+        found.append([edges[i][0], *map(tuple, (a + inner[:, None] * along).tolist()), edges[i][1]])
+    return found
+
+
+def _meetings(
+    edges: Sequence[Edge],
+) -> Iterator[tuple[int, NDArray[np.float64], NDArray[np.float64]]]:
+    """For each edge where it meets the lines of the others: fractions of it, and of those."""
+    ends = np.array(edges).reshape(-1, 2, 2)
+    starts, along = ends[:, 0], ends[:, 1] - ends[:, 0]
+    for i, (start, r) in enumerate(zip(starts, along, strict=True)):
+        area = r[0] * along[:, 1] - r[1] * along[:, 0]
+        real = np.abs(area) >= 1e-12
+        apart, s = starts[real] - start, along[real]
+        t = (apart[:, 0] * s[:, 1] - apart[:, 1] * s[:, 0]) / area[real]
+        u = (apart[:, 0] * r[1] - apart[:, 1] * r[0]) / area[real]
+        yield i, t, u
 
 
 def _trapezoid(pair: tuple[Edge, Edge], low: float, high: float) -> Loop:
@@ -153,28 +197,17 @@ def _x_at(edge: Edge, y: float) -> float:
     return x0 + (x1 - x0) * (y - y0) / (y1 - y0)
 
 
-def _crossings(edges: Sequence[Edge]) -> list[float]:
-    """The y at which two edges cross between their ends."""
-    found = []
-    for i, (a, b) in enumerate(edges):
-        for c, d in edges[i + 1 :]:
-            r, s = (b[0] - a[0], b[1] - a[1]), (d[0] - c[0], d[1] - c[1])
-            area = r[0] * s[1] - r[1] * s[0]
-            if abs(area) < 1e-12:
-                continue
-            t = ((c[0] - a[0]) * s[1] - (c[1] - a[1]) * s[0]) / area
-            u = ((c[0] - a[0]) * r[1] - (c[1] - a[1]) * r[0]) / area
-            if _SAME < t < 1 - _SAME and _SAME < u < 1 - _SAME:
-                found.append(a[1] + t * r[1])
+def _inside(edges: Sequence[Edge], points: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """For each point whether an odd number of edges lies to its right."""
+    ends = np.array(edges)
+    (x0, y0), (x1, y1) = ends[:, 0].T, ends[:, 1].T
+    found = np.zeros(len(points), dtype=bool)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        slope = (x1 - x0) / (y1 - y0)
+    for first in range(0, len(points), 256):
+        x, y = points[first : first + 256].T[:, :, None]
+        passed = (y0 > y) != (y1 > y)
+        with np.errstate(invalid="ignore"):
+            right = x0 + (y - y0) * slope > x
+        found[first : first + 256] = (passed & right).sum(axis=1) % 2 == 1
     return found
-
-
-def _inside(loops: Sequence[Loop], point: NDArray[np.float64]) -> bool:
-    """Whether an odd number of edges lies to the right of a point."""
-    x, y = float(point[0]), float(point[1])
-    count = 0
-    for loop in loops:
-        for a, b in zip(loop, loop[1:] + loop[:1], strict=True):
-            if (a[1] > y) != (b[1] > y) and _x_at((a, b), y) > x:
-                count += 1
-    return count % 2 == 1

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from cartwheel.description.meshes.corners import weld
 from cartwheel.description.meshes.dae_material import Library, MaterialLook, read_look
-from cartwheel.description.meshes.submesh import Submesh
+from cartwheel.description.meshes.submesh import MOST_TRIANGLES, Submesh
 
 Array = NDArray[np.float64]
 MAX_DEPTH = 100
@@ -69,6 +69,7 @@ class _Scene:
         self.notes = notes
         self.library = Library(root)
         self.instances = 0
+        self.triangles = 0
         self._geometries: dict[str, list[_Primitive]] = {}
         self._looks: dict[str, MaterialLook] = {}
 
@@ -158,6 +159,9 @@ class _Scene:
         if abs(np.linalg.det(linear)) < 1e-30:
             raise ValueError(f'node "{node}" scales its geometry to nothing')
         for primitive in self._geometries[key]:
+            self.triangles += int(np.maximum(primitive.counts - 2, 0).sum())
+            if self.triangles > MOST_TRIANGLES:
+                raise ValueError(f"shows more than {MOST_TRIANGLES} triangles")
             look = self._look(bindings.get(primitive.material, primitive.material))
             points, corners = primitive.points
             normals = primitive.normals

@@ -24,6 +24,7 @@ from cartwheel.description.meshes.obj import read_obj
 from cartwheel.description.meshes.standing import Standing, standing_pieces
 from cartwheel.description.meshes.stl import read_stl
 from cartwheel.description.meshes.submesh import (
+    MOST_TRIANGLES,
     Floats,
     Ints,
     MeshError,
@@ -34,6 +35,10 @@ from cartwheel.description.meshes.submesh import (
 from cartwheel.errors import Origin, suggestion
 
 __all__ = ["MeshError", "Submesh", "convex_hull_input", "load_mesh", "mesh_notes", "standing_parts"]
+
+MOST_BYTES = 1 << 28
+"""Of a file."""
+_COARSER = "Blender's Decimate modifier makes it coarser."
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -151,6 +156,10 @@ def _read(path: Path, _mtime_ns: int, size: int) -> _Loaded:
         )
     if not size:
         raise MeshError(path, "is empty")
+    if size > MOST_BYTES:
+        raise MeshError(
+            path, f"has {size >> 20} MiB, at most {MOST_BYTES >> 20} are read", hint=_COARSER
+        )
     notes: list[str] = []
     try:
         submeshes = reader(path, path.read_bytes(), notes)
@@ -160,6 +169,11 @@ def _read(path: Path, _mtime_ns: int, size: int) -> _Loaded:
         raise MeshError(path, str(error) or type(error).__name__) from error
     if not submeshes:
         raise MeshError(path, "has no triangles")
+    count = sum(len(part.faces) for part in submeshes)
+    if count > MOST_TRIANGLES:
+        raise MeshError(
+            path, f"has {count} triangles, at most {MOST_TRIANGLES} are read", hint=_COARSER
+        )
     return _Loaded(tuple(submeshes), tuple(notes))
 
 

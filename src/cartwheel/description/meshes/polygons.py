@@ -54,7 +54,10 @@ def _concave(positions: NDArray[Any], begin: Indices, size: int) -> NDArray[np.b
 
 
 def _ear_cut(points: NDArray[Any]) -> Indices:
-    """Triangles of one simple polygon, cutting off one convex corner after the other."""
+    """Triangles of one simple polygon that turns both ways."""
+    # Imported here: few meshes have such polygons.
+    from mapbox_earcut import triangulate_float64
+
     xyz = np.asarray(points, dtype=np.float64)
     normal = np.cross(xyz, np.roll(xyz, -1, axis=0)).sum(axis=0)
     drop = int(np.argmax(np.abs(normal)))
@@ -62,29 +65,6 @@ def _ear_cut(points: NDArray[Any]) -> Indices:
         ((drop + 1) % 3, (drop + 2) % 3) if normal[drop] > 0 else ((drop + 2) % 3, (drop + 1) % 3)
     )
     flat = [(float(p[u]), float(p[v])) for p in xyz]
-    left = list(range(len(flat)))
-    triangles: list[tuple[int, int, int]] = []
-    while len(left) > 3:
-        for k in range(len(left)):
-            a, b, c = left[k - 1], left[k], left[(k + 1) % len(left)]
-            if _area(flat[a], flat[b], flat[c]) > 0 and not any(
-                _inside(flat[p], flat[a], flat[b], flat[c]) for p in left if p not in (a, b, c)
-            ):
-                break
-        else:
-            k, a, b, c = 1, left[0], left[1], left[2]  # crosses itself: any cut is as good
-        triangles.append((a, b, c))
-        del left[k]
-    triangles.append((left[0], left[1], left[2]))
-    return np.array(triangles, dtype=np.int64)
-
-
-Point = tuple[float, float]
-
-
-def _area(a: Point, b: Point, c: Point) -> float:
-    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
-
-
-def _inside(p: Point, a: Point, b: Point, c: Point) -> bool:
-    return _area(a, b, p) >= 0 and _area(b, c, p) >= 0 and _area(c, a, p) >= 0
+    return np.asarray(
+        triangulate_float64(np.array(flat), np.array([len(flat)], dtype=np.uint32)), dtype=np.int64
+    ).reshape(-1, 3)

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from cartwheel.description.outline import Edge, fill
+from cartwheel.description.outline import Edge, OutlineError, fill
 
 Points = NDArray[np.float64]
 Faces = NDArray[np.int64]
@@ -30,6 +30,10 @@ _FINE = 250
 """Facets; a part of more is made coarser first."""
 _COARSE = (0.01, 0.02, 0.03)
 """m within which its corners become one: the first that leaves no more facets, or the last."""
+_MOST_ASKED = 4096
+"""Faces that are asked whether a corner is ahead of them; of a finer mesh, every so many."""
+_MOST_PAIRS, _MOST_PAIRS_AT_ONCE = 50_000_000, 2_000_000
+"""Of slabs and faces near them: ten seconds, and 400 MB."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -54,15 +58,15 @@ def standing_pieces(vertices: NDArray[np.floating], faces: NDArray[np.integer]) 
     if not len(triangles):
         return Standing()
     pieces: list[Points] = []
-    parts = list(_parts(triangles, len(points)))
+    parts = _parts(triangles, len(points))
+    if len(parts) > MOST_PIECES:
+        return Standing(hulls=1)
     hulls = 0
     for part in parts:
         slabs = None
         if np.ptp(points[np.unique(part)], axis=0).max() > _SMALL and not _is_convex(points, part):
-            slabs = _slabs(*_coarse(points, part))
-            if slabs is None or len(pieces) + len(slabs) > MOST_PIECES:
-                slabs = None
-                hulls += 1
+            slabs = _slabs(*_coarse(points, part), MOST_PIECES - len(pieces))
+            hulls += slabs is None
         one_hull = slabs is None and len(parts) == 1
         pieces += [points[np.unique(part)]] if slabs is None else slabs
     if one_hull:
@@ -76,7 +80,7 @@ def _sound(points: Points, faces: Faces) -> Faces:
     return np.asarray(faces[np.linalg.norm(np.cross(b - a, c - a), axis=1) > 1e-10])
 
 
-def _parts(faces: Faces, count: int) -> Iterator[Faces]:
+def _parts(faces: Faces, count: int) -> list[Faces]:
     """Faces that hang together."""
     label = np.arange(count)
     while True:
@@ -87,9 +91,13 @@ def _parts(faces: Faces, count: int) -> Iterator[Faces]:
         label = label[label]
         if (label == before).all():
             break
-    owner = label[faces[:, 0]]
-    for each in np.unique(owner):
-        yield faces[owner == each]
+    return [faces[some] for some in _groups(label[faces[:, 0]])]
+
+
+def _groups(label: NDArray[np.int64]) -> list[NDArray[np.int64]]:
+    """Indices of equal labels, of the lowest label first."""
+    order = np.argsort(label, kind="stable")
+    return np.split(order, np.flatnonzero(np.diff(label[order])) + 1)
 
 
 def _coarse(points: Points, faces: Faces) -> tuple[Points, Faces]:
@@ -124,7 +132,7 @@ def _is_convex(points: Points, faces: Faces) -> bool:
     if not _is_closed(faces):
         return False
     corners = points[np.unique(faces)]
-    normals, origins = _planes(points, _outwards(points, faces))
+    normals, origins = _planes(points, _outwards(points, faces)[:: len(faces) // _MOST_ASKED + 1])
     for start in range(0, len(normals), 256):
         block = slice(start, start + 256)
         ahead = normals[block] @ corners.T
@@ -136,8 +144,18 @@ def _is_convex(points: Points, faces: Faces) -> bool:
 
 def _is_closed(faces: Faces) -> bool:
     """Whether each edge has two faces."""
-    edges = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
-    return bool((np.unique(edges, axis=0, return_counts=True)[1] == 2).all())
+    return bool((np.unique(_numbered(_edges(faces)), return_counts=True)[1] == 2).all())
+
+
+def _edges(faces: Faces) -> NDArray[np.int64]:
+    """All faces' edges, the lower corner first."""
+    corners = (faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]])
+    return np.sort(np.concatenate(corners), axis=1)
+
+
+def _numbered(edges: NDArray[np.int64]) -> NDArray[np.int64]:
+    """One number for each edge, in the order of edges: numbers are sorted ten times as fast."""
+    return np.asarray(edges[:, 0] * (edges.max() + 1) + edges[:, 1])
 
 
 def _outwards(points: Points, faces: Faces) -> Faces:
@@ -154,8 +172,11 @@ def _planes(points: Points, faces: Faces) -> tuple[Points, Points]:
     return normals / np.linalg.norm(normals, axis=1, keepdims=True), a
 
 
-def _slabs(points: Points, faces: Faces) -> list[Points] | None:
-    """A slab for each convex piece of each flat patch; None where they would be too many."""
+def _slabs(points: Points, faces: Faces, most: int) -> list[Points] | None:
+    """A slab for each convex piece of each flat patch; None where they would be more than `most`.
+
+    Also where a patch's rim, or what lies around each slab, would take too long to look at.
+    """
     if _is_closed(faces):
         faces = _outwards(points, faces)
     normals, origins = _planes(points, faces)
@@ -165,8 +186,11 @@ def _slabs(points: Points, faces: Faces) -> list[Points] | None:
         if len(patch) == 1:
             outlines, normal = [points[faces[patch[0]]]], normals[patch[0]]
         else:
-            outlines, normal = _outlines(points, faces[patch], normals[patch], origins[patch])
-        if len(fronts) + len(outlines) > MOST_PIECES:
+            try:
+                outlines, normal = _outlines(points, faces[patch], normals[patch], origins[patch])
+            except OutlineError:
+                return None
+        if len(fronts) + len(outlines) > most:
             return None
         fronts += outlines
         facing += [normal] * len(outlines)
@@ -174,6 +198,8 @@ def _slabs(points: Points, faces: Faces) -> list[Points] | None:
         return []
     middles = np.array([front.mean(axis=0) for front in fronts])
     thicknesses = _thicknesses(middles, np.array(facing), points, faces)
+    if thicknesses is None:
+        return None
     slabs = []
     for front, normal, middle, thick in zip(fronts, facing, middles, thicknesses, strict=True):
         # The back is smaller, so that it stays behind the neighbouring patches too.
@@ -202,7 +228,7 @@ def _outlines(
 
 def _patches(faces: Faces, normals: Points, points: Points) -> Iterator[NDArray[np.int64]]:
     """Indices of the faces of each flat patch."""
-    edges = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
+    edges = _edges(faces)
     owners = np.tile(np.arange(len(faces)), 3)
     order = np.lexsort((edges[:, 1], edges[:, 0]))
     edges, owners = edges[order], owners[order]
@@ -219,8 +245,7 @@ def _patches(faces: Faces, normals: Points, points: Points) -> Iterator[NDArray[
         label = label[label]
         if (label == before).all():
             break
-    for each in np.unique(label):
-        patch = np.flatnonzero(label == each)
+    for patch in _groups(label):
         corners = points[np.unique(faces[patch])]
         normal = normals[patch].mean(axis=0)
         if np.ptp(corners @ normal) <= _DENT:
@@ -232,9 +257,8 @@ def _patches(faces: Faces, normals: Points, points: Points) -> Iterator[NDArray[
 def _rim(faces: Faces, flat: Points) -> list[Edge]:
     """The edges that only one of the faces has."""
     edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
-    _, first, counts = np.unique(
-        np.sort(edges, axis=1), axis=0, return_index=True, return_counts=True
-    )
+    numbers = _numbered(np.sort(edges, axis=1))
+    _, first, counts = np.unique(numbers, return_index=True, return_counts=True)
     found = []
     for a, b in edges[first[counts == 1]].tolist():
         p, q = flat[a].tolist(), flat[b].tolist()
@@ -242,8 +266,11 @@ def _rim(faces: Faces, flat: Points) -> list[Edge]:
     return found
 
 
-def _thicknesses(middles: Points, normals: Points, points: Points, faces: Faces) -> Points:
-    """Half the way to the other side of the wall behind each point, within a slab's bounds."""
+def _thicknesses(middles: Points, normals: Points, points: Points, faces: Faces) -> Points | None:
+    """Half the way to the other side of the wall behind each point, within a slab's bounds.
+
+    None where too many faces are close to too many points.
+    """
     a, b, c = (points[faces[:, k]] for k in range(3))
     e1, e2 = b - a, c - a
     across = np.cross(e1, e2)
@@ -251,10 +278,14 @@ def _thicknesses(middles: Points, normals: Points, points: Points, faces: Faces)
     found = np.full(len(middles), 2 * _THICKEST)
     # Each ray against each triangle within its reach: Möller and Trumbore's test with the triple
     # products of a triangle written out. Rays that are close together are looked at together.
+    left = _MOST_PAIRS
     for block in _near(middles):
         low = middles[block].min(axis=0) - 2 * _THICKEST
         high = middles[block].max(axis=0) + 2 * _THICKEST
         near = np.flatnonzero((highest >= low).all(axis=1) & (lowest <= high).all(axis=1))
+        left -= len(block) * len(near)
+        if left < 0 or len(block) * len(near) > _MOST_PAIRS_AT_ONCE:
+            return None
         along = -normals[block][:, None, :]
         s = middles[block][:, None, :] - a[near][None]
         turned = np.cross(s, along)

@@ -17,6 +17,9 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float32]
 Ints = NDArray[np.int32]
 
+MOST_TRIANGLES = 5_000_000
+"""Of a file, with all its instances; a scanned building has two million."""
+
 
 class MeshError(DescriptionError):
     """A mesh file that cannot be used.

@@ -16,7 +16,7 @@ from cartwheel.description.model import (
     Shape,
     Sphere,
 )
-from cartwheel.description.outline import convex_pieces
+from cartwheel.description.outline import OutlineError, convex_pieces
 from cartwheel.description.sdf.context import Context, positive
 from cartwheel.description.terrain import ELEVATION_MODELS, TerrainError, heights_of
 from cartwheel.description.xml import Node
@@ -149,7 +149,11 @@ def _polyline(nodes: list[Node], ctx: Context) -> Polyline:
             nodes[0].origin,
         )
     shape = Polyline(points=outlines[0], height=heights[0], holes=tuple(outlines[1:]))
-    if not convex_pieces(shape):
+    try:
+        pieces = convex_pieces(shape)
+    except OutlineError as error:
+        raise nodes[0].fail(str(error), "A mesh holds a shape as fine as that.") from None
+    if not pieces:
         raise nodes[0].fail("the points of the polyline lie on one line")
     return shape
 
