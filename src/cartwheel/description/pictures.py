@@ -42,7 +42,7 @@ def open_picture(source: Path | bytes) -> Iterator[Any]:
         PictureError: It is missing, damaged, too large, or of another format. Whatever Pillow
             raises within the ``with`` block becomes one, too.
     """
-    from PIL import Image
+    from PIL import Image, UnidentifiedImageError
 
     name = "in the mesh" if isinstance(source, bytes) else source.name
     if isinstance(source, Path) and not source.is_file():
@@ -58,7 +58,7 @@ def open_picture(source: Path | bytes) -> Iterator[Any]:
             yield image
     except (PictureError, MemoryError):
         raise
-    except Image.UnidentifiedImageError:
+    except UnidentifiedImageError:
         known = ", ".join(FORMATS)
         raise PictureError(name, "unknown format", f"Supported are {known}.") from None
     except Image.DecompressionBombError:

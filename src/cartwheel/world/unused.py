@@ -80,10 +80,11 @@ def unreadable(description: RobotDescription) -> Iterator[Diagnostic]:
     """A warning for each picture that is not shown, at the first visual that has it."""
     seen: set[Path | bytes | None] = {None}
     for visual in (visual for link in description.links for visual in link.visuals):
-        images = {visual.material.texture}
+        images: set[Path | bytes | None] = {visual.material.texture}
         if isinstance(visual.shape, Mesh):
             images = {paint_of(visual.material, part).image for part in load_mesh(visual.shape)}
         for image in images - seen:
+            assert image is not None
             seen.add(image)
             error = picture_error(image)
             if error is not None:
