@@ -7,9 +7,13 @@ import importlib
 from tests.campaign.target import Target
 
 MODULES: dict[str, tuple[str, ...]] = {
+    "fuzz_descriptions": ("urdf", "sdf", "world", "xacro"),
     "fuzz_meshes": ("stl", "obj", "dae", "glb", "ply"),
     "fuzz_pictures": ("pictures",),
     "fuzz_recordings": ("bag", "mcap", "db3", "db3-tables", "bag2-folder", "definitions"),
+    "fuzz_yaml": ("controllers", "gz-bridge"),
+    "fuzz_live": ("live",),
+    "fuzz_processes": ("kills", "worlds-in-use"),
 }
 """Modules, and the targets of each: known without an import, which takes seconds."""
 

@@ -1,0 +1,81 @@
+"""YAML files: controllers of ROS 1 and ROS 2, bridges of topics."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from pathlib import Path
+
+from tests.campaign import mutating
+from tests.campaign.target import Target
+
+from cartwheel.errors import CartwheelError
+
+_ROOT = Path(__file__).parents[2]
+_BOMB = b"a: &a [x, x]\nb: &b [*a, *a]\nc: &c [*b, *b]\nd: &d {*c : *c, e: !!int '5'}\n"
+_TAGS = b"a: !degrees 5\nb: !!python/object/apply:os.getcwd []\nc: 2001-01-01\n<<: {d: 1}\n"
+_BRIDGE = b"""- ros_topic_name: "/scan"
+  gz_topic_name: "/lidar"
+  ros_type_name: "sensor_msgs/msg/LaserScan"
+  gz_type_name: "gz.msgs.LaserScan"
+  direction: GZ_TO_ROS
+"""
+
+
+def _files() -> list[bytes]:
+    folders = [_ROOT / "robots"]
+    if "CAMPAIGN_CORPUS" in os.environ:
+        folders.append(Path(os.environ["CAMPAIGN_CORPUS"]))
+    return [path.read_bytes() for folder in folders for path in sorted(folder.rglob("*.yaml"))]
+
+
+def _reader(read: Callable[[Path], object]) -> Callable[[bytes], None]:
+    path = Path("fuzz.yaml")
+
+    def run_one(data: bytes) -> None:
+        path.write_bytes(data)
+        read(path.resolve())
+
+    return run_one
+
+
+def _controllers(path: Path) -> None:
+    from cartwheel.plugins.control.files import (
+        controller_entries,
+        is_ros2,
+        read_parameters,
+        ros1_entries,
+        ros2_file,
+    )
+    from cartwheel.plugins.control.substitution import substitute
+
+    content = substitute(read_parameters(path), path, {"name": "x", "prefix": ""})
+    if is_ros2(content):
+        controller_entries(ros2_file([content], "/ns"), "/ns", str(path))
+    else:
+        ros1_entries(content, str(path))
+
+
+def _bridge(path: Path) -> None:
+    from cartwheel.plugins.gz_bridge import read_bridge
+
+    read_bridge(path)
+
+
+TARGETS = (
+    Target(
+        name="controllers",
+        seeds=lambda: [*_files(), _BOMB, _TAGS],
+        run_one=_reader(_controllers),
+        allowed=(CartwheelError,),
+        mutate=mutating.text,
+    ),
+    Target(
+        name="gz-bridge",
+        seeds=lambda: [_BRIDGE, *(data for data in _files() if b"ros_topic" in data)],
+        run_one=_reader(_bridge),
+        allowed=(CartwheelError,),
+        mutate=mutating.text,
+        share=0.5,
+    ),
+)
