@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from cartwheel import yaml_text
 from cartwheel.errors import CartwheelError, Diagnostic, GraphError, Origin, suggestion
 from cartwheel.graph import Graph, resolve_name
 from cartwheel.messages import type_name
@@ -135,8 +136,9 @@ def read_bridge(path: Path) -> list[Bridged]:
 
     origin = Origin(file=str(path))
     try:
-        loader = yaml.SafeLoader(path.read_text())
+        loader = yaml_text.loader()(yaml_text.read(path))
         root = loader.get_single_node()
+        entries = _entries(loader, root)
     except OSError as error:
         raise CartwheelError(
             f"the file cannot be read: {error.strerror or error}", origin=origin
@@ -148,20 +150,23 @@ def read_bridge(path: Path) -> list[Bridged]:
         raise CartwheelError(
             f"the file is no YAML: {problem}", origin=Origin(file=str(path), line=line)
         ) from None
-    if root is None or (isinstance(root, yaml.ScalarNode) and not root.value):
-        return []
-    if not isinstance(root, yaml.SequenceNode):
+    if entries is None:
         raise CartwheelError(
             "the file is no list of topics",
             origin=origin,
             hint="It is the one that the parameter config_file of ros_gz_bridge names.",
         )
+    return [_bridged(entry, Origin(file=str(path), line=line)) for entry, line in entries]
+
+
+def _entries(loader: Any, root: Any) -> list[tuple[Any, int]] | None:
+    """A list's entries with their lines; None where it is no list."""
+    if root is None or (root.id == "scalar" and not root.value):
+        return []
+    if root.id != "sequence":
+        return None
     return [
-        _bridged(
-            loader.construct_object(node, deep=True),
-            Origin(file=str(path), line=node.start_mark.line + 1),
-        )
-        for node in root.value
+        (loader.construct_object(node, deep=True), node.start_mark.line + 1) for node in root.value
     ]
 
 

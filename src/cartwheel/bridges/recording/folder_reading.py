@@ -7,6 +7,7 @@ from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from cartwheel import yaml_text
 from cartwheel.bridges.recording.compression import decompress
 from cartwheel.bridges.recording.db3_reading import Db3Recording
 from cartwheel.bridges.recording.reading import Recorded, RecordedTopic, Recording
@@ -106,12 +107,10 @@ def _metadata(path: Path) -> dict[str, Any]:
     file = path / "metadata.yaml"
     if not file.is_file():
         return {}
-    if file.stat().st_size > _MOST_METADATA:
-        raise RecordingError(f'"{file}" is too large: at most {_MOST_METADATA >> 20} MiB are read')
     try:
-        read = yaml.safe_load(file.read_text(errors="replace"))
-    except (yaml.YAMLError, ValueError, RecursionError) as error:
+        read = yaml_text.load(yaml_text.read(file, _MOST_METADATA))
+    except (yaml.YAMLError, ValueError, OSError) as error:
         what = " ".join(str(error).split())
-        raise RecordingError(f'"{file}" is no YAML: {what}') from error
+        raise RecordingError(f'"{file}" cannot be read: {what}') from error
     about = read.get("rosbag2_bagfile_information") if isinstance(read, dict) else None
     return about if isinstance(about, dict) else {}

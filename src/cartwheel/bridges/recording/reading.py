@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple, Protocol
 
+from cartwheel import yaml_text
 from cartwheel.errors import RecordingError
 
 _MOST_WAITING = 1 << 30
@@ -218,8 +219,8 @@ def is_latched(profiles: str) -> bool:
     import yaml
 
     try:
-        found = yaml.safe_load(profiles) if profiles else None
-    except (yaml.YAMLError, ValueError, RecursionError):
+        found = yaml_text.load(profiles) if profiles else None
+    except yaml.YAMLError:
         return False
     first = found[0] if isinstance(found, list) and found else None
     # Numbers are those of rmw.

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from cartwheel import yaml_text
 from cartwheel.description.model import RobotDescription
 from cartwheel.errors import Origin, PluginError
 from cartwheel.graph import Graph
@@ -106,8 +107,8 @@ def read_yaml(path: Path) -> dict[str, Any]:
 
     origin = Origin(file=str(path))
     try:
-        text = path.read_text()
-        loader = yaml.SafeLoader(text)
+        text = yaml_text.read(path)
+        loader = yaml_text.loader()(text)
         node = loader.get_single_node()
         if node is not None and "ros__parameters" in text:
             _join(node, set())

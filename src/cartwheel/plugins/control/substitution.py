@@ -11,6 +11,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from cartwheel import yaml_text
 from cartwheel.description.packages import Packages
 from cartwheel.errors import CartwheelError, Origin, PluginError
 
@@ -86,7 +87,7 @@ def _parsed(text: str) -> Any:
     import yaml
 
     try:
-        made = yaml.safe_load(text)
+        made = yaml_text.load(text)
     except yaml.YAMLError:
         return text
     return made if isinstance(made, bool | int | float) else text
