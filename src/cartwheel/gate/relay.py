@@ -14,22 +14,77 @@ _LINGER = 10.0
 
 async def relay(one: socket.socket, other: socket.socket) -> None:
     """Copies until both directions have ended, or one breaks."""
-    tasks = [asyncio.create_task(_copy(one, other)), asyncio.create_task(_copy(other, one))]
+    pipes = [_Pipe(one, other), _Pipe(other, one)]
+    ends = [pipe.ended for pipe in pipes]
     try:
-        done, _ = await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
-        if not any(task.exception() for task in done):
-            await asyncio.wait(tasks, timeout=_LINGER)
+        done, _ = await asyncio.wait(ends, return_when=asyncio.FIRST_COMPLETED)
+        if not any(end.result() for end in done):
+            await asyncio.wait(ends, timeout=_LINGER)
     finally:
-        for task in tasks:
-            task.cancel()
-        await asyncio.gather(*tasks, return_exceptions=True)
+        for pipe in pipes:
+            pipe.close()
 
 
-async def _copy(source: socket.socket, target: socket.socket) -> None:
-    loop = asyncio.get_running_loop()
-    chunk = bytearray(CHUNK)
-    view = memoryview(chunk)
-    while size := await loop.sock_recv_into(source, chunk):
-        await loop.sock_sendall(target, view[:size])
-    with contextlib.suppress(OSError):
-        target.shutdown(socket.SHUT_WR)
+class _Pipe:
+    """One direction. It works in the loop's callbacks: a task for each piece takes twice the time.
+
+    Args:
+        source: Read from; neither blocks.
+        target: Written to.
+    """
+
+    def __init__(self, source: socket.socket, target: socket.socket) -> None:
+        self._loop = asyncio.get_running_loop()
+        self._source = source
+        self._target = target
+        self._chunk = bytearray(CHUNK)
+        self._rest = memoryview(b"")
+        self.ended: asyncio.Future[OSError | None] = self._loop.create_future()
+        """The error with which it broke, where it did."""
+        self._loop.add_reader(source, self._read)
+
+    def close(self) -> None:
+        """Copies nothing from now on."""
+        self._loop.remove_reader(self._source)
+        self._loop.remove_writer(self._target)
+        self.ended.cancel()
+
+    def _read(self) -> None:
+        try:
+            size = self._source.recv_into(self._chunk)
+        except BlockingIOError:
+            return
+        except OSError as error:
+            self._end(error)
+            return
+        if size == 0:
+            self._end(None)
+            return
+        self._rest = memoryview(self._chunk)[:size]
+        self._write()
+        if self._rest and not self.ended.done():
+            self._loop.remove_reader(self._source)
+            self._loop.add_writer(self._target, self._go_on)
+
+    def _go_on(self) -> None:
+        """The target takes more."""
+        self._write()
+        if not self._rest and not self.ended.done():
+            self._loop.remove_writer(self._target)
+            self._loop.add_reader(self._source, self._read)
+
+    def _write(self) -> None:
+        try:
+            self._rest = self._rest[self._target.send(self._rest) :]
+        except BlockingIOError:
+            return
+        except OSError as error:
+            self._end(error)
+
+    def _end(self, error: OSError | None) -> None:
+        self._loop.remove_reader(self._source)
+        self._loop.remove_writer(self._target)
+        if error is None:
+            with contextlib.suppress(OSError):
+                self._target.shutdown(socket.SHUT_WR)
+        self.ended.set_result(error)

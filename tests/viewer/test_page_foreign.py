@@ -1,0 +1,142 @@
+"""What a real browser can do with the page: foreign sites, foreign servers, the token."""
+
+from __future__ import annotations
+
+import http.server
+import socket
+import threading
+from collections.abc import Iterator
+from urllib.parse import urlsplit
+
+import pytest
+
+from cartwheel.description.model import WorldDescription
+from cartwheel.gate.access import Access
+from cartwheel.session import Session
+from cartwheel.viewer import Viewer
+
+from .conftest import eventually
+
+TRY = """url => new Promise(done => {
+  const link = new WebSocket(url, ["viser-v%s"]);
+  link.onopen = () => done("open");
+  link.onerror = () => done("refused");
+})"""
+
+
+class Shown:
+    """An empty world with its page."""
+
+    def __init__(self, access: Access) -> None:
+        self.session = Session(WorldDescription(name="empty"))
+        self.refused: list[str] = []
+        self.viewer = Viewer(self.session, access=access, port=0, refused=self.refused.append)
+        pacer = self.session.pacer()
+        self.viewer.start(pacer)
+        self._thread = threading.Thread(target=pacer.run, daemon=True)
+        self._thread.start()
+        self.url = self.viewer.url
+
+    def clients(self) -> frozenset[int]:
+        page = self.viewer._page
+        assert page is not None
+        return page.clients
+
+    def close(self) -> None:
+        self.viewer.close()
+        self.session.simulation.stop()
+        self._thread.join(60)
+
+
+@pytest.fixture
+def shown() -> Iterator[Shown]:
+    made = Shown(Access.of("127.0.0.1"))
+    yield made
+    made.close()
+
+
+class Site(http.server.BaseHTTPRequestHandler):
+    """A site of somebody else's."""
+
+    def do_GET(self) -> None:
+        self.send_response(200)
+        self.send_header("Content-Type", "text/html")
+        self.end_headers()
+        self.wfile.write(b"<html>evil</html>")
+
+    def log_message(self, *_: object) -> None:
+        pass
+
+
+@pytest.fixture
+def site() -> Iterator[str]:
+    server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), Site)
+    threading.Thread(target=server.serve_forever, daemon=True).start()
+    yield f"http://127.0.0.1:{server.server_address[1]}"
+    server.shutdown()
+    server.server_close()
+
+
+def test_a_foreign_site_reaches_nothing(browser, shown: Shown, site: str, tmp_path) -> None:
+    import viser
+
+    attempt = TRY % viser.__version__
+    page = browser.new_page()
+    page.set_default_timeout(120_000)
+    page.goto(site)
+    port = urlsplit(shown.url).port
+    for host in ("127.0.0.1", "localhost"):
+        assert page.evaluate(attempt, f"ws://{host}:{port}") == "refused"
+    assert site in shown.refused
+    # A frame without an origin, and a file that was saved.
+    page.set_content("<iframe sandbox='allow-scripts'></iframe>")
+    assert page.frames[1].evaluate(attempt, f"ws://127.0.0.1:{port}") == "refused"
+    file = tmp_path / "saved.html"
+    file.write_text("saved")
+    page.goto(f"file://{file}")
+    assert page.evaluate(attempt, f"ws://127.0.0.1:{port}") == "refused"
+    assert shown.refused[1:] == ["null", "file://"]
+    # The frame of a foreign site does not show the page either: it could be clicked through.
+    page.goto(site)
+    page.set_content(f"<iframe src='{shown.url}'></iframe>")
+    eventually(lambda: page.frames[1].url.startswith("chrome-error"), what="the refusal")
+    page.close()
+
+
+def test_a_link_cannot_lead_the_page_to_a_foreign_server(browser, shown: Shown) -> None:
+    """viser's client runs the scripts of the server that the address names."""
+    with socket.create_server(("127.0.0.1", 0)) as foreign:
+        port = foreign.getsockname()[1]
+        foreign.settimeout(0.0)
+        page = browser.new_page()
+        page.set_default_timeout(120_000)
+        blocked: list[str] = []
+        page.on("console", lambda message: blocked.append(message.text))
+        for query in (f"websocket=ws://127.0.0.1:{port}", f"playbackPath=http://127.0.0.1:{port}/"):
+            blocked.clear()
+            page.goto(f"{shown.url}/?{query}")
+            eventually(
+                lambda: page.evaluate("1") and any("Content Security" in each for each in blocked),
+                what="the browser's refusal",
+            )
+        page.close()
+        with pytest.raises(BlockingIOError):
+            foreign.accept()
+    assert not shown.clients()
+
+
+def test_the_address_with_the_token_opens_the_page(browser) -> None:
+    shown = Shown(Access.of("0.0.0.0"))
+    plain = shown.url.partition("?")[0]
+    page = browser.new_page()
+    page.set_default_timeout(120_000)
+    answer = page.goto(plain)
+    assert answer is not None and answer.status == 403
+    assert "token" in page.content()
+    page.goto(shown.url)
+    # The token leaves the address, and the websocket has the cookie.
+    eventually(lambda: page.evaluate("1") and page.url == plain, what="the address without a token")
+    eventually(lambda: page.evaluate("1") and shown.clients(), what="the browser")
+    assert page.evaluate("document.cookie") == ""
+    page.close()
+    shown.close()
