@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import hmac
 import ipaddress
 import re
-import secrets
 import socket
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
-from http import HTTPStatus
 from urllib.parse import parse_qsl, urlencode
 
 from cartwheel.errors import ControlError, Diagnostic
@@ -41,7 +38,8 @@ class Asked:
 class Refusal:
     """Why a request is not let through."""
 
-    status: HTTPStatus
+    status: int
+    """Of HTTP."""
     text: str
     """For whoever asked."""
     origin: str | None = None
@@ -76,7 +74,7 @@ class Access:
         return cls(
             host=host,
             origins=tuple(_normal_origin(origin) for origin in origins),
-            token=None if is_loopback(address) else secrets.token_urlsafe(_TOKEN_BYTES),
+            token=None if is_loopback(address) else _new_token(),
         )
 
     @property
@@ -111,7 +109,7 @@ class Access:
         host = asked.host.lower()
         if not self._knows(host):
             return Refusal(
-                status=HTTPStatus.FORBIDDEN,
+                status=403,
                 text=f"This server is not known as {asked.host}. "
                 f"To allow that name: --allow-origin http://{asked.host}",
             )
@@ -119,13 +117,13 @@ class Access:
         if origin is not None and not self._admits(origin.lower(), host, apps):
             remedy = "" if origin == "null" else f" To allow them: --allow-origin {origin}"
             return Refusal(
-                status=HTTPStatus.FORBIDDEN,
+                status=403,
                 text=f"Web pages of the origin {origin} may not connect.{remedy}",
                 origin=origin,
             )
         if not self._has_token(asked, cookie):
             return Refusal(
-                status=HTTPStatus.FORBIDDEN,
+                status=403,
                 text="A token is needed: open the address that Cartwheel printed when it "
                 f"started, which ends in ?{PARAMETER}=...",
             )
@@ -193,7 +191,16 @@ def _pairs(query: str) -> list[tuple[str, str]]:
     return parse_qsl(query, keep_blank_values=True)
 
 
+def _new_token() -> str:
+    # Some ms that a run on loopback does not spend; so is the next.
+    import secrets
+
+    return secrets.token_urlsafe(_TOKEN_BYTES)
+
+
 def _equal(one: str, other: str) -> bool:
+    import hmac
+
     return hmac.compare_digest(one.encode(errors="replace"), other.encode())
 
 

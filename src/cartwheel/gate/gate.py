@@ -171,7 +171,7 @@ class Gate:
         found = self._access.refusal(request.asked, apps=self._apps, cookie=self._cookie)
         if found is None and self._admitted >= MOST_ADMITTED:
             text = f"{MOST_ADMITTED} connections are open already"
-            return Refusal(status=HTTPStatus.SERVICE_UNAVAILABLE, text=text)
+            return Refusal(status=503, text=text)
         if found is not None and found.origin is not None:
             # A stranger's text: it may hold anything, and be as long as a head.
             origin = ascii(found.origin)[1:-1][:_SHOWN_LENGTH]
@@ -267,7 +267,7 @@ async def _refuse(sock: socket.socket, refusal: Refusal) -> None:
     loop = asyncio.get_running_loop()
     text = f"{refusal.text}\n".encode(errors="replace")
     head = (
-        f"HTTP/1.1 {refusal.status.value} {refusal.status.phrase}\r\n"
+        f"HTTP/1.1 {refusal.status} {HTTPStatus(refusal.status).phrase}\r\n"
         "Content-Type: text/plain; charset=utf-8\r\nX-Content-Type-Options: nosniff\r\n"
         f"Content-Length: {len(text)}\r\nConnection: close\r\n\r\n"
     )

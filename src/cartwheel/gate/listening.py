@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ipaddress
-import secrets
 import socket
 
 from cartwheel.errors import ControlError
@@ -24,8 +23,10 @@ def resolve(host: str, port: int) -> tuple[socket.AddressFamily, tuple[str, int]
     """
     if not 0 <= port <= 65535:
         raise OSError(f"port {port} is not between 0 and 65535")
+    name = host or "0.0.0.0"  # noqa: S104 - the user's own words
     found = socket.getaddrinfo(
-        host or "0.0.0.0",  # noqa: S104 - the user's own words
+        # As bytes: for a text Python loads its tables of other alphabets, which takes ms.
+        name.encode() if name.isascii() else name,
         port,
         type=socket.SOCK_STREAM,
         flags=socket.AI_PASSIVE,
@@ -87,6 +88,8 @@ def hidden_host() -> str:
     the system chooses the port. Where a system has no other loopback address (macOS), this is
     127.0.0.1.
     """
+    import secrets
+
     found = (
         f"127.{secrets.randbelow(254) + 1}.{secrets.randbelow(256)}.{secrets.randbelow(254) + 1}"
     )
