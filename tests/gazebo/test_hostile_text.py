@@ -137,6 +137,18 @@ def test_sources_outside_are_named(api, tmp_path):
     assert "--allow-path" in told.result.error_message
 
 
+@pytest.mark.parametrize("path", ["/etc/passwd", "../../secret.yaml"])
+def test_controllers_files_of_a_text_lie_in_packages_too(api, path):
+    text = URDF.replace(
+        "</robot>",
+        '<gazebo><plugin name="c" filename="libgz_ros2_control-system.so">'
+        f"<parameters>{path}</parameters></plugin></gazebo></robot>",
+    )
+    told = gz(api)("spawn_entity", name="x", xml=text)
+    assert not told.success
+    assert "--allow-path" in told.status_message
+
+
 @pytest.mark.parametrize("uri", ["{secret}", "file://{secret}", "../secret.stl", "/etc/passwd"])
 @pytest.mark.parametrize("tag", ["mesh", "texture"])
 def test_meshes_of_a_text_lie_in_packages_too(tmp_path, monkeypatch, uri, tag):

@@ -46,6 +46,9 @@ def refuse_xacro(root: Node, packages: Packages) -> bool:
                 _refuse("${…}", node.origin)
             if command := _COMMAND.search(word):
                 _refuse(f"$({command[1]} …)", node.origin)
+        # The file of a ros2_control plugin.
+        if node.tag == "parameters" and (text.startswith("/") or ".." in text):
+            packages.require(packages.folder / text, "the file", node.origin)
         if text != node.text or any(words[name] != node.attributes[name] for name in words):
             changed = True
             node.text = text

@@ -12,6 +12,7 @@ import numpy as np
 from cartwheel.description import load_plain
 from cartwheel.description.kinematics import joint_positions, link_poses
 from cartwheel.description.model import RobotDescription, WorldDescription
+from cartwheel.description.reach import Reach, run_folders
 from cartwheel.errors import CartwheelError, Diagnostic
 from cartwheel.geometry import Pose, to_wxyz
 from cartwheel.simulation.snapshot import PlacedModel, RunState, Scene, Snapshot
@@ -21,6 +22,7 @@ JOINTS = "sensor_msgs/msg/JointState"
 STRING = "std_msgs/msg/String"
 STATE = frozenset({TRANSFORMS, JOINTS})
 """Types that move what is shown."""
+_FIX = "Add its folder: --package-path FOLDER."
 
 
 @dataclass(slots=True)
@@ -72,7 +74,12 @@ class PlayedScene:
             return
         self._texts[topic] = text
         try:
-            found = load_plain(text, file=f"<{topic}>", package_path=self._package_path)
+            found = load_plain(
+                text,
+                file=f"<{topic}>",
+                package_path=self._package_path,
+                reach=Reach(folders=tuple(run_folders(())), hint=_FIX),
+            )
         except CartwheelError as error:
             self._note(f"the robot of {topic} is not shown: {error.message}")
             return

@@ -10,6 +10,7 @@ from typing import Any
 
 import yaml
 
+from cartwheel import yaml_text
 from cartwheel.errors import CartwheelError
 
 _BASE = re.compile(r"[A-Za-z][A-Za-z0-9_]*\Z")
@@ -118,6 +119,6 @@ def _join(namespace: str, name: str) -> str:
 
 def _yaml(text: str) -> Any:
     try:
-        return yaml.safe_load(text)
+        return yaml_text.load(text)
     except yaml.YAMLError:
         return text

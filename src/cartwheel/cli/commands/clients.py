@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+from cartwheel import yaml_text
 from cartwheel.control import ControlClient, find
 from cartwheel.errors import CartwheelError
 
@@ -27,7 +28,7 @@ def parse_yaml(words: Sequence[str]) -> Any:
     import yaml
 
     try:
-        values = [yaml.safe_load(word) for word in words]
+        values = [yaml_text.load(word) for word in words]
     except yaml.YAMLError as error:
         raise CartwheelError(
             f"the message is no YAML: {str(error).splitlines()[0]}",

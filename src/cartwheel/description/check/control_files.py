@@ -8,6 +8,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+from cartwheel import yaml_text
 from cartwheel.description.check import nodes
 from cartwheel.description.check.finding import Remark
 from cartwheel.description.model import Element
@@ -96,6 +97,12 @@ class Controller:
         return self.node(path) is not None
 
 
+def _start_of(path: Path) -> str:
+    """The text of a file, as far as it is looked at."""
+    with path.open("rb") as file:
+        return file.read(_MAX_BYTES).decode("utf-8", "replace")
+
+
 @dataclass(kw_only=True, eq=False)
 class ControlFile:
     """A file of controllers' parameters."""
@@ -110,7 +117,7 @@ class ControlFile:
     def lines(self) -> list[str]:
         """The file's text."""
         try:
-            return self.path.read_bytes()[:_MAX_BYTES].decode("utf-8", "replace").splitlines()
+            return _start_of(self.path).splitlines()
         except OSError:
             return []
 
@@ -148,8 +155,7 @@ class ControlFile:
         import yaml
 
         try:
-            text = self.path.read_bytes()[:_MAX_BYTES].decode("utf-8", "replace")
-            return yaml.compose(text, Loader=yaml.SafeLoader)
+            return yaml.compose(_start_of(self.path), Loader=yaml_text.loader())
         except (OSError, yaml.YAMLError) as error:
             mark = getattr(error, "problem_mark", None)
             problem = getattr(error, "problem", None) or getattr(error, "strerror", None) or error

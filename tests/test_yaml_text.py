@@ -1,0 +1,67 @@
+"""YAML of strangers: bounds on files, depth and what aliases stand for, wherever it is read."""
+
+import os
+
+import pytest
+import yaml
+
+from cartwheel import yaml_text
+from cartwheel.bridges.recording.folder_reading import _metadata
+from cartwheel.bridges.recording.reading import is_latched
+from cartwheel.bridges.ros1.names import _yaml
+from cartwheel.description.check.control_files import ControlFile
+from cartwheel.errors import CartwheelError, PluginError, RecordingError
+from cartwheel.plugins.control.files import read_yaml
+from cartwheel.plugins.gz_bridge import read_bridge
+
+BOMB = "a: &a [x,x,x,x,x,x,x,x,x]\n" + "".join(
+    f"{name}: &{name} [{','.join(['*' + chr(ord(name) - 1)] * 9)}]\n" for name in "bcdefghij"
+)
+HOSTILE = {
+    "aliases": BOMB,
+    "itself": "a: &a [*a]",
+    "merged itself": "a: &a\n  <<: *a\n",
+    "brackets": "a: " + "[" * 100_000,
+    "braces": "{a: " * 1000,
+    "date": "a: 2001-99-99",
+    "python": "a: !!python/object/apply:os.system [echo]",
+}
+
+
+@pytest.mark.parametrize("name", HOSTILE)
+def test_bounds(name):
+    with pytest.raises(yaml.YAMLError):
+        yaml_text.load(HOSTILE[name])
+
+
+def test_aliases_and_merges_work():
+    text = "a: &a {x: 1, y: [2, 3]}\nb: {<<: *a, x: 4}\nc: [*a, *a]\nd: 2001-02-03\ne: 1.5\n"
+    assert yaml_text.load(text) == yaml.safe_load(text)
+
+
+@pytest.mark.parametrize("name", HOSTILE)
+def test_each_reader_has_the_bounds(name, tmp_path):
+    text = HOSTILE[name]
+    file = tmp_path / "metadata.yaml"
+    file.write_text(text)
+    with pytest.raises(PluginError):
+        read_yaml(file)
+    with pytest.raises(RecordingError):
+        _metadata(tmp_path)
+    assert is_latched(text) is False
+    assert _yaml(text) == text
+    if name in ("aliases", "itself", "merged itself", "brackets", "braces"):
+        assert ControlFile(path=file, named=True).problem is not None
+        with pytest.raises(CartwheelError):
+            read_bridge(file)
+
+
+@pytest.mark.parametrize("name", ["pipe", "zero", "large", "folder"])
+def test_only_regular_files_of_some_size_are_read(name, tmp_path):
+    os.mkfifo(tmp_path / "pipe")
+    (tmp_path / "zero").symlink_to("/dev/zero")
+    (tmp_path / "folder").mkdir()
+    with (tmp_path / "large").open("wb") as file:
+        file.truncate(10**10)
+    with pytest.raises(OSError, match=r"not a regular file|larger than 2 MB"):
+        yaml_text.read(tmp_path / name)
