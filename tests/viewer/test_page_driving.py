@@ -44,7 +44,12 @@ def test_the_camera_does_not_fly_along_with_the_speed_keys(page, arena):
     before = arena.camera().position.copy()
     for key in "wxeczq":
         press(page, arena, key)
-    page.wait_for_timeout(300)  # a held key would have moved it by half a metre
+    # A held key would move it in each picture: ten of them.
+    page.evaluate(
+        """async () => {
+          for (let i = 0; i < 10; i++) await new Promise(requestAnimationFrame);
+        }"""
+    )
     assert arena.camera().position == pytest.approx(before, abs=1e-6)
     x, turn = arena.twists[-1]
     assert x == pytest.approx(0.5 * (1.1 * 0.9) ** 2)

@@ -37,10 +37,14 @@ def test_a_key_drives_what_reads_commands_with_a_stamp_too():
     seat = MagicMock()
     seat.gui.add_dropdown.return_value = SimpleNamespace(value="", options=())
     panel = DrivePanel(stage, seat)
+    panel.show_topics(graph.topics())
+    assert not seat.gui.add_dropdown.call_args.kwargs["visible"], "nothing drives yet"
     plain, stamped = [], []
     graph.subscribe("/a", plain.append, type_name="geometry_msgs/msg/Twist")
     graph.subscribe("/b", stamped.append, type_name="geometry_msgs/msg/TwistStamped")
     panel.show_topics(graph.topics())
+    assert seat.gui.add_dropdown.return_value.visible
+    assert seat.gui.add_html.return_value.visible
     panel.press("i")
     assert [message.linear.x for message in plain] == [0.5]
     assert [message.twist.linear.x for message in stamped] == [0.5]
@@ -106,11 +110,11 @@ def test_thinning_keeps_the_newest_row():
 
 
 def test_the_light_names_the_models_hit_and_escapes_them():
-    lit = light_html(("wall::link::c", "a<b::l::c", "wall::link::d"), known=True)
+    lit = light_html(("wall::link::c", "a<b::l::c", "wall::link::d"))
     assert "cw-hit" in lit
     assert "wall, a&lt;b" in lit
     assert "<b::" not in lit
-    assert "cw-hit" not in light_html((), known=True)
+    assert "cw-hit" not in light_html(())
 
 
 def test_what_is_hit_is_not_the_sensors_own_collision():
@@ -140,7 +144,9 @@ def test_two_bumpers_have_their_arrows_and_each_takes_its_own_away():
     seat.display.contacts = True
     stage.seats = {1: seat}
     panel = BumperPanel(stage)
+    assert not stage.page.gui.add_html.call_args.kwargs["visible"], "no bumper yet"
     panel.show_topics(graph.topics())
+    assert stage.page.gui.add_html.return_value.visible is True
 
     def publish(topic, states):
         # What the panel reads of it is made here.

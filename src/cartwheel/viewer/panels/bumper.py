@@ -32,7 +32,7 @@ class BumperPanel(Panel):
         """The newest of each topic."""
         self._arrows: dict[int, Any] = {}
         """Of each browser that shows contacts."""
-        self._light = self.gui.add_html(light_html((), known=False))
+        self._light = self.gui.add_html(light_html(()), visible=False)
         self._shown = self._light.content
 
     def watch(self) -> None:
@@ -51,6 +51,7 @@ class BumperPanel(Panel):
         if found == self._topics:
             return
         self._topics = found
+        self._light.visible = bool(found)
         for topic in set(self._boxes) - set(found):
             self._boxes.pop(topic).close()
             self._states.pop(topic, None)
@@ -69,7 +70,7 @@ class BumperPanel(Panel):
                 self._states[topic] = messages[-1].states
         self._show_forces(news)
         self._seen = {name: at for name, at in self._seen.items() if now - at < LATCH}
-        content = light_html(tuple(sorted(self._seen)), known=bool(self._topics))
+        content = light_html(tuple(sorted(self._seen)))
         if content != self._shown:
             self._light.content = self._shown = content
 
@@ -116,8 +117,8 @@ def other_side(state: Any) -> str:
     return str(state.collision2_name)
 
 
-def light_html(hit: Sequence[str], *, known: bool) -> str:
-    """The light: off without a bumper, grey when free, red with names when touching."""
+def light_html(hit: Sequence[str]) -> str:
+    """The light: grey without a contact, red with names when touching."""
     if hit:
         models = ", ".join(dict.fromkeys(escape(name.split("::")[0]) for name in hit))
         full = escape("\n".join(hit))
@@ -125,5 +126,4 @@ def light_html(hit: Sequence[str], *, known: bool) -> str:
             f'<div class="cw"><div class="cw-bumper cw-hit" title="{full}">'
             f"<i></i><span>Contact: <b>{models}</b></span></div></div>"
         )
-    text = "No contact" if known else "No bumper"
-    return f'<div class="cw"><div class="cw-bumper"><i></i><span>{text}</span></div></div>'
+    return '<div class="cw"><div class="cw-bumper"><i></i><span>No contact</span></div></div>'

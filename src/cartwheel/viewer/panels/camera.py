@@ -55,9 +55,9 @@ class CameraPanel(Panel):
         self._mark: tuple[int, int] = (0, 0)
         self._rate = 0.0
         self._text = ""
-        self._on = self.gui.add_checkbox("Show the image", initial_value=True)
+        self._on = self.gui.add_checkbox("Show the image", initial_value=True, visible=False)
         self._on.on_update(self.page.do(self._choose))
-        self._topic = self.gui.add_dropdown("Topic", (_NONE,))
+        self._topic = self.gui.add_dropdown("Topic", (_NONE,), visible=False)
         self._topic.on_update(self.page.do(self._choose))
         self._image = self.gui.add_image(_blank(), format="jpeg", jpeg_quality=85, visible=False)
         self._caption = self.gui.add_html(_caption("No camera publishes an image."))
@@ -76,6 +76,7 @@ class CameraPanel(Panel):
         if found == self._topics:
             return
         self._topics = found
+        self._on.visible = self._topic.visible = bool(found)
         chosen = self._topic.value
         self._topic.options = found or (_NONE,)
         self._topic.value = chosen if chosen in found else (found or (_NONE,))[0]

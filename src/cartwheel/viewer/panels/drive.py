@@ -50,8 +50,8 @@ class DrivePanel(Panel):
         self._seat = seat
         self._teleop = Teleop()
         self._drivable: dict[str, str] = {}
-        self._topic = self.gui.add_dropdown("Drive", (_NONE,))
-        self._pad = self.gui.add_html(self._html())
+        self._topic = self.gui.add_dropdown("Drive", (_NONE,), visible=False)
+        self._pad = self.gui.add_html(self._html(), visible=False)
         for key, label in _LABELS.items():
             command = self.gui.add_command(f"Drive: {label}", hotkey=key)
             command.on_trigger(self.page.do(self.press, key))
@@ -69,6 +69,8 @@ class DrivePanel(Panel):
         if drivable == self._drivable:
             return
         self._drivable = drivable
+        # An arm on a table has no use for them.
+        self._topic.visible = self._pad.visible = bool(drivable)
         chosen = self._topic.value
         options = (_ALL, *drivable) if len(drivable) > 1 else (tuple(drivable) or (_NONE,))
         self._topic.options = options
