@@ -171,9 +171,12 @@ def xml(data: bytes, others: Sequence[bytes], random: Random) -> bytes:
         root = ET.fromstring(data)
     except (ET.ParseError, ValueError, LookupError):
         return text(data, others, random)
-    for _ in range(random.choice((1, 1, 1, 2, 2, 3, 6))):
-        _mutate_tree(root, others, random)
-    return ET.tostring(root)
+    try:
+        for _ in range(random.choice((1, 1, 1, 2, 2, 3, 6))):
+            _mutate_tree(root, others, random)
+        return ET.tostring(root)
+    except RecursionError:  # chains within chains
+        return text(data, others, random)
 
 
 def _mutate_tree(root: ET.Element, others: Sequence[bytes], random: Random) -> None:

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from cartwheel.description.loading import open_description, understand
+from cartwheel.description.regular import read_regular_text
 from cartwheel.description.shipped import find_description
 from cartwheel.errors import DescriptionError
 
@@ -60,7 +61,7 @@ def _files(folder: Path) -> Iterator[Path]:
 def _text(path: Path) -> str | None:
     """A description's text without its comments; None for any other file."""
     try:
-        text = _COMMENT.sub("", path.read_text(encoding="utf-8", errors="replace"))
+        text = _COMMENT.sub("", read_regular_text(path))
     except OSError:
         return None
     return text if _ROOT.search(text) else None

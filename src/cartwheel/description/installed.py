@@ -10,6 +10,8 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
+from cartwheel.description.regular import read_regular_text
+
 _COMMENT = re.compile(r"#[^\n]*")
 _INSTALL = re.compile(r"\binstall\s*\(\s*DIRECTORY\s+([^()]*)\)", re.IGNORECASE)
 _PROJECT = re.compile(r"\bproject\s*\(\s*([^\s()]+)", re.IGNORECASE)
@@ -46,7 +48,7 @@ def source_of(path: Path) -> Path:
 def _installed(lists: Path) -> Iterator[tuple[Path, Path]]:
     """Folders in the source and in the installed package's share that are the same."""
     try:
-        text = _COMMENT.sub("", lists.read_text(errors="replace"))
+        text = _COMMENT.sub("", read_regular_text(lists))
     except OSError:
         return
     project = _PROJECT.search(text)

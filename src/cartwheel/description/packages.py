@@ -474,6 +474,8 @@ def _folders(folder: Path) -> tuple[Path, ...]:
 
 @lru_cache(maxsize=4096)
 def _declared_name(manifest: Path, _changed: int) -> str | None:
+    if not _is_file(manifest):
+        return None
     try:
         with manifest.open("rb") as file:
             match = _NAME.search(_COMMENT.sub(b"", file.read(16384)))

@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+from cartwheel.description.regular import read_regular
 from cartwheel.errors import DescriptionError
 
 FORMATS = ("PNG", "JPEG", "BMP", "GIF", "TGA", "TIFF", "WEBP", "DDS", "PPM")
@@ -72,7 +73,7 @@ def _content(path: Path) -> bytes:
         raise PictureError(
             path.name, "it is too large", f"At most {MOST_BYTES >> 20} MiB are read."
         )
-    return path.read_bytes()
+    return read_regular(path, MOST_BYTES)
 
 
 def check_size(image: Any, name: str) -> None:

@@ -6,12 +6,14 @@ import io
 import logging
 from pathlib import Path
 from typing import Any
+from urllib.parse import unquote
 
 import numpy as np
 
-from cartwheel.description.meshes.submesh import Submesh, build_submesh
+from cartwheel.description.meshes.submesh import MOST_BYTES, Submesh, build_submesh
 from cartwheel.description.model import Rgba
 from cartwheel.description.pictures import FORMATS, check_size
+from cartwheel.description.regular import read_regular
 
 
 def read_with_trimesh(path: Path, data: bytes, _notes: list[str]) -> list[Submesh]:
@@ -28,7 +30,17 @@ def read_with_trimesh(path: Path, data: bytes, _notes: list[str]) -> list[Submes
     # It logs tracebacks of what it recovers from, which Python would print.
     logging.getLogger("trimesh").addHandler(logging.NullHandler())
     kind = path.suffix.lower().lstrip(".")
-    resolver = trimesh.resolvers.FilePathResolver(str(path))
+
+    class Beside(trimesh.resolvers.FilePathResolver):
+        """Files that a glTF names: regular ones of its folder."""
+
+        def get(self, name: str) -> bytes:
+            file = (path.parent / unquote(name.strip())).resolve()
+            if not file.is_relative_to(path.parent.resolve()):
+                raise ValueError(f'names "{name}", which is not below its folder')
+            return read_regular(file, MOST_BYTES)
+
+    resolver = Beside(str(path))
     scene = trimesh.load_scene(io.BytesIO(data), file_type=kind, resolver=resolver, process=False)
     result: list[Submesh] = []
     for node in scene.graph.nodes_geometry:

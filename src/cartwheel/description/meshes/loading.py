@@ -24,6 +24,7 @@ from cartwheel.description.meshes.obj import read_obj
 from cartwheel.description.meshes.standing import Standing, standing_pieces
 from cartwheel.description.meshes.stl import read_stl
 from cartwheel.description.meshes.submesh import (
+    MOST_BYTES,
     MOST_TRIANGLES,
     Floats,
     Ints,
@@ -32,12 +33,11 @@ from cartwheel.description.meshes.submesh import (
     scale_submesh,
     unique_rows,
 )
+from cartwheel.description.regular import read_regular
 from cartwheel.errors import Origin, suggestion
 
 __all__ = ["MeshError", "Submesh", "convex_hull_input", "load_mesh", "mesh_notes", "standing_parts"]
 
-MOST_BYTES = 1 << 28
-"""Of a file."""
 _COARSER = "Blender's Decimate modifier makes it coarser."
 
 
@@ -162,7 +162,7 @@ def _read(path: Path, _mtime_ns: int, size: int) -> _Loaded:
         )
     notes: list[str] = []
     try:
-        submeshes = reader(path, path.read_bytes(), notes)
+        submeshes = reader(path, read_regular(path, MOST_BYTES), notes)
     except (OSError, MemoryError):
         raise
     except Exception as error:  # a damaged file may fail anywhere in its reader

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from cartwheel.description.meshes.corners import weld
 from cartwheel.description.meshes.submesh import Submesh
 from cartwheel.description.model import Rgba
+from cartwheel.description.regular import read_regular_text
 
 _IGNORED = frozenset({"s", "g", "l", "p", "vp", "#", "mg"})
 
@@ -149,7 +150,7 @@ def _materials(path: Path, libraries: list[str], notes: list[str]) -> dict[str, 
     for library in libraries:
         file = path.parent / library
         try:
-            text = file.read_text(errors="replace")
+            text = read_regular_text(file)
         except (OSError, ValueError):
             notes.append(f'the material library "{library}" does not exist; its colours are lost')
             continue

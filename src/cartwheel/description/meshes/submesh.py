@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float32]
 Ints = NDArray[np.int32]
 
+MOST_BYTES = 1 << 28
+"""Of a file."""
 MOST_TRIANGLES = 5_000_000
 """Of a file, with all its instances; a scanned building has two million."""
 

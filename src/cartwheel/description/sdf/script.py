@@ -30,7 +30,7 @@ def find_script(name: str, places: list[Path]) -> Script | None:
     folders = [place for place in places if place.is_dir()]
     files = [place for place in places if place.is_file()]
     for folder in folders:
-        files += sorted(folder.glob("*.material"))
+        files += sorted(file for file in folder.glob("*.material") if file.is_file())
     for file in files:
         if file.stat().st_size > MAX_BYTES:
             continue

@@ -1,0 +1,65 @@
+"""Pipes, devices and huge files in a stranger's repository hold nobody up."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+from cartwheel.corpus.finding import robots_in
+from cartwheel.description import load
+from cartwheel.description.check.checking import check
+from cartwheel.description.meshes import MeshError, load_mesh, mesh_notes
+from cartwheel.description.model import Mesh
+from cartwheel.description.regular import read_regular, read_regular_text
+
+OBJ = "mtllib {}\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
+
+
+def test_only_regular_files_of_a_bounded_size_are_read(tmp_path):
+    os.mkfifo(tmp_path / "pipe")
+    (tmp_path / "text").write_bytes(b"a\xff")
+    assert read_regular_text(tmp_path / "text") == "a\ufffd"
+    assert read_regular(tmp_path / "text", 2) == b"a\xff"
+    for name, most in (("text", 1), ("pipe", 9), ("none", 9), (".", 9)):
+        with pytest.raises(OSError, match=r"."):
+            read_regular(tmp_path / name, most)
+    with pytest.raises(OSError, match="not a regular file"):
+        read_regular(Path("/dev/zero"))
+
+
+@pytest.mark.parametrize("library", ["pipe", "/dev/zero"])
+def test_a_material_library_that_is_none_is_noted(tmp_path, library):
+    os.mkfifo(tmp_path / "pipe")
+    (tmp_path / "a.obj").write_text(OBJ.format(library))
+    mesh = Mesh(uri="", path=tmp_path / "a.obj")
+    assert len(load_mesh(mesh)) == 1
+    assert library in mesh_notes(mesh)[0]
+
+
+@pytest.mark.parametrize("uri", ["pipe", "../secret.bin", "/dev/zero", "%2e%2e/secret.bin"])
+def test_a_gltf_reads_regular_files_of_its_folder_alone(tmp_path, uri):
+    folder = tmp_path / "inner"
+    folder.mkdir()
+    os.mkfifo(folder / "pipe")
+    (tmp_path / "secret.bin").write_bytes(bytes(64))
+    (folder / "a.gltf").write_text(
+        f"""{{"asset": {{"version": "2.0"}}, "scene": 0, "scenes": [{{"nodes": [0]}}],
+        "nodes": [{{"mesh": 0}}],
+        "meshes": [{{"primitives": [{{"attributes": {{"POSITION": 0}}}}]}}],
+        "accessors": [{{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}}],
+        "bufferViews": [{{"buffer": 0, "byteLength": 36}}],
+        "buffers": [{{"uri": "{uri}", "byteLength": 36}}]}}"""
+    )
+    with pytest.raises(MeshError, match=r"not below its folder|not a regular file"):
+        load_mesh(Mesh(uri="", path=folder / "a.gltf"))
+
+
+def test_a_repository_full_of_pipes_is_searched(tmp_path):
+    for name in ("a.urdf", "package.xml", "CMakeLists.txt", "b.yaml", "c.material"):
+        os.mkfifo(tmp_path / name)
+    (tmp_path / "robot.urdf").write_text('<robot name="r"><link name="a"/></robot>')
+    assert [path.name for path in robots_in(tmp_path)] == ["robot.urdf"]
+    assert load(tmp_path / "robot.urdf").name == "r"
+    check(tmp_path / "robot.urdf")
