@@ -231,8 +231,20 @@ class World:
     def subscribe(
         self, topic: str, callback: Callable[[Any], None], *, type: str | None = None
     ) -> None:
-        """Calls `callback` with each message, within `run`."""
-        self.graph.subscribe(topic, callback, type_name=type_name(type) if type else None)
+        """Calls `callback` with each message, within `run`.
+
+        What it raises ends that `run`, as soon as the step that has begun is made. The next one
+        goes on from there.
+        """
+        simulation = self.session.simulation
+
+        def guarded(message: Any) -> None:
+            try:
+                callback(message)
+            except BaseException as error:  # noqa: BLE001 - raised by `run`
+                simulation.defer(error)
+
+        self.graph.subscribe(topic, guarded, type_name=type_name(type) if type else None)
 
     def mailbox(self, topic: str, *, size: int = 1000) -> Mailbox:
         """Keeps the topic's messages to be read after `run`.

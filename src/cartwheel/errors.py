@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Literal
 
 Severity = Literal["info", "warning", "error"]
@@ -31,6 +31,8 @@ class Diagnostic:
     severity: Severity
     message: str
     origin: Origin | None = None
+    details: str = field(default="", compare=False)
+    """Python's traceback, for the author of what failed."""
 
     def __str__(self) -> str:
         place = f"{self.origin}: " if self.origin else ""
@@ -129,6 +131,22 @@ def one_line(error: Exception) -> str:
         return f"{type(error).__name__}: {error}"
     place = f"{error.origin}: " if error.origin else ""
     return f"{place}{error.message}{f'. {error.hint}' if error.hint else ''}"
+
+
+def fault(message: str, error: BaseException, origin: Origin | None = None) -> Diagnostic:
+    """What to say of code that raised an error; the traceback is in the details."""
+    import traceback  # only at a fault: its import would slow every start
+
+    said, place = f"{type(error).__name__}: {error}", origin
+    if isinstance(error, CartwheelError):
+        said = f"{error.message}{f'. {error.hint}' if error.hint else ''}"
+        place = error.origin or origin
+    return Diagnostic(
+        severity="error",
+        message=f"{message}: {said}",
+        origin=place,
+        details="".join(traceback.format_exception(error)).rstrip(),
+    )
 
 
 class Once:

@@ -10,6 +10,7 @@ from cartwheel.description.model import RobotDescription, WorldDescription
 from cartwheel.errors import CartwheelError, Diagnostic, PluginError
 from cartwheel.geometry import Pose
 from cartwheel.graph import Graph
+from cartwheel.graph.graph import Subscription
 from cartwheel.messages import message_class, stamp
 from cartwheel.plugins.control.files import ControllerFiles
 from cartwheel.plugins.gz_bridge import GzBridge, read_bridge
@@ -61,6 +62,8 @@ class Session:
             seed=seed,
         )
         self.graph.post = self.simulation.post
+        self.graph.on_error = self._subscriber_failed
+        self.simulation.strict = strict
         self._clock = self.graph.advertise(
             "/clock", "rosgraph_msgs/msg/Clock", node="cartwheel", rate=CLOCK_RATE
         )
@@ -154,6 +157,10 @@ class Session:
     def pacer(self, *, until_ns: int | None = None) -> Pacer:
         """Runs the session against the wall clock."""
         return Pacer(self.simulation, until_ns=until_ns, strict=self.strict)
+
+    def _subscriber_failed(self, subscription: Subscription, error: Exception) -> None:
+        what = f'the subscriber "{subscription.node}" of {subscription.topic}'
+        self.simulation.fail(what, error)
 
     def close(self) -> None:
         """Ends the run; see `Simulation.close`."""

@@ -33,10 +33,12 @@ _BEFORE = """
 assert tried(world, images) is True
 child = os.fork()
 if not child:
+    before = world.time
     for refused in (tried(world, images), tried(*cart())):
         assert refused.startswith("cameras do not work in this process"), refused
         assert 'multiprocessing.get_context("spawn")' in refused
-    # A world without cameras works.
+    # Time goes on, and a world without cameras works.
+    assert world.time > before
     other = cw.World("empty")
     other.run(0.5)
     world.close()

@@ -61,9 +61,13 @@ class TopicInfo:
 class Topic:
     """A named stream of messages of one type."""
 
-    def __init__(self, name: str, type_name: str) -> None:
+    def __init__(
+        self, name: str, type_name: str, failed: Callable[[Topic, Callback, Exception], None]
+    ) -> None:
         self.name = name
         self.type = type_name
+        self.failed = failed
+        """Called with the callback that raised an error."""
         self.publishers: tuple[Publisher, ...] = ()
         self.subscriptions: tuple[Subscription, ...] = ()
         self.callbacks: tuple[Callback, ...] = ()
@@ -73,7 +77,14 @@ class Topic:
     def deliver(self, message: Any) -> None:
         """Hands a message to every subscriber; on the owner's thread."""
         for callback in self.callbacks:
+            self.hand(callback, message)
+
+    def hand(self, callback: Callback, message: Any) -> None:
+        """Calls one of them; its error is not that of who published."""
+        try:
             callback(message)
+        except Exception as error:  # noqa: BLE001 - another's code
+            self.failed(self, callback, error)
 
 
 class Publisher:
@@ -111,7 +122,10 @@ class Publisher:
             topic.latched = message
         # `deliver`, a call less for each message.
         for callback in topic.callbacks:
-            callback(message)
+            try:
+                callback(message)
+            except Exception as error:  # noqa: BLE001 - another's code
+                topic.failed(topic, callback, error)
 
     def close(self) -> None:
         """Takes the publisher off the graph."""
@@ -126,6 +140,8 @@ class Subscription:
         self._topic = topic
         self.callback = callback
         self.node = node
+        self.on_error: OnError | None = None
+        """Called with what the callback raised; `Graph.on_error` where it is None."""
         self.dropped: Callable[[], int] = lambda: 0
         """Tells, on any thread, how many messages its reader has missed because it was slow."""
 
@@ -136,6 +152,9 @@ class Subscription:
     def close(self) -> None:
         """Takes the subscription off the graph."""
         self._graph._remove_subscription(self._topic, self)
+
+
+OnError = Callable[[Subscription, Exception], None]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -179,6 +198,8 @@ class Graph:
         self.changed: int = 0
         """Counts every change of who publishes, subscribes or takes positions, for those who
         mirror the graph."""
+        self.on_error: OnError = _raise
+        """Called, on the owner's thread, with what a subscription's callback raised."""
         self.on_change: list[Callable[[], None]] = []
         """Called after each such change, on any thread, the graph locked: must return at once."""
 
@@ -193,6 +214,7 @@ class Graph:
             topics = list(self._topics.values())
             self.post = _refuse
             self.on_change.clear()
+            self.on_error = _raise
             self.joint_inputs.close()
             for table in (self._topics, self._services, self._actions):
                 table.clear()
@@ -201,6 +223,7 @@ class Graph:
                 topic.subscriptions = ()
                 topic.callbacks = ()
                 topic.latched = None
+                topic.failed = _fail
             self.static_transforms = None
         for box in boxes:
             box.close()
@@ -256,7 +279,7 @@ class Graph:
             topic.subscriptions += (subscription,)
             self._changed(topic)
             if (latched := topic.latched) is not None:
-                self.post(lambda: callback(latched))
+                self.post(lambda: topic.hand(callback, latched))
             return subscription
 
     def mailbox(
@@ -423,7 +446,7 @@ class Graph:
         if topic is None or not (
             topic.publishers or topic.subscriptions or topic.type == type_name
         ):
-            topic = self._topics[name] = Topic(name, type_name)
+            topic = self._topics[name] = Topic(name, type_name, self._failed)
         elif topic.type != type_name:
             raise GraphError(f'topic "{name}" has type {topic.type}, not {type_name}')
         return topic
@@ -439,6 +462,14 @@ class Graph:
         with self._lock:
             topic.subscriptions = tuple(s for s in topic.subscriptions if s is not subscription)
             self._changed(topic)
+
+    def _failed(self, topic: Topic, callback: Callback, error: Exception) -> None:
+        for subscription in topic.subscriptions:
+            if subscription.callback is callback:
+                (subscription.on_error or self.on_error)(subscription, error)
+                return
+        # It unsubscribed before it failed.
+        raise error
 
     def _inputs_changed(self) -> None:
         with self._lock:
@@ -459,6 +490,14 @@ class Graph:
 
 def _at_once(function: Callable[[], None]) -> None:
     function()
+
+
+def _raise(_: Subscription, error: Exception) -> None:
+    raise error
+
+
+def _fail(_topic: Topic, _callback: Callback, error: Exception) -> None:
+    raise error
 
 
 def _refuse(_: Callable[[], None]) -> None:

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any, ClassVar, Generic, Protocol, TypeVar
 
 from cartwheel.description.model import PluginTag, Sensor
-from cartwheel.errors import CartwheelError, Diagnostic, GraphError, Origin, PluginError
+from cartwheel.errors import Diagnostic, GraphError, Origin, PluginError
 from cartwheel.graph import (
     Graph,
     JointInput,
@@ -87,7 +87,7 @@ class Plugin(Generic[C]):
         self._crowded = False
         try:
             self.configure()
-        except CartwheelError:
+        except Exception:
             # A subclass's own close counts on what it did not come to.
             Plugin.close(self)
             raise
@@ -156,7 +156,9 @@ class Plugin(Generic[C]):
         callback = obeyable(callback, self.part, self.warn)
         bridge = GzBridge.of(self.graph)
         name, kind, taker = bridge.read(self.resolve(topic), type_name, callback)
-        self.keep(self.graph.subscribe(name, taker, type_name=kind, node=self.node))
+        subscription = self.graph.subscribe(name, taker, type_name=kind, node=self.node)
+        subscription.on_error = lambda _, error: self.part.fail(self, error)
+        self.keep(subscription)
 
     def serve(
         self,
@@ -250,6 +252,13 @@ class Plugin(Generic[C]):
         for name, value in values.items():
             if value <= 0:
                 raise PluginError(f"<{name}> {value:g} must be above 0", origin=self.tag.origin)
+
+    @property
+    def title(self) -> str:
+        """The plugin and its model, for messages."""
+        name = self.tag.filename or self.tag.name
+        model = f' of model "{self.part.name}"' if self.part.name else ""
+        return f'plugin "{name}"{model}' if self.tag.filename else f'sensor "{name}"{model}'
 
     @property
     def node(self) -> str:

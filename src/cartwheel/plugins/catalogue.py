@@ -6,6 +6,7 @@ a start.
 
 from __future__ import annotations
 
+import dataclasses
 import functools
 import importlib
 import importlib.metadata
@@ -177,11 +178,41 @@ def all_plugins() -> list[type[Plugin[object]]]:
     return list(dict.fromkeys(plugin for plugin in found if plugin is not None))
 
 
-@functools.cache
 def _third() -> tuple[type[Plugin[object]], ...]:
     """Those of installed packages; of two with one name the later installed counts."""
-    entries = importlib.metadata.entry_points(group="cartwheel.plugins")
-    return tuple(reversed([entry.load() for entry in entries]))
+    return _installed()[0]
+
+
+def unloadable() -> tuple[str, ...]:
+    """What to say of installed plugins that cannot be loaded."""
+    return _installed()[1]
+
+
+@functools.cache
+def _installed() -> tuple[tuple[type[Plugin[object]], ...], tuple[str, ...]]:
+    found: list[type[Plugin[object]]] = []
+    broken: list[str] = []
+    for entry in importlib.metadata.entry_points(group="cartwheel.plugins"):
+        package = entry.dist.name if entry.dist else entry.value
+        try:
+            plugin = entry.load()
+            if not (isinstance(plugin, type) and issubclass(plugin, Plugin)):
+                raise TypeError(f"{entry.value} is not a subclass of Plugin")
+            if isinstance(plugin.filenames, str):
+                raise TypeError(f"filenames of {entry.value} is a string, not a tuple of strings")
+            names = (*plugin.filenames, *plugin.serves)
+            if not all(isinstance(name, str) for name in names):
+                raise TypeError(f"filenames or serves of {entry.value} are not strings")
+            if not dataclasses.is_dataclass(plugin.parameters):
+                raise TypeError(f"parameters of {entry.value} is not a dataclass")
+        except (Exception, SystemExit) as error:  # noqa: BLE001 - another's package
+            broken.append(
+                f'The plugin "{entry.name}" of the installed package "{package}" cannot be '
+                f"loaded: {type(error).__name__}: {error}."
+            )
+        else:
+            found.insert(0, plugin)
+    return tuple(found), tuple(broken)
 
 
 def _names(plugin: type[Plugin[object]]) -> Iterator[str]:

@@ -5,10 +5,23 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator
 
 from cartwheel.description.model import PluginTag, Sensor
-from cartwheel.errors import CartwheelError, Diagnostic, StaticModelError, UnknownNameError, likely
+from cartwheel.errors import (
+    CartwheelError,
+    Diagnostic,
+    StaticModelError,
+    UnknownNameError,
+    fault,
+    likely,
+)
 from cartwheel.graph import Graph
 from cartwheel.plugins.base import Plugin
-from cartwheel.plugins.catalogue import plugin_named, plugin_names, plugin_serving, short_name
+from cartwheel.plugins.catalogue import (
+    plugin_named,
+    plugin_names,
+    plugin_serving,
+    short_name,
+    unloadable,
+)
 from cartwheel.plugins.gz_sensor import own_tag, publishes
 from cartwheel.plugins.parameters import tags_of
 from cartwheel.plugins.world_plugins import BUILT_IN
@@ -71,7 +84,7 @@ def attach(part: Part, graph: Graph, *, lenient: bool = False) -> list[Behaviour
             and not any(plugin_named(tag.filename) for tag in one.plugins)
         ]
         made += _serve(part, graph, alone, systems)
-    except CartwheelError:
+    except Exception:
         for plugin_made in made:
             plugin_made.close()
         raise
@@ -89,9 +102,10 @@ def _made(
 ) -> list[Plugin[object]]:
     """The plugin; none where it cannot be made and that is reported."""
     try:
-        with part.undone_on_error():
-            return [plugin(part, graph, tag, sensor)]
-    except forgiven as error:
+        return [part.made(lambda: plugin(part, graph, tag, sensor))]
+    except CartwheelError as error:
+        if not isinstance(error, forgiven):
+            raise
         what = f'plugin "{tag.filename}"' if tag.filename else f'sensor "{tag.name}"'
         hint = f" {error.hint}" if error.hint else ""
         part.report(
@@ -101,7 +115,10 @@ def _made(
                 origin=error.origin or tag.origin,
             )
         )
-        return []
+    except Exception as error:  # noqa: BLE001 - a plugin's own
+        what = f'plugin "{tag.filename}"' if tag.filename else f'sensor "{tag.name}"'
+        part.report(fault(f"{what} failed and is left out", error, tag.origin))
+    return []
 
 
 def _serve(
@@ -133,12 +150,13 @@ def _serve(
 
 def _report_unknown(part: Part, tag: PluginTag) -> None:
     # Only a spelling error has a likely meant name: other plugins share most of theirs.
+    broken = " ".join(unloadable())
     meant = likely(tag.filename, [f"lib{name}.so" for name in plugin_names()], cutoff=0.92)
     part.report(
         Diagnostic(
             severity="warning",
             message=f'plugin "{tag.filename}" is not supported: what it does is missing here. '
-            f"{meant}".rstrip(),
+            f"{meant} {broken}".strip(),
             origin=tag.origin,
         )
     )

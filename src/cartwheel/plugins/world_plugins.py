@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from cartwheel.errors import CartwheelError, Diagnostic, Severity
+import functools
+
+from cartwheel.errors import CartwheelError, Diagnostic, Severity, fault
 from cartwheel.graph import Graph
 from cartwheel.plugins.catalogue import plugin_named, short_name
 from cartwheel.plugins.gz_sensor import SYSTEMS
@@ -49,11 +51,14 @@ def attach_world(part: Part, graph: Graph) -> list[Behaviour]:
             message = f'plugin "{tag.filename}" has no effect here: it belongs inside a <model>'
         else:
             try:
-                with part.undone_on_error():
-                    made.append(plugin(part, graph, tag, None))
+                made.append(part.made(functools.partial(plugin, part, graph, tag, None)))
                 continue
             except CartwheelError as error:
                 severity = "error"
                 message = f'plugin "{tag.filename}" is left out: {error.message}'
+            except Exception as error:  # noqa: BLE001 - a plugin's own
+                text = f'plugin "{tag.filename}" failed and is left out'
+                part.report(fault(text, error, tag.origin))
+                continue
         part.report(Diagnostic(severity=severity, message=message, origin=tag.origin))
     return made

@@ -40,7 +40,7 @@ class Task:
         order: Tasks of one time run in this order.
     """
 
-    __slots__ = ("active", "after", "before", "order", "period_ns", "rate")
+    __slots__ = ("active", "after", "before", "order", "owner", "period_ns", "rate")
 
     def __init__(
         self,
@@ -56,6 +56,8 @@ class Task:
         self.after = after
         self.active = active
         self.order = order
+        self.owner: object = None
+        """The plugin that asked for it; None where it is the simulation's own."""
         self.period_ns = Fraction(0)
         if rate > 0:
             # Not infinite: a rate of no more than there are steps is every step. Not zero, which

@@ -53,6 +53,8 @@ class Engine:
         self.renderer = Renderer()
         self.diagnostics: list[Diagnostic] = list(world.diagnostics)
         self.on_diagnostic: list[Callable[[Diagnostic], None]] = []
+        self.on_fault: Callable[[object, Exception], None] = _raise
+        """Called with a plugin that failed, and its error."""
         self.on_tasks: list[Callable[[], None]] = []
         """Called after a task was changed for another."""
         self.on_entries: list[Callable[[], None]] = []
@@ -64,6 +66,7 @@ class Engine:
     def close(self) -> None:
         """Frees what drawing holds; calls nobody any more."""
         self.renderer.close()
+        self.on_fault = _raise
         for listeners in (self.on_diagnostic, self.on_tasks, self.on_entries):
             listeners.clear()
 
@@ -227,6 +230,10 @@ class Engine:
     def joint_position(self, joint: int) -> float:
         """Of a joint of one degree of freedom, rad or m."""
         return float(self.data.qpos[self.model.jnt_qposadr[joint]])
+
+
+def _raise(_: object, error: Exception) -> None:
+    raise error
 
 
 def _carry_over(old_model: Any, old: Any, model: Any, data: Any) -> None:

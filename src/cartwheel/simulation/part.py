@@ -7,14 +7,13 @@ import math
 import zlib
 from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
 from cartwheel.description.kinematics import link_poses
 from cartwheel.description.model import CameraIntrinsics, Mimic, RobotDescription, WorldDescription
 from cartwheel.errors import (
-    CartwheelError,
     Diagnostic,
     Origin,
     PluginError,
@@ -43,6 +42,7 @@ from cartwheel.simulation.snapshot import Contact
 from cartwheel.world.entry import BodyDrive, CameraMount, ModelEntry, Motor, scoped
 from cartwheel.world.tyres import axle_of
 
+T = TypeVar("T")
 _DRIVE_WEIGHTS = 5.0
 """What a servo of a whole model may push, in its weights: well above any friction."""
 _DRIVE_BAND = 0.05
@@ -66,6 +66,8 @@ class Part:
         self.handles: list[Handle | RayHandle] = []
         self.tasks: list[Task] = []
         self.diagnostics: list[Diagnostic] = []
+        self.owned: list[tuple[object, list[Handle | RayHandle]]] = []
+        """Plugins and their handles."""
         self.spawned = False
         self.read_sensors: set[str] = set()
         """Names of sensors that a plugin of the model reads: they need none of their own."""
@@ -382,7 +384,7 @@ class Part:
     def reschedule(self, task: Task, rate: float) -> Task:
         """The task at another rate from now on; the given one is void."""
         made = self._engine.task(rate, before=task.before, after=task.after, active=task.active)
-        made.order = task.order
+        made.order, made.owner = task.order, task.owner
         self.tasks[self.tasks.index(task)] = made
         for callback in self._engine.on_tasks:
             callback()
@@ -413,9 +415,40 @@ class Part:
         names = {scoped(self.name, collision) for collision in collisions}
         return read_contacts(self._engine.model, self._engine.data, names)
 
+    def made(self, make: Callable[[], T]) -> T:
+        """A plugin, which owns what it asks for meanwhile; nothing is left of one that fails."""
+        handles, tasks = len(self.handles), len(self.tasks)
+        with self._undone_on_error():
+            plugin = make()
+        self.owned.append((plugin, self.handles[handles:]))
+        for task in self.tasks[tasks:]:
+            task.owner = plugin
+        return plugin
+
+    def disable(self, plugin: object) -> None:
+        """Ends what a plugin does: its tasks, and what its motors and forces do."""
+        for task in self.tasks:
+            if task.owner is plugin:
+                task.forget()
+        self.tasks = [task for task in self.tasks if task.owner is not plugin]
+        for owner, handles in self.owned:
+            if owner is not plugin:
+                continue
+            for handle in handles:
+                if isinstance(handle, MotorHandle):
+                    handle.command(0.0)
+                elif isinstance(handle, ServoHandle | BodyDriveHandle):
+                    handle.release()
+                elif isinstance(handle, WrenchHandle):
+                    handle.apply((0.0,) * 3, (0.0,) * 3)
+
+    def fail(self, plugin: object, error: Exception) -> None:
+        """A plugin of this model failed outside of its tasks: it is disabled."""
+        self._engine.on_fault(plugin, error)
+
     @contextlib.contextmanager
-    def undone_on_error(self) -> Iterator[None]:
-        """Takes back what was asked for in between where that ends in an error of the user's."""
+    def _undone_on_error(self) -> Iterator[None]:
+        """Takes back what was asked for in between where that ends in an error."""
         entry = self._entry
         lists: tuple[list[Any], ...] = (
             self.handles,
@@ -430,7 +463,7 @@ class Part:
         copies = [dict(each) for each in tables]
         try:
             yield
-        except CartwheelError:
+        except Exception:
             for each, length in zip(lists, lengths, strict=True):
                 del each[length:]
             for table, copy in zip(tables, copies, strict=True):

@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Protocol
 
 from cartwheel.description.model import RobotDescription
-from cartwheel.errors import Origin, WorldError
+from cartwheel.errors import Origin, WorldError, fault
 from cartwheel.geometry import Pose
 from cartwheel.simulation.engine import Engine
 from cartwheel.simulation.handles import MotorHandle
@@ -30,6 +30,17 @@ class Behaviour(Protocol):
 
 Attach = Callable[[Part], list[Behaviour]]
 """Makes the plugins of a model that is about to be spawned."""
+
+
+def title(behaviour: object) -> str:
+    """A plugin as the user knows it."""
+    found = getattr(behaviour, "title", None)
+    return found if isinstance(found, str) else f"plugin {type(behaviour).__name__}"
+
+
+def place(behaviour: object) -> Origin | None:
+    """Of the tag that made a plugin."""
+    return getattr(getattr(behaviour, "tag", None), "origin", None)
 
 
 class Resident:
@@ -76,7 +87,23 @@ class Resident:
     def close(self) -> None:
         """Ends its plugins."""
         for behaviour in self.behaviours:
+            self._close(behaviour)
+
+    def end(self, plugin: object) -> None:
+        """Ends one of its plugins; nothing happens where it has none such."""
+        for behaviour in self.behaviours:
+            if behaviour is plugin:
+                self.behaviours.remove(behaviour)
+                self.part.disable(behaviour)
+                self._close(behaviour)
+                return
+
+    def _close(self, behaviour: Behaviour) -> None:
+        try:
             behaviour.close()
+        except Exception as error:  # noqa: BLE001 - a plugin's own
+            text = f"{title(behaviour)} failed while it was closed"
+            self.part.report(fault(text, error, place(behaviour)))
 
     def forget(self) -> None:
         """After `close`: lets go of plugins, and they of all that they have.
@@ -90,6 +117,7 @@ class Resident:
         self.drives.clear()
         self.part.handles.clear()
         self.part.tasks.clear()
+        self.part.owned.clear()
 
 
 def world_resident(engine: Engine) -> Resident:

@@ -92,7 +92,7 @@ class Run:
         """Runs what other threads posted."""
         self.owner = threading.get_ident()
         while not self.commands.empty():
-            self.commands.get()()
+            self._obey(self.commands.get())
 
     def wait(self, seconds: float) -> None:
         """Sleeps, unless something is posted, which is run."""
@@ -102,4 +102,14 @@ class Run:
             command = self.commands.get(timeout=seconds)
         except queue.Empty:
             return
-        command()
+        self._obey(command)
+
+    def command_failed(self, error: Exception) -> None:
+        """What to do about a posted function that raised an error."""
+        raise error
+
+    def _obey(self, command: Callable[[], None]) -> None:
+        try:
+            command()
+        except Exception as error:  # noqa: BLE001 - another thread's code
+            self.command_failed(error)

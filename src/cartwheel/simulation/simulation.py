@@ -7,7 +7,16 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 from cartwheel.description.model import RobotDescription, WorldDescription
-from cartwheel.errors import Diagnostic, DivergedError, UnknownNameError, WorldError
+from cartwheel.errors import (
+    Diagnostic,
+    DivergedError,
+    Once,
+    PluginError,
+    SimulationError,
+    UnknownNameError,
+    WorldError,
+    fault,
+)
 from cartwheel.geometry import Pose, Vec3
 from cartwheel.simulation.adjusting import adjust
 from cartwheel.simulation.clock import Schedule, Task, always, to_ns
@@ -19,7 +28,7 @@ from cartwheel.simulation.naming import free_name
 from cartwheel.simulation.observing import Observer
 from cartwheel.simulation.part import Part
 from cartwheel.simulation.placing import place_model, with_mimics
-from cartwheel.simulation.resident import Attach, Resident, world_resident
+from cartwheel.simulation.resident import Attach, Resident, place, title, world_resident
 from cartwheel.simulation.running import Run
 from cartwheel.simulation.separation import Separation, told
 from cartwheel.simulation.sight import in_sight
@@ -32,6 +41,8 @@ from cartwheel.world.entry import ModelEntry
 _GUARD_INTERVAL_NS = 50_000_000
 _RECOVERIES = 20
 """Recoveries that are reported: somebody may cause one again and again."""
+_FAULTS = 100
+"""Faults of subscribers and commands that are reported."""
 _STILL: Vec3 = (0.0, 0.0, 0.0)
 
 
@@ -72,6 +83,13 @@ class Simulation(Run):
         self._recovered = 0
         """`Engine.commanded` at the last recovery."""
         self._recoveries = 0
+        self.tolerant = False
+        """Whether errors of subscribers and posted functions are reported and not raised."""
+        self.strict = False
+        """Whether a plugin that fails ends `advance`."""
+        self._failure: BaseException | None = None
+        self._told_once = Once(_FAULTS)
+        self.engine.on_fault = self._disable
         self._version = 0
         self._house.behaviours = attach_world(self._house.part)
         self._compile({})
@@ -142,17 +160,13 @@ class Simulation(Run):
             if self.run_state is not RunState.RUNNING and not self.steps_allowed:
                 return
             change = forces.serve() if forces.active else None
-            try:
-                due, forwarded = self._serve()
-            except Exception:
-                # What reads a state that has just diverged fails in all ways: name the cause.
-                self._watch()
-                raise
+            due, forwarded = self._serve()
             if change is not None:
                 due = min(due, change)
             # Asked again: what was due may have changed the length of a step.
             left = engine.steps_until(target_ns)
-            count = 1 if separation.active else min(left, due - engine.step)
+            single = separation.active or self._failure is not None
+            count = 1 if single else min(left, due - engine.step)
             if self.steps_allowed is not None:
                 count = min(count, self.steps_allowed)
                 self.steps_allowed -= count
@@ -162,6 +176,9 @@ class Simulation(Run):
                 separation.limit(engine.model, engine.data)
             if engine.step >= self._guard_due:
                 self._watch()
+            if self._failure is not None:
+                failure, self._failure = self._failure, None
+                raise failure
 
     def _serve(self) -> tuple[int, bool]:
         """Does what is due now.
@@ -174,16 +191,79 @@ class Simulation(Run):
         afters = []
         for task in tasks:
             active, before, after = task.active, task.before, task.after
-            if active is always or active():
-                if before is not None:
-                    before()
-                if after is not None:
-                    afters.append(after)
+            try:
+                if active is always or active():
+                    if before is not None:
+                        before()
+                    if after is not None:
+                        afters.append(task)
+            except Exception as error:  # noqa: BLE001 - a plugin's own
+                self._task_failed(task, error)
         if afters:
             self.engine.forward()
-            for after in afters:
-                after()
+            for task in afters:
+                after = task.after
+                try:
+                    # None where the plugin was disabled meanwhile.
+                    if after is not None:
+                        after()
+                except Exception as error:  # noqa: BLE001 - a plugin's own
+                    self._task_failed(task, error)
         return upcoming, bool(afters)
+
+    # -- faults of others' code
+
+    def defer(self, error: BaseException) -> None:
+        """Ends `advance` with an error as soon as the step that has begun is made.
+
+        So time has gone on, and goes on with the next call.
+        """
+        if self._failure is None:
+            self._failure = error
+
+    def fail(self, what: str, error: Exception) -> None:
+        """Somebody else's function failed: a subscriber's, or one that was posted.
+
+        Ends `advance`; is reported once where the simulation is `tolerant`.
+        """
+        if not self.tolerant:
+            self.defer(error)
+        elif self._told_once(f"{what} {error!r}"):
+            self.engine.report(fault(f"{what} failed", error))
+
+    def command_failed(self, error: Exception) -> None:
+        """See `fail`."""
+        self.fail("a command", error)
+
+    def _task_failed(self, task: Task, error: Exception) -> None:
+        # What reads a state that has just diverged fails in all ways: name the cause.
+        self._watch()
+        if isinstance(error, SimulationError):
+            # It says that the simulation cannot go on so, not that the plugin has a fault.
+            self.defer(error)
+        elif task.owner is not None:
+            self._disable(task.owner, error)
+        else:
+            name = getattr(task.after or task.before, "__qualname__", "a task of the world")
+            task.forget()
+            self._report_fault(fault(f"{name} failed and is disabled", error))
+
+    def _disable(self, plugin: object, error: Exception) -> None:
+        """Ends a plugin that raised an error, and says so; everything else goes on."""
+        resident = next((each for each in self._inhabitants() if plugin in each.behaviours), None)
+        if resident is None:
+            # It was disabled or deleted already.
+            return
+        found = fault(f"{title(plugin)} failed and is disabled", error, place(plugin))
+        resident.end(plugin)
+        self._gather_tasks()
+        self._report_fault(found)
+
+    def _report_fault(self, found: Diagnostic) -> None:
+        self.engine.report(found)
+        if self.strict:
+            hint = "--strict ends the run with the first error."
+            self.defer(PluginError(found.message, origin=found.origin, hint=hint))
 
     def _watch(self) -> None:
         self._guard_due = self.engine.step + max(1, _GUARD_INTERVAL_NS // self.step_ns)
@@ -225,8 +305,11 @@ class Simulation(Run):
             self.forces.forget()
         self.forces.bind()
         for resident in self._inhabitants():
-            for behaviour in resident.behaviours:
-                behaviour.reset()
+            for behaviour in tuple(resident.behaviours):
+                try:
+                    behaviour.reset()
+                except Exception as error:  # noqa: BLE001 - a plugin's own
+                    self._disable(behaviour, error)
             for handle in resident.drives.values():
                 handle.command(handle.target)
         if keep_time:

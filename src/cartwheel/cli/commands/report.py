@@ -11,6 +11,7 @@ from urllib.parse import urlsplit
 from cartwheel.cli.commands.grouping import grouped
 from cartwheel.cli.console import (
     is_terminal,
+    note,
     paint,
     print_diagnostic,
     print_warning,
@@ -133,6 +134,8 @@ class Report:
         """Something about a file."""
         if diagnostic.severity != "info" or self._verbose:
             print_diagnostic(diagnostic)
+        if diagnostic.details and self._verbose:
+            note(diagnostic.details)
 
     def ended(self, session: Session, wall: float) -> None:
         """How it went."""

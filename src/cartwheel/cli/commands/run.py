@@ -74,6 +74,7 @@ def _simulate(options: Options, access: Access, bridges: Bridges) -> None:
         bridge=options.bridge,
         allow_path=(*options.allow_path, *run_folders(_files(world, robot))),
     )
+    session.simulation.tolerant = not options.strict
     name = None
     if robot is None and options.controllers:
         raise CartwheelError(
