@@ -65,7 +65,7 @@ would have done left out.
 
 A package of your own adds plugins through the entry point group `cartwheel.plugins`; each entry
 names a subclass of `cartwheel.plugins.base.Plugin`. If a package cannot be loaded, robots that do
-not name its plugins are not affected; the reason is part of the warning about an unsupported plugin.
+not name its plugins are not affected; the warning about an unsupported plugin gives the reason.
 
 If a plugin raises an error while it runs, it is disabled: its topics and services end, its motors
 brake and its forces stop. An error message names the plugin, its model and the place of its tag;

@@ -10,6 +10,8 @@ from cartwheel.geometry import Array, Vec3
 
 TOLERANCE = 1e-3
 """Relative: files state three or four digits, and thin plates lie on the edge exactly."""
+HEAVIEST = 1e12
+"""kg, of a link; the squares of what is heavier leave the range of numbers."""
 _THINNEST = 1e-6
 """Relative: the moment of a rod about itself, which is stated as 0."""
 

@@ -11,6 +11,8 @@ from cartwheel.errors import DescriptionError, Origin
 
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\Z", re.ASCII)
 _INFINITE = re.compile(r"[+-]?inf(inity)?\Z", re.IGNORECASE)
+LARGEST = 1e15
+"""Of places, sizes and directions; squares of what is larger leave the range of numbers."""
 _TRUE = frozenset({"true", "1", "yes", "on"})
 _FALSE = frozenset({"false", "0", "no", "off"})
 
@@ -66,6 +68,11 @@ def vector(text: str, size: int, label: str, origin: Origin) -> tuple[float, ...
     if len(values) != size:
         raise DescriptionError(
             f"{label} {_quoted(text.strip())} has {len(values)} numbers, {size} are needed",
+            origin=origin,
+        )
+    if max(map(abs, values), default=0.0) > LARGEST:
+        raise DescriptionError(
+            f"{label} {_quoted(text.strip())} has a number above {LARGEST:g}, which is too large",
             origin=origin,
         )
     return values

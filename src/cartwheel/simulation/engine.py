@@ -125,8 +125,15 @@ class Engine:
         self.renderer.bind(model)
 
     def forward(self) -> None:
-        """Makes poses, contacts and forces those of the present state; changes no state."""
-        mujoco.mj_forward(self.model, self.data)
+        """Makes poses, contacts and forces those of the present state; changes no state.
+
+        Raises:
+            SimulationError: The contacts need more memory than there is.
+        """
+        try:
+            mujoco.mj_forward(self.model, self.data)
+        except mujoco.FatalError as error:
+            raise self._exhausted(error) from None
 
     def locate(self) -> None:
         """Makes poses and velocities those of the present state, and nothing else."""
@@ -152,11 +159,21 @@ class Engine:
                     self.forward()
                 mujoco.mj_Euler(self.model, self.data)
             return
-        if forwarded:
-            mujoco.mj_Euler(self.model, self.data)
-            count -= 1
-        if count:
-            mujoco.mj_step(self.model, self.data, count)
+        try:
+            if forwarded:
+                mujoco.mj_Euler(self.model, self.data)
+                count -= 1
+            if count:
+                mujoco.mj_step(self.model, self.data, count)
+        except mujoco.FatalError as error:
+            raise self._exhausted(error) from None
+
+    def _exhausted(self, error: Exception) -> SimulationError:
+        return SimulationError(
+            f"the simulation cannot go on with {self.data.ncon} contacts: "
+            f"{str(error).splitlines()[0]}",
+            hint="Do models stand inside each other?",
+        )
 
     def rewind(self, *, keep_time: bool = False) -> None:
         """Everything where it was placed, and time zero unless it shall go on."""

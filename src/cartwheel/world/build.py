@@ -17,6 +17,12 @@ from cartwheel.world.entry import ModelEntry, scoped
 from cartwheel.world.lights import add_light
 from cartwheel.world.shapes import Assets
 
+LONGEST_CHAIN = 500
+"""Links in a row: the compiler's time grows with the third power."""
+MOST_CONTACTS = 10_000
+"""At the start: beyond, one step takes seconds and the solver's memory runs out."""
+_CROWD = 60
+"""Shapes, of which no fewer can touch at too many points."""
 DEFAULT_STEP = 0.005
 """s; see ``docs/physics.md`` for how it was chosen."""
 
@@ -59,10 +65,21 @@ def build(world: WorldDescription, entries: Iterable[ModelEntry], *, xml: bool =
     Raises:
         WorldError: A model cannot be built; with the place in its file where it is known.
     """
+    entries = list(entries)
+    try:
+        return _built(world, entries, xml=xml)
+    except ValueError as error:
+        # A name that stands twice is refused as soon as it is given.
+        if not str(error).startswith("Error: "):
+            raise
+        raise _explain(str(error), entries) from None
+
+
+def _built(world: WorldDescription, entries: list[ModelEntry], *, xml: bool) -> Build:
     spec = _empty(world)
     bodies = BodyBuilder(spec, Assets(spec), spec.option.timestep)
-    entries = list(entries)
     for entry in entries:
+        _check_chain(entry)
         bodies.add(entry)
     joined = {
         frozenset((joint.parent, joint.child))
@@ -88,6 +105,7 @@ def build(world: WorldDescription, entries: Iterable[ModelEntry], *, xml: bool =
             model = spec.compile()
     except (ValueError, mujoco.FatalError) as error:
         raise _explain(str(error), entries) from None
+    _check_contacts(model, entries)
     # What has no extent is as far from rest as its speed says, and not asleep while it spins.
     model.dof_length[:] = np.maximum(model.dof_length, _SHORTEST)
     if any(model.body_treeid[model.body(name).id] < 0 for name in _felt(entries)):
@@ -106,6 +124,59 @@ def build(world: WorldDescription, entries: Iterable[ModelEntry], *, xml: bool =
         alignments=tuple(alignments),
         bounces=tuple(each for each in bounces if each is not None),
         xml=spec.to_xml() if xml else None,
+    )
+
+
+def _check_chain(entry: ModelEntry) -> None:
+    """Refuses chains of links whose matrices nobody can wait for.
+
+    Raises:
+        WorldError: With the place of the first link that is too far out.
+    """
+    description = entry.description
+    parents = {joint.child: joint.parent for joint in reversed(description.joints)}
+    depths: dict[str, int] = {"world": 0}
+    for link in description.links:
+        path: list[str] = []
+        name = link.name
+        while name not in depths and len(path) <= len(description.links):
+            path.append(name)
+            name = parents.get(name, "world")
+        depth = depths.get(name, 0)
+        for each in reversed(path):
+            depth += 1
+            depths[each] = depth
+        if depths[link.name] > LONGEST_CHAIN and len(path) <= len(description.links):
+            raise WorldError(
+                f'link "{link.name}" hangs on a chain of {depths[link.name]} links: '
+                f"at most {LONGEST_CHAIN} can be simulated",
+                origin=link.origin,
+            )
+
+
+def _check_contacts(model: mujoco.MjModel, entries: list[ModelEntry]) -> None:
+    """Refuses models that stand inside each other in such numbers that no step would end.
+
+    Raises:
+        WorldError: With the place of the model that touches most.
+    """
+    if model.ngeom < _CROWD:
+        return
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    mujoco.mj_collision(model, data)
+    if data.ncon <= MOST_CONTACTS and not data.warning.number.any():
+        return
+    touched = np.bincount(model.geom_bodyid[data.contact.geom].ravel(), minlength=model.nbody)
+    touched[0] = 0
+    body = int(np.argmax(touched))
+    owner = model.body(int(body)).name.partition("::")[0]
+    found = next((each for each in entries if each.name == owner), None)
+    raise WorldError(
+        f"the models touch at {data.ncon} points, more than the {MOST_CONTACTS} that can be "
+        f'simulated: "{owner}" alone at {int(touched[body])}',
+        origin=found.description.origin if found else None,
+        hint="Do models stand inside each other?",
     )
 
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cartwheel.description.inertia import impossibility, made_possible, principal_moments
+from cartwheel.description.inertia import HEAVIEST, impossibility, made_possible, principal_moments
 from cartwheel.description.meshes import convex_hull_input, load_mesh
 from cartwheel.description.model import (
     Box,
@@ -49,9 +49,11 @@ def judged_inertia(link: Link, *, rigid: bool, ctx: Context) -> Inertial | None:
     i = link.inertial
     if i is None:
         return None
-    if i.mass <= 0:
+    if not 0 < i.mass <= HEAVIEST:
         raise DescriptionError(
-            f'the mass of link "{link.name}" must be above 0, but is {i.mass:g}', origin=i.origin
+            f'the mass of link "{link.name}" must be above 0 and at most {HEAVIEST:g} kg, '
+            f"but is {i.mass:g}",
+            origin=i.origin,
         )
     diagonal, products = i.diagonal, i.products
     if rigid and not any((*diagonal, *products)):

@@ -39,7 +39,7 @@ _WITHOUT_COUNTERPART = (
     "particle_emitter",
 )  # fmt: skip
 
-P = TypeVar("P", Visual, Collision)
+P = TypeVar("P", bound=Visual | Collision | Light | None)
 
 
 def read_link(node: Node, ctx: Context, frames: Frames) -> Link:
@@ -82,9 +82,9 @@ def read_link(node: Node, ctx: Context, frames: Frames) -> Link:
 
     collisions = [_collision(each, ctx, place, directed) for each in node.all("collision")]
     sensors = [_sensor(each, name, place) for each in node.all("sensor")]
-    lights = [_light(each, place) for each in node.all("light")]
-    visuals = _named_apart("visual", visuals, ctx)
-    collisions = _named_apart("collision", collisions, ctx)
+    lights = named_apart("light", [_light(each, place) for each in node.all("light")], ctx)
+    visuals = named_apart("visual", visuals, ctx)
+    collisions = named_apart("collision", collisions, ctx)
     check_unique("sensor", [(s.name, s.origin) for s in sensors])
     for tag in _WITHOUT_COUNTERPART:
         for part in node.all(tag):
@@ -109,15 +109,15 @@ def read_link(node: Node, ctx: Context, frames: Frames) -> Link:
     )
 
 
-def _named_apart(kind: str, parts: Iterable[P | None], ctx: Context) -> list[P | None]:
-    """Gives a visual or collision another name where one before it has its own.
+def named_apart(kind: str, parts: Iterable[P], ctx: Context) -> list[P]:
+    """Gives a light, visual or collision another name where one before it has its own.
 
-    Gazebo Classic takes both; the first keeps the name.
+    Gazebo Classic takes both visuals and collisions; the first keeps the name.
     """
     parts = list(parts)
+    found: list[P] = []
     taken = {part.name for part in parts if part is not None}
     seen: set[str] = set()
-    found: list[P | None] = []
     for part in parts:
         mine = part
         if part is not None and part.name in seen:
@@ -125,8 +125,7 @@ def _named_apart(kind: str, parts: Iterable[P | None], ctx: Context) -> list[P |
             name = next(each for each in numbered if each not in taken)
             ctx.tell(
                 "warning",
-                f'{kind} "{part.name}" has the name of another of its link: '
-                f'it is called "{name}" here',
+                f'{kind} "{part.name}" has the name of another: it is called "{name}" here',
                 part.origin,
             )
             mine = replace(part, name=name)

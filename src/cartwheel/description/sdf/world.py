@@ -18,6 +18,7 @@ from cartwheel.description.sdf.frames import WORLD, Frames
 from cartwheel.description.sdf.harmless import HARMLESS
 from cartwheel.description.sdf.include import Included, NotThereError, open_include
 from cartwheel.description.sdf.light import read_light
+from cartwheel.description.sdf.link import named_apart
 from cartwheel.description.sdf.model import NoLinksError, read_included, read_model
 from cartwheel.description.sdf.sensors import read_plugins
 from cartwheel.description.sdf.state import apply_state
@@ -28,6 +29,9 @@ from cartwheel.errors import DescriptionError
 from cartwheel.geometry import Pose, Vec3
 
 _NOT_SIMULATED = ("actor", "population", "road")
+
+SHORTEST_STEP, LONGEST_STEP = 1e-6, 1.0
+"""s, of the physics."""
 
 
 def read_world(node: Node, ctx: Context) -> WorldDescription:
@@ -61,7 +65,9 @@ def read_world(node: Node, ctx: Context) -> WorldDescription:
     for model in models:
         with _tolerant(ctx, model.name):
             placed.append(model.describe(frames.pose(model.name, model.origin), ctx))
-    lights = [_light(each, included, frames) for each, included in light_nodes]
+    lights = named_apart(
+        "light", [_light(each, included, frames) for each, included in light_nodes], ctx
+    )
     placed, joints = join_models(node, placed, frames, ctx)
     for state in node.all("state"):
         placed, lights = apply_state(state, placed, lights, ctx)
@@ -201,8 +207,10 @@ def _physics(node: Node, ctx: Context) -> Physics:
         if step is not None:
             ode = node.require_child("ode").mark()
             ctx.tell("info", "of <ode> in <physics> only <dt> has an effect", ode.origin)
-    if step is not None and step.number() <= 0:
-        raise step.fail(f"the step must be above 0, but is {step.text}")
+    if step is not None and not SHORTEST_STEP <= step.number() <= LONGEST_STEP:
+        raise step.fail(
+            f"the step must be from {SHORTEST_STEP:g} to {LONGEST_STEP:g} s, but is {step.text}"
+        )
     rate = node.child("real_time_update_rate") or node.child("update_rate")
     return Physics(
         max_step_size=step.number() if step is not None else None,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 
 from cartwheel.description import numbers
-from cartwheel.description.inertia import impossibility, made_possible, principal_moments
+from cartwheel.description.inertia import HEAVIEST, impossibility, made_possible, principal_moments
 from cartwheel.description.meshes import load_mesh
 from cartwheel.description.model import (
     Box,
@@ -294,6 +294,8 @@ def _mesh(node: Node, kind: str, link: str, ctx: UrdfContext) -> Mesh | None:
 
 def _inertial(node: Node) -> Inertial:
     mass = node.require_child("mass").number_of("value")
+    if mass > HEAVIEST:
+        raise node.fail(f"a mass must be at most {HEAVIEST:g} kg, but is {mass:g}")
     tensor = node.child("inertia")
     values = {
         key: tensor.number_of(key, 0.0) if tensor is not None else 0.0

@@ -1,0 +1,179 @@
+"""Numbers and names at their extremes: a model that works, or an error with its place."""
+
+import random
+import re
+
+import pytest
+
+import cartwheel as cw
+from cartwheel.description import load_text
+from cartwheel.description.model import WorldDescription
+from cartwheel.errors import CartwheelError, DescriptionError, WorldError
+from tests.description.test_elements import DOCUMENTS
+
+_VALUES = ("0", "-1", "1e308", "-1e308", "1e-308", "nan", "inf", "-inf", "1e9", "1e-9")
+_NUMBER = re.compile(r'(?<=[>"\s])-?\d+\.?\d*(?:[eE][-+]?\d+)?(?=[<"\s])')
+_SAMPLE = 40
+"""Documents of each kind that are compiled and run; all of them are read."""
+
+
+def _changed(text):
+    """The document with each of its numbers at each extreme."""
+    for found in _NUMBER.finditer(text):
+        for value in _VALUES:
+            yield text[: found.start()] + value + text[found.end() :]
+
+
+def _refused(error):
+    assert error.origin is not None or "diverged" in error.message, str(error)
+
+
+@pytest.mark.parametrize("kind", DOCUMENTS)
+def test_each_number_at_its_extremes(kind, tmp_path):
+    """What is read also runs: a faulty number never ends in an error of Python's."""
+    changed = list(_changed(DOCUMENTS[kind]))
+    assert len(changed) > 10 * len(_VALUES)
+    random.Random(0).shuffle(changed)
+    ran = 0
+    for count, text in enumerate(changed):
+        try:
+            description = load_text(text, file=str(tmp_path / "r.sdf"))
+        except CartwheelError as error:
+            _refused(error)
+            continue
+        if count >= _SAMPLE:
+            continue
+        try:
+            world = description if isinstance(description, WorldDescription) else "empty"
+            with cw.World(world, lenient=True) as made:
+                if world == "empty":
+                    made.spawn(description)
+                made.run(0.02)
+                faults = [each for each in made.diagnostics if each.details]
+            assert faults == []
+            ran += 1
+        except CartwheelError as error:
+            _refused(error)
+    assert ran > 3
+
+
+_LINK = '<link name="{}"><inertial><mass>{}</mass></inertial></link>'
+_BOX = """<model name="b{}"><link name="l"><collision name="c"><geometry><box><size>1 1 1</size></box>
+</geometry></collision></link></model>"""
+
+
+def _world(inside):
+    described = load_text(f'<sdf version="1.7"><world name="w">{inside}</world></sdf>', file="w")
+    assert isinstance(described, WorldDescription)
+    return described
+
+
+@pytest.mark.parametrize("step", ["1e-12", "0", "-0.001", "1e308", "2", "9e-7"])
+def test_a_step_that_cannot_be_made(step):
+    with pytest.raises(DescriptionError, match="the step must be from 1e-06 to 1 s") as got:
+        _world(f"<physics><max_step_size>{step}</max_step_size></physics>")
+    assert str(got.value.origin) == "w:1"
+
+
+def test_lights_of_one_name():
+    world = _world('<light name="a" type="point"/>\n<light name="a" type="point"/>')
+    with cw.World(world) as made:
+        made.run(0.01)
+        (told,) = [each for each in made.diagnostics if "light" in each.message]
+    assert [light.name for light in world.lights] == ["a", "a_1"]
+    assert str(told) == 'w:2: warning: light "a" has the name of another: it is called "a_1" here'
+
+
+@pytest.mark.parametrize("form", ["sdf", "urdf"])
+def test_a_mass_that_nothing_has(form):
+    links = _LINK.format("a", "1e308") + _LINK.format("b", "1e308")
+    joint = '<joint name="j" type="fixed"><parent>a</parent><child>b</child></joint>'
+    text = f'<sdf version="1.7"><model name="m">{links}{joint}</model></sdf>'
+    if form == "urdf":
+        inertia = '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/>'
+        mass = f'<inertial><mass value="1e308"/>{inertia}</inertial>'
+        text = f'<robot name="m"><link name="a">{mass}</link></robot>'
+    with pytest.raises(DescriptionError, match=r"at most 1e\+12 kg, but is 1e\+308") as got:
+        load_text(text, file="m")
+    assert str(got.value.origin) == "m:1"
+
+
+def test_boxes_in_one_place():
+    world = _world("\n".join(_BOX.format(count) for count in range(400)))
+    with pytest.raises(WorldError, match="touch at 319200 points, more than the 10000") as got:
+        cw.World(world)
+    assert str(got.value.origin).startswith("w:")
+
+
+def test_a_few_boxes_in_one_place_come_apart():
+    world = _world("\n".join(_BOX.format(count) for count in range(5)))
+    with cw.World(world) as made:
+        made.run(0.05)
+        assert made.time == pytest.approx(0.05)
+
+
+@pytest.mark.parametrize("form", ["sdf", "urdf"])
+def test_a_chain_of_thousands_of_links(form):
+    count = 3000
+    joint = '<joint name="j{0}" type="revolute"><parent link="l{0}"/><child link="l{1}"/>'
+    joint += '<limit effort="1" velocity="1" lower="-1" upper="1"/></joint>'
+    link, ends = '<link name="l{}"/>', ('<robot name="r">', "</robot>")
+    if form == "sdf":
+        joint = '<joint name="j{0}" type="ball"><parent>l{0}</parent><child>l{1}</child></joint>'
+        ends = ('<sdf version="1.7"><model name="r">', "</model></sdf>")
+    lines = [link.format(each) for each in range(count)]
+    lines += [joint.format(each, each + 1) for each in range(count - 1)]
+    described = load_text("\n".join([*ends[:1], *lines, *ends[1:]]), file="r")
+    with (
+        cw.World("empty") as world,
+        pytest.raises(WorldError, match='link "l500" hangs on a chain of 501 links') as got,
+    ):
+        world.spawn(described)
+    assert str(got.value.origin) == "r:502"
+
+
+def test_a_chain_of_hundreds_of_links_works():
+    lines = [_LINK.format(each, 1) for each in range(200)]
+    lines += [
+        f'<joint name="j{each}" type="fixed"><parent>{each}</parent><child>{each + 1}</child></joint>'
+        for each in range(199)
+    ]
+    described = load_text(
+        f'<sdf version="1.7"><model name="r">{"".join(lines)}</model></sdf>', file="r"
+    )
+    with cw.World("empty") as world:
+        world.spawn(described)
+        world.run(0.02)
+        assert len(described.links) == 200
+
+
+_TWICE = {
+    "link": '<link name="a"/><link name="a"/>',
+    "joint": '<link name="a"/><link name="b"/><link name="c"/>'
+    '<joint name="j" type="ball"><parent>a</parent><child>b</child></joint>'
+    '<joint name="j" type="ball"><parent>b</parent><child>c</child></joint>',
+    "frame": '<link name="a"/><frame name="f"/><frame name="f"/>',
+    "visual": '<link name="a">' + 2 * '<visual name="v"><geometry><sphere><radius>1</radius>'
+    "</sphere></geometry></visual>" + "</link>",
+    "collision": '<link name="a">' + 2 * '<collision name="v"><geometry><sphere><radius>1</radius>'
+    "</sphere></geometry></collision>" + "</link>",
+    "sensor": '<link name="a">' + 2 * '<sensor name="s" type="imu"/>' + "</link>",
+    "light": '<link name="a">' + 2 * '<light name="s" type="point"/>' + "</link>",
+    "plugin": '<link name="a"/>' + 2 * '<plugin name="p" filename="libgazebo_ros_p3d.so">'
+    "<bodyName>a</bodyName></plugin>",
+    "model": '<link name="a"/>' + 2 * '<model name="m"><link name="a"/></model>',
+}
+
+
+@pytest.mark.parametrize("kind", _TWICE)
+def test_a_name_that_stands_twice(kind):
+    text = (
+        f'<sdf version="1.7"><world name="w"><model name="r">{_TWICE[kind]}</model></world></sdf>'
+    )
+    try:
+        with cw.World(load_text(text, file="w")) as world:
+            world.run(0.01)
+            assert world.time > 0
+    except CartwheelError as error:
+        assert error.origin is not None
+        assert re.search("twice|name of another|already", error.message)
