@@ -68,6 +68,8 @@ class Make:
 
     def __init__(self) -> None:
         self._worlds: list[cw.World] = []
+        self.expects_faults = False
+        """Whether plugins are to raise errors."""
 
     def world(
         self,
@@ -212,6 +214,9 @@ class Make:
     def close(self) -> None:
         for world in self._worlds:
             world.close()
+        # A plugin that raises an error is disabled, and the run goes on: here it is a failure.
+        faults = [each.details for world in self._worlds for each in world.diagnostics]
+        assert self.expects_faults or not any(faults), "\n".join(faults)
 
 
 @pytest.fixture

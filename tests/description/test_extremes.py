@@ -4,12 +4,12 @@ import random
 import re
 
 import pytest
+from tests.description.test_elements import DOCUMENTS
 
 import cartwheel as cw
 from cartwheel.description import load_text
 from cartwheel.description.model import WorldDescription
 from cartwheel.errors import CartwheelError, DescriptionError, WorldError
-from tests.description.test_elements import DOCUMENTS
 
 _VALUES = ("0", "-1", "1e308", "-1e308", "1e-308", "nan", "inf", "-inf", "1e9", "1e-9")
 _NUMBER = re.compile(r'(?<=[>"\s])-?\d+\.?\d*(?:[eE][-+]?\d+)?(?=[<"\s])')
@@ -58,8 +58,8 @@ def test_each_number_at_its_extremes(kind, tmp_path):
 
 
 _LINK = '<link name="{}"><inertial><mass>{}</mass></inertial></link>'
-_BOX = """<model name="b{}"><link name="l"><collision name="c"><geometry><box><size>1 1 1</size></box>
-</geometry></collision></link></model>"""
+_BOX = """<model name="b{}"><link name="l"><collision name="c"><geometry><box><size>1 1 1</size>
+</box></geometry></collision></link></model>"""
 
 
 def _world(inside):
@@ -135,7 +135,8 @@ def test_a_chain_of_thousands_of_links(form):
 def test_a_chain_of_hundreds_of_links_works():
     lines = [_LINK.format(each, 1) for each in range(200)]
     lines += [
-        f'<joint name="j{each}" type="fixed"><parent>{each}</parent><child>{each + 1}</child></joint>'
+        f'<joint name="j{each}" type="fixed"><parent>{each}</parent>'
+        f"<child>{each + 1}</child></joint>"
         for each in range(199)
     ]
     described = load_text(

@@ -274,9 +274,18 @@ def test_joint_effort_stays_within_the_joints_limit(make, gazebo):
 def test_none_cost_nothing(make, gazebo):
     api = floating(make, gazebo)
     push(api, (1.0, 0, 0), last=0.1)
+    served = []
+    forces = api.simulation.forces
+    serve = forces.serve
+    forces.serve = lambda: served.append(api.simulation.time_ns) or serve()
     api.world.run(0.2)
-    assert not api.simulation.forces.active
+    assert not forces.active
     assert not api.simulation.data.xfrc_applied.any()
+    # It is asked while something pushes, and not once more.
+    before = len(served)
+    assert before >= 2
+    api.world.run(0.2)
+    assert len(served) == before
 
 
 def test_refusals(make, gazebo):

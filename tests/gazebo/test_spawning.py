@@ -245,7 +245,7 @@ def test_a_light(make, api):
     assert api.done("get_light_properties", light_name="lamp").diffuse.g == pytest.approx(0.5)
 
 
-def test_many_comments_cost_nothing(api):
+def test_a_hundred_comments_do_not_hang_the_search_for_a_light(api):
     """Looking for a light must not try every way to part a hundred comments."""
     text = SDF.replace("<sdf", "<!-- a -->" * 100 + "<sdf").replace(
         "<model", "<!-- b -->" * 100 + "<model"

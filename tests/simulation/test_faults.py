@@ -96,7 +96,8 @@ class _Entry:
 
 
 @pytest.fixture
-def installed(monkeypatch):
+def installed(monkeypatch, make):
+    make.expects_faults = True
     entries = []
     monkeypatch.setattr(importlib.metadata, "entry_points", lambda group: list(entries))
 
@@ -254,6 +255,7 @@ def test_a_tolerant_run_reports_subscribers_and_commands_once():
 
 def test_a_task_of_the_world_that_fails_is_ended(make):
     world = make.world()
+    make.expects_faults = True
     calls = []
 
     def look():
