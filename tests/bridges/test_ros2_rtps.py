@@ -120,6 +120,8 @@ def test_reliable_samples_arrive_in_order_over_a_network_that_loses(loss: float,
         now += 1e6
         writer.remind(now)
         carry()
+        reader.remind()
+        carry()
         if len(taken) == len(sent):
             break
     padding = b"\0" * (-size % 4)

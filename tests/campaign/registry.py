@@ -8,6 +8,9 @@ from tests.campaign.target import Target
 
 MODULES: dict[str, tuple[str, ...]] = {
     "fuzz_descriptions": ("urdf", "sdf", "world", "xacro"),
+    "fuzz_cdr": ("cdr",),
+    "fuzz_rtps": ("rtps",),
+    "fuzz_zenoh": ("zenoh",),
     "fuzz_meshes": ("stl", "obj", "dae", "glb", "ply"),
     "fuzz_pictures": ("pictures",),
     "fuzz_recordings": ("bag", "mcap", "db3", "db3-tables", "bag2-folder", "definitions"),

@@ -13,7 +13,7 @@ import time
 from collections import deque
 from collections.abc import Callable
 from concurrent.futures import Future
-from typing import TypeVar
+from typing import Protocol, TypeVar
 
 from cartwheel.calls import answered
 
@@ -28,6 +28,16 @@ _write.restype = ctypes.c_ssize_t
 
 T = TypeVar("T")
 Ready = Callable[[int], None]
+
+
+class Watchable(Protocol):
+    """A socket, or another file that can be waited for."""
+
+    def fileno(self) -> int:
+        """Its number."""
+
+    def close(self) -> None:
+        """Ends it."""
 
 
 class Loop:
@@ -92,14 +102,14 @@ class Loop:
         """Runs a function later."""
         heapq.heappush(self._timers, (time.monotonic() + seconds, next(self._order), function))
 
-    def watch(self, sock: socket.socket, events: int, ready: Ready) -> None:
+    def watch(self, sock: Watchable, events: int, ready: Ready) -> None:
         """Calls `ready` with those of `events` that a socket is ready for."""
         try:
             self._selector.modify(sock, events, ready)
         except KeyError:
             self._selector.register(sock, events, ready)
 
-    def forget(self, sock: socket.socket) -> None:
+    def forget(self, sock: Watchable) -> None:
         """Watches a socket no longer."""
         with contextlib.suppress(KeyError, ValueError):
             self._selector.unregister(sock)

@@ -33,6 +33,8 @@ _HEADER = 16
 """Bytes before a request's and a response's fields in rmw_cyclonedds: who asks, and which."""
 _PATIENCE, _PAUSE = 2.0, 0.02
 """s that a response waits for the reader of it to be found."""
+_PENDING = 100
+"""Requests and responses of a service that may wait for that at a time."""
 _HASH = re.compile(rb"typehash=(\w+)", re.ASCII)
 _CALLS = 100
 """Responses that are kept at least: who asks much must not lose any."""
@@ -264,6 +266,8 @@ class _Service:
         self._dds = dds
         self._loop = dds.loop
         self._served = served
+        self._name = name
+        self._pending = 0
         type_ = served[0].type
         identity = ".".join(f"{byte:02x}" for byte in os.urandom(16))
         user_data = f"serviceid={identity};".encode() + _hash(type_.hash)
@@ -283,7 +287,7 @@ class _Service:
         served = self._versions_of(taken.writer, readers)
         if len(served) > 1 and not readers and patience > 0:
             # The reader of the response tells which one it is, and may be found later.
-            self._loop.after(_PAUSE, lambda: self._take(taken, patience - _PAUSE))
+            self._again(lambda: self._take(taken, patience - _PAUSE))
             return
         self._answer(taken, served[0])
 
@@ -331,7 +335,20 @@ class _Service:
             self._writer.write(data, inline=inline, to=to)
         else:
             # The reader of the response may be found after the writer of the request.
-            self._loop.after(_PAUSE, lambda: self._send(data, inline, to, patience - _PAUSE))
+            self._again(lambda: self._send(data, inline, to, patience - _PAUSE))
+
+    def _again(self, function: Callable[[], None]) -> None:
+        """Tries it again soon, unless too many wait for that."""
+        if self._pending >= _PENDING:
+            self._dds._tell(f"more than {_PENDING} calls of {self._name} wait for their caller")
+            return
+        self._pending += 1
+
+        def run() -> None:
+            self._pending -= 1
+            function()
+
+        self._loop.after(_PAUSE, run)
 
 
 def _qos(profile: Profile) -> EndpointQos:

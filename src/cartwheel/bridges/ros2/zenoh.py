@@ -20,7 +20,7 @@ from typing import Any
 from cartwheel.bridges.loop import Loop
 from cartwheel.bridges.ros2.middleware import Answer, Profile, Served
 from cartwheel.bridges.ros2.rtps.network import Reach, domain_id
-from cartwheel.bridges.ros2.zenoh_tokens import NodeToken, Token
+from cartwheel.bridges.ros2.zenoh_tokens import NodeToken, Token, published
 from cartwheel.errors import CartwheelError
 from cartwheel.messages.ros2_types import Ros2Type
 
@@ -29,6 +29,14 @@ PORT = 7447
 _INSTALL = "pip install 'cartwheel[ros2]'"
 _ENDING = 1.0
 """s that threads which are ending are waited for."""
+_LONGEST_ID = 16
+"""Bytes by which a caller is known."""
+_TOKENS = 20_000
+"""Publishers of others that are known at a time."""
+_GATHER = 0.03
+"""s in which changes of others are gathered."""
+_ARRIVALS, _ARRIVING = 2000, 128 << 20
+"""Messages and calls, and their bytes, that wait for the loop."""
 _NOTICE = 0.5
 """s that a router may take to answer."""
 
@@ -75,7 +83,9 @@ class Zenoh:
         """Zenoh's, one for each function of ours that it calls."""
         self._others: dict[str, str] = {}
         """Topics that others publish, by their tokens."""
+        self._told_due = False
         self.on_others: Callable[[], None] = lambda: None
+        self.arrivals = Arrivals(loop, tell)
 
     @property
     def description(self) -> str:
@@ -150,7 +160,7 @@ class Zenoh:
 
         def taken(sample: Any) -> None:
             data = sample.payload.to_bytes()
-            self.loop.post(lambda: take(data))
+            self.arrivals.post(len(data), lambda: take(data))
 
         token = self.token("MS", topic, type_.dds, type_.hash, profile, node=node)
         key = self.key(topic, type_.dds, type_.hash)
@@ -202,23 +212,29 @@ class Zenoh:
     def _seen(self, sample: Any) -> None:
         """A token came or went; on one of Zenoh's threads."""
         key = str(sample.key_expr)
-        parts = key.split("/")
-        if len(parts) < 10 or parts[2] == self._zid or parts[5] != "MP":
+        found = published(key)
+        # Not another simulation's: the two would make way for each other, in turns.
+        if found is None or found.session == self._zid or found.node == self._node:
             return
-        if parts[8] == self._node:
-            # Another simulation: the two would make way for each other, in turns.
-            return
-        topic = parts[9].replace("%", "/")
+        topic = found.topic
         there = sample.kind == self._zenoh.SampleKind.PUT
 
         def change() -> None:
-            if there:
+            if not there:
+                self._others.pop(key, None)
+            elif len(self._others) < _TOKENS:
                 self._others[key] = topic
             else:
-                self._others.pop(key, None)
-            self.on_others()
+                self._tell(f"more than {_TOKENS} publishers of others: not all are known")
+            if not self._told_due:
+                self._told_due = True
+                self.loop.after(_GATHER, self._tell_of_others)
 
-        self.loop.post(change)
+        self.arrivals.post(len(key), change)
+
+    def _tell_of_others(self) -> None:
+        self._told_due = False
+        self.on_others()
 
     # -- the session
 
@@ -262,6 +278,46 @@ class Zenoh:
         for name, value in settings.items():
             made.insert_json5(name, json.dumps(value))
         return made
+
+
+class Arrivals:
+    """What comes on Zenoh's threads, on its way to the loop's: no more than fits.
+
+    Args:
+        loop: Takes it.
+        tell: Takes a warning.
+    """
+
+    def __init__(self, loop: Loop, tell: Callable[[str], None]) -> None:
+        self._loop = loop
+        self._tell = tell
+        self._lock = threading.Lock()
+        self._count = self._bytes = 0
+
+    def post(self, size: int, function: Callable[[], None]) -> bool:
+        """Runs a function on the loop's thread; whether there was room for it.
+
+        Args:
+            size: Bytes that it holds.
+            function: What to run.
+        """
+        with self._lock:
+            full = self._count >= _ARRIVALS or (self._count and self._bytes + size > _ARRIVING)
+            if not full:
+                self._count += 1
+                self._bytes += size
+        if full:
+            self._tell("messages come faster than they can be read: some are dropped")
+            return False
+
+        def run() -> None:
+            with self._lock:
+                self._count -= 1
+                self._bytes -= size
+            function()
+
+        self._loop.post(run)
+        return True
 
 
 class _Declared:
@@ -367,21 +423,30 @@ class _Service:
         """On one of Zenoh's threads."""
         data = query.payload.to_bytes() if query.payload is not None else b""
         stamp = query.attachment.to_bytes() if query.attachment is not None else b""
-        self._zenoh.loop.post(lambda: self._take(answer, query, data, stamp))
-
-    @staticmethod
-    def _take(answer: Answer, query: Any, data: bytes, stamp: bytes) -> None:
-        if len(stamp) < 16:
-            query.drop()
-            return
-        (number,) = struct.unpack_from("<q", stamp)
-
-        def reply(response: bytes) -> None:
-            attachment = struct.pack("<qq", number, time.time_ns()) + stamp[16:]
-            query.reply(query.key_expr, response, attachment=attachment)
+        if not self._zenoh.arrivals.post(len(data), lambda: take_query(answer, query, data, stamp)):
             query.drop()
 
-        answer(data, reply)
+
+def take_query(answer: Answer, query: Any, data: bytes, stamp: bytes) -> None:
+    """Answers a call, or ends it where its attachment is not that of one.
+
+    Args:
+        answer: Of the service.
+        query: Zenoh's.
+        data: The request.
+        stamp: Number of the call, its time, and who calls, behind a byte that counts its bytes.
+    """
+    if not 17 <= len(stamp) <= 17 + _LONGEST_ID or len(stamp) != 17 + stamp[16]:
+        query.drop()
+        return
+    (number,) = struct.unpack_from("<q", stamp)
+
+    def reply(response: bytes) -> None:
+        attachment = struct.pack("<qq", number, time.time_ns()) + stamp[16:]
+        query.reply(query.key_expr, response, attachment=attachment)
+        query.drop()
+
+    answer(data, reply)
 
 
 def _answers(port: int) -> bool:

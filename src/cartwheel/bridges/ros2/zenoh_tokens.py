@@ -6,9 +6,15 @@ Source: rmw_zenoh's design document.
 from __future__ import annotations
 
 import hashlib
+from dataclasses import dataclass
 from typing import Any
 
 from cartwheel.bridges.ros2.middleware import Profile
+
+_LONGEST_KEY = 4096
+"""Characters; a type, a topic and a node have names of 255 at most."""
+_PARTS = 10
+"""Of an endpoint's key at least."""
 
 
 class NodeToken:
@@ -80,6 +86,24 @@ class Token:
         """It is gone."""
         self._token.undeclare()
         self._node.leave()
+
+
+@dataclass(frozen=True, slots=True)
+class Published:
+    """A topic that somebody publishes."""
+
+    session: str
+    node: str
+    """Its name without its namespace."""
+    topic: str
+
+
+def published(key: str) -> Published | None:
+    """What a token's key tells of a publisher; None where it is something else's."""
+    parts = key.split("/")
+    if len(key) > _LONGEST_KEY or len(parts) < _PARTS or parts[5] != "MP":
+        return None
+    return Published(session=parts[2], node=parts[8], topic=parts[9].replace("%", "/"))
 
 
 def _mangled(name: str) -> str:

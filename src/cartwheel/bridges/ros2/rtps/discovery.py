@@ -24,6 +24,13 @@ _ENDPOINT_LOCATOR, _HISTORY, _PARTICIPANT_GUID, _ENDPOINTS = 0x2F, 0x40, 0x50, 0
 _ENDPOINT_GUID, _ENTITY_NAME, _KEY_HASH, _STATUS, _REPRESENTATION = 0x5A, 0x62, 0x70, 0x71, 0x73
 RELATED, RELATED_FASTDDS = 0x0083, 0x800F
 """Which sample another one answers: the standard's parameter, and Fast DDS's own."""
+_LONGEST_NAME = 1024
+"""Bytes of a topic's or type's name; Fast DDS has 255 at most."""
+_LONGEST_DATA = 1024
+"""Bytes of an endpoint's user data, of which ROS uses some 200."""
+LONGEST_LEASE = 100.0
+"""s without a sign of life after which anybody is taken for gone, whatever it says; others announce
+themselves every 3 to 30 s. Source: DDSI-RTPS's default."""
 _FOREVER_SECONDS = 0x7FFFFFFF
 _FOREVER = struct.pack("<iI", _FOREVER_SECONDS, 0xFFFFFFFF)
 _UDP4 = 1
@@ -214,12 +221,12 @@ def decode_participant(payload: bytes) -> ParticipantData:
     found = _decode(payload)
     order = _order(payload)
     guid = _first(found, _PARTICIPANT_GUID, 16)
-    lease = _duration(found[_LEASE][0], order) if _LEASE in found else 100.0
+    lease = _duration(found[_LEASE][0], order) if _LEASE in found else LONGEST_LEASE
     return ParticipantData(
         prefix=guid[:12],
         meta=_locators(found.get(_META_LOCATOR, []), order),
         user=_locators(found.get(_USER_LOCATOR, []), order),
-        lease=max(1.0, lease),
+        lease=min(max(1.0, lease), LONGEST_LEASE),
         vendor=found.get(_VENDOR, [b"\0\0"])[0][:2],
     )
 
@@ -249,12 +256,13 @@ def decode_endpoint(payload: bytes, *, writer: bool) -> Endpoint:
         ]
         liveliness = found.get(_LIVELINESS, [b""])[0]
         topic, type_ = (_text(_first(found, name, 5), order) for name in (_TOPIC, _TYPE))
+        guid = _first(found, _ENDPOINT_GUID, 16)
     except (struct.error, UnicodeDecodeError) as error:
         raise MalformedError(str(error)) from None
     user_data = found.get(_USER_DATA, [b"\0\0\0\0"])[0]
     length = int.from_bytes(user_data[:4], "little" if order == "<" else "big")
     return Endpoint(
-        guid=_first(found, _ENDPOINT_GUID, 16),
+        guid=guid,
         topic=topic,
         type=type_,
         qos=EndpointQos(
@@ -265,7 +273,7 @@ def decode_endpoint(payload: bytes, *, writer: bool) -> Endpoint:
             lease=_duration(liveliness[4:], order),
             lifespan=_duration(found.get(_LIFESPAN, [b""])[0], order),
         ),
-        user_data=user_data[4 : 4 + length],
+        user_data=user_data[4 : 4 + min(length, _LONGEST_DATA)],
         locators=_locators(found.get(_ENDPOINT_LOCATOR, []), order),
     )
 
@@ -310,6 +318,8 @@ def _duration(value: bytes, order: str) -> float:
 
 def _text(value: bytes, order: str) -> str:
     (length,) = struct.unpack_from(f"{order}I", value)
+    if length > min(_LONGEST_NAME, len(value) - 4):
+        raise MalformedError("a text is longer than what holds it, or than any name")
     return value[4 : 4 + max(0, length - 1)].decode()
 
 

@@ -18,7 +18,8 @@ GROUP = "239.255.0.1"
 LOOPBACK = "127.0.0.1"
 _BASE, _PER_DOMAIN, _PER_PARTICIPANT, _UNICAST = 7400, 250, 2, 10
 _LAST_DOMAIN = 232
-_PARTICIPANTS = 120
+PARTICIPANTS = 120
+"""On one computer: as many have ports."""
 _PEERS = 32
 """Participants on a computer that are looked for one by one."""
 _BUFFER = 8 << 20
@@ -168,7 +169,7 @@ class Network:
         sock.setblocking(False)
         for option in (socket.SO_RCVBUF, socket.SO_SNDBUF):
             sock.setsockopt(socket.SOL_SOCKET, option, _BUFFER)
-        for number in range(_PARTICIPANTS):
+        for number in range(PARTICIPANTS):
             port = base + _UNICAST + _PER_PARTICIPANT * number
             try:
                 sock.bind((host, port))

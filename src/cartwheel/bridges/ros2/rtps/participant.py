@@ -6,11 +6,13 @@ import os
 import socket
 import struct
 import time
-from collections.abc import Callable, Sequence
+from collections import Counter, OrderedDict
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, field, replace
 
 from cartwheel.bridges.loop import READ, Loop
 from cartwheel.bridges.ros2.rtps import discovery, wire
+from cartwheel.bridges.ros2.rtps.alarm import Alarm
 from cartwheel.bridges.ros2.rtps.discovery import (
     Address,
     Endpoint,
@@ -19,8 +21,10 @@ from cartwheel.bridges.ros2.rtps.discovery import (
     decode_endpoint,
     decode_participant,
 )
-from cartwheel.bridges.ros2.rtps.network import Network, Reach
+from cartwheel.bridges.ros2.rtps.network import LOOPBACK, PARTICIPANTS, Network, Reach
+from cartwheel.bridges.ros2.rtps.outbox import Outbox
 from cartwheel.bridges.ros2.rtps.reader import Reader, Taken
+from cartwheel.bridges.ros2.rtps.room import Room
 from cartwheel.bridges.ros2.rtps.wire import Guid, MalformedError, Prefix, Received
 from cartwheel.bridges.ros2.rtps.writer import Writer
 
@@ -29,11 +33,27 @@ _ANNOUNCE_FIRST, _ANNOUNCE = (0.0, 0.1, 0.3, 0.6, 1.0), 3.0
 _AGAIN = (0.05, 0.1, 0.2, 0.4, 0.8)
 """s after which one who is new is told of us again: its program may hear us before it listens."""
 _TICK = 0.05
-_PARTICIPANTS = 256
+_PARTICIPANTS = 512
+"""Others, on all computers; on each of them `network.PARTICIPANTS`."""
+_UNANSWERED = 10.0
+"""s that one may take to answer. A real one answers at once, or else is found again."""
+_FRESH = 1.0
+"""s for which one that has not answered yet does not make way for another."""
+_EXCHANGED = 200
+"""Participants that make way for others in a second."""
+_PROVED = 512
+"""Participants that are remembered because they answered us, though there was no place for them."""
 _ENDPOINTS = 2000
 """Of one participant: what no ROS program comes near to."""
+_ENDPOINTS_IN_ALL = 20_000
+"""Of all: 60 MB at most. Two hundred nodes have some 8,000."""
+_MATCHES = 1000
+"""Endpoints of others that are connected with one of ours."""
 _AT_ONCE = 64
-"""Datagrams taken before anything else is done."""
+_AT_ONCE_SECONDS = 0.005
+"""Datagrams that are taken before anything else is done, and s that this may take."""
+_GATHER = 0.03
+"""s in which changes of others' endpoints are gathered."""
 _BUILTIN = EndpointQos(reliable=True, transient_local=True, depth=5000)
 
 
@@ -43,9 +63,13 @@ class _Remote:
 
     data: ParticipantData
     address: Address
+    host: str
+    """Where its datagrams come from; this computer has one name."""
+    found: float
     heard: float
     knows_us: bool = False
-    """Whether it has answered."""
+    """Whether it has answered. Until then it gets no samples and its endpoints are not connected:
+    it may have been made up, to have us send to somebody else or to fill our memory."""
     writers: dict[Guid, Endpoint] = field(default_factory=dict)
     readers: dict[Guid, Endpoint] = field(default_factory=dict)
 
@@ -99,6 +123,18 @@ class Participant:
             *self._sample_of_self(discovery.encode_participant(self._data, domain=domain)),
         )
         self._remotes: dict[Prefix, _Remote] = {}
+        self._hosts: Counter[str] = Counter()
+        """How many of them are on each computer."""
+        self._proved: OrderedDict[Prefix, None] = OrderedDict()
+        """Those that have answered us, though they were not known at that time."""
+        self._exchanged = 0.0
+        """Participants that made way for others, less those of which a second has passed."""
+        self._count = 0
+        """Endpoints of others."""
+        self._told_due = False
+        self._room = Room()
+        self._alarm = Alarm(loop)
+        self._outbox = Outbox(self._send, self._alarm.after)
         self._writers: dict[bytes, Writer] = {}
         self._readers: dict[bytes, Reader] = {}
         self._next_entity = 1
@@ -112,6 +148,7 @@ class Participant:
 
     def start(self) -> None:
         """Begins; on the loop's thread."""
+        self._alarm.start(self._outbox.tick)
         for sock in (self._network.unicast, self._network.multicast):
             if sock is not None:
                 self._loop.watch(sock, READ, lambda _, sock=sock: self._receive(sock))  # type: ignore[misc]
@@ -138,6 +175,7 @@ class Participant:
         for sock in (self._network.unicast, self._network.multicast):
             if sock is not None:
                 self._loop.forget(sock)
+        self._alarm.close()
         self._network.close()
 
     # -- endpoints
@@ -145,11 +183,12 @@ class Participant:
     def writer(self, topic: str, type_: str, qos: EndpointQos, *, user_data: bytes = b"") -> Writer:
         """A new writer."""
         endpoint = self._endpoint(b"\x03", topic, type_, qos, user_data)
-        writer = self._writers[endpoint.guid[12:]] = Writer(endpoint, self._send)
+        writer = self._writers[endpoint.guid[12:]] = self._made_writer(endpoint)
         self._publications.write(discovery.encode_endpoint(endpoint))
         for remote in self._remotes.values():
-            for other in remote.readers.values():
-                self._match_reader(writer, other, remote)
+            if remote.knows_us:
+                for other in remote.readers.values():
+                    self._match_reader(writer, other, remote)
         return writer
 
     def reader(
@@ -163,11 +202,13 @@ class Participant:
     ) -> Reader:
         """A new reader."""
         endpoint = self._endpoint(b"\x04", topic, type_, qos, user_data)
-        reader = self._readers[endpoint.guid[12:]] = Reader(endpoint, self._send, take)
+        reader = Reader(endpoint, self._send, take, room=self._room)
+        self._readers[endpoint.guid[12:]] = reader
         self._subscriptions.write(discovery.encode_endpoint(endpoint))
         for remote in self._remotes.values():
-            for other in remote.writers.values():
-                self._match_writer(reader, other, remote)
+            if remote.knows_us:
+                for other in remote.writers.values():
+                    self._match_writer(reader, other, remote)
         return reader
 
     def remove(self, endpoint: Writer | Reader) -> None:
@@ -197,12 +238,15 @@ class Participant:
 
     def _builtin_writer(self, entity: bytes) -> Writer:
         endpoint = Endpoint(guid=self.prefix + entity, topic="", type="", qos=_BUILTIN)
-        writer = self._writers[entity] = Writer(endpoint, self._send)
+        writer = self._writers[entity] = self._made_writer(endpoint)
         return writer
+
+    def _made_writer(self, endpoint: Endpoint) -> Writer:
+        return Writer(endpoint, self._send, outbox=self._outbox)
 
     def _builtin_reader(self, entity: bytes, take: Callable[[Taken], None]) -> None:
         endpoint = Endpoint(guid=self.prefix + entity, topic="", type="", qos=_BUILTIN)
-        self._readers[entity] = Reader(endpoint, self._send, take)
+        self._readers[entity] = Reader(endpoint, self._send, take, room=self._room)
 
     # -- time
 
@@ -216,7 +260,8 @@ class Participant:
         self._announce()
         now = time.monotonic()
         for prefix, remote in list(self._remotes.items()):
-            if now - remote.heard > remote.data.lease:
+            made_up = not remote.knows_us and now - remote.found > _UNANSWERED
+            if made_up or now - remote.heard > remote.data.lease:
                 self._lose(prefix)
             else:
                 # It may be where no announcement gets.
@@ -229,8 +274,11 @@ class Participant:
         if self._closed:
             return
         now = time.monotonic()
+        self._exchanged = max(0.0, self._exchanged - _EXCHANGED * _TICK)
         for writer in self._writers.values():
             writer.remind(now)
+        for reader in self._readers.values():
+            reader.remind()
         self._loop.after(_TICK, self._tick)
 
     # -- datagrams
@@ -244,7 +292,10 @@ class Participant:
         return True
 
     def _receive(self, sock: socket.socket) -> None:
+        end = time.monotonic() + _AT_ONCE_SECONDS
         for _ in range(_AT_ONCE):
+            if time.monotonic() > end:
+                return
             try:
                 data, (host, _port) = sock.recvfrom(65536)
             except OSError:
@@ -262,6 +313,10 @@ class Participant:
         remote = self._remotes.get(received.prefix)
         if remote is not None:
             remote.heard = time.monotonic()
+        elif received.to is not None:
+            self._proved[received.prefix] = None
+            if len(self._proved) > _PROVED:
+                self._proved.popitem(last=False)
         content = received.content
         if isinstance(content, wire.Data):
             if content.writer == discovery.SPDP_WRITER:
@@ -282,8 +337,8 @@ class Participant:
             writer = self._writers.get(content.writer)
             if writer is None:
                 return
-            if remote is not None:
-                remote.knows_us = True
+            if remote is not None and received.to is not None and not remote.knows_us:
+                self._believe(remote)
             if isinstance(content, wire.Acknack):
                 writer.take_acknack(received.prefix + content.reader, content)
             else:
@@ -311,11 +366,15 @@ class Participant:
 
     def _found_participant(self, data: wire.Data, prefix: Prefix, host: str) -> None:
         if discovery.is_disposal(data.inline):
+            gone = self._remotes.get(prefix)
             guid = discovery.key_of(data.inline, data.payload)
-            self._lose(guid[:12] if guid else prefix)
+            # Nobody says farewell for others.
+            here = LOOPBACK if self._network.is_own(host) else host
+            if gone is not None and gone.host == here and (guid is None or guid[:12] == prefix):
+                self._lose(prefix)
             return
         told = decode_participant(data.payload)
-        if told.prefix == self.prefix or not told.meta:
+        if told.prefix != prefix or not told.meta:
             return
         domain = discovery.domain_of(data.payload)
         if domain is not None and domain != self._domain:
@@ -324,17 +383,61 @@ class Participant:
         if known is not None:
             known.heard = time.monotonic()
             return
-        if len(self._remotes) >= _PARTICIPANTS:
-            self._tell(f"more than {_PARTICIPANTS} other participants: the rest is not served")
+        place = LOOPBACK if self._network.is_own(host) else host
+        if not self._has_place(told.prefix, place):
             return
-        remote = _Remote(told, self._nearest(told.meta, host), time.monotonic())
-        remote.data = replace(told, user=told.user or told.meta)
+        now = time.monotonic()
+        told = replace(told, user=told.user or told.meta)
+        remote = _Remote(told, self._nearest(told.meta, host), place, now, now)
         self._remotes[told.prefix] = remote
+        self._hosts[place] += 1
         # Before what follows, so that it knows whose that is.
         self._send((self._announcement,), remote.address)
         self._greet(remote)
         for wait in _AGAIN:
             self._loop.after(wait, lambda: self._tell_again(remote))
+
+    def _has_place(self, prefix: Prefix, host: str) -> bool:
+        """Whether one more can be taken, in whose favour one that has not answered may go."""
+        full = self._hosts.get(host, 0) >= PARTICIPANTS
+        if not full and len(self._remotes) < _PARTICIPANTS:
+            return True
+        if self._exchanged < _EXCHANGED:
+            self._exchanged += 1
+            remotes = self._remotes.values()
+            silent = (one for one in remotes if not one.knows_us and (one.host == host or not full))
+            oldest = next(silent, None)
+            if oldest is not None and (
+                prefix in self._proved or time.monotonic() - oldest.found > _FRESH
+            ):
+                self._lose(oldest.data.prefix)
+                return True
+        self._tell(
+            f"more than {PARTICIPANTS} participants on {host}, or {_PARTICIPANTS} in all: "
+            "not all are served"
+        )
+        return False
+
+    def _believe(self, remote: _Remote) -> None:
+        """One has answered: what it told of its endpoints counts from now on."""
+        remote.knows_us = True
+        for other in remote.writers.values():
+            for reader in list(self._readers.values()):
+                self._match_writer(reader, other, remote)
+        for other in remote.readers.values():
+            for writer in list(self._writers.values()):
+                self._match_reader(writer, other, remote)
+        self._others_changed()
+
+    def _others_changed(self) -> None:
+        if not self._told_due:
+            self._told_due = True
+            self._loop.after(_GATHER, self._tell_of_others)
+
+    def _tell_of_others(self) -> None:
+        self._told_due = False
+        if not self._closed:
+            self.on_endpoints()
 
     def _tell_again(self, remote: _Remote) -> None:
         if not remote.knows_us and self._remotes.get(remote.data.prefix) is remote:
@@ -348,7 +451,7 @@ class Participant:
         ):
             guid = remote.data.prefix
             theirs = Endpoint(guid=guid + other, topic="", type="", qos=_BUILTIN)
-            self._writers[entity].match(theirs, remote.address)
+            self._writers[entity].match(theirs, remote.address, proved=False)
             theirs = Endpoint(guid=guid + entity, topic="", type="", qos=_BUILTIN)
             self._readers[other].match(theirs, remote.address)
 
@@ -356,16 +459,32 @@ class Participant:
         remote = self._remotes.pop(prefix, None)
         if remote is None:
             return
+        self._count -= len(remote.writers) + len(remote.readers)
+        self._hosts[remote.host] -= 1
+        if not self._hosts[remote.host]:
+            del self._hosts[remote.host]
+        if not remote.knows_us:
+            for one in (self._publications, self._subscriptions):
+                for guid in [each for each in one.proxies if each[:12] == prefix]:
+                    one.unmatch(guid)
+            for entity in (discovery.PUBLICATIONS_READER, discovery.SUBSCRIPTIONS_READER):
+                reader = self._readers[entity]
+                for guid in [each for each in reader.proxies if each[:12] == prefix]:
+                    reader.unmatch(guid)
+            return
         for writer in self._writers.values():
             for guid in [one for one in writer.proxies if one[:12] == prefix]:
                 writer.unmatch(guid)
         for reader in self._readers.values():
             for guid in [one for one in reader.proxies if one[:12] == prefix]:
                 reader.unmatch(guid)
-        self.on_endpoints()
+        self._others_changed()
 
     def _nearest(self, addresses: Sequence[Address], host: str) -> Address:
-        """Where its datagrams come from, if that is among a participant's addresses."""
+        """One of a participant's addresses that is where its datagrams come from.
+
+        Never another: nobody can have us send to whom it names.
+        """
         for address in addresses:
             if address[0] == host:
                 return address
@@ -373,7 +492,7 @@ class Participant:
             for address in addresses:
                 if self._network.is_own(address[0]):
                     return address
-        return addresses[0]
+        return host, addresses[0][1]
 
     def _found_writer(self, taken: Taken) -> None:
         self._found(taken, are_writers=True)
@@ -390,40 +509,56 @@ class Participant:
             if taken.keyed or discovery.is_disposal(taken.inline):
                 guid = discovery.key_of(taken.inline, taken.payload)
                 if guid is not None and known.pop(guid, None) is not None:
+                    self._count -= 1
                     for one in (self._readers if are_writers else self._writers).values():
                         one.unmatch(guid)
-                    self.on_endpoints()
+                    self._others_changed()
                 return
             endpoint = decode_endpoint(taken.payload, writer=are_writers)
         except MalformedError:
             self.malformed += 1
             return
-        if endpoint.guid[:12] != remote.data.prefix or len(known) >= _ENDPOINTS:
+        if endpoint.guid[:12] != remote.data.prefix:
             return
+        if endpoint.guid not in known:
+            if len(known) >= _ENDPOINTS or self._count >= _ENDPOINTS_IN_ALL:
+                self._tell(
+                    f"more than {_ENDPOINTS} publishers or subscribers in one process, or "
+                    f"{_ENDPOINTS_IN_ALL} in all: not all are served"
+                )
+                return
+            self._count += 1
         known[endpoint.guid] = endpoint
+        if not remote.knows_us:
+            return
         if are_writers:
             for reader in list(self._readers.values()):
                 self._match_writer(reader, endpoint, remote)
         else:
             for writer in list(self._writers.values()):
                 self._match_reader(writer, endpoint, remote)
-        self.on_endpoints()
+        self._others_changed()
 
     def _match_reader(self, writer: Writer, other: Endpoint, remote: _Remote) -> None:
         offered = writer.endpoint
-        if self._fit(offered, other, offered.qos.misfit(other.qos)):
+        if self._fit(offered, other, offered.qos.misfit(other.qos), writer.proxies):
             writer.match(other, self._address(other, remote))
 
     def _match_writer(self, reader: Reader, other: Endpoint, remote: _Remote) -> None:
         asked = reader.endpoint
-        if self._fit(asked, other, other.qos.misfit(asked.qos)):
+        if self._fit(asked, other, other.qos.misfit(asked.qos), reader.proxies):
             reader.match(other, self._address(other, remote))
 
     def _address(self, endpoint: Endpoint, remote: _Remote) -> Address:
         return self._nearest(endpoint.locators or remote.data.user, remote.address[0])
 
-    def _fit(self, ours: Endpoint, other: Endpoint, policy: str) -> bool:
+    def _fit(
+        self, ours: Endpoint, other: Endpoint, policy: str, connected: Collection[Guid]
+    ) -> bool:
         if not ours.topic or ours.topic != other.topic:
+            return False
+        if len(connected) >= _MATCHES and other.guid not in connected:
+            self._tell(f"more than {_MATCHES} at one end of {ours.topic}: not all are served")
             return False
         if ours.type != other.type or policy:
             self.on_misfit(ours, other, policy)

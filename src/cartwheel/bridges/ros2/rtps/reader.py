@@ -8,18 +8,21 @@ from dataclasses import dataclass
 
 from cartwheel.bridges.ros2.rtps import wire
 from cartwheel.bridges.ros2.rtps.discovery import Address, Endpoint
+from cartwheel.bridges.ros2.rtps.outbox import Send
+from cartwheel.bridges.ros2.rtps.room import LARGEST, Room
 from cartwheel.bridges.ros2.rtps.wire import Guid
-from cartwheel.bridges.ros2.rtps.writer import Send
 
 _WAITING = 256
-"""Samples of a writer that wait for one before them."""
-_WAITING_BYTES = 32 << 20
-_LARGEST = 64 << 20
-"""Bytes of a sample."""
+"""Samples of a writer that wait for one before them: as many as can be asked for at a time."""
 _ASSEMBLED = 8
 """Samples of a writer of which parts are there."""
+_SMALLEST = 512
+"""Bytes of a fragment that is not the last: half of the smallest that the standard has, so that
+what keeps track of them stays less than they are."""
 _PATIENCE = 3.0
-"""s after which a missing sample is given up."""
+"""s after which a missing sample, or part of one, is given up."""
+_REPLY = 0.001
+"""s at least between two answers to a writer, which gets them later otherwise."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,24 +38,38 @@ class Taken:
 
 
 class _Assembly:
-    """A sample of which fragments have come."""
+    """A sample of which fragments have come; holds no more memory than they have."""
 
-    def __init__(self, size: int, fragment_size: int) -> None:
-        self.data = bytearray(size)
+    def __init__(self, size: int, fragment_size: int, now: float) -> None:
+        self.size = size
         self.fragment_size = fragment_size
-        self.missing = set(range(1, -(-size // fragment_size) + 1))
+        self.count = -(-size // fragment_size)
+        self.parts: dict[int, bytes] = {}
+        self.held = 0
+        self.touched = now
 
-    def put(self, first: int, payload: bytes) -> bool:
-        """Adds fragments; whether all are there."""
-        for offset in range(0, len(payload), self.fragment_size):
-            number = first + offset // self.fragment_size
-            part = payload[offset : offset + self.fragment_size]
-            start = (number - 1) * self.fragment_size
-            part = part[: max(0, len(self.data) - start)]
-            if number in self.missing:
-                self.data[start : start + len(part)] = part
-                self.missing.discard(number)
-        return not self.missing
+    def split(self, first: int, payload: bytes) -> dict[int, bytes]:
+        """The fragments of a datagram that are new; none where one is not as long as it must be."""
+        found = {}
+        step = self.fragment_size
+        for offset in range(0, len(payload), step):
+            number = first + offset // step
+            part = payload[offset : offset + step]
+            wanted = step if number < self.count else self.size - (self.count - 1) * step
+            if number == self.count:
+                # Padding may follow.
+                part = part[:wanted]
+            if number > self.count or len(part) != wanted:
+                return {}
+            if number not in self.parts:
+                found[number] = part
+        return found
+
+    def whole(self) -> bytes | None:
+        """The sample, once all of it is there."""
+        if len(self.parts) < self.count:
+            return None
+        return b"".join(self.parts[number] for number in range(1, self.count + 1))
 
 
 class WriterProxy:
@@ -66,11 +83,15 @@ class WriterProxy:
         self.next = 1
         self.waiting: dict[int, Taken | None] = {}
         """None where there is nothing to wait for."""
-        self.waiting_bytes = 0
         self.waiting_since = 0.0
         self.assemblies: dict[int, _Assembly] = {}
         self.count = 0
         self.heartbeat_count = -1
+        self.last = 0
+        """The last sample that its writer says it has."""
+        self.asked_at = 0.0
+        self.must_ask = False
+        """Whether an answer is due that was put off."""
 
 
 class Reader:
@@ -80,10 +101,19 @@ class Reader:
         endpoint: Ours.
         send: Sends one datagram.
         take: Takes each sample, in the order in which its writer wrote.
+        room: For what is not complete yet; its own where none is given.
     """
 
-    def __init__(self, endpoint: Endpoint, send: Send, take: Callable[[Taken], None]) -> None:
+    def __init__(
+        self,
+        endpoint: Endpoint,
+        send: Send,
+        take: Callable[[Taken], None],
+        *,
+        room: Room | None = None,
+    ) -> None:
         self.endpoint = endpoint
+        self._room = room or Room()
         self.proxies: dict[Guid, WriterProxy] = {}
         self._send = send
         self._take = take
@@ -103,7 +133,14 @@ class Reader:
 
     def unmatch(self, guid: Guid) -> None:
         """A writer is gone."""
-        self.proxies.pop(guid, None)
+        proxy = self.proxies.pop(guid, None)
+        if proxy is None:
+            return
+        for number in list(proxy.assemblies):
+            self._drop(proxy, number)
+        for taken in proxy.waiting.values():
+            if taken is not None:
+                self._room.free(guid[:12], len(taken.payload))
 
     def take_data(self, guid: Guid, vendor: bytes, data: wire.Data) -> None:
         """A sample, or a part of one."""
@@ -120,7 +157,7 @@ class Reader:
         if not proxy.reliable:
             proxy.next = data.number + 1
             for number in [one for one in proxy.assemblies if one < data.number]:
-                del proxy.assemblies[number]
+                self._drop(proxy, number)
             self._take(taken)
             return
         self._wait(proxy, data.number, taken)
@@ -134,10 +171,16 @@ class Reader:
             return
         proxy.heartbeat_count = told.count
         self._skip_to(proxy, min(told.first, told.last + 1))
+        proxy.last = told.last
         end = min(told.last, proxy.next + 255)
-        missing = [number for number in range(proxy.next, end + 1) if number not in proxy.waiting]
-        if missing or not told.final:
-            self._ask(proxy, missing)
+        missing = any(number not in proxy.waiting for number in range(proxy.next, end + 1))
+        if not missing and told.final:
+            return
+        now = time.monotonic()
+        if now - proxy.asked_at < _REPLY:
+            proxy.must_ask = True
+            return
+        self._ask_up_to(proxy, end)
 
     def take_gap(self, guid: Guid, told: wire.Gap) -> None:
         """A writer says what is nothing to wait for."""
@@ -153,42 +196,79 @@ class Reader:
             if number >= proxy.next:
                 self._wait(proxy, number, None)
 
+    def remind(self) -> None:
+        """Gives the answers that were put off; several times a second."""
+        for proxy in self.proxies.values():
+            if proxy.must_ask:
+                self._ask_up_to(proxy, min(proxy.last, proxy.next + 255))
+
+    def _ask_up_to(self, proxy: WriterProxy, end: int) -> None:
+        missing = range(proxy.next, end + 1)
+        self._ask(proxy, [number for number in missing if number not in proxy.waiting])
+
     def give_up(self, now: float) -> None:
         """Goes on without what does not come; once a second or so."""
         for proxy in self.proxies.values():
+            for number, assembly in list(proxy.assemblies.items()):
+                if now - assembly.touched > _PATIENCE:
+                    self._drop(proxy, number)
             if proxy.waiting and now - proxy.waiting_since > _PATIENCE:
                 self._skip_to(proxy, min(proxy.waiting))
 
     def _assemble(self, proxy: WriterProxy, data: wire.Data) -> bytes | None:
-        if data.size > _LARGEST or not data.size:
+        small = data.fragment_size < min(_SMALLEST, data.size)
+        if not 0 < data.size <= LARGEST or small:
             return None
+        now = time.monotonic()
         assembly = proxy.assemblies.get(data.number)
-        if assembly is None or len(assembly.data) != data.size:
-            while len(proxy.assemblies) >= _ASSEMBLED:
-                del proxy.assemblies[min(proxy.assemblies)]
-            assembly = _Assembly(data.size, data.fragment_size)
+        if assembly is None:
+            if len(proxy.assemblies) >= _ASSEMBLED and not self._make_room(proxy, data.number):
+                return None
+            assembly = _Assembly(data.size, data.fragment_size, now)
             proxy.assemblies[data.number] = assembly
-        if not assembly.put(data.fragment, data.payload):
+        elif (assembly.size, assembly.fragment_size) != (data.size, data.fragment_size):
             return None
-        del proxy.assemblies[data.number]
-        return bytes(assembly.data)
+        found = assembly.split(data.fragment, data.payload)
+        size = sum(map(len, found.values()))
+        if not found or not self._room.take(proxy.guid[:12], size):
+            return None
+        assembly.parts |= found
+        assembly.held += size
+        assembly.touched = now
+        whole = assembly.whole()
+        if whole is not None:
+            self._drop(proxy, data.number)
+        return whole
+
+    def _make_room(self, proxy: WriterProxy, number: int) -> bool:
+        """Drops what is worth least: of reliable samples the last, of others the first."""
+        worst = max(proxy.assemblies) if proxy.reliable else min(proxy.assemblies)
+        if proxy.reliable and number > worst:
+            return False
+        self._drop(proxy, worst)
+        return True
+
+    def _drop(self, proxy: WriterProxy, number: int) -> None:
+        """Holds the parts of a sample no longer."""
+        self._room.free(proxy.guid[:12], proxy.assemblies.pop(number).held)
 
     def _wait(self, proxy: WriterProxy, number: int, taken: Taken | None) -> None:
-        size = len(taken.payload) if taken else 0
-        if number != proxy.next:
-            full = len(proxy.waiting) >= _WAITING
-            if full or proxy.waiting_bytes + size > _WAITING_BYTES:
-                return
-            if not proxy.waiting:
-                proxy.waiting_since = time.monotonic()
-                proxy.waiting[number] = taken
-                proxy.waiting_bytes += size
-                # The one before got lost, or was written before we knew its writer.
-                self._ask(proxy, range(proxy.next, min(number, proxy.next + 255)))
-                return
+        if number == proxy.next:
+            proxy.next += 1
+            if taken is not None:
+                self._take(taken)
+            self._deliver(proxy)
+            return
+        if number in proxy.waiting or len(proxy.waiting) >= _WAITING:
+            return
+        if taken is not None and not self._room.take(proxy.guid[:12], len(taken.payload)):
+            return
+        first = not proxy.waiting
         proxy.waiting[number] = taken
-        proxy.waiting_bytes += size
-        self._deliver(proxy)
+        if first:
+            proxy.waiting_since = time.monotonic()
+            # The one before got lost, or was written before we knew its writer.
+            self._ask(proxy, range(proxy.next, min(number, proxy.next + 255)))
 
     def _skip_to(self, proxy: WriterProxy, number: int) -> None:
         if number <= proxy.next:
@@ -196,7 +276,7 @@ class Reader:
         for passed in sorted(one for one in proxy.waiting if one < number):
             self._pass(proxy, proxy.waiting.pop(passed))
         for passed in [one for one in proxy.assemblies if one < number]:
-            del proxy.assemblies[passed]
+            self._drop(proxy, passed)
         proxy.next = number
         self._deliver(proxy)
 
@@ -208,12 +288,15 @@ class Reader:
         proxy.waiting_since = time.monotonic()
 
     def _pass(self, proxy: WriterProxy, taken: Taken | None) -> None:
+        """Hands on what has waited."""
         if taken is not None:
-            proxy.waiting_bytes -= len(taken.payload)
+            self._room.free(proxy.guid[:12], len(taken.payload))
             self._take(taken)
 
     def _ask(self, proxy: WriterProxy, missing: list[int] | range | tuple[()]) -> None:
         proxy.count += 1
+        proxy.must_ask = False
+        proxy.asked_at = time.monotonic()
         told = wire.acknack(
             reader=self.endpoint.guid[12:],
             writer=proxy.guid[12:],

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import struct
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 VERSION = b"\x02\x03"
@@ -27,6 +27,8 @@ _LITTLE, _INLINE, _PAYLOAD, _KEY = 0x01, 0x02, 0x04, 0x08
 _FINAL = 0x02
 _MOST_BITS = 256
 """Of a set of numbers."""
+_MOST_SUBMESSAGES = 256
+"""In a datagram: others put some ten into one, and each may be answered."""
 
 
 class MalformedError(ValueError):
@@ -189,9 +191,17 @@ def acknack(
     return struct.pack("<BBH", _ACKNACK, _LITTLE | (_FINAL if final else 0), len(body)) + body
 
 
-def gap(*, reader: bytes, writer: bytes, start: int, end: int) -> bytes:
-    """That all samples from `start` to below `end` are nothing to wait for."""
-    body = reader + writer + _number(start) + _number_set(end, ())
+def gap(*, reader: bytes, writer: bytes, numbers: Sequence[int]) -> bytes:
+    """That samples are nothing to wait for: numbers in order, the first of which counts most.
+
+    Those that are too far above it to be named are left out.
+    """
+    end = numbers[0]
+    for number in numbers:
+        if number != end:
+            break
+        end += 1
+    body = reader + writer + _number(numbers[0]) + _number_set(end, numbers)
     return struct.pack("<BBH", _GAP, _LITTLE, len(body)) + body
 
 
@@ -229,7 +239,11 @@ def _read(data: memoryview) -> Iterator[Received]:
     vendor, prefix = bytes(data[6:8]), bytes(data[8:20])
     to: Prefix | None = None
     at = 20
+    count = 0
     while at + 4 <= len(data):
+        count += 1
+        if count > _MOST_SUBMESSAGES:
+            raise MalformedError("too many submessages")
         kind, flags = data[at], data[at + 1]
         order = "<" if flags & _LITTLE else ">"
         (length,) = struct.unpack_from(f"{order}H", data, at + 2)
@@ -242,10 +256,14 @@ def _read(data: memoryview) -> Iterator[Received]:
             raise MalformedError("cut off")
         at += length
         if kind == _INFO_DST:
+            if len(body) < 12:
+                raise MalformedError("cut off")
             to = bytes(body[:12])
             if to == bytes(12):
                 to = None
         elif kind == _INFO_SRC:
+            if len(body) < 20:
+                raise MalformedError("cut off")
             vendor, prefix = bytes(body[6:8]), bytes(body[8:20])
         else:
             content = _content(kind, flags, order, body)

@@ -5,24 +5,22 @@ from __future__ import annotations
 import math
 import time
 from collections import OrderedDict
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 from cartwheel.bridges.ros2.rtps import wire
 from cartwheel.bridges.ros2.rtps.discovery import Address, Endpoint
+from cartwheel.bridges.ros2.rtps.outbox import Outbox, Parts, Send
 from cartwheel.bridges.ros2.rtps.wire import UNKNOWN, Guid, Prefix
 
-Send = Callable[[Sequence[bytes | memoryview], Address], bool]
-"""Sends one datagram; never waits long, and may lose it. False where the system did not take it."""
-
-_FIRST_AGAIN, _LAST_AGAIN = 0.1, 2.0
+_FIRST_AGAIN, _LAST_AGAIN = 0.05, 2.0
 """s between two reminders to a reader that does not answer."""
 _SILENCE = 3.0
 """s without an answer after which a reader is taken for frozen."""
-_BURST = 2
-"""Full datagrams in a row; a receiver of default settings has room for three."""
-_PAUSE = 0.0003
-"""s that a receiver gets to make room."""
+_REPLY = 0.001
+"""s at least between two answers to a reader, who is reminded otherwise: it cannot make us talk."""
+_SOON = 0.05
+"""s after which one who got no answer for that reason is reminded."""
 _KEPT_BYTES = 64 << 20
 """Of all kept samples of a writer."""
 
@@ -57,6 +55,11 @@ class ReaderProxy:
         self.remind_at = 0.0
         self.asked_at = 0.0
         """When it was first reminded since it last answered."""
+        self.greeted = True
+        """Whether it got what there was before it came; not before it has answered anything."""
+        self.replied_at = 0.0
+        self.wanted: dict[int, set[int] | None] = {}
+        """What it asked for again: samples, or fragments of them; at most those that are kept."""
         self.gone = 0
         """The last sample that is known to have gone without it."""
         self.last_count = -1
@@ -71,11 +74,17 @@ class Writer:
     Args:
         endpoint: Ours.
         send: See `Send`.
+        outbox: Sends what does not go in one datagram; all of it at once where there is none.
         clock: Gives the time of a sample, in ns since 1970.
     """
 
     def __init__(
-        self, endpoint: Endpoint, send: Send, *, clock: Callable[[], int] = time.time_ns
+        self,
+        endpoint: Endpoint,
+        send: Send,
+        *,
+        outbox: Outbox | None = None,
+        clock: Callable[[], int] = time.time_ns,
     ) -> None:
         self.endpoint = endpoint
         self.proxies: dict[Guid, ReaderProxy] = {}
@@ -92,6 +101,7 @@ class Writer:
         """Told when samples go that a frozen reader has not got."""
         self._prefix, self._entity = endpoint.guid[:12], endpoint.guid[12:]
         self._send = send
+        self._outbox = outbox or Outbox(send)
         self._clock = clock
         self._last = 0
         self._kept: OrderedDict[int, Sample] = OrderedDict()
@@ -104,8 +114,14 @@ class Writer:
 
     # -- readers
 
-    def match(self, endpoint: Endpoint, address: Address) -> None:
-        """A reader is there."""
+    def match(self, endpoint: Endpoint, address: Address, *, proved: bool = True) -> None:
+        """A reader is there.
+
+        Args:
+            endpoint: Of it.
+            address: Where it is.
+            proved: Whether its participant has ever answered; one that has not gets no samples.
+        """
         known = self.proxies.get(endpoint.guid)
         if known is not None:
             known.address = address
@@ -118,9 +134,9 @@ class Writer:
         if not qos.reliable:
             proxy.reliable = False
         self.proxies[endpoint.guid] = proxy
-        if history:
-            for number, sample in self._kept.items():
-                self._send_sample(number, sample, proxy, endpoint.guid[12:])
+        proxy.greeted = proved or not history
+        if history and proved:
+            self._greet(proxy)
         if proxy.reliable:
             self._heartbeat(proxy, final=False)
             # It may not know of us yet.
@@ -130,7 +146,11 @@ class Writer:
 
     def unmatch(self, guid: Guid) -> None:
         """A reader is gone."""
-        if self.proxies.pop(guid, None) is not None and not self.proxies:
+        gone = self.proxies.pop(guid, None)
+        if gone is None:
+            return
+        gone.wanted.clear()
+        if not self.proxies:
             self.on_readers()
             if not self.endpoint.qos.transient_local:
                 self._kept.clear()
@@ -166,11 +186,10 @@ class Writer:
             prefix = proxy.guid[:12]
             if to is not None and prefix != to:
                 self._pass_over(proxy, self._last)
-            elif prefix not in reached:
+            elif prefix not in reached and proxy.greeted:
                 # One datagram serves all readers of a participant.
                 reached.add(prefix)
-                if not self._send_sample(self._last, sample, proxy, UNKNOWN):
-                    self._count_refused(prefix)
+                self._send_sample(self._last, sample, proxy, UNKNOWN)
             if proxy.reliable and not proxy.remind_at:
                 proxy.remind_at = time.monotonic() + proxy.patience
 
@@ -180,6 +199,10 @@ class Writer:
             if proxy.reliable and proxy.remind_at and now >= proxy.remind_at:
                 if proxy.acked >= self._last:
                     proxy.remind_at = 0.0
+                    continue
+                if self._outbox.is_sending(self, proxy.address) or proxy.wanted:
+                    # It would ask for what is on its way.
+                    proxy.remind_at = now + proxy.patience
                     continue
                 proxy.asked_at = proxy.asked_at or now
                 if now - proxy.asked_at > _SILENCE:
@@ -203,6 +226,13 @@ class Writer:
         proxy.acked = max(proxy.acked, min(told.base - 1, self._last))
         if proxy.acked < self._last:
             proxy.remind_at = time.monotonic() + proxy.patience
+        if not proxy.greeted:
+            # Its participant is really there: nobody else knows what to answer to.
+            proxy.greeted = True
+            self._greet(proxy)
+            if not told.final:
+                self._reply(proxy, ())
+            return
         lost: list[int] = []
         for number in told.missing:
             if number > self._last:
@@ -210,26 +240,62 @@ class Writer:
             sample = self._kept.get(number)
             ours = sample is not None and sample.to in (None, guid[:12])
             if sample is not None and ours and number >= proxy.start:
-                self._send_sample(number, sample, proxy, guid[12:])
+                proxy.wanted[number] = None
             else:
                 lost.append(number)
                 if number >= proxy.start and number > proxy.gone and sample is None:
                     self.dropped += 1
                     self.on_drop()
-        for start, end in _ranges(lost):
-            self._post(
-                proxy,
-                wire.gap(reader=guid[12:], writer=self._entity, start=start, end=end),
-            )
+        self._send_again(proxy)
         if told.missing or not told.final:
-            self._heartbeat(proxy, final=True)
+            self._reply(proxy, lost)
 
     def take_nack_frag(self, guid: Guid, told: wire.NackFrag) -> None:
         """A reader lacks parts of a sample."""
         proxy = self.proxies.get(guid)
         sample = self._kept.get(told.number)
-        if proxy is not None and sample is not None and proxy.reliable:
-            self._send_fragments(told.number, sample, proxy, guid[12:], told.missing)
+        if proxy is None or sample is None or not proxy.reliable or not proxy.greeted:
+            return
+        if sample.to not in (None, guid[:12]) or told.number < proxy.start:
+            return
+        last = -(-len(sample.payload) // wire.LARGEST)
+        wanted = {number for number in told.missing if 1 <= number <= last}
+        known = proxy.wanted.setdefault(told.number, set()) if wanted else None
+        if known is not None:
+            known |= wanted
+            self._send_again(proxy)
+
+    def _greet(self, proxy: ReaderProxy) -> None:
+        """Sends what was kept for who comes late."""
+        for number, sample in self._kept.items():
+            if number > proxy.acked and number >= proxy.start:
+                self._send_sample(number, sample, proxy, proxy.guid[12:])
+        proxy.remind_at = time.monotonic() + proxy.patience
+
+    def _send_again(self, proxy: ReaderProxy) -> None:
+        if proxy.wanted:
+            self._outbox.put_again(proxy, self._pieces_again(proxy), proxy.address)
+
+    def _pieces_again(self, proxy: ReaderProxy) -> Iterator[Parts]:
+        """What a reader asked for again, until there is nothing left of it."""
+        while proxy.wanted:
+            number = next(iter(proxy.wanted))
+            fragments = proxy.wanted.pop(number)
+            # It may have gone since.
+            sample = self._kept.get(number)
+            if sample is not None:
+                reader = proxy.guid[12:]
+                yield from self._pieces(number, sample, proxy, reader, fragments)
+
+    def _reply(self, proxy: ReaderProxy, lost: Sequence[int]) -> None:
+        """Says what there is, and what there is no more."""
+        now = time.monotonic()
+        if now - proxy.replied_at < _REPLY:
+            proxy.remind_at = min(proxy.remind_at or math.inf, now + _SOON)
+            return
+        proxy.replied_at = now
+        gaps = [wire.gap(reader=proxy.guid[12:], writer=self._entity, numbers=lost)] if lost else []
+        self._post(proxy, *gaps, self._heartbeat_of(proxy, final=True))
 
     def _count_gone(self, proxy: ReaderProxy) -> None:
         """Counts what a frozen reader has not got and will not get."""
@@ -277,10 +343,9 @@ class Writer:
 
     def _pass_over(self, proxy: ReaderProxy, number: int) -> None:
         if proxy.reliable:
-            gap = wire.gap(
-                reader=proxy.guid[12:], writer=self._entity, start=number, end=number + 1
+            self._post(
+                proxy, wire.gap(reader=proxy.guid[12:], writer=self._entity, numbers=[number])
             )
-            self._post(proxy, gap)
 
     def _heartbeat(self, proxy: ReaderProxy, *, final: bool) -> None:
         self._post(proxy, self._heartbeat_of(proxy, final=final))
@@ -297,41 +362,48 @@ class Writer:
             final=final,
         )
 
-    def _send_sample(self, number: int, sample: Sample, proxy: ReaderProxy, reader: bytes) -> bool:
-        """Whether the system took all of it."""
-        if len(sample.payload) > wire.LARGEST:
-            count = -(-len(sample.payload) // wire.LARGEST)
-            return self._send_fragments(number, sample, proxy, reader, range(1, count + 1))
-        head = wire.message(
-            self._prefix,
-            sample.written,
-            wire.data_head(
-                reader=reader,
-                writer=self._entity,
-                number=number,
-                inline=sample.inline,
-                size=len(sample.payload),
-                keyed=sample.keyed,
-            ),
-            to=proxy.guid[:12],
-        )
-        return self._send((head, sample.payload), proxy.address)
+    def _send_sample(self, number: int, sample: Sample, proxy: ReaderProxy, reader: bytes) -> None:
+        prefix, address = proxy.guid[:12], proxy.address
+        pieces = self._pieces(number, sample, proxy, reader)
+        size = len(sample.payload)
 
-    def _send_fragments(
+        def lost() -> None:
+            self._count_refused(prefix)
+
+        if size > wire.LARGEST or self._outbox.is_sending(self, address):
+            self._outbox.put(self, pieces, size, address, lost)
+        else:
+            self._outbox.put_between(next(pieces), address, lost)
+
+    def _pieces(
         self,
         number: int,
         sample: Sample,
         proxy: ReaderProxy,
         reader: bytes,
-        fragments: Sequence[int],
-    ) -> bool:
+        only: set[int] | None = None,
+    ) -> Iterator[Parts]:
+        """The datagrams of a sample, or of some of its fragments."""
+        if len(sample.payload) <= wire.LARGEST:
+            head = wire.message(
+                self._prefix,
+                sample.written,
+                wire.data_head(
+                    reader=reader,
+                    writer=self._entity,
+                    number=number,
+                    inline=sample.inline,
+                    size=len(sample.payload),
+                    keyed=sample.keyed,
+                ),
+                to=proxy.guid[:12],
+            )
+            yield head, sample.payload
+            return
         whole = memoryview(sample.payload)
-        sent = 0
-        taken = True
-        for fragment in fragments:
+        last = -(-len(whole) // wire.LARGEST)
+        for fragment in range(1, last + 1) if only is None else sorted(only):
             part = whole[(fragment - 1) * wire.LARGEST : fragment * wire.LARGEST]
-            if not part:
-                continue
             head = wire.message(
                 self._prefix,
                 sample.written,
@@ -346,19 +418,4 @@ class Writer:
                 ),
                 to=proxy.guid[:12],
             )
-            taken = self._send((head, part), proxy.address) and taken
-            sent += 1
-            if sent % _BURST == 0:
-                time.sleep(_PAUSE)
-        return taken
-
-
-def _ranges(numbers: Sequence[int]) -> list[tuple[int, int]]:
-    """Numbers in order as ranges, ends excluded."""
-    found: list[tuple[int, int]] = []
-    for number in numbers:
-        if found and found[-1][1] == number:
-            found[-1] = (found[-1][0], number + 1)
-        else:
-            found.append((number, number + 1))
-    return found
+            yield head, part
