@@ -63,9 +63,11 @@ class Alarm:
             self._file = -1
 
     def _ready(self, _: int) -> None:
-        with contextlib.suppress(BlockingIOError):
-            os.read(self._file, 8)
         self._done()
+        if not self._set and self._file >= 0:
+            # One that is set anew is not ready any more; this one would be for ever.
+            with contextlib.suppress(BlockingIOError):
+                os.read(self._file, 8)
 
     def _done(self) -> None:
         self._set = False
