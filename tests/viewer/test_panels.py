@@ -1,6 +1,8 @@
 """What panels make of messages, without a browser."""
 
+import asyncio
 import math
+import queue
 from dataclasses import replace
 from types import SimpleNamespace
 from unittest.mock import MagicMock
@@ -12,6 +14,7 @@ from cartwheel.errors import Diagnostic, Origin
 from cartwheel.graph import Graph, TopicInfo
 from cartwheel.messages import header, message_class
 from cartwheel.viewer.every import Every
+from cartwheel.viewer.page import Page
 from cartwheel.viewer.panels.bumper import CONTACTS, BumperPanel, light_html, other_side
 from cartwheel.viewer.panels.camera import pixels_of
 from cartwheel.viewer.panels.drive import DrivePanel
@@ -48,6 +51,18 @@ def test_a_key_drives_what_reads_commands_with_a_stamp_too():
     panel.press("i")
     assert [message.linear.x for message in plain] == [0.5]
     assert [message.twist.linear.x for message in stamped] == [0.5]
+
+
+def test_the_value_of_a_control_is_that_of_the_moment_it_was_used():
+    page, seen = Page.__new__(Page), []
+    page._jobs = queue.SimpleQueue()
+    slider = SimpleNamespace(value=3.0)
+    used = page.on_value(lambda _, value: seen.append(value))
+    asyncio.run(used(SimpleNamespace(target=slider, client_id=1)))
+    slider.value = 0.0  # A panel that follows the simulation sets it back.
+    function, _ = page._jobs.get_nowait()
+    function()
+    assert seen == [3.0]
 
 
 def test_bgr_becomes_rgb():

@@ -147,6 +147,21 @@ class Page:
 
         return callback
 
+    def on_value(
+        self, function: Callable[[Any, Any], object]
+    ) -> Callable[[Any], Coroutine[Any, Any, None]]:
+        """Like `on`, for `function(event, value)`: the value that the control had just been given.
+
+        By the time the page's thread comes to it, a panel that follows the simulation may have
+        set the control back.
+        """
+
+        async def callback(event: Any) -> None:
+            value = event.target.value
+            self.post(lambda: function(event, value), client=getattr(event, "client_id", None))
+
+        return callback
+
     def do(
         self, function: Callable[..., object], *arguments: object
     ) -> Callable[[Any], Coroutine[Any, Any, None]]:

@@ -30,9 +30,9 @@ class ClockPanel(Panel):
         self._due = Every(8)
         self._text = gui.add_html(clock_html(None))
         self._buttons = gui.add_button_group("Time", ("Pause", "Step", "Reset"))
-        self._buttons.on_click(page.on(self._press))
+        self._buttons.on_click(page.on_value(self._press))
         self._speed = gui.add_dropdown("Speed", tuple(SPEEDS), initial_value="1 (real time)")
-        self._speed.on_update(page.on(self._set_speed))
+        self._speed.on_update(page.on_value(self._set_speed))
         space = gui.add_command("Pause or resume", hotkey="space")
         space.on_trigger(page.do(self.toggle))
         gui.add_command("Step").on_trigger(page.do(self.step))
@@ -74,13 +74,13 @@ class ClockPanel(Panel):
             if content != self._text.content:
                 self._text.content = content
 
-    def _press(self, event: Any) -> None:
-        {"Step": self.step, "Reset": self.reset}.get(event.target.value, self.toggle)()
+    def _press(self, _: Any, button: str) -> None:
+        {"Step": self.step, "Reset": self.reset}.get(button, self.toggle)()
 
-    def _set_speed(self, event: Any) -> None:
+    def _set_speed(self, event: Any, name: str) -> None:
         if event.client is None:
             return  # set by `update`, not by a user
-        simulation, speed = self.simulation, SPEEDS[event.target.value]
+        simulation, speed = self.simulation, SPEEDS[name]
         self._shown_speed = speed
         self.page.then(simulation.call(lambda: simulation.set_speed(speed)))
 

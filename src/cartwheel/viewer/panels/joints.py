@@ -143,11 +143,11 @@ class JointsPanel(Panel):
                 if abs(value - slider.value) > slider.step / 2:
                     slider.value = value
 
-    def _touch(self, group: _Group, name: str, event: Any) -> None:
+    def _touch(self, group: _Group, name: str, event: Any, value: float) -> None:
         if event.client is None:
             # Of our own making.
             return
-        group.moved[name] = float(event.target.value)
+        group.moved[name] = float(value)
         group.free = math.inf
 
     def _rebuild(self) -> None:
@@ -190,7 +190,7 @@ class JointsPanel(Panel):
         group = _Group(taker=taker, joints=joints, title=title)
         for name, joint in joints.items():
             slider = add_slider(self.gui, joint, actual.get((taker.model, name), 0.0))
-            slider.on_update(self.page.on(partial(self._touch, group, name)))
+            slider.on_update(self.page.on_value(partial(self._touch, group, name)))
             group.sliders[name] = slider
         return group
 

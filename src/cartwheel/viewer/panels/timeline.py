@@ -24,7 +24,7 @@ class TimelinePanel(ClockPanel):
         self._slider = self.gui.add_slider(
             "Time, s", min=0.0, max=length, step=0.001, initial_value=0.0
         )
-        self._slider.on_update(self.page.on(self._moved))
+        self._slider.on_update(self.page.on_value(self._moved))
         self._slider_due = Every(10)
         self._left_alone = 0.0
         self._now = 0.0
@@ -39,10 +39,10 @@ class TimelinePanel(ClockPanel):
         if abs(self._slider.value - shown) > 0.0005:
             self._slider.value = shown
 
-    def _moved(self, event: Any) -> None:
+    def _moved(self, event: Any, seconds: float) -> None:
         if event.client is None:
             return  # moved by `update`, not by a user
         self._left_alone = self._now + _PATIENCE
         player: Any = self.simulation
-        place = self._start_ns + round(event.target.value * 1e9)
+        place = self._start_ns + round(seconds * 1e9)
         self.page.then(player.call(lambda: player.seek(place)))

@@ -44,14 +44,14 @@ def add_toggles(
         changed: Called after one was changed.
     """
 
-    def take(name: str, event: Any) -> None:
-        setattr(seat.display, name, bool(event.target.value))
+    def take(name: str, _: Any, value: bool) -> None:
+        setattr(seat.display, name, bool(value))
         changed()
 
     boxes = {}
     for name in names:
         boxes[name] = seat.gui.add_checkbox(LABELS[name], initial_value=getattr(seat.display, name))
-        boxes[name].on_update(page.on(partial(take, name)))
+        boxes[name].on_update(page.on_value(partial(take, name)))
     return boxes
 
 
