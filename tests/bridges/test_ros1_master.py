@@ -5,6 +5,7 @@ import os
 import re
 import shutil
 import signal
+import socket
 import subprocess
 import time
 from collections.abc import Iterator
@@ -214,6 +215,54 @@ def test_a_bridges_child_can_be_ended_by_a_signal(tmp_path: Path) -> None:
         ignored = int(re.search(r"SigIgn:\s+(\w+)", status)[1], 16)  # type: ignore[index]
         assert not ignored >> (signal.SIGTERM - 1) & 1
         assert not ignored >> (signal.SIGINT - 1) & 1
+
+
+def listening(pid: int) -> set[tuple[str, int]]:
+    """Addresses and ports of TCP over IPv4 on which a process listens."""
+    sockets = set()
+    for file in Path(f"/proc/{pid}/fd").iterdir():
+        with contextlib.suppress(OSError):
+            sockets.add(str(file.readlink()))
+    found = set()
+    for line in Path("/proc/net/tcp").read_text().splitlines()[1:]:
+        words = line.split()
+        if words[3] == "0A" and f"socket:[{words[9]}]" in sockets:
+            address, _, port = words[1].partition(":")
+            found.add((socket.inet_ntoa(bytes.fromhex(address)[::-1]), int(port, 16)))
+    return found
+
+
+@pytest.mark.parametrize(
+    ("hostname", "words", "address"),
+    [
+        ("localhost", (), "127.0.0.1"),
+        ("", ("__ip:=127.0.0.1",), "127.0.0.1"),
+        (socket.gethostname(), (), "0.0.0.0"),
+    ],
+)
+def test_who_can_reach_it(
+    tmp_path: Path, hostname: str, words: tuple[str, ...], address: str
+) -> None:
+    """rospy's rule: loopback only where our own name is; the master of our own follows it."""
+    made = Master(tmp_path)
+    made.kill()
+    made.environment["ROS_HOSTNAME"] = hostname
+    with simulation(made, "empty.world", *words) as process:
+        wait_for(made.answers, "a master")
+        registered(made)
+        master = made.api.getPid("/test")[2]
+        assert listening(master) == {(address, made.port)}
+        ports = {port for where, port in listening(parent(master)) if where == address}
+        assert len(ports) == 2
+        assert listening(parent(master)) == {(address, port) for port in ports}
+        process.send_signal(signal.SIGINT)
+        output, _ = process.communicate(timeout=PATIENCE)
+    told = re.search(r"open to other computers, without a password: ports (.*)", output)
+    if address == "127.0.0.1":
+        assert told is None
+    else:
+        assert told is not None
+        assert {int(port) for port in told[1].split(", ")} == {made.port, *ports}
 
 
 def test_a_remote_master_that_does_not_answer_is_an_error(

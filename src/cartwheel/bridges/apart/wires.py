@@ -81,9 +81,9 @@ class Ros1Wire(_BridgeWire):
             on_end=lambda reason: self._link.tell("ended", reason),
         )
 
-        def start() -> bool:
+        def start() -> tuple[bool, tuple[int, ...]]:
             bridge.start()
-            return bridge.has_own_master
+            return bridge.has_own_master, bridge.open_ports
 
         self._offer(bridge, start)
         return bridge.name, bridge.master_uri, bridge.uri

@@ -123,6 +123,14 @@ class Ros1Bridge:
         return self._core is not None
 
     @property
+    def open_ports(self) -> tuple[int, ...]:
+        """Those that other computers reach; none where our own name is loopback, as in rospy."""
+        if bind_address(self._host):
+            return ()
+        own = (host_and_port(self.master_uri)[1],) if self._core is not None else ()
+        return (*own, *self._node.ports)
+
+    @property
     def uri(self) -> str:
         """Of the node's XML-RPC interface."""
         return self._node.uri

@@ -98,9 +98,13 @@ class Report:
         if self._decorated:
             say(paint("\nCtrl-C ends.", "dim"))
 
-    def joined(self, node: str, master: str, *, own: bool) -> None:
-        """Which node of ROS 1 this is, and of which master."""
+    def joined(self, node: str, master: str, *, own: bool, open_ports: Sequence[int]) -> None:
+        """Which node of ROS 1 this is, of which master, and what other computers reach."""
         self._line("ros 1", f"{node} at {master}{', a master of our own' if own else ''}")
+        if open_ports:
+            ports = ", ".join(map(str, open_ports))
+            self._line("", f"open to other computers, without a password: ports {ports}")
+            self._line("", "ROS_HOSTNAME=localhost keeps them to this computer")
 
     def _open(self, access: Access, url: str) -> None:
         if access.is_open:

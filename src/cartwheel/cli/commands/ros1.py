@@ -60,8 +60,8 @@ class Ros1:
             CartwheelError: There is no ROS master, and none can be started.
         """
         self._api.start()
-        own = self._process.call("start")
-        self._report.joined(self.name, self.master_uri, own=own)
+        own, open_ports = self._process.call("start")
+        self._report.joined(self.name, self.master_uri, own=own, open_ports=open_ports)
         log_all_on(self._process, self._session.simulation)
         parameters = self._session.graph.parameters
         rate = parameters.get(f"{self.name}/pub_clock_frequency")
