@@ -139,13 +139,49 @@ def test_a_reader_that_stops_reading_takes_no_memory(server, session, eventually
     sock.close()
 
 
-def test_too_many_clients_are_sent_away_and_room_comes_back(server, session, eventually):
+def test_clients_that_never_ask_keep_nobody_out(server, session, eventually):
+    with ControlClient() as first:
+        first.request("status")
+        crowd = [connect(server) for _ in range(2 * MAX_CLIENTS)]
+        alive(session)
+        # One that has asked for something is kept as long as there are others.
+        first.request("status")
+    for sock in crowd:
+        sock.close()
+    eventually(lambda: not server._clients)
+
+
+def test_too_many_readers_are_sent_away_and_room_comes_back(server, session, eventually):
+    ask = pack({"request": "subscribe", "parameters": {"topic": "/twist"}})
     crowd = [connect(server) for _ in range(MAX_CLIENTS)]
+    for sock in crowd:
+        sock.sendall(ask)
+        assert sock.recv(1)
     with pytest.raises(ControlError, match="too many clients"), ControlClient() as client:
         client.request("status")
     for sock in crowd:
         sock.close()
     eventually(lambda: not server._clients)
+    alive(session)
+
+
+def test_clients_that_never_read_are_sent_away(server, session, eventually, monkeypatch):
+    """They take every place, and give it back when a send has taken too long."""
+    monkeypatch.setattr(protocol, "SEND_SECONDS", 0.2)
+    # More than the system holds for them.
+    answers = pack({"request": "topics"}) * 5_000
+    crowd = [connect(server) for _ in range(4)]
+    for sock in crowd[:2]:
+        sock.setblocking(False)
+        with contextlib.suppress(BlockingIOError):
+            sock.send(answers)
+    for sock in crowd[2:]:
+        sock.sendall(pack({"request": "subscribe", "parameters": {"topic": "/twist"}}))
+    session.simulation.post(lambda: session.simulation.set_speed(None))
+    eventually(lambda: not server._clients)
+    session.simulation.post(lambda: session.simulation.set_speed(1.0))
+    for sock in crowd:
+        sock.close()
     alive(session)
 
 

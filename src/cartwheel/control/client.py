@@ -184,7 +184,8 @@ def _ask(
     connection: Connection, name: str, parameters: Mapping[str, Any], payload: bytes = b""
 ) -> dict[str, Any]:
     try:
-        connection.send({"request": name, "parameters": dict(parameters)}, payload)
+        with contextlib.suppress(BrokenPipeError):  # Why may stand in what is received.
+            connection.send({"request": name, "parameters": dict(parameters)}, payload)
         # Longer than the simulation itself waits, so that its own words arrive.
         frame: Frame | None = connection.receive(None if name == "step" else PATIENCE + 60)
     except TimeoutError as error:

@@ -23,6 +23,8 @@ MAX_PAYLOAD = 64 << 20
 """Bytes; an image of 4000 by 4000 fits."""
 FRAME_SECONDS = 10.0
 """In which a frame that was begun must arrive."""
+SEND_SECONDS = 30.0
+"""In which the other side must take something of what is sent."""
 
 PATIENCE = 30.0
 """s that a simulation may take for one request."""
@@ -59,17 +61,26 @@ class Connection:
         self.sock = sock
 
     def send(self, header: dict[str, Any], payload: bytes = b"") -> None:
-        """Sends a frame; waits while the other side does not read.
+        """Sends a frame; waits while the other side does not read, but not for ever.
 
         Raises:
+            TimeoutError: The other side took nothing for `SEND_SECONDS`.
             OSError: The other side is gone.
         """
         self.send_packed(pack(header, payload))
 
     def send_packed(self, data: bytes) -> None:
         """Sends what `pack` made."""
-        self.sock.settimeout(None)
-        self.sock.sendall(data)
+        self.sock.settimeout(SEND_SECONDS)
+        left = memoryview(data)
+        while left:
+            left = left[self.sock.send(left) :]
+
+    def refuse(self, why: str) -> None:
+        """Sends an error if there is room for it at once, and ends the connection."""
+        with contextlib.suppress(OSError):
+            self.sock.send(pack({"error": why}), socket.MSG_DONTWAIT)
+        self.close()
 
     def receive(self, timeout: float | None = None) -> Frame | None:
         """The next frame; None where the other side has closed.

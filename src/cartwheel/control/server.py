@@ -6,7 +6,8 @@ import contextlib
 import logging
 import os
 import threading
-from dataclasses import replace
+import time
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from cartwheel.control import registry
@@ -21,15 +22,32 @@ from cartwheel.graph import resolve_name
 from cartwheel.session import Session
 
 MAX_CLIENTS = 64
+"""Clients at a time. One more takes the place of the one that has been silent longest."""
 
 _log = logging.getLogger(__name__)
+
+
+@dataclass(slots=True)
+class _Use:
+    """What a client does."""
+
+    busy: bool = False
+    """A request of its is being answered, or a subscription served."""
+    asked: bool = False
+    since: float = field(default_factory=time.monotonic)
+
+    @property
+    def rank(self) -> tuple[bool, float]:
+        """The least gives way first: clients that never asked for anything, then silent ones."""
+        return self.asked, self.since
 
 
 class ControlServer:
     """Lets other processes of the same user reach a session; starts at once.
 
     Each client has a thread, which does one request after the other. A client that is slow,
-    silent or sends garbage costs that thread and a bounded queue, and nothing else.
+    silent or sends garbage costs that thread and a bounded queue, and nothing else. Clients that
+    ask for nothing keep no others out, nor do those that do not read what they asked for.
 
     Args:
         session: To be reached.
@@ -47,7 +65,7 @@ class ControlServer:
         self._closed = threading.Event()
         self._streams = Streams(session, self._closed)
         self._lock = threading.Lock()
-        self._clients: set[Connection] = set()
+        self._clients: dict[Connection, _Use] = {}
         self._socket, path = registry.listen()
         self.entry = Running(
             pid=os.getpid(),
@@ -98,27 +116,47 @@ class ControlServer:
                     return
                 continue  # Out of file descriptors, perhaps: others may free some.
             client = Connection(sock)
-            with self._lock:
-                full = len(self._clients) >= MAX_CLIENTS
-                if not full:
-                    self._clients.add(client)
-            if full or self._closed.is_set():
-                # It reads the end of the stream; an answer could keep this thread waiting.
+            if not self._admit(client):
+                client.refuse("the simulation serves too many clients")
+                continue
+            if self._closed.is_set():
                 client.close()
                 continue
             threading.Thread(
                 target=self._serve, args=(client,), name="control-client", daemon=True
             ).start()
 
+    def _admit(self, client: Connection) -> bool:
+        """Makes room for a client, if there is none; says whether there is some."""
+        with self._lock:
+            if len(self._clients) >= MAX_CLIENTS:
+                idle = [one for one, use in self._clients.items() if not use.busy]
+                if not idle:
+                    return False
+                given_up = min(idle, key=lambda one: self._clients[one].rank)
+                del self._clients[given_up]
+                # Its thread, which waits for a request, ends with that.
+                given_up.close()
+            self._clients[client] = _Use()
+        return True
+
+    def _note(self, client: Connection, *, busy: bool) -> None:
+        with self._lock:
+            use = self._clients.get(client)
+            if use is not None:
+                use.busy, use.asked, use.since = busy, True, time.monotonic()
+
     def _serve(self, client: Connection) -> None:
         wills = Wills(self._session.graph)
         try:
             while (frame := client.receive()) is not None and not self._closed.is_set():
+                self._note(client, busy=True)
                 if frame.header.get("request") == "subscribe":
                     if self._stream(client, frame):
                         return
                 else:
                     client.send(self._answer(frame, wills))
+                self._note(client, busy=False)
         except ControlError as error:
             # No frame: what follows cannot be understood either.
             with contextlib.suppress(OSError):
@@ -129,7 +167,7 @@ class ControlServer:
             client.close()
             self._execute(wills)
             with self._lock:
-                self._clients.discard(client)
+                self._clients.pop(client, None)
 
     def _execute(self, wills: Wills) -> None:
         if self._closed.is_set():

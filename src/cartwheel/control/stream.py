@@ -16,6 +16,8 @@ _QUEUE = 200
 _LARGE = {"sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage", "sensor_msgs/msg/PointCloud2"}
 _LARGE_QUEUE = 5
 """Unread messages held for a client; the oldest are dropped and counted."""
+_MOST, _MOST_LARGE = 10_000, 100
+"""Those that it may ask for."""
 _BATCH = 1 << 18
 """Bytes sent at once."""
 
@@ -39,11 +41,12 @@ class Streams:
 
         Raises:
             CartwheelError: The parameters make no sense; nothing was sent.
-            OSError: The client is gone.
+            OSError: The client is gone, or has not read for `protocol.SEND_SECONDS`.
         """
         with_data = parameters.flag("data", default=True)
-        usual = _LARGE_QUEUE if with_data and topic.type in _LARGE else _QUEUE
-        box = Mailbox(parameters.whole("queue", usual, 1, 10_000))
+        large = with_data and topic.type in _LARGE
+        usual, most = (_LARGE_QUEUE, _MOST_LARGE) if large else (_QUEUE, _MOST)
+        box = Mailbox(parameters.whole("queue", usual, 1, most))
         simulation = self._session.simulation
 
         def put(message: Any) -> None:

@@ -18,6 +18,11 @@ def _zstd() -> Any:
     return zstd
 
 
+def prepare() -> None:
+    """Imports what `compress` needs, which may take long on a busy machine."""
+    _zstd()
+
+
 def compress(data: bytes, *, level: int) -> bytes:
     """Bytes as zstd packs them."""
     packed: bytes = _zstd().compress(data, level=level)

@@ -94,6 +94,10 @@ class McapWriter:
         """Of chunks, attachments and metadata, for the end of the file."""
         self._written: list[_Written] = []
         """The chunks in the file."""
+        from cartwheel.bridges.recording.compression import prepare
+
+        # Before the run begins, and not at the first flush.
+        prepare()
         self._sink = Sink(path)
         self._sink.write(MAGIC + record(Op.HEADER, text(encoding), text("cartwheel")))
         if notes:

@@ -33,8 +33,9 @@ from cartwheel.graph import TopicInfo
 
 READER = "recorder"
 """Our name in the graph."""
-FLUSH = 1.0
-"""s of wall time after which what was recorded is handed to the operating system."""
+FLUSH = 0.5
+"""s of wall time after which what was recorded is handed to the operating system. Half of the
+second that a killed recorder may lose, so that a busy machine has the other half."""
 _TELLING = 1.0
 """s that the simulation may have waited before that is told."""
 
