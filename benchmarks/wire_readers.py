@@ -27,7 +27,7 @@ TYPES = {
     TF: "tf2_msgs/msg/TFMessage",
     IMU: "sensor_msgs/msg/Imu",
 }
-SENSORS = (IMAGE, IMU)
+SENSORS: tuple[str, ...] = (IMAGE, IMU)
 _STAMP_AT = {TF: 8}
 """Where a stamp's seconds are: behind CDR's head or ROS 1's count of messages, which both have 4
 bytes, and behind the number of transforms."""
@@ -143,7 +143,7 @@ def _read_foxglove(url: str, take: Callable[[str, memoryview], None]) -> None:
                 take(topics[subscription], memoryview(message)[13:])
 
 
-_READERS: dict[str, Callable[[str, Any], None]] = {
+READERS: dict[str, Callable[[str, Any], None]] = {
     "ros1": _read_ros1,
     "ros2": _read_ros2,
     "zenoh": _read_zenoh,
@@ -183,6 +183,6 @@ class Reader:
 
 if __name__ == "__main__":
     ages = Ages()
-    read = _READERS[sys.argv[1]]
+    read = READERS[sys.argv[1]]
     threading.Thread(target=read, args=(sys.argv[2], ages.take), daemon=True).start()
     ages.answer()

@@ -1,0 +1,30 @@
+"""The verdict of a load run."""
+
+from tests.campaign.load import IMAGE, Window, faults_of
+
+RATES = {"/odom": 100.0, IMAGE: 30.0}
+
+
+def window(odom: int, image: int, simulated: float = 10.0) -> Window:
+    return Window(simulated=simulated, counts={"ros1": {"/odom": odom, IMAGE: image}})
+
+
+def test_wires_that_deliver_are_well() -> None:
+    assert faults_of([window(300, 20), window(990, 200)], RATES) == []
+
+
+def test_a_wire_that_falls_silent_is_a_fault_also_where_it_comes_back() -> None:
+    assert faults_of([window(1000, 300), window(0, 300), window(1000, 300)], RATES) == [
+        "ros1: /odom fell silent in window 2"
+    ]
+
+
+def test_a_wire_that_is_slower_at_the_end_is_a_fault() -> None:
+    assert faults_of([window(1000, 300), window(850, 80)], RATES) == [
+        "ros1: 850 of 1000 of /odom at the end",
+        f"ros1: 80 of 300 of {IMAGE} at the end",
+    ]
+
+
+def test_a_simulation_that_stands_still_is_a_fault() -> None:
+    assert faults_of([window(0, 0, 0.0)], RATES) == ["the simulation stood still in window 1"]
