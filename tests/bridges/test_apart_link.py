@@ -7,6 +7,7 @@ from concurrent.futures import Future
 
 import pytest
 
+from cartwheel.bridges.apart import link as link_module
 from cartwheel.bridges.apart.link import Link
 from cartwheel.errors import ControlError, GraphError, Origin, UnknownNameError
 
@@ -123,3 +124,28 @@ def test_the_end_of_the_other_is_heard_and_nobody_waits_for_ever(pair: Pair) -> 
     with pytest.raises(ControlError, match="has ended"):
         pair.far.call("never").result(_PATIENCE)
     pair.far.tell("never")
+
+
+def test_what_nobody_reads_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(link_module, "_LATE", 100_000)
+    monkeypatch.setattr(link_module, "_MOST", 2_000_000)
+    near, far = socket.socketpair()
+    ended = threading.Event()
+    faults: list[Exception] = []
+    link = Link(near, name="near", on_end=ended.set, on_fault=faults.append)
+    link.start()
+    for _ in range(20):
+        link.tell_in_time("feedback", bytes(100_000))
+    assert not link.loop.call(lambda: link._ended).result(_PATIENCE)
+    assert 10 < link.dropped < 20
+    waiting = link.call("never")
+    for _ in range(30):
+        link.tell("much", bytes(100_000))
+    assert ended.wait(_PATIENCE)
+    assert [str(fault) for fault in faults] == [
+        "the other end has left 1 MB unread: it is given up"
+    ]
+    with pytest.raises(ControlError):
+        waiting.result(_PATIENCE)
+    link.close()
+    far.close()

@@ -4,6 +4,7 @@ import errno
 import random
 import resource
 import select
+import signal
 import subprocess
 import sys
 import threading
@@ -80,6 +81,9 @@ class Apart:
     def go_on(self) -> None:
         assert self._process.stdin is not None
         self._process.stdin.write(b"\n")
+
+    def signal(self, number: int) -> None:
+        self._process.send_signal(number)
 
     def kill(self) -> None:
         self._process.kill()
@@ -209,6 +213,20 @@ def test_a_writer_goes_on_where_the_reader_is_killed() -> None:
         closing.start()
         assert reader.writer.put_patiently(1, 0, large)[0] is Put.CLOSED
         closing.join()
+
+
+def test_a_reader_that_is_stopped_goes_on_reading() -> None:
+    with Apart() as reader:
+        assert reader.says() == "ready"
+        reader.signal(signal.SIGSTOP)
+        put = [reader.writer.put(number, 0, bytes(1000)) for number in range(1, 100)]
+        assert put[-1] is Put.FULL
+        reader.signal(signal.SIGCONT)
+        for number in range(1, 1 + put.count(Put.TAKEN)):
+            assert reader.says() == f"got {number} 1000"
+        while reader.writer.put(100, 0, b"again") is Put.FULL:
+            time.sleep(0.001)
+        assert reader.says() == "got 100 5"
 
 
 def test_all_sizes_come_in_order_many_times_round(ends: Ends) -> None:

@@ -105,4 +105,4 @@ class _Teller:
         """See `ActionListener`."""
         if self.wants_feedback:
             news = news_of(goal, self._time_ns())
-            self._link.tell("goal", self._number, news, encode_cdr(feedback))
+            self._link.tell_in_time("goal", self._number, news, encode_cdr(feedback))

@@ -21,6 +21,11 @@ _CALL, _TELL, _ANSWER = range(3)
 _PATIENCE = 30.0
 """s that the other end may take to answer, where it is in the middle of something."""
 
+_LATE = 1 << 20
+"""Bytes that wait to be sent, beyond which what may be dropped is dropped."""
+_MOST = 256 << 20
+"""Bytes beyond which the other end is given up."""
+
 Handler = Callable[..., Any]
 
 
@@ -53,6 +58,10 @@ class Link:
         self._numbers = itertools.count()
         self._received = bytearray()
         self._queue: deque[memoryview] = deque()
+        self._queued = 0
+        """Bytes of them: the other end may stand still."""
+        self.dropped = 0
+        """What was told and not sent."""
         self._ended = False
         self.loop = Loop(on_fault, name=name)
         sock.setblocking(False)
@@ -103,14 +112,31 @@ class Link:
         frame = _frame(_TELL, 0, name, arguments)
         self.loop.post(lambda: self._write(frame))
 
+    def tell_in_time(self, name: str, *arguments: Any) -> None:
+        """As `tell`, for what is no loss where the other end is slow: it is dropped there."""
+        frame = _frame(_TELL, 0, name, arguments)
+        self.loop.post(lambda: self._write_in_time(frame))
+
     # -- on the link's thread
 
     def _write(self, frame: bytes) -> None:
         if self._ended:
             return
+        if self._queued + len(frame) > _MOST:
+            unread = f"{self._queued >> 20} MB"
+            self._on_fault(ControlError(f"the other end has left {unread} unread: it is given up"))
+            self._end()
+            return
         self._queue.append(memoryview(frame))
+        self._queued += len(frame)
         if len(self._queue) == 1:
             self._flush()
+
+    def _write_in_time(self, frame: bytes) -> None:
+        if self._queued > _LATE:
+            self.dropped += 1
+        else:
+            self._write(frame)
 
     def _flush(self) -> None:
         while self._queue:
@@ -122,6 +148,7 @@ class Link:
             except OSError:
                 self._end()
                 return
+            self._queued -= count
             rest = self._queue[0][count:]
             if rest:
                 self._queue[0] = rest
@@ -209,6 +236,7 @@ class Link:
         if self._ended:
             return
         self._ended = True
+        self._queue.clear()
         self.loop.forget(self._sock)
         with contextlib.suppress(OSError):
             self._sock.close()
