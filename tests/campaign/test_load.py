@@ -21,8 +21,8 @@ def test_a_wire_that_falls_silent_is_a_fault_also_where_it_comes_back() -> None:
 
 def test_a_wire_that_is_slower_at_the_end_is_a_fault() -> None:
     assert faults_of([window(1000, 300), window(850, 80)], RATES) == [
-        "ros1: 850 of 1000 of /odom at the end",
-        f"ros1: 80 of 300 of {IMAGE} at the end",
+        "ros1: 850 of 1000 messages of /odom at the end",
+        f"ros1: 80 of 300 messages of {IMAGE} at the end",
     ]
 
 

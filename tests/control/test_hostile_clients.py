@@ -177,6 +177,7 @@ def test_clients_that_never_read_are_sent_away(server, session, eventually, monk
             sock.send(answers)
     for sock in crowd[2:]:
         sock.sendall(pack({"request": "subscribe", "parameters": {"topic": "/twist"}}))
+    eventually(lambda: [use.busy for use in server._clients.values()] == [True] * 4)
     session.simulation.post(lambda: session.simulation.set_speed(None))
     eventually(lambda: not server._clients)
     session.simulation.post(lambda: session.simulation.set_speed(1.0))
