@@ -687,7 +687,7 @@ def test_errors(inside, reason):
         ('<sdf version="1.7"/>', "neither a <model> nor a <world>"),
         ("<sdf/>", "no usable version"),
         ('<sdf version="new"/>', "no usable version"),
-        ('<gazebo version="1.0"/>', "too old"),
+        ('<gazebo version="0.9"/>', "too old"),
         ('<sdf version="1.7"><model name="a"/><model name="b"/></sdf>', "2 models"),
         ('<robot name="a"/>', "begins with <robot>"),
     ],

@@ -17,7 +17,9 @@ if TYPE_CHECKING:
     from cartwheel.description.xml import Node
 
 Version = tuple[int, int]
-OLDEST: Version = (1, 3)
+OLDEST: Version = (1, 0)
+MODERN: Version = (1, 3)
+"""What is older is converted; see `oldest`."""
 NEWEST: Version = (1, 12)
 _NOTATIONS = ("euler_rpy", "quat_xyzw")
 MAX_INCLUDES = 16
@@ -47,9 +49,9 @@ def read_version(root: Node) -> Version:
     """
     text = root.get("version") or ""
     match = re.fullmatch(r"\s*(\d+)\.(\d+)\s*", text)
-    if root.tag == "gazebo" or (match and (int(match[1]), int(match[2])) < OLDEST):
+    if match and (int(match[1]), int(match[2])) < OLDEST:
         raise root.fail(
-            f'SDF version "{text}" of <{root.tag}> is too old: 1.3 to 1.11 are understood',
+            f'SDF version "{text}" of <{root.tag}> is too old: 1.0 to 1.11 are understood',
             'Convert it with "gz sdf -c" of Gazebo Classic.',
         )
     if not match:

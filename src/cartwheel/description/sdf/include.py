@@ -8,7 +8,8 @@ from pathlib import Path
 
 from cartwheel.description import fuel
 from cartwheel.description.model import PluginTag
-from cartwheel.description.sdf.context import MAX_INCLUDES, Context, read_version
+from cartwheel.description.sdf.context import MAX_INCLUDES, MODERN, Context, read_version
+from cartwheel.description.sdf.oldest import as_modern
 from cartwheel.description.sdf.sensors import read_plugins
 from cartwheel.description.xml import Node, read_file
 from cartwheel.errors import DescriptionError, Origin
@@ -54,6 +55,8 @@ def open_include(node: Node, ctx: Context) -> Included:
     if root.tag not in ("sdf", "gazebo", "robot"):
         raise root.fail(f"expected <sdf>, but the file begins with <{root.tag}>")
     version = ctx.version if root.tag == "robot" else read_version(root)
+    if root.tag != "robot" and version < MODERN:
+        root = as_modern(root)
     inner = Context(ctx.packages, version, ctx.diagnostics, (*ctx.including, path))
     name = node.child("name")
     static = node.child("static")

@@ -1,4 +1,4 @@
-"""SDF 1.3 to 1.11 into descriptions: a model is a robot, a world a world.
+"""SDF 1.0 to 1.11 into descriptions: a model is a robot, a world a world.
 
 What Gazebo does not say in one place is split over the files beside this one: ``sdf_frames``
 resolves who is placed relative to whom, ``sdf_model``, ``sdf_link``, ``sdf_joint`` and
@@ -13,9 +13,10 @@ from pathlib import Path
 
 from cartwheel.description.model import RobotDescription, WorldDescription
 from cartwheel.description.packages import Packages
-from cartwheel.description.sdf.context import NEWEST, Context, read_version
+from cartwheel.description.sdf.context import MODERN, NEWEST, Context, read_version
 from cartwheel.description.sdf.harmless import HARMLESS
 from cartwheel.description.sdf.model import read_model
+from cartwheel.description.sdf.oldest import as_modern
 from cartwheel.description.sdf.unplaced import Model
 from cartwheel.description.sdf.world import read_world
 from cartwheel.description.xml import Node, unread
@@ -42,6 +43,8 @@ def read_sdf(
         raise root.fail(f"expected <sdf>, but the file begins with <{root.tag}>")
     including = () if packages.file is None else (Path(packages.file).resolve(),)
     ctx = Context(packages, read_version(root), including=including)
+    if ctx.version < MODERN:
+        root = as_modern(root)
     if ctx.version > NEWEST:
         ctx.tell(
             "info",
