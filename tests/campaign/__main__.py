@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import os
+import signal
 import sys
 from pathlib import Path
 
@@ -39,6 +40,7 @@ def main() -> int:
         campaign.forget_mended()
     else:
         campaign.clear()
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
         campaign.run(arguments.minutes)
     except KeyboardInterrupt:

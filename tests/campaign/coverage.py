@@ -1,7 +1,7 @@
 """Which blocks of Cartwheel's code an input reaches, cheaply enough to ask for each input.
 
 An import hook writes ``hits[n] = 1`` to the begin of each function, branch, loop and handler.
-That costs a third of the speed; a trace function of Python's costs nine tenths.
+Reading a URDF takes 5 % longer with it, and six times as long with a trace function.
 """
 
 from __future__ import annotations

@@ -103,8 +103,8 @@ class Campaign:
         counts = self.counts.setdefault(target.name, Counts())
         room = self.folder / target.name
         begin = time.monotonic()
+        left = seconds
         while True:
-            left = max(seconds - (time.monotonic() - begin), 0)
             task = {
                 "target": target.name,
                 "seed": self.seed,
@@ -114,7 +114,8 @@ class Campaign:
             watched = watch(target, task, room)
             _add(counts, watched)
             # A worker that died is started anew, for the rest of the slice.
-            if watched.ended or time.monotonic() - begin > seconds:
+            left = seconds - (time.monotonic() - begin)
+            if watched.ended or left < 0:
                 break
         if (room / "stats").exists():
             stats = json.loads((room / "stats").read_text())

@@ -6,6 +6,7 @@ import collections
 import contextlib
 import faulthandler
 import hashlib
+import itertools
 import json
 import mmap
 import os
@@ -78,8 +79,11 @@ class _Worker:
             for file in given:
                 self._one(Path(file).read_bytes())
             return
+        inputs = self._inputs()
+        first = next(inputs)
+        # Imports and seeds take what they take: the time is for inputs.
         end = time.monotonic() + self._task["seconds"]
-        for data in self._inputs():
+        for data in itertools.chain([first], inputs):
             new = self._one(data)
             if new and len(self._corpus) < _NEWEST:
                 self._keep(data)
