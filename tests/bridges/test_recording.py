@@ -481,6 +481,35 @@ def test_a_kill_leaves_all_but_the_last_second(name: str, tmp_path: Path) -> Non
     assert times == [max(i * 10_000_000, int(name == "drive.bag")) for i in range(len(times))]
 
 
+def test_a_recorder_that_is_killed_early_has_the_beginning(tmp_path: Path) -> None:
+    """As soon as it has handed on anything; the run says so and ends."""
+    path = tmp_path / "drive.mcap"
+    process = subprocess.Popen(
+        [PROGRAM, "run", "--headless", "--record", str(path), "--record-topics", "/clock"],
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    try:
+        deadline = time.monotonic() + 120
+        times: list[int] = []
+        while not times:
+            assert time.monotonic() < deadline and process.poll() is None
+            time.sleep(0.01)
+            if path.exists():
+                times = [t for t, _ in _read_broken("drive.mcap", path)["/clock"]]
+        (recorder,) = Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
+        os.kill(int(recorder), signal.SIGKILL)
+        _, said = process.communicate(timeout=120)
+    finally:
+        process.kill()
+        process.wait()
+    assert process.returncode == 2
+    assert "its process was ended" in said
+    times = [t for t, _ in _read_broken("drive.mcap", path)["/clock"]]
+    assert times == [i * 10_000_000 for i in range(len(times))]
+
+
 def _holds_much(file: Path) -> bool:
     """Whether a file that is being written would keep more than a second if that ended now."""
     if file.suffix != ".db3" or not file.exists():
