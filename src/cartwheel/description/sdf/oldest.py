@@ -75,13 +75,19 @@ _THEIR_OWN = ("plugin",)
 """Whose content is not SDF's."""
 
 
-def as_modern(node: Node, parent: str = "") -> Node:
-    """An element of SDF 1.0 to 1.2 with all that it holds, as SDF 1.3 has it."""
+def as_modern(root: Node) -> Node:
+    """A document of SDF 1.0 to 1.2 as SDF 1.3 has it."""
+    made = _converted(root)
+    made.get("version")
+    return made
+
+
+def _converted(node: Node, parent: str = "") -> Node:
     tag = _NAMES.get((parent, node.tag), _TAGS.get(node.tag, node.tag))
     if tag in _THEIR_OWN:
         return node
     attributes: dict[str, str] = {}
-    children = [as_modern(child, tag) for child in node.children]
+    children = [_converted(child, tag) for child in node.children]
     text = node.text
     for name, value in node.attributes.items():
         new = _NAMES.get((tag, name), name)
