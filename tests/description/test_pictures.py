@@ -119,3 +119,13 @@ def test_a_texture_that_cannot_be_read_leaves_its_surface_with_a_warning(tmp_pat
     assert note.severity == "warning"
     assert note.origin.line == 1
     assert "cannot be read" in note.message
+
+
+def test_an_unreadable_texture_that_is_remembered_holds_no_picture(tmp_path):
+    from cartwheel.world.shapes import picture_error
+
+    path = tmp_path / "a.png"
+    path.write_bytes(png(64, 64))
+    error = picture_error(path)
+    assert picture_error(path) is error
+    assert (error.__traceback__, error.__cause__, error.__context__) == (None, None, None)

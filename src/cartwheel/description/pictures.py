@@ -31,7 +31,7 @@ class PictureError(DescriptionError):
     """
 
     def __init__(self, name: str, reason: str, hint: str | None = None) -> None:
-        self.reason = reason
+        self.name, self.reason = name, reason
         super().__init__(f'the picture "{name}" cannot be read: {reason}', hint=hint)
 
 

@@ -160,7 +160,8 @@ def _pixels(image: Path | bytes, _changed: int) -> Any:
     try:
         small = thumbnail(image, _LARGEST_TEXTURE)
     except PictureError as error:
-        return error
+        # Made anew: the one that was raised refers to frames that hold the picture.
+        return PictureError(error.name, error.reason, error.hint)
     return np.ascontiguousarray(np.asarray(small)[::-1])
 
 
