@@ -528,6 +528,10 @@ def test_without_the_extra(monkeypatch: pytest.MonkeyPatch) -> None:
     session.close()
 
 
+XACRO = """<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro"><link name="a"/>
+  ${(lambda: ().__class__.__base__.__subclasses__())()}</robot>"""
+
+
 def publishers(event: dict[str, Any], topic: str) -> list[str]:
     topics = event["graph"]["publishedTopics"]
     return [name for one in topics if one["name"] == topic for name in one["publisherIds"]]
@@ -547,6 +551,13 @@ def test_the_command_serves(folder: Path) -> None:
         client.wait("message")
         # Nobody else would offer what Gazebo and robot_state_publisher do.
         client.wait("services", lambda e: any(s["name"] == "/spawn_entity" for s in e["services"]))
+        request, made = service_classes("gazebo_msgs/srv/SpawnEntity")
+        asked = from_dict(request.__msgtype__, {"name": "x", "xml": XACRO})
+        client.send("call", encode_cdr(asked), service="/spawn_entity", encoding="cdr")
+        data = base64.b64decode(client.wait("answer")["data"])
+        answer = decode_cdr(data, made.__msgtype__)
+        assert not answer.success
+        assert "not expanded" in answer.status_message
         client.do("graph")
         client.wait("graph", lambda e: "robot_state_publisher" in publishers(e, "/tf"))
         client.subscribe("/rosout")
