@@ -79,12 +79,13 @@ def test_chunks_that_all_overlap_are_refused_where_they_would_fill_memory(tmp_pa
         ("[a/..]", "not there"),
         ("[/etc/passwd]", 'not there: "passwd"'),
         ("[fifo]", "not there"),
+        ("5", "neither .mcap nor .db3"),
         ("{a: b}", "neither .mcap nor .db3"),
         ("&a [*a, *a]", "alias|neither"),
         ("[" * 2000, "cannot be read"),
         ("2001-99-99", "cannot be read"),
     ],
-    ids=["itself", "parent", "elsewhere", "fifo", "mapping", "alias", "deep", "date"],
+    ids=["itself", "parent", "elsewhere", "fifo", "number", "mapping", "alias", "deep", "date"],
 )
 def test_a_folder_names_only_its_own_files(tmp_path, paths, error):
     os.mkfifo(tmp_path / "fifo")
@@ -124,13 +125,20 @@ def test_a_database_has_tables_of_the_right_types(tmp_path, tables, error):
         # Each further pair makes rosbags' parser take 70 times as long.
         ("ros2idl", "module a { const long A = ((((1)))); };", "parentheses"),
         ("ros2idl", "module a {" * 400, "cannot be read"),
+        ("ros2msg", "uint8 A=1e400", "cannot be used"),
+        ("ros1msg", "string S=a\nstring S=a", "cannot be used"),
+        ("ros1msg", "Lost x", "cannot be used"),
         ("ros2msg", "float64 x # " + "a" * (1 << 20), "at most 1048576"),
     ],
-    ids=["parentheses", "deep", "long"],
+    ids=["parentheses", "deep", "endless", "twice", "lost", "long"],
 )
 def test_a_definition_is_read_in_bounded_time(schema, definition, error):
     topic = RecordedTopic(
-        name="/a", type="a/msg/B", encoding="cdr", schema=schema, definition=definition
+        name="/a",
+        type=f"a{len(definition)}/msg/B",
+        encoding="ros1" if schema == "ros1msg" else "cdr",
+        schema=schema,
+        definition=definition,
     )
     with pytest.raises(RecordingError, match=error):
         decoder(topic)

@@ -45,6 +45,10 @@ def decoder(topic: RecordedTopic) -> Decode:
         raise
     except CartwheelError as error:
         raise RecordingError(f"{topic.name}: {error.message}") from error
+    except MemoryError:
+        raise
+    except Exception as error:  # rosbags makes code of definitions, and finds faults only there
+        raise RecordingError(f"{topic.name}: its definition cannot be used: {error}") from error
     return lambda data: decode_cdr(data, kind)
 
 

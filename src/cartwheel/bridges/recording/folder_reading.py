@@ -80,10 +80,11 @@ def open_folder(path: Path, open_file: Callable[[Path], Recording]) -> Recording
     """
     about = _metadata(path)
     stated = about.get("relative_file_paths")
-    names = [Path(name).name for name in stated or () if isinstance(name, str)]
+    stated = stated if isinstance(stated, list) else []
+    names = [Path(name).name for name in stated if isinstance(name, str)]
     # All of a bag's files lie in its folder. Some versions also write the folder's name, which
     # may have changed since, and nobody may name files elsewhere.
-    files = [path / name for name in names if isinstance(stated, list) and name]
+    files = [path / name for name in names if name]
     for file in files:
         if not file.is_file():
             raise RecordingError(f'"{path}" names a file that is not there: "{file.name}"')
