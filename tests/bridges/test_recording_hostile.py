@@ -128,9 +128,22 @@ def test_a_database_has_tables_of_the_right_types(tmp_path, tables, error):
         ("ros2msg", "uint8 A=1e400", "cannot be used"),
         ("ros1msg", "string S=a\nstring S=a", "cannot be used"),
         ("ros1msg", "Lost x", "cannot be used"),
+        ("ros2msg", "string[400000000] x", "has 400000000 elements, at most 10000"),
+        ("ros2msg", "B[3] x\n", "contains itself"),
+        ("ros1msg", "B[] x\n", "contains itself"),
         ("ros2msg", "float64 x # " + "a" * (1 << 20), "at most 1048576"),
     ],
-    ids=["parentheses", "deep", "endless", "twice", "lost", "long"],
+    ids=[
+        "parentheses",
+        "deep",
+        "endless",
+        "twice",
+        "lost",
+        "array",
+        "itself",
+        "itself, ROS 1",
+        "long",
+    ],
 )
 def test_a_definition_is_read_in_bounded_time(schema, definition, error):
     topic = RecordedTopic(

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any
+
+from rosbags.interfaces import Nodetype
 
 from cartwheel.bridges.recording.reading import RecordedTopic
 from cartwheel.errors import CartwheelError, RecordingError
@@ -16,6 +18,8 @@ from cartwheel.messages.ros2_types import twin_name
 
 _LONGEST = 1 << 20
 """Characters of a definition with all types that it needs."""
+_LONGEST_ARRAY = 10_000
+"""Elements of a fixed array of texts or messages."""
 _NO_CODE = re.compile(r'"(?:[^"\\]|\\.)*"|//[^\n]*|/\*.*?\*/', re.DOTALL)
 """In IDL: texts and comments."""
 Decode = Callable[[bytes], Any]
@@ -58,6 +62,8 @@ def _learn(topic: RecordedTopic) -> None:
     types = _parsed(topic)
     for name, (_, fields) in types.items():
         _check_names(topic, name, fields)
+        _check_arrays(topic, name, fields)
+    _check_depth(topic, types)
     ours = store()
     if topic.encoding == "cdr":
         for name, (_, fields) in types.items():
@@ -119,6 +125,40 @@ def _check_names(topic: RecordedTopic, name: str, fields: Any) -> None:
     words = [*name.split("/"), *(field[0] for field in fields)]
     if not all(word.isidentifier() for word in words):
         raise RecordingError(f"{topic.name}: {name} is no name of a type, or has such a field")
+
+
+def _check_arrays(topic: RecordedTopic, name: str, fields: Any) -> None:
+    """Refuses long fixed arrays of texts and messages: rosbags makes a line of code of each."""
+    for field, (kind, inner) in fields:
+        if kind != Nodetype.ARRAY:
+            continue
+        (element, about), size = inner
+        if size > _LONGEST_ARRAY and (element != Nodetype.BASE or "string" in about[0]):
+            raise RecordingError(
+                f"{topic.name}: {name}.{field} has {size} elements,"
+                f" at most {_LONGEST_ARRAY} are read"
+            )
+
+
+def _check_depth(topic: RecordedTopic, types: dict[str, Any]) -> None:
+    """Refuses types that contain themselves."""
+    inner = {
+        name: {about for _, about in _elements(fields) if about in types}
+        for name, (_, fields) in types.items()
+    }
+    while inner:
+        flat = {name for name, others in inner.items() if not others & inner.keys()}
+        if not flat:
+            raise RecordingError(f"{topic.name}: {min(inner)} contains itself")
+        inner = {name: others for name, others in inner.items() if name not in flat}
+
+
+def _elements(fields: Any) -> Iterator[tuple[int, Any]]:
+    """Kinds and names of what fields hold, within arrays too."""
+    for _, (kind, about) in fields:
+        found = about[0] if kind in (Nodetype.ARRAY, Nodetype.SEQUENCE) else (kind, about)
+        if found[0] == Nodetype.NAME:
+            yield found
 
 
 def _plain(fields: Any) -> Any:
