@@ -60,7 +60,7 @@ def test_it_reads_drives_spawns_and_resets(
     program: Path, bridged: Ros2Bridged, mapping: str
 ) -> None:
     done = subprocess.run(
-        [program, str(DOMAIN + 2), mapping], capture_output=True, text=True, timeout=300, check=True
+        [program, str(DOMAIN + 2), mapping], capture_output=True, text=True, timeout=400, check=True
     )
     said = {line.split()[0]: line.split()[1:] for line in done.stdout.splitlines()}
     assert said["spawn"][0] == "true", done.stdout

@@ -172,7 +172,7 @@ fn main() {
             other => println!("spawn failed {other:?}"),
         }
         // As long as it takes: two seconds of odometry where the computer is not busy.
-        let end = Instant::now() + Duration::from_secs(90);
+        let end = Instant::now() + Duration::from_secs(240);
         let (mut n, mut x, mut frame) = ([0u32; 4], 0f64, String::new());
         let mut size = (0, 0, 0);
         while Instant::now() < end && (n[..3].iter().any(|&n| n <= 200) || n[3] <= 20 || x <= 0.5) {
