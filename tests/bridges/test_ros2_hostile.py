@@ -419,6 +419,7 @@ def test_a_heartbeat_of_astronomical_numbers_costs_nothing(
     prefix = b"\x01\x05" + bytes(10)
     sender.send(announcement(prefix, 9))
     settle(bridged)
+    before = memory()
     for count in range(200):
         told = wire.heartbeat(
             reader=discovery.PUBLICATIONS_READER,
@@ -436,7 +437,9 @@ def test_a_heartbeat_of_astronomical_numbers_costs_nothing(
         )
         sender.send(wire.message(prefix, gap))
     settle(bridged)
+    assert memory() - before < 20 << 20
     bridged.bridge._loop.call(lambda: participant._lose(prefix)).result(120)
+    assert not [each for each in bridged.reports if "fault" in each.message]
 
 
 @pytest.mark.skipif(bool(REASON), reason=REASON)

@@ -4,6 +4,7 @@ import tempfile
 
 import pytest
 
+from cartwheel.description import packages as packages_module
 from cartwheel.description.packages import Packages, share
 from cartwheel.errors import DescriptionError, Origin
 
@@ -214,9 +215,19 @@ def test_the_package_path_of_ros_is_crawled(tmp_path):
     assert found == deep
 
 
-def test_large_trees_are_not_walked(tmp_path):
+def test_large_trees_are_not_walked(tmp_path, monkeypatch):
     own = package(tmp_path / "ws" / "src" / "a")
     for number in range(700):
         (tmp_path / "ws" / f"f{number:03}").mkdir()
+    looked = set()
+    name_of = packages_module._package_name
+
+    def counted(folder):
+        looked.add(folder)
+        return name_of(folder)
+
+    monkeypatch.setattr(packages_module, "_package_name", counted)
     with pytest.raises(DescriptionError, match="was not found"):
         packages(robot(own)).find("nowhere")
+    walked = [each for each in looked if each.parent == tmp_path / "ws"]
+    assert 0 < len(walked) <= packages_module.MAX_ENTRIES

@@ -13,6 +13,7 @@ from cartwheel.gazebo.robot_states import RobotStates
 from cartwheel.geometry import Pose
 from cartwheel.plugins.robot_descriptions import RobotDescriptions
 from cartwheel.session import Session
+from cartwheel.simulation.simulation import Simulation
 
 TF = "tf2_msgs/msg/TFMessage"
 ARM = """<?xml version="1.0"?>
@@ -158,13 +159,25 @@ def test_a_second_robot_of_the_same_frames_is_left_out_and_told_of() -> None:
     session.close()
 
 
-def test_nothing_is_made_for_nobody_and_a_deleted_robot_is_gone() -> None:
+def test_nothing_is_made_for_nobody_and_a_deleted_robot_is_gone(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     session = session_with(("arm", load_text(ARM, file="arm.urdf")))
     states = states_of(session)
-    assert not states._wanted()
-    heard = Listener(session)
-    assert states._wanted()
+    asked: list[str] = []
+    position = Simulation.joint_position
+
+    def counted(simulation: Simulation, model: str, joint: str) -> float:
+        asked.append(joint)
+        return position(simulation, model, joint)
+
+    monkeypatch.setattr(Simulation, "joint_position", counted)
     session.simulation.advance(10**8)
+    assert not asked
+    heard = Listener(session)
+    session.simulation.advance(2 * 10**8)
+    assert asked
+    assert heard.moving
     session.simulation.delete("arm")
     session.simulation.advance(5 * 10**8)
     assert heard.static == []

@@ -66,9 +66,10 @@ def installed(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_robots_worlds_and_models_are_in_the_wheel(wheel: Path) -> None:
     names = set(zipfile.ZipFile(wheel).namelist())
     for kind in ("robots", "worlds", "models"):
-        for file in (ROOT / kind).rglob("*"):
-            if file.is_file():
-                assert f"cartwheel/share/{file.relative_to(ROOT)}" in names
+        files = [file for file in (ROOT / kind).rglob("*") if file.is_file()]
+        assert files, kind
+        for file in files:
+            assert f"cartwheel/share/{file.relative_to(ROOT)}" in names
 
 
 def test_everything_that_is_not_python_is_in_the_wheel(wheel: Path) -> None:

@@ -94,7 +94,7 @@ def test_what_is_played_is_what_was_recorded(name: str, drives: Callable[[str], 
         messages.clear()
     player.seek(player.start_ns)
     player.run()
-    assert set(found) == set(drive.seen)
+    assert set(found) == set(drive.seen) > latched
     for topic, messages in drive.seen.items():
         if topic in latched:
             # Said at the start, and when its time comes.

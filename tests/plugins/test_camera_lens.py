@@ -134,6 +134,12 @@ def test_a_distortion_that_nobody_sees_is_not_drawn(make):
     world = make.world(make.sdf(tiny))
     assert np.array_equal(pixels_of(take(world, "/cam/image_raw")), plain)
     assert take(world, "/cam/camera_info").d[0] == 1e-8
+    # The picture itself is handed on, not one made of its pixels.
+    for k1, same in ((1e-8, True), (1e-2, False)):
+        intrinsics = CameraIntrinsics(width=320, height=240, horizontal_fov=FOV)
+        lens = Lens(intrinsics, Distortion(k1=k1))
+        picture = np.zeros((lens.drawn.height, lens.drawn.width, 3), np.uint8)
+        assert (lens.image(picture) is picture) == same
 
 
 def test_depths_are_bent_like_colours(make):

@@ -33,6 +33,7 @@ def test_it_nears_its_velocity_with_the_time_constant_of_mass_and_gain(make, rea
                         "<y_velocity_p_gain>100</y_velocity_p_gain>")  # fmt: skip
     world.publish("/cmd_vel", linear_x=0.6, linear_y=-0.3)
     told = read(world, "/odom", 0.4)
+    assert told
     for message in told:
         time = message.header.stamp.nanosec * 1e-9
         share = 1 - math.exp(-100 / MASS * time)

@@ -82,7 +82,9 @@ def test_p3d_in_a_links_frame_goes_with_it(make, read):
       <frame_name>beam</frame_name><update_rate>50</update_rate></plugin>"""
     world = make.world(make.sdf(arm(plugin)), ground=None)
     world.session.simulation.data.joint("arm::turn").qvel[0] = 2.0
-    for message in read(world, "/odom", 1.0):
+    messages = read(world, "/odom", 1.0)
+    assert len(messages) == 50
+    for message in messages:
         assert vector(message.pose.pose.position) == pytest.approx([1, 0, 0], abs=1e-9)
         # Its place moves with the beam's axes: the difference of the two links' velocities.
         assert np.linalg.norm(vector(message.twist.twist.linear)) == pytest.approx(2.0, rel=1e-3)
@@ -348,7 +350,9 @@ def test_a_scale_feels_what_lies_on_it_for_as_long_as_it_lies(  # noqa: PLR0917
     world = make.world(make.sdf(PLATE.format(plugin=ft(tags), **stands)), box)
     world.run(5.0)
     assert not world.diagnostics
-    for message in read(world, "/ft", 0.1):
+    messages = read(world, "/ft", 0.1)
+    assert messages
+    for message in messages:
         assert vector(message.wrench.force) == pytest.approx([0, 0, -weight * G], abs=1e-3)
         assert message.header.frame_id == frame
 

@@ -56,7 +56,9 @@ def test_cart_is_light_enough_for_a_software_renderer(robot: Element, meshes: Pa
 
 
 def test_units_and_axes_are_stated(meshes: Path) -> None:
-    for path in meshes.glob("*.dae"):
+    paths = list(meshes.glob("*.dae"))
+    assert paths
+    for path in paths:
         asset = ElementTree.parse(path).getroot().find(f"{COLLADA}asset")
         assert asset is not None
         unit = asset.find(f"{COLLADA}unit")

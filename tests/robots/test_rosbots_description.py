@@ -240,7 +240,9 @@ def test_surfaces(robot: Element) -> None:
 
 
 def test_gazebo_blocks_refer_to_links_that_exist(robot: Element) -> None:
-    for block in robot.findall("gazebo"):
+    blocks = robot.findall("gazebo")
+    assert blocks
+    for block in blocks:
         assert block.get("reference", "base_link") in LINKS
 
 
@@ -328,5 +330,7 @@ def test_launch_files_refer_to_files_that_exist(repository: Path) -> None:
     launches = sorted(package.glob("launch/*.launch"))
     assert [launch.name for launch in launches] == ["rviz.launch", "spawn.launch"]
     for launch in launches:
-        for path in re.findall(r"\$\(find rosbots_description\)/([\w./]+)", launch.read_text()):
+        paths = re.findall(r"\$\(find rosbots_description\)/([\w./]+)", launch.read_text())
+        assert paths, launch.name
+        for path in paths:
             assert (package / path).is_file(), f"{launch.name}: {path}"

@@ -23,7 +23,9 @@ def area(vertices, faces) -> float:
     return float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2)
 
 
-@pytest.mark.parametrize("path", FILES, ids=lambda path: f"{path.parent.name}/{path.name}")
+@pytest.mark.parametrize(
+    "path", FILES or [CORPUS], ids=lambda path: f"{path.parent.name}/{path.name}"
+)
 def test_area_and_bounds_are_those_of_trimesh(path):
     import trimesh
 
