@@ -2,6 +2,7 @@
 
 import re
 import threading
+import time
 import warnings
 from pathlib import Path
 
@@ -10,6 +11,7 @@ import yaml
 
 from cartwheel.description import load_text, xml
 from cartwheel.description.expressions import budget as bounds
+from cartwheel.description.expressions import syntax
 from cartwheel.description.packages import Packages
 from cartwheel.description.xacro import expand
 from cartwheel.errors import DescriptionError
@@ -167,6 +169,17 @@ BOMBS = [
     "1" + "+1" * 2400,
     "'" + "a" * 6000 + "'",
     "9" * 4900,
+    "('a'*200000).rfind('ab' + 'a'*150000)",
+    "('a'*200000).rsplit('ab' + 'a'*150000)",
+    "('a'*200000).strip('b'*150000 + 'a')",
+    "'%(a(b))9999d' % dict([('a(b)', 5)])",
+    "'%(a)999s'*9000 % dict(a=1) and 0",
+    "len([('ab '*99999).split() for i in python.range(33)])",
+    "len([[(1<<4000)+j for j in python.range(9000)] for i in python.range(20)])",
+    "len([[-i for i in [1<<4000]*9000] for j in python.range(30)])",
+    "(lambda a, b: python.sorted(python.range(90000), key=lambda i: a if i % 2 else b))"
+    "('x'*9000, 'x'*8999 + 'y')",
+    "max(python.range(90000), key=lambda i: 'x'*9000)",
 ]
 
 
@@ -187,6 +200,54 @@ def test_an_expression_cannot_take_long(expression, monkeypatch):
     monkeypatch.setattr(bounds.Budget.__init__, "__defaults__", (0.3,))
     with pytest.raises(DescriptionError, match=r"takes more than 0\.3 s to expand"):
         value(expression)
+
+
+@pytest.mark.parametrize(
+    "expression",
+    [
+        "python.set(KEYS)",
+        "python.set([1]).union(KEYS)",
+        "python.set([1]).update(KEYS)",
+        "dict([(key, 0) for key in KEYS])",
+        "dict().update([(key, 0) for key in KEYS])",
+    ],
+)
+def test_keys_of_one_hash_cannot_take_long(expression, monkeypatch):
+    monkeypatch.setattr(bounds.Budget.__init__, "__defaults__", (0.3,))
+    keys = f"[i*{2**61 - 1} for i in python.range(30000)]"
+    start = time.thread_time()
+    with pytest.raises(DescriptionError, match=r"takes more than 0\.3 s to expand"):
+        value(expression.replace("KEYS", keys))
+    # Put in at once they would take ten times as long.
+    assert time.thread_time() - start < 1.5
+
+
+def test_files_that_are_read_many_times_cannot_take_long(tmp_path, monkeypatch):
+    file = tmp_path / "list.yaml"
+    file.write_text("[" + "1," * 5000 + "]")
+    monkeypatch.setattr(bounds.Budget.__init__, "__defaults__", (0.3,))
+    text = f"[0 for i in python.range(40) if xacro.load_yaml('{file}') is 1]"
+    with pytest.raises(DescriptionError, match=r"takes more than 0\.3 s to expand"):
+        expand(
+            f'<robot name="r" {NS}><a b="${{{text}}}"/></robot>',
+            "test",
+            Packages(tmp_path / "r.xacro"),
+            {},
+        )
+
+
+def test_no_long_expression_is_kept():
+    before = syntax._kept.cache_info().currsize
+    for i in range(9):
+        value(f"[{'1,' * 400} {i}][-1]")
+    assert syntax._kept.cache_info().currsize == before
+
+
+@pytest.mark.parametrize("character", [r"\x1b", r"\0", r"\ud800", r"\uffff"])
+def test_an_expression_cannot_make_what_xml_does_not_allow(character):
+    for body in (f"<a b=\"${{'{character}'}}\"/>", f"<a>${{'{character}'}}</a>"):
+        with pytest.raises(DescriptionError, match="which XML does not allow"):
+            expanded(body)
 
 
 def doubling(first, level):
@@ -224,6 +285,8 @@ SMALL_FILES = {
     + '<xacro:insert_block name="b41"/>',
     "a long text in many copies": '<xacro:macro name="m"><a b="' + "a" * 10**6 + '"/></xacro:macro>'
     + "<xacro:m/>" * 500,
+    "many attributes": '<xacro:macro name="m"><a '
+    + " ".join(f'a{i}=""' for i in range(20_000)) + "/></xacro:macro>" + "<xacro:m/>" * 30,
     "many long texts": "<a b=\"${'a'*999999}\"/>" * 500,
     "a macro's parameters": '<xacro:macro name="m" params="' + "a b " * 100_000 + '"/>',
     "a name of brackets": f'<xacro:property name="{"(" * 100_000}" value="1"/>',

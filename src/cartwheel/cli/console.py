@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import sys
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, TextIO
@@ -11,6 +12,14 @@ if TYPE_CHECKING:
     from cartwheel.errors import Diagnostic
 
 _CODES = {"bold": "1", "dim": "2", "red": "31", "green": "32", "yellow": "33", "cyan": "36"}
+_STYLES = "|".join(_CODES.values())
+_OWN = rf"\x1b\[(?:0|(?:{_STYLES})(?:;(?:{_STYLES}))*)m"
+_COMMANDS = re.compile(
+    rf"({_OWN})|[\x00-\x08\x0b-\x1f\x7f-\x9f]"
+    r"|[\u061c\u200e\u200f\u202a-\u202e\u2066-\u2069\ud800-\udfff]"
+)
+"""Characters that are commands to a terminal, turn the order of a text, or cannot be written.
+Colours of `paint` are kept."""
 
 
 def is_terminal(stream: TextIO) -> bool:
@@ -25,9 +34,17 @@ def paint(text: str, *styles: str, stream: TextIO | None = None) -> str:
     return f"\033[{';'.join(_CODES[style] for style in styles)}m{text}\033[0m"
 
 
+def printable(text: str) -> str:
+    """A text that does nothing to a terminal: names and texts of strangers may be in it.
+
+    What is not printable is written as in Python, as a code with a backslash.
+    """
+    return _COMMANDS.sub(lambda found: found[1] or found[0].encode("unicode_escape").decode(), text)
+
+
 def say(text: str = "") -> None:
     """A line of the result; at once, so that a reader of a pipe has it."""
-    print(text, flush=True)
+    print(printable(text), flush=True)
 
 
 def say_version() -> None:
@@ -39,7 +56,7 @@ def say_version() -> None:
 
 def note(text: str) -> None:
     """A line about the result."""
-    print(text, file=sys.stderr, flush=True)
+    print(printable(text), file=sys.stderr, flush=True)
 
 
 def print_error(text: str) -> None:

@@ -47,11 +47,14 @@ MAX_ELEMENTS = 100_000
 
 MAX_MATCHES = 1000
 """Files that one include with a wildcard takes."""
+_PART_SIZE = 200
+"""Characters that stand for the memory of an element, attribute or text."""
 MAX_PARAMETERS = 10_000
 """Characters of the parameters that a macro declares."""
 
 _TOKEN = re.compile(r"(\$\$+)(?=[{(])|\$\{([^}]*)\}|\$\(([^)]*)\)|([^$]+|\$[^{($]+|\$\Z)")
 """An escaped ``$$``; an expression; an extension; text."""
+_NOT_XML = re.compile(r"[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 _PARAMETER = re.compile(
     r"""\s*([^\s:=]+?)\s*:?=\s*(\^\|?)?"""
     r"""(\$\{[^}]*\}|\$\([^)]*\)|(?:'[^']*'|"[^"]*"|[^\s'"]++)++|)(?:\s+|$)"""
@@ -210,9 +213,9 @@ class _Run:
         Raises:
             DescriptionError: There are too many.
         """
-        elements, characters = _size(copy)
+        elements, parts, characters = _size(copy)
         self.made += elements
-        self.budget.spend(elements)
+        self.budget.spend(parts)
         self.budget.make(characters)
         if self.made > MAX_ELEMENTS:
             raise DescriptionError(
@@ -270,6 +273,7 @@ def _parse(content: bytes | str, file: str, run: _Run) -> _Document:
     """The tree that xacro works on; comments are left out."""
     run.files.append(file)
     run.budget.make(len(content))
+    run.budget.look()
     builder = _DomBuilder(file, run)
     xml.run_expat(content, file, builder)
     root: Any = builder.document.documentElement
@@ -338,18 +342,23 @@ def _clone(element: Any, stack: tuple[str, ...] | None) -> _Element:
     return copy
 
 
-def _size(element: Any) -> tuple[int, int]:
-    """Elements, and characters of attributes and texts, with those inside."""
-    elements, characters, left = 0, 0, [element]
+def _size(element: Any) -> tuple[int, int, int]:
+    """Of a tree: elements; all its parts, attributes and texts among them; characters.
+
+    The characters include the memory that the parts take.
+    """
+    elements, parts, characters, left = 0, 0, 0, [element]
     while left:
         each = left.pop()
+        parts += 1
         if isinstance(each, _Element):
             elements += 1
+            parts += each.attributes.length
             characters += sum(len(value) for _, value in each.attributes.items())
             left.extend(each.childNodes)
         else:
             characters += len(each.data)
-    return elements, characters
+    return elements, parts, characters + _PART_SIZE * parts
 
 
 def _to_node(element: Any) -> Node:
@@ -359,14 +368,16 @@ def _to_node(element: Any) -> Node:
             children.append(_to_node(child))
         else:
             texts.append(child.data)
-    return Node(
-        element.tagName,
-        # What <xacro:attribute> sets may be a number.
-        {name: str(value) for name, value in element.attributes.items()},
-        element.origin,
-        children,
-        "".join(texts).strip(),
-    )
+    # What <xacro:attribute> sets may be a number.
+    values = {name: str(value) for name, value in element.attributes.items()}
+    text = "".join(texts).strip()
+    for each in (*values, *values.values(), text):
+        if found := _NOT_XML.search(each):
+            raise DescriptionError(
+                f"the expanded text has the character {found[0]!a}, which XML does not allow",
+                origin=element.origin,
+            )
+    return Node(element.tagName, values, element.origin, children, text)
 
 
 def _replace(node: Any, by: Any, content_only: bool = False) -> None:
@@ -507,6 +518,7 @@ def _bind(module: ModuleType, run: _Run) -> None:
             reason = error if isinstance(error, OSError) else "it is no text"
             raise DescriptionError(f'"{xml.shown_path(path)}" cannot be read: {reason}') from None
         run.budget.make(len(content))
+        run.budget.look()
         space.filestack.append(str(path))
         try:
             return wrapped(read_yaml(content, path, number))

@@ -16,8 +16,11 @@ MAX_BITS = 4096
 MAX_SECONDS = 10.0
 """CPU time of one expansion. The largest public robots take less than two."""
 MAX_OPERATIONS = 20_000_000
-MAX_TOTAL = 200_000_000
-"""Characters and items that one expansion makes."""
+MAX_TOTAL = 100_000_000
+"""Characters that one expansion makes. Each may take four bytes."""
+ITEM = 32
+"""Characters that stand for the memory of an item of a list: its place and a small value."""
+_SMALL_BITS = 64
 
 _LOOK = 1000
 """Operations between two looks at the clock, which costs as much as one of them."""
@@ -66,7 +69,7 @@ class Budget:
             raise ExpressionError(f"the xacro takes more than {self._seconds:g} s to expand")
 
     def make(self, size: int) -> None:
-        """Counts characters or items that were made.
+        """Counts characters that were made.
 
         Raises:
             ExpressionError: They are too many in all.
@@ -92,7 +95,20 @@ class Budget:
             ExpressionError: They are too many.
         """
         room(count)
-        self.make(count)
+        self.make(ITEM * count)
+
+    def grow(self, count: int, more: int) -> None:
+        """Counts items before they are added to a list, dict or set.
+
+        Args:
+            count: Items in it.
+            more: Items that come.
+
+        Raises:
+            ExpressionError: They are too many.
+        """
+        room(count + more)
+        self.make(ITEM * more)
 
     def result(self, value: Any) -> Any:
         """Counts a value that was made; its own size, not that of what is in it.
@@ -104,7 +120,10 @@ class Budget:
         if kind is float or kind is bool:
             return value
         if kind is int:
-            bits(value.bit_length())
+            size = value.bit_length()
+            if size > _SMALL_BITS:
+                bits(size)
+                self.make(size // 8)
         elif kind is str:
             self.text(len(value))
         elif isinstance(value, list | tuple | dict | set | frozenset | range):

@@ -3,12 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from cartwheel.description.expressions.budget import ExpressionError
-from cartwheel.description.expressions.operations import add, hashed, multiply, snapshot
+from cartwheel.description.expressions.operations import (
+    add,
+    filled_dict,
+    filled_set,
+    multiply,
+    snapshot,
+)
 
 if TYPE_CHECKING:
     from cartwheel.description.expressions.syntax import Evaluator
@@ -76,22 +82,18 @@ def _reversed(evaluator: Evaluator, values: Any) -> list[Any]:
     return snapshot(evaluator.budget, values)[::-1]
 
 
-def _key(evaluator: Evaluator, called: Any) -> Callable[[Any], Any] | None:
-    if called is None:
-        return None
-
-    def run(value: Any) -> Any:
-        made = evaluator.call(called, [value], {})
-        evaluator.budget.weigh(made)
-        return made
-
-    return run
+def _keys(evaluator: Evaluator, found: list[Any], called: Any) -> list[Any]:
+    """What values are compared by. They are counted together, as each is compared with several."""
+    keys = found if called is None else [evaluator.call(called, [each], {}) for each in found]
+    evaluator.budget.weigh(keys)
+    return keys
 
 
 def _sorted(evaluator: Evaluator, values: Any, *, key: Any = None, reverse: Any = False) -> Any:
     found = snapshot(evaluator.budget, values)
-    evaluator.budget.weigh(found)
-    return sorted(found, key=_key(evaluator, key), reverse=bool(reverse))
+    keys = _keys(evaluator, found, key)
+    order = sorted(range(len(found)), key=keys.__getitem__, reverse=bool(reverse))
+    return [found[index] for index in order]
 
 
 def sort(evaluator: Evaluator, items: list[Any], *, key: Any = None, reverse: Any = False) -> None:
@@ -102,8 +104,10 @@ def sort(evaluator: Evaluator, items: list[Any], *, key: Any = None, reverse: An
 def _extreme(name: str, plain: Callable[..., Any]) -> Function:
     def run(evaluator: Evaluator, *args: Any, key: Any = None, **named: Any) -> Any:
         found = snapshot(evaluator.budget, args[0]) if len(args) == 1 else list(args)
-        evaluator.budget.weigh(found)
-        return plain(found, key=_key(evaluator, key), **named)
+        keys = _keys(evaluator, found, key)
+        if not found:
+            return plain(found, **named)
+        return found[plain(range(len(found)), key=keys.__getitem__)]
 
     return Function(name, run)
 
@@ -134,24 +138,17 @@ def _made(kind: Callable[..., Any]) -> Callable[..., Any]:
     """A container of what is in another."""
 
     def run(evaluator: Evaluator, *values: Any) -> Any:
-        found = [snapshot(evaluator.budget, each) for each in values]
-        if kind in (set, frozenset):
-            for each in found:
-                evaluator.budget.weigh(each)
-        return kind(*found)
+        if kind in (set, frozenset) and len(values) == 1:
+            return kind(filled_set(evaluator.budget, values[0]))
+        return kind(*(snapshot(evaluator.budget, each) for each in values))
 
     return run
 
 
 def _dict(evaluator: Evaluator, *values: Any, **named: Any) -> dict[Any, Any]:
     made: dict[Any, Any] = {}
-    for each in values:
-        evaluator.budget.items(len(each))
-        if not isinstance(each, Mapping):
-            for pair in snapshot(evaluator.budget, each):
-                hashed(evaluator.budget, pair)
-        made.update(each)
-    made.update(named)
+    for each in (*values, named):
+        filled_dict(evaluator.budget, made, each)
     return made
 
 

@@ -14,12 +14,22 @@ _CONTAINERS = (list, tuple, dict, set, frozenset)
 MAX_WIDTH = 1000
 """Of a field in ``'%…' % values``."""
 _FIELD = re.compile(r"%(?:\((?P<name>[^()]*)\))?[-+ #0]*(?P<width>\*|\d*)(?:\.(?P<more>\*|\d*))?")
+_NESTED_KEY = re.compile(r"%\([^()]*\(")
+"""A key with a parenthesis in it, behind which `_FIELD` would not see the width."""
+_COMPARED = 1000
+"""Characters that are compared in the time of one operation."""
+_HASHED = 200
+"""Keys that are put into a set between two looks at the clock: where all of them have the same
+hash, the time grows with their square."""
 
 
 def add(budget: Budget, a: Any, b: Any) -> Any:
     """``a + b``."""
+    if isinstance(a, str) and isinstance(b, str):
+        budget.text(len(a) + len(b))
+        return a + b
     if isinstance(a, _SEQUENCES) and isinstance(b, _SEQUENCES):
-        budget.make(len(a) + len(b))
+        room(len(a) + len(b))
     return budget.result(a + b)
 
 
@@ -52,14 +62,17 @@ def shift(budget: Budget, a: Any, b: Any) -> Any:
 def remainder(budget: Budget, a: Any, b: Any) -> Any:
     """``a % b``: of numbers, or the values of a text with fields."""
     if isinstance(a, str):
+        if _NESTED_KEY.search(a):
+            raise ExpressionError("the key of a text's field has a parenthesis")
         inside = budget.weigh(b)
-        fields = 0
+        fields = width = 0
         for field in _FIELD.finditer(a):
             fields += 1
             sizes = (field["width"] or "", field["more"] or "")
             if "*" in sizes or any(len(size) > 4 or int(size or 0) > MAX_WIDTH for size in sizes):
                 raise ExpressionError(f"a field of a text is wider than {MAX_WIDTH}")
-        budget.text((fields if isinstance(b, dict) else 1) * inside + fields)
+            width += sum(int(size or 0) for size in sizes)
+        budget.text((fields if isinstance(b, dict) else 1) * inside + fields + width)
     return budget.result(a % b)
 
 
@@ -128,14 +141,12 @@ def _padded(name: str) -> Callable[..., str]:
 
 
 def _append(budget: Budget, items: list[Any], value: Any) -> None:
-    room(len(items) + 1)
-    budget.make(1)
+    budget.grow(len(items), 1)
     items.append(value)
 
 
 def _insert(budget: Budget, items: list[Any], index: int, value: Any) -> None:
-    room(len(items) + 1)
-    budget.make(1)
+    budget.grow(len(items), 1)
     items.insert(index, value)
 
 
@@ -145,11 +156,62 @@ def _extend(budget: Budget, items: list[Any], values: Any) -> None:
     items.extend(more)
 
 
-def _update(budget: Budget, target: Any, *values: Any, **named: Any) -> None:
+def _update(budget: Budget, target: dict[Any, Any], *values: Any, **named: Any) -> None:
     for value in (*values, named):
+        filled_dict(budget, target, value)
+
+
+def _setdefault(budget: Budget, target: dict[Any, Any], key: Any, *value: Any) -> Any:
+    budget.grow(len(target), 1)
+    return target.setdefault(hashed(budget, key), *value)
+
+
+def filled_dict(budget: Budget, target: dict[Any, Any], values: Any) -> dict[Any, Any]:
+    """A dict, with the entries of another or of pairs put into it."""
+    pairs = list(dict.items(values)) if isinstance(values, dict) else snapshot(budget, values)
+    budget.grow(len(target), len(pairs))
+    budget.weigh(pairs)
+    for start in range(0, len(pairs), _HASHED):
+        budget.look()
+        target.update(pairs[start : start + _HASHED])
+    return target
+
+
+def filled_set(budget: Budget, values: Any, target: set[Any] | None = None) -> set[Any]:
+    """A set, with what is in another value put into it."""
+    made: set[Any] = set() if target is None else target
+    items = snapshot(budget, values)
+    budget.grow(len(made), len(items))
+    budget.weigh(items)
+    for start in range(0, len(items), _HASHED):
+        budget.look()
+        made.update(items[start : start + _HASHED])
+    return made
+
+
+def _set_add(budget: Budget, target: set[Any], value: Any) -> None:
+    budget.grow(len(target), 1)
+    target.add(hashed(budget, value))
+
+
+def _set_update(budget: Budget, target: set[Any], *values: Any) -> None:
+    for value in values:
+        filled_set(budget, value, target)
+
+
+def _of_sets(name: str) -> Callable[..., Any]:
+    """A method that makes sets of its arguments."""
+
+    def run(budget: Budget, value: Any, *args: Any) -> Any:
         budget.weigh(value)
-        budget.items(len(target) + len(value))
-    target.update(*values, **named)
+        result = value.copy()
+        for each in args:
+            other = each if isinstance(each, set | frozenset) else filled_set(budget, each)
+            budget.weigh(other)
+            result = budget.result(getattr(result, name)(other))
+        return result
+
+    return run
 
 
 def snapshot(budget: Budget, values: Any) -> list[Any]:
@@ -188,18 +250,31 @@ def _searched(name: str) -> Callable[..., Any]:
     return run
 
 
+def _slow(name: str) -> Callable[..., Any]:
+    """A method that may compare each character of a text with each of another."""
+    safe = _safe(name)
+
+    def run(budget: Budget, text: str, *args: Any, **named: Any) -> Any:
+        for each in (*args, *named.values()):
+            if isinstance(each, str):
+                budget.spend(len(text) * len(each) // _COMPARED)
+        return safe(budget, text, *args, **named)
+
+    return run
+
+
 _TEXT = (
-    "split rsplit splitlines strip lstrip rstrip upper lower title capitalize swapcase casefold "
-    "startswith endswith find rfind index rindex count partition rpartition removeprefix "
+    "split splitlines upper lower title capitalize swapcase casefold "
+    "startswith endswith find index count partition removeprefix "
     "removesuffix isdigit isalpha isalnum isnumeric isdecimal isspace isupper islower "
     "isidentifier istitle isascii"
 )
-_SET = (
-    "add discard remove pop copy clear union intersection difference symmetric_difference "
-    "issubset issuperset isdisjoint"
-)
+_SLOW = "strip lstrip rstrip rsplit rfind rindex rpartition"
+"""Python searches from the right, and among the characters to strip, one by one."""
+_OF_SETS = "union intersection difference symmetric_difference issubset issuperset isdisjoint"
 METHODS: dict[type, dict[str, Callable[..., Any]]] = {
     str: {name: _safe(name) for name in _TEXT.split()}
+    | {name: _slow(name) for name in _SLOW.split()}
     | {name: _padded(name) for name in ("ljust", "rjust", "center", "zfill")}
     | {"replace": _replace, "join": _join},
     list: {name: _safe(name) for name in ("pop", "reverse", "copy", "clear")}
@@ -208,9 +283,11 @@ METHODS: dict[type, dict[str, Callable[..., Any]]] = {
     tuple: {name: _searched(name) for name in ("index", "count")},
     dict: {name: _safe(name) for name in ("get", "pop", "popitem", "copy", "clear")}
     | {name: _listed(name) for name in ("keys", "values", "items")}
-    | {"setdefault": _safe("setdefault"), "update": _update},
-    set: {name: _safe(name) for name in _SET.split()} | {"update": _update},
-    frozenset: {name: _safe(name) for name in _SET.split()[4:]},
+    | {"setdefault": _setdefault, "update": _update},
+    set: {name: _safe(name) for name in ("discard", "remove", "pop", "copy", "clear")}
+    | {name: _of_sets(name) for name in _OF_SETS.split()}
+    | {"add": _set_add, "update": _set_update},
+    frozenset: {name: _of_sets(name) for name in ("copy", *_OF_SETS.split())},
     int: {"bit_length": _safe("bit_length"), "conjugate": _safe("conjugate")},
     float: {"is_integer": _safe("is_integer"), "conjugate": _safe("conjugate")},
     complex: {"conjugate": _safe("conjugate")},
@@ -266,3 +343,4 @@ UNARY: dict[str, Callable[[Any], Any]] = {
     "UAdd": operator.pos,
     "Invert": operator.invert,
 }
+"""Their results are counted by the caller."""

@@ -17,6 +17,8 @@ from cartwheel.description.expressions.operations import (
     COMPARISONS,
     FLOATS,
     UNARY,
+    filled_dict,
+    filled_set,
     hashed,
     methods_of,
     snapshot,
@@ -24,6 +26,8 @@ from cartwheel.description.expressions.operations import (
 
 MAX_LENGTH = 5000
 """Characters of an expression. The longest in public robots has some 300."""
+_KEPT_LENGTH = 300
+"""Characters of an expression whose closure is kept; that of a longest one has a megabyte."""
 MAX_NESTING = 100
 MAX_CALLS = 30
 """Lambdas that call each other."""
@@ -135,7 +139,6 @@ class _Lambda:
     run: Callable[[list[Any], dict[str, Any]], Any]
 
 
-@lru_cache(maxsize=4096)
 def compiled(text: str) -> _Code:
     """The closure of an expression.
 
@@ -143,6 +146,15 @@ def compiled(text: str) -> _Code:
         ExpressionError: It is not allowed.
         SyntaxError: It is no expression.
     """
+    return _kept(text) if len(text) <= _KEPT_LENGTH else _compiled(text)
+
+
+@lru_cache(maxsize=4096)
+def _kept(text: str) -> _Code:
+    return _compiled(text)
+
+
+def _compiled(text: str) -> _Code:
     if len(text) > MAX_LENGTH:
         raise ExpressionError(f"the expression has more than {MAX_LENGTH} characters")
     try:
@@ -249,7 +261,7 @@ def _binary(node: ast.BinOp, depth: int) -> _Code:
 
 def _unary(node: ast.UnaryOp, depth: int) -> _Code:
     operation, inner = UNARY[type(node.op).__name__], _code(node.operand, depth)
-    return lambda scope: operation(inner(scope))
+    return lambda scope: scope.evaluator.budget.result(operation(inner(scope)))
 
 
 def _bool(node: ast.BoolOp, depth: int) -> _Code:
@@ -340,10 +352,11 @@ def _dict(node: ast.Dict, depth: int) -> _Code:
     ]
 
     def run(scope: _Scope) -> Any:
-        budget, made = scope.evaluator.budget, {}
+        budget = scope.evaluator.budget
+        made: dict[Any, Any] = {}
         for key, code in pairs:
             if key is None:
-                made.update(_mapping(code(scope)))
+                filled_dict(budget, made, _mapping(code(scope)))
             else:
                 made[hashed(budget, key(scope))] = code(scope)
         return budget.result(made)
@@ -430,7 +443,7 @@ def _loop(
     def run(scope: _Scope) -> list[Any]:
         made: list[Any] = []
         rounds(scope.inner(), 0, made)
-        scope.evaluator.budget.make(len(made))
+        scope.evaluator.budget.items(len(made))
         return made
 
     return run
@@ -470,7 +483,7 @@ def _set_comprehension(node: ast.SetComp, depth: int) -> _Code:
         made.append(hashed(scope.evaluator.budget, element(scope)))
 
     loop = _loop(node.generators, depth, visit)
-    return lambda scope: set(loop(scope))
+    return lambda scope: filled_set(scope.evaluator.budget, loop(scope))
 
 
 def _dict_comprehension(node: ast.DictComp, depth: int) -> _Code:
@@ -480,7 +493,7 @@ def _dict_comprehension(node: ast.DictComp, depth: int) -> _Code:
         made.append((hashed(scope.evaluator.budget, key(scope)), value(scope)))
 
     loop = _loop(node.generators, depth, visit)
-    return lambda scope: dict(loop(scope))
+    return lambda scope: filled_dict(scope.evaluator.budget, {}, loop(scope))
 
 
 _NODES: dict[type[ast.expr], Callable[[Any, int], _Code]] = {
