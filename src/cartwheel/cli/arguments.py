@@ -37,8 +37,8 @@ AllowPath = Annotated[
     typer.Option(
         "--allow-path",
         metavar="FOLDER",
-        help="Folder whose files services may name, besides packages and models. May be given "
-        "again.",
+        help="Allow services to read files below this folder, besides packages and models. Can be"
+        " repeated.",
     ),
 ]
 X = Annotated[float | None, typer.Option("-x", metavar="M", help="Place in the world.")]
@@ -53,8 +53,8 @@ Model = Annotated[
 Host = Annotated[
     str,
     typer.Option(
-        help="Address the viewer and Foxglove's server listen on; with 0.0.0.0 other computers"
-        " may connect with the token that is printed."
+        help="Address for the viewer and Foxglove's server. With 0.0.0.0 other computers can"
+        " connect; they need the token in the printed address."
     ),
 ]
 AllowOrigin = Annotated[
@@ -62,8 +62,8 @@ AllowOrigin = Annotated[
     typer.Option(
         "--allow-origin",
         metavar="ORIGIN",
-        help="Let web pages of this origin connect, for example https://robots.example.org,"
-        " and let browsers reach the server by that name. May be given again.",
+        help="Admit web pages of this origin, for example https://robots.example.org, and"
+        " browsers that use its name for the server. Can be repeated.",
     ),
 ]
 Port = Annotated[

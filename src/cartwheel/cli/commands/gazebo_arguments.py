@@ -94,7 +94,7 @@ def parse_server(program: str, words: Sequence[str]) -> ServerArguments:
     add("-s", "--server-plugin", action="append", metavar="FILE", default=[],
         help="those of gazebo_ros are part of Cartwheel; others do not apply")  # fmt: skip
     add("--allow-path", action="append", metavar="FOLDER", default=[], type=Path,
-        help="services may name its files, besides those of packages and models")  # fmt: skip
+        help="services may read files below it, besides packages and models")  # fmt: skip
     add("--lockstep", action="store_true", help="accepted: cameras never miss a frame here")
     add("-e", "--physics", metavar="ENGINE", default="ode",
         help="accepted: MuJoCo computes, by the parameters for ode")  # fmt: skip
