@@ -146,6 +146,8 @@ def quat_between(source: Sequence[float], target: Sequence[float]) -> Quat:
     """The shortest rotation that turns direction `source` into direction `target`."""
     a = np.asarray(source, dtype=float)
     b = np.asarray(target, dtype=float)
+    # By the largest part first: the squares of tiny or huge ones leave the range of numbers.
+    a, b = a / np.abs(a).max(), b / np.abs(b).max()
     a, b = a / np.linalg.norm(a), b / np.linalg.norm(b)
     w = 1 + float(a @ b)
     if w < 1e-9:

@@ -2,14 +2,19 @@
 
 import random
 import re
+import warnings
 
+import mujoco
 import pytest
 from tests.description.test_elements import DOCUMENTS
 
 import cartwheel as cw
 from cartwheel.description import load_text
+from cartwheel.description.check import check, mending, structure
 from cartwheel.description.model import WorldDescription
-from cartwheel.errors import CartwheelError, DescriptionError, WorldError
+from cartwheel.description.node import Node
+from cartwheel.errors import CartwheelError, DescriptionError, DivergedError, Origin, WorldError
+from cartwheel.simulation.guard import Guard
 
 _VALUES = ("0", "-1", "1e308", "-1e308", "1e-308", "nan", "inf", "-inf", "1e9", "1e-9")
 _NUMBER = re.compile(r'(?<=[>"\s])-?\d+\.?\d*(?:[eE][-+]?\d+)?(?=[<"\s])')
@@ -178,3 +183,93 @@ def test_a_name_that_stands_twice(kind):
     except CartwheelError as error:
         assert error.origin is not None
         assert re.search("twice|name of another|already", error.message)
+
+
+_MENDED = {
+    "a plane's tiny normal": ("model", "<normal>0 1 0<", "<normal>0 1e-308 0<"),
+    "a polyline's tiny side": ("model", "<point>1 0</point>", "<point>1e-308 0</point>"),
+    "a link far from the next": ("state", "<pose>0 0 1 0 0 0<", "<pose>0 0 1e9 0 0 0<"),
+}
+
+
+@pytest.mark.parametrize("case", _MENDED)
+def test_extremes_that_work_without_a_warning(case, tmp_path):
+    kind, old, new = _MENDED[case]
+    text = DOCUMENTS[kind].replace(old, new, 1)
+    assert text != DOCUMENTS[kind]
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", RuntimeWarning)
+        warnings.simplefilter("error", UserWarning)
+        description = load_text(text, file=str(tmp_path / "r.sdf"))
+        world = description if isinstance(description, WorldDescription) else "empty"
+        with cw.World(world, lenient=True) as made:
+            if world == "empty":
+                made.spawn(description)
+            made.run(0.02)
+            assert made.time == pytest.approx(0.02)
+
+
+_REFUSED = {
+    "height": ("model", "<height>2<", "<height>1e308<", "a height must be at most 1e+15"),
+    "angle": ("state", '<angle axis="0">0.3<', '<angle axis="0">1e308<', "angle must be from -1e"),
+}
+
+
+@pytest.mark.parametrize("case", _REFUSED)
+def test_extremes_that_are_refused_with_their_place(case, tmp_path):
+    kind, old, new, message = _REFUSED[case]
+    text = DOCUMENTS[kind].replace(old, new, 1)
+    with pytest.raises(DescriptionError, match=re.escape(message)) as got:
+        load_text(text, file=str(tmp_path / "r.sdf"))
+    assert got.value.origin is not None
+    line = text[: text.index(new)].count("\n") + 1
+    assert str(got.value.origin).endswith(f":{line}")
+
+
+def test_a_state_beyond_all_numbers_ends_without_a_warning_of_numpy():
+    model = mujoco.MjModel.from_xml_string(
+        "<mujoco><worldbody><body><freejoint/><geom size='1'/></body></worldbody></mujoco>"
+    )
+    data = mujoco.MjData(model)
+    guard = Guard()
+    guard.bind(model, data)
+    data.qpos[0] = 1e200
+    with warnings.catch_warnings(), pytest.raises(DivergedError):
+        warnings.simplefilter("error")
+        guard.check()
+
+
+@pytest.mark.parametrize("form", ["urdf", "sdf"])
+def test_a_check_of_a_long_chain_looks_at_each_joint_a_few_times(form, tmp_path, monkeypatch):
+    count = 600
+    links = "".join(f'<link name="l{each}"/>' for each in range(count))
+    joint = '<joint name="j{0}" type="fixed"><parent link="l{0}"/><child link="l{1}"/></joint>'
+    ends = ('<robot name="r">', "</robot>")
+    if form == "sdf":
+        joint = '<joint name="j{0}" type="fixed"><parent>l{0}</parent><child>l{1}</child></joint>'
+        ends = ('<sdf version="1.7"><model name="r">', "</model></sdf>")
+    joints = "".join(joint.format(each, each + 1) for each in range(count - 1))
+    file = tmp_path / f"r.{form}"
+    file.write_text(ends[0] + links + joints + ends[1])
+    looks = 0
+    original = structure.ends
+
+    def counted(node):
+        nonlocal looks
+        looks += 1
+        return original(node)
+
+    monkeypatch.setattr(structure, "ends", counted)
+    monkeypatch.setattr(mending, "ends", counted)
+    assert check(file).complete
+    assert looks < 30 * count
+
+
+def test_rings_of_joints_are_found_once_each():
+    def holder(parent):
+        place = Origin(file="r", line=1)
+        return Node("joint", {}, place, [Node("parent", {"link": parent}, place)])
+
+    parents = {"a": "b", "b": "c", "c": "b", "d": "e", "e": "root", "f": "f", "g": "a"}
+    found = structure.rings({link: holder(parent) for link, parent in parents.items()})
+    assert found == [["b", "c"], ["f"]]

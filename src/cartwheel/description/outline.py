@@ -57,7 +57,9 @@ def solid(shape: Polyline) -> tuple[NDArray[np.float32], NDArray[np.int32]]:
     along = ends - starts
     size = np.ptp(np.array(edges).reshape(-1, 2), axis=0).max()
     across = np.column_stack([-along[:, 1], along[:, 0]])
-    across *= 1e-6 * size / np.linalg.norm(along, axis=1, keepdims=True)
+    # hypot, since the squares of tiny lengths are 0.
+    across /= np.hypot(along[:, :1], along[:, 1:])
+    across *= 1e-6 * size
     middles = (starts + ends) / 2
     left, right = _inside(edges, middles + across), _inside(edges, middles - across)
     for (a, b), on_left, on_right in zip(parts, left.tolist(), right.tolist(), strict=True):

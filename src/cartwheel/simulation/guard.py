@@ -62,7 +62,8 @@ class Guard:
             DivergedError: The state is no longer finite.
         """
         # One number that is not finite spoils the sum: cheaper than a look at each.
-        size = self._qpos.dot(self._qpos) + self._qvel.dot(self._qvel)
+        with np.errstate(over="ignore", invalid="ignore"):
+            size = self._qpos.dot(self._qpos) + self._qvel.dot(self._qvel)
         if not size < _HUGE**2:
             raise self._diverged()
         counts = self._counts.tolist()

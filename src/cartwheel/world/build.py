@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import warnings
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
@@ -97,12 +98,12 @@ def _built(world: WorldDescription, entries: list[ModelEntry], *, xml: bool) -> 
         if pair.alignment is not None:
             alignments.append(pair.alignment)
     try:
-        model = spec.compile()
+        model = _compiled(spec)
         # The engine reserves memory by degrees of freedom, and needs it by pairs of bodies, too.
         pairs_of_bodies = 2 * model.nbody**2
         if pairs_of_bodies > model.narena / 2:
             spec.memory = model.narena + 2 * pairs_of_bodies
-            model = spec.compile()
+            model = _compiled(spec)
     except (ValueError, mujoco.FatalError) as error:
         raise _explain(str(error), entries) from None
     _check_contacts(model, entries)
@@ -125,6 +126,13 @@ def _built(world: WorldDescription, entries: list[ModelEntry], *, xml: bool) -> 
         bounces=tuple(each for each in bounces if each is not None),
         xml=spec.to_xml() if xml else None,
     )
+
+
+def _compiled(spec: mujoco.MjSpec) -> mujoco.MjModel:
+    with warnings.catch_warnings():
+        # The engine counts the same warnings while it runs, and the simulation reports them.
+        warnings.simplefilter("ignore", UserWarning)
+        return spec.compile()
 
 
 def _check_chain(entry: ModelEntry) -> None:

@@ -9,7 +9,14 @@ import math
 
 from cartwheel.description.check import nodes, spelling
 from cartwheel.description.check.inertia import moments_of
-from cartwheel.description.check.structure import JOINT_TYPES, ends, inbound, main_root, mimic_chain
+from cartwheel.description.check.structure import (
+    JOINT_TYPES,
+    ends,
+    inbound,
+    main_root,
+    mimic_chain,
+    rings,
+)
 from cartwheel.description.inertia import impossibility
 from cartwheel.description.node import Node
 
@@ -101,14 +108,8 @@ def _mend_tree(root: Node, links: set[str]) -> None:
             root.drop(joint)
         seen.add(child)
     holders = inbound(nodes.children(root, "joint"), links)
-    for start in list(holders):
-        path = [start]
-        while path[-1] in holders:
-            parent = ends(holders[path[-1]])[0]
-            if parent in path:
-                root.drop(holders.pop(parent))
-                break
-            path.append(parent)
+    for ring in rings(holders):
+        root.drop(holders.pop(ring[0]))
     free = [n for n in nodes.children(root, "link") if nodes.name_of(n) not in holders]
     main = main_root(free, nodes.children(root, "joint"))
     for node in free:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from cartwheel.description.check import nodes, spelling
 from cartwheel.description.check.finding import Remark
@@ -127,25 +127,12 @@ def two_parents(subject: Subject) -> Iterator[Remark]:
 @rule("links-in-a-ring", "error", "joints make a ring of links")
 def links_in_a_ring(subject: Subject) -> Iterator[Remark]:
     holders = inbound(_parts(subject, "joint"), link_names(subject))
-    told: set[str] = set()
-    for start in holders:
-        path = [start]
-        while path[-1] in holders:
-            parent = ends(holders[path[-1]])[0]
-            if parent in path:
-                ring = path[path.index(parent) :]
-                if not told.intersection(ring):
-                    told.update(ring)
-                    yield Remark(
-                        message="the joints make a ring of links: "
-                        + " -> ".join(reversed([*ring, ring[0]])),
-                        origin=holders[ring[0]].origin,
-                        hint="Turn round or remove one of its joints: a URDF is a tree.",
-                    )
-                break
-            if parent in told:
-                break
-            path.append(parent)
+    for ring in rings(holders):
+        yield Remark(
+            message="the joints make a ring of links: " + " -> ".join(reversed([*ring, ring[0]])),
+            origin=holders[ring[0]].origin,
+            hint="Turn round or remove one of its joints: a URDF is a tree.",
+        )
 
 
 @rule("several-roots", "error", "a link is not joined to the others")
@@ -229,6 +216,28 @@ def ends(joint: Node) -> tuple[str, str]:
         nodes.text_of(nodes.child(joint, "parent"), "link"),
         nodes.text_of(nodes.child(joint, "child"), "link"),
     )
+
+
+def rings(holders: Mapping[str, Node]) -> list[list[str]]:
+    """The rings that joints make, each as links from child to parent.
+
+    Args:
+        holders: The joint that holds each link, as `inbound` finds them.
+    """
+    parents = {link: ends(joint)[0] for link, joint in holders.items()}
+    found: list[list[str]] = []
+    seen: set[str] = set()
+    for start in parents:
+        path: dict[str, None] = {}
+        link = start
+        while link in parents and link not in seen and link not in path:
+            path[link] = None
+            link = parents[link]
+        if link in path:
+            ring = list(path)
+            found.append(ring[ring.index(link) :])
+        seen.update(path)
+    return found
 
 
 def inbound(joints: list[Node], links: set[str], *, all_of_them: bool = False) -> dict[str, Node]:

@@ -136,16 +136,15 @@ class Robot:
     @cached_property
     def placed(self) -> frozenset[str]:
         """Links whose place is the author's."""
-        lost = set(self._displaced)
+        lost, seen = set(self._displaced), set[str]()
         for link in self.links:
-            path = [link]
-            while path[-1] in self.inbound and path[-1] not in lost:
-                parent = self.inbound[path[-1]].parent
-                if parent in path:
-                    break
-                path.append(parent)
-            if path[-1] in lost:
-                lost.update(path)
+            path: dict[str, None] = {}
+            each = link
+            while each not in lost and each not in seen and each not in path:
+                path[each] = None
+                if each in self.inbound:
+                    each = self.inbound[each].parent
+            (lost if each in lost else seen).update(path)
         return frozenset(self.links) - lost
 
     @property

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from cartwheel.description.numbers import LARGEST
 from cartwheel.errors import DescriptionError, Diagnostic, Origin, Severity, suggestion
 from cartwheel.geometry import Pose, Quat, quat_normalize
 
@@ -123,10 +124,12 @@ def require_name(node: Node) -> str:
 
 
 def positive(node: Node, what: str) -> float:
-    """The text as a number above zero."""
+    """The text as a number above zero that a length can be."""
     value = node.number()
     if value <= 0:
         raise node.fail(f"{what} must be above 0, but is {node.text}")
+    if value > LARGEST:
+        raise node.fail(f"{what} must be at most {LARGEST:g}, but is {node.text}")
     return value
 
 

@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from cartwheel.description.model import Light, Link, RobotDescription
+from cartwheel.description.numbers import FARTHEST_JOINT
 from cartwheel.description.sdf.context import Context, read_pose, require_name
 from cartwheel.description.sdf.frames import WORLD
 from cartwheel.description.sdf.model import read_model
@@ -111,7 +112,15 @@ def _angle(joint: Node) -> float | None:
     axes = joint.all("angle")
     for each in axes:
         each.get("axis")
-    return axes[0].number() if len(axes) == 1 else None
+    if len(axes) != 1:
+        return None
+    value = axes[0].number()
+    if abs(value) > FARTHEST_JOINT:
+        raise axes[0].fail(
+            f"angle must be from {-FARTHEST_JOINT:g} to {FARTHEST_JOINT:g} rad or m, "
+            f"but is {axes[0].text}"
+        )
+    return value
 
 
 def _tell_motion(link: Node, ctx: Context) -> None:

@@ -152,7 +152,10 @@ def _speck(origin: Origin) -> Inertial:
 
 def _tell(roots: Sequence[str], found: Mapping[str, Link], tree: Tree, ctx: UrdfContext) -> None:
     holders = [tree.inbound.get(root) for root in roots]
-    parts = [[link for link in found.values() if tree.rigid_root(link.name) == r] for r in roots]
+    groups: dict[str, list[Link]] = {root: [] for root in roots}
+    for link in found.values():
+        groups.setdefault(tree.rigid_root(link.name), []).append(link)
+    parts = [groups[root] for root in roots]
     weights = [sum(each.inertial.mass for each in part if each.inertial) for part in parts]
     first = parts[0][0]
     if len(roots) == 1:
