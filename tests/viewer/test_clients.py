@@ -1,6 +1,7 @@
 """Clients of the page that are no browsers: slow ones, and what is done for none."""
 
 import contextlib
+import logging
 import threading
 
 import msgspec
@@ -8,7 +9,14 @@ import pytest
 import viser
 from websockets.sync.client import connect
 
+from cartwheel.viewer.overlays import Overlays
+from cartwheel.viewer.panels.camera import CameraPanel
 from cartwheel.viewer.panels.drive import DrivePanel
+from cartwheel.viewer.panels.insert import UploadPanel
+from cartwheel.viewer.panels.topics import TopicsPanel
+from cartwheel.viewer.panels.view import ViewPanel
+from cartwheel.viewer.panels.world import WorldPanel
+from cartwheel.viewer.seat import Seat
 
 from .conftest import TWIST, eventually
 
@@ -113,3 +121,70 @@ def test_nothing_is_sent_of_a_world_that_stands_still(fresh):
         # The last figures of a second ago may still be on their way.
         eventually(quiet, what="quiet")
         assert quiet()
+
+
+@pytest.mark.parametrize(
+    ("kind", "method"),
+    [
+        (Seat, "__init__"),
+        *((kind, "__init__") for kind in (DrivePanel, WorldPanel, UploadPanel, CameraPanel)),
+        (ViewPanel, "__init__"),
+        (TopicsPanel, "__init__"),
+        *((kind, "show_topics") for kind in (DrivePanel, CameraPanel, TopicsPanel)),
+        *((kind, "show_models") for kind in (DrivePanel, WorldPanel)),
+        *((kind, "watch") for kind in (CameraPanel, TopicsPanel)),
+        *((kind, "update") for kind in (WorldPanel, CameraPanel, TopicsPanel)),
+        (Overlays, "update"),
+    ],
+)
+def test_a_browser_may_leave_at_any_moment(fresh, monkeypatch, caplog, kind, method):
+    """Also while what belongs to it is made or updated; another browser stays."""
+    page, desk = fresh.viewer._page, fresh.viewer._desk
+
+    def wait_for(clients):
+        """Until these are connected and the page has dealt with it."""
+        eventually(lambda: page.clients == clients, what=f"the browsers {clients}")
+        done = threading.Event()
+        page.post(done.set)
+        assert done.wait(60.0)
+
+    def controls():
+        """How many the tabs hold when no browser is there any more."""
+        wait_for(set())
+        return sum(len(tab._children) for tab in desk._tabs.values())
+
+    before = controls()
+    left, gone = threading.Event(), threading.Event()
+    leaving = []
+
+    async def disconnected(handle):
+        if leaving and handle.client_id == leaving[0]:
+            gone.set()
+
+    page.server.on_client_disconnect(disconnected)
+    original = getattr(kind, method)
+    with client(fresh) as staying, contextlib.ExitStack() as stack:
+        eventually(lambda: desk._places, what="the browser that stays")
+        (number,) = desk._places
+
+        def leave(*arguments, **options):
+            # What is shared, and what belongs to the browser that stays, is not what is tested.
+            new = page.clients - {number}
+            if new and not left.is_set():
+                left.set()
+                leaving.extend(new)
+                going.close()
+                assert gone.wait(60.0)
+            return original(*arguments, **options)
+
+        monkeypatch.setattr(kind, method, leave)
+        with caplog.at_level(logging.ERROR, logger="cartwheel.viewer"):
+            going = stack.enter_context(client(fresh))
+            assert left.wait(60.0)
+            wait_for({number})
+        # A busy machine may have other loggers warn.
+        assert [each for each in caplog.records if each.levelno >= logging.ERROR] == []
+        assert set(desk._places) == set(desk.stage.seats) == {number}
+        assert staying.protocol.close_code is None
+    assert controls() == before
+    eventually(lambda: "viewer" not in fresh.readers(IMAGE), what="the end of the images")

@@ -97,6 +97,16 @@ def test_a_jump_by_hand_moves_the_robot(page, cinema):
     assert cinema.ask(lambda: cinema.player.run_state) is RunState.PAUSED
 
 
+def test_a_browser_that_falls_silent_disturbs_nobody(page, cinema, caplog):
+    made = cinema.viewer._page
+    (number,) = made.clients
+    done = threading.Event()
+    made._silent(number)
+    made.post(done.set)
+    assert done.wait(60.0)
+    assert "the viewer failed" not in caplog.messages
+
+
 def _is_number(text):
     try:
         float(text)

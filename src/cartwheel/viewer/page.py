@@ -98,7 +98,7 @@ class Page:
         self._beats = 0
         self._beat_due = Every(1 / _BEAT)
         self._pulses: dict[int, Any] = {}
-        self.server.on_client_connect(self.on(self._connected))
+        self.server.on_client_connect(self._arrived)
         self.server.on_client_disconnect(self.on(self._disconnected))
         # On viser's own loop: no other thread takes Python's lock from the simulation.
         self._gate.start(self.server.get_event_loop())
@@ -138,12 +138,18 @@ class Page:
         self._jobs.put((function, client))
 
     def on(self, function: Callable[[Any], object]) -> Callable[[Any], Coroutine[Any, Any, None]]:
-        """A callback for viser that runs `function(event)` on the page's thread."""
+        """A callback for viser that runs `function(event)` on the page's thread.
+
+        It does nothing for a control that has been removed by then, as its browser left.
+        """
 
         # A coroutine, as viser runs those in the order of their messages; plain functions go
         # to a pool, where a quick "stop" may overtake the "go" before it.
         async def callback(event: Any) -> None:
-            self.post(lambda: function(event), client=getattr(event, "client_id", None))
+            self.post(
+                lambda: _is_removed(event) or function(event),
+                client=getattr(event, "client_id", None),
+            )
 
         return callback
 
@@ -158,7 +164,10 @@ class Page:
 
         async def callback(event: Any) -> None:
             value = event.target.value
-            self.post(lambda: function(event, value), client=getattr(event, "client_id", None))
+            self.post(
+                lambda: _is_removed(event) or function(event, value),
+                client=getattr(event, "client_id", None),
+            )
 
         return callback
 
@@ -211,6 +220,15 @@ class Page:
 
     # -- browsers
 
+    async def _arrived(self, client: Any) -> None:
+        """Comes before all else of a browser, on viser's thread, which also sees it leave."""
+        # There viser would remove the browser's controls while the page's thread still writes to
+        # them, which raises: that thread lets go of them itself, in `_disconnected`.
+        client.gui._release_cross_scope_nesting = lambda: None
+        # What is still written to a browser that is just leaving is no fault.
+        client._websock_connection.get_message_buffer()._warned_push_after_done = True
+        self.post(lambda: self._connected(client), client=client.client_id)
+
     def _connected(self, client: Any) -> None:
         self.clients |= {client.client_id}
         self._pulses[client.client_id] = client.gui.add_html(_pulse(0))
@@ -220,7 +238,11 @@ class Page:
         self.clients -= {client.client_id}
         self._lightly.discard(client.client_id)
         self._pulses.pop(client.client_id, None)
-        self.on_clients()
+        try:
+            self.on_clients()
+        finally:
+            del client.gui._release_cross_scope_nesting
+            client.gui._release_cross_scope_nesting()
 
     def _draw_lightly(self, event: Any) -> None:
         """For the browser that asks: the others may have a GPU."""
@@ -232,6 +254,12 @@ class Page:
         """Ends the web server."""
         self._gate.close()
         _quietly(self.server.stop)
+
+
+def _is_removed(event: Any) -> bool:
+    """Whether the control that an event is about is no more."""
+    target = getattr(event, "target", None)
+    return bool(target is not None and target._impl.removed)
 
 
 def _pulse(beats: int) -> str:

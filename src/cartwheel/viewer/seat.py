@@ -25,8 +25,6 @@ class Seat:
         self.scene: Any = client.scene
         self.display = Display()
         self._blanks: dict[str, dict[str, Any]] = {}
-        # What is still written to a browser that is just leaving is no fault.
-        client._websock_connection.get_message_buffer()._warned_push_after_done = True
 
     def hide(self, kind: str, nodes: Iterable[str]) -> None:
         """Hides these of the nodes that all have, and no others of their kind.
