@@ -6,6 +6,7 @@ signal's number where a command was interrupted before it was done.
 
 from __future__ import annotations
 
+import errno
 import os
 import sys
 import traceback
@@ -17,6 +18,7 @@ from cartwheel.errors import CartwheelError
 
 def main() -> None:
     """The entry point of ``cartwheel``."""
+    _open_streams()
     interrupts.install()
     status = run()
     if status not in (0, 130) and interrupts.came():
@@ -51,10 +53,45 @@ def run() -> int:
         print_error("the file is nested too deeply")
         return 2
     except Exception as error:  # noqa: BLE001 - the last resort
+        remedy = _remedy(error)
+        if remedy:
+            print_error(f"{error}\n  {remedy}")
+            return 2
         if not interrupts.came():
             _report(error)
         return 1
     return 0
+
+
+_REMEDIES = {
+    errno.EMFILE: "Raise the limit of open files: ulimit -n 1024",
+    errno.ENFILE: "The system has too many open files: end other programs.",
+    errno.ENOMEM: "Free memory, or raise the limit: ulimit -v unlimited",
+    errno.EFBIG: "Raise the limit of file sizes: ulimit -f unlimited",
+    errno.ENOSPC: "Free space on the disk.",
+    errno.EDQUOT: "Free space on the disk.",
+    errno.EAGAIN: "Raise the limit of processes: ulimit -u unlimited",
+}
+
+
+def _remedy(error: Exception) -> str:
+    """What helps where the system refused something that a run needs; empty for other errors."""
+    return _REMEDIES.get(error.errno or 0, "") if isinstance(error, OSError) else ""
+
+
+def _open_streams() -> None:
+    """Gives the process those of its standard streams that it was started without.
+
+    Otherwise a socket or a recording gets their number, and what is printed goes there.
+    """
+    for number, mode in ((0, "r"), (1, "w"), (2, "w")):
+        try:
+            os.fstat(number)
+        except OSError:
+            # The lowest free number is the one that is missing.
+            os.open(os.devnull, os.O_RDWR)
+            stream = open(number, mode, closefd=False)  # noqa: SIM115 - for the whole process
+            setattr(sys, ("stdin", "stdout", "stderr")[number], stream)
 
 
 def _report(error: Exception) -> None:

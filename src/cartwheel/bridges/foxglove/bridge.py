@@ -33,6 +33,13 @@ APPS = ("https://app.foxglove.dev", "https://studio.foxglove.dev", "file://")
 address, and the desktop programs of Foxglove and Lichtblick, which are Chromium on files."""
 BACKLOG = 256
 """Messages that may wait for a client; the oldest is dropped then."""
+_CHANGES = 64
+"""Channels that are made and closed at a time. The library ends the connection of every client for
+which more than `BACKLOG` notes of such changes wait."""
+_PAUSE = 0.1
+"""s between two looks at what the graph offers."""
+_STATUSES, _STATUS_RATE = 32, 5.0
+"""Warnings that clients get at once, and in a second: they are notes of the same kind."""
 _TIME_RATE = 10.0
 """Hz of wall time at which clients are told the time, at least."""
 _FINE_TIME_RATE = 50.0
@@ -99,7 +106,10 @@ class FoxgloveBridge:
         self._jobs: queue.SimpleQueue[Callable[[], None] | None] = queue.SimpleQueue()
         self._pending: set[str] = set()
         self._surveying = False
+        self._surveyed = 0.0
+        """When the graph was looked at last; monotonic, in s."""
         self._is_new = Once(_TOLD)
+        self._statuses = _Budget(_STATUSES, _STATUS_RATE)
         self._told_ns = -1
         self._fine_due = 0.0
         self._log: Log | None = None
@@ -220,7 +230,7 @@ class FoxgloveBridge:
         """The graph is locked."""
         if not self._surveying:
             self._surveying = True
-            self._jobs.put(self._mirror)
+            self._jobs.put(self._survey)
 
     def _subscribed(self, channel: int, joins: bool) -> None:
         """On a thread of the server's."""
@@ -287,9 +297,20 @@ class FoxgloveBridge:
             self._told_ns, self._fine_due = time_ns, now + 1.0 / _FINE_TIME_RATE
             self._server.broadcast_time(time_ns)
 
+    def _survey(self) -> None:
+        """Looks at the graph now, or a moment after the last look."""
+        left = self._surveyed + _PAUSE - time.monotonic()
+        if left > 0:
+            timer = threading.Timer(left, lambda: self._jobs.put(self._mirror))
+            timer.daemon = True
+            timer.start()
+        else:
+            self._mirror()
+
     def _mirror(self) -> None:
-        """Makes the server offer what the graph does."""
+        """Makes the server offer what the graph does, by a number of changes at a time."""
         self._surveying = False
+        self._surveyed = time.monotonic()
         topics = offered_by_others(self._graph, READER)
         topics.pop(LOG, None)  # It is ours.
         services = {service.name: service for service in self._graph.services()}
@@ -299,15 +320,18 @@ class FoxgloveBridge:
         self._tell_connections(topics, services)
 
     def _mirror_topics(self, topics: dict[str, TopicInfo]) -> None:
+        changes = 0
         for name, publication in list(self._publications.items()):
-            if name not in topics or topics[name].type != publication.info.type:
+            if name in topics and topics[name].type == publication.info.type:
+                publication.latched = topics[name].qos == "latched"
+            elif changes < _CHANGES:
+                changes += 1
                 del self._publications[name]
                 del self._by_channel[publication.channel.id()]
                 publication.close()
-            else:
-                publication.latched = topics[name].qos == "latched"
         for name, info in topics.items():
-            if name not in self._publications:
+            if name not in self._publications and changes < _CHANGES:
+                changes += 1
                 publication = Publication(
                     self._graph,
                     info,
@@ -318,6 +342,9 @@ class FoxgloveBridge:
                 )
                 self._publications[name] = publication
                 self._by_channel[publication.channel.id()] = publication
+        if changes == _CHANGES:
+            # There may be more.
+            self._changed()
 
     def _mirror_descriptions(self, topics: dict[str, TopicInfo]) -> None:
         described = {
@@ -344,13 +371,16 @@ class FoxgloveBridge:
             self._server.remove_services(gone)
             for name in gone:
                 del self._services[name]
+        made = []
         for name, service in services.items():
             if name not in self._services:
                 try:
-                    self._server.add_services([offered(self._graph, service, self._warn)])
+                    made.append(offered(self._graph, service, self._warn))
                 except CartwheelError as error:
                     self._warn(f"service {name} is left out: {error.message}")
                 self._services[name] = service
+        if made:
+            self._server.add_services(made)
 
     def _tell_connections(self, topics: dict[str, TopicInfo], services: dict[str, Service]) -> None:
         import foxglove
@@ -372,14 +402,39 @@ class FoxgloveBridge:
         self._warn(f"the client {known or client} is too slow: messages to it are dropped")
 
     def _warn(self, text: str) -> None:
-        """Once for each text, to the user and to clients."""
+        """Once for each text, to the user and, not too often, to clients."""
         if not self._is_new(text):
             return
         self._report(Diagnostic(severity="warning", message=f"Foxglove: {text}"))
-        if self._server is not None and not self._closed:
+        if self._server is not None and not self._closed and self._statuses.take():
             from foxglove import StatusLevel
 
             self._server.publish_status(text, StatusLevel.Warning)
+
+
+class _Budget:
+    """How often something may be done; from any thread.
+
+    Args:
+        most: Times at once.
+        rate: Hz in the long run.
+    """
+
+    def __init__(self, most: int, rate: float) -> None:
+        self._most, self._rate = most, rate
+        self._left, self._since = float(most), time.monotonic()
+        self._lock = threading.Lock()
+
+    def take(self) -> bool:
+        """Whether it may be done now."""
+        with self._lock:
+            now = time.monotonic()
+            self._left = min(self._most, self._left + (now - self._since) * self._rate)
+            self._since = now
+            if self._left < 1.0:
+                return False
+            self._left -= 1.0
+            return True
 
 
 class _Slow(logging.Handler):

@@ -40,9 +40,10 @@ class Values:
         """The parameters of those names; all where none is given."""
         from foxglove import Parameter
 
-        found = dict(self._all())
+        found = {name: self._one(name) for name in names} if names else dict(self._all())
         wanted = names or sorted(found)
-        return [Parameter(name, value=found[name]) for name in wanted if name in found]
+        values = ((name, found[name]) for name in wanted)
+        return [Parameter(name, value=value) for name, value in values if value is not None]
 
     def set(self, values: list[Any]) -> list[Any]:
         """Sets parameters; returns what they are then."""
@@ -68,6 +69,19 @@ class Values:
             raise GraphError("the description of a robot that stands there cannot be changed")
         else:
             self._graph.parameters.set(name, value)
+
+    def _one(self, name: str) -> Any:
+        """A value; None where there is none, or more than one."""
+        if name in (PAUSED, SPEED):
+            state = self._controls.state()
+            return state.paused if name == PAUSED else float(state.speed or 0.0)
+        if name in self._descriptions:
+            return self._descriptions[name]
+        try:
+            value = self._graph.parameters.get(name)
+        except CartwheelError:
+            return None
+        return None if isinstance(value, Mapping) else value
 
     def _all(self) -> Iterator[tuple[str, Any]]:
         yield from _flat("", self._graph.parameters.get("/", {}))

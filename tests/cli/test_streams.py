@@ -1,0 +1,42 @@
+"""Programs that are started without standard streams, or under limits of the system."""
+
+import resource
+import subprocess
+
+import pytest
+from tests.cli.conftest import PROGRAM
+
+RUN = ("run", "--headless", "--for", "0.2", "--speed", "max")
+
+
+def start_without(program, numbers, *arguments):
+    """Runs the command with some of its standard streams closed."""
+    script = 'exec "$@" ' + " ".join(f"{number}>&-" for number in numbers)
+    return subprocess.run(
+        ["sh", "-c", script, "sh", str(PROGRAM), *arguments],
+        capture_output=True,
+        text=True,
+        env=program.environment,
+        cwd=program.folder,
+        check=False,
+        timeout=200,
+    )
+
+
+@pytest.mark.parametrize("numbers", [(0,), (1,), (2,), (0, 1, 2)])
+def test_missing_streams_are_nobodys(program, numbers):
+    done = start_without(program, numbers, *RUN, "--record", "a.mcap")
+    assert (done.returncode, "Traceback" in done.stderr) == (0, False), done.stderr
+    info = program("info", "a.mcap").stdout
+    assert "/clock" in info
+
+
+def test_a_limit_of_the_system_is_named_with_its_remedy(program):
+    def limited():
+        resource.setrlimit(resource.RLIMIT_NOFILE, (16, 16))
+
+    process = program.start(*RUN, "--ros2", "--record", "a.mcap", preexec_fn=limited)
+    _, said = process.communicate(timeout=200)
+    assert process.returncode == 2
+    assert "ulimit -n" in said
+    assert "fault" not in said
