@@ -24,6 +24,10 @@ HOSTILE = {
     "brackets": "a: " + "[" * 100_000,
     "braces": "{a: " * 1000,
     "date": "a: 2001-99-99",
+    "empty int": "a: {!!int : b}",
+    "no bool": "a: !!bool x",
+    "empty float": "a: !!float ''",
+    "no timestamp": "a: !!timestamp x",
     "python": "a: !!python/object/apply:os.system [echo]",
 }
 REASONS = {
@@ -33,6 +37,10 @@ REASONS = {
     "brackets": "nested more than 50 deep",
     "braces": "nested more than 50 deep",
     "date": "month must be in",
+    "empty int": "expected a value of type .int",
+    "no bool": "expected a value of type .bool",
+    "empty float": "expected a value of type .float",
+    "no timestamp": "expected a value of type .timestamp",
     "python": "could not determine a constructor",
 }
 

@@ -97,8 +97,9 @@ def loader() -> type[yaml.SafeLoader]:
             try:
                 return super().construct_object(node, deep)
             except (ValueError, OverflowError) as error:  # a date such as 2001-99-99
-                raise yaml.constructor.ConstructorError(
-                    None, None, str(error), node.start_mark
-                ) from None
+                problem = str(error)
+            except (LookupError, TypeError, AttributeError):  # such as !!int of an empty text
+                problem = f'expected a value of type "{node.tag.rpartition(":")[2]}"'
+            raise yaml.constructor.ConstructorError(None, None, problem, node.start_mark)
 
     return Loader
