@@ -20,7 +20,8 @@ def main() -> int:
     parser = argparse.ArgumentParser(
         prog="python -m tests.campaign",
         description="Runs mutated inputs against all readers of files and sockets.",
-        epilog="python -m tests.campaign replay FILE... runs findings again.",
+        epilog="python -m tests.campaign replay FILE... runs findings again. "
+        "python -m tests.campaign.load --minutes 30 is the load run.",
     )
     parser.add_argument("--minutes", type=float, default=5.0, help="wall time (default: 5)")
     parser.add_argument("--targets", default="", help="a,b,…; default: all")

@@ -16,6 +16,9 @@ from tests.campaign.target import Target
 from cartwheel.errors import CartwheelError
 
 _ROOT = Path(__file__).parents[2]
+_SEEDS = Path(__file__).parent / "seeds/fuzz_description"
+"""A package with a seed for each part of xacro, and the files that they include."""
+_TUTORIAL = _ROOT / "docs/tutorial/steps/07-drive"
 _LARGEST = 40_000
 """Bytes of a seed."""
 _MOST_LINKS = 15
@@ -46,13 +49,31 @@ def _expanded() -> list[bytes]:
     return found
 
 
+def _xacros() -> list[bytes]:
+    """Those that are whole by themselves; what they include is found."""
+    from cartwheel.description import load_text
+
+    files = [*_SEEDS.glob("*.xacro"), _TUTORIAL / "cart_description/urdf/cart.xacro"]
+    found = []
+    for data in (*(path.read_bytes() for path in sorted(files)), *_files(".xacro")):
+        try:
+            load_text(data, file=str(_SEEDS / "fuzz.xacro"), package_path=_packages())
+        except CartwheelError:  # a part of another
+            continue
+        found.append(data)
+    return found
+
+
+def _packages() -> list[Path]:
+    return [_ROOT / "robots", _ROOT / "models", _TUTORIAL]
+
+
 def _reader(file: str) -> Callable[[bytes], None]:
     def run_one(data: bytes) -> None:
         from cartwheel.description import load_text
         from cartwheel.description.model import WorldDescription
 
-        paths = [_ROOT / "robots", _ROOT / "models"]
-        found = load_text(data, file=file, package_path=paths)
+        found = load_text(data, file=file, package_path=_packages())
         if zlib.crc32(data) % _EVERY:
             return
         import cartwheel as cw
@@ -73,7 +94,7 @@ def _target(name: str, seeds: Callable[[], list[bytes]], share: float) -> Target
     return Target(
         name=name,
         seeds=seeds,
-        run_one=_reader(f"fuzz.{name}"),
+        run_one=_reader(str(_SEEDS / f"fuzz.{name}")),
         allowed=(CartwheelError,),
         mutate=mutating.xml,
         seconds=15.0,
@@ -86,5 +107,5 @@ TARGETS = (
     _target("urdf", _expanded, 2.0),
     _target("sdf", lambda: _files(".sdf"), 1.0),
     _target("world", lambda: _files(".world"), 1.0),
-    _target("xacro", lambda: _files(".xacro"), 2.0),
+    _target("xacro", _xacros, 2.0),
 )

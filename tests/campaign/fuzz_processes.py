@@ -9,6 +9,7 @@ import contextlib
 import os
 import random
 import signal
+import subprocess
 import threading
 import time
 import traceback
@@ -16,12 +17,19 @@ from collections.abc import Sequence
 from pathlib import Path
 from random import Random
 
-from tests.campaign.live import PATIENCE_S, LiveRun, processes_of
+from tests.campaign.live import PATIENCE_S, PROGRAM, LiveRun, processes_of
 from tests.campaign.target import FaultError, Target
 
 from cartwheel.errors import CartwheelError
 
 _MOST_PROCESSES = 12
+_RECORDED_S = 0.5
+"""Wall time after which a message is with the recorder."""
+_WRITTEN_S = 2.0
+"""Wall time after which it is in the file, even if the recorder is killed: twice what is promised,
+for a busy machine."""
+_CLOCK_NS = 100_000_000
+"""Simulated time between two messages on ``/clock``, at most."""
 _BALL = """<robot name="{}"><link name="b"><inertial><mass value="1"/><inertia ixx="1" iyy="1"
  izz="1" ixy="0" ixz="0" iyz="0"/></inertial><collision><geometry><sphere radius=".1"/></geometry>
 </collision></link></robot>"""
@@ -31,33 +39,92 @@ def _kill(data: bytes) -> None:
     """Starts a run with all wires and a recording, and kills one of its processes."""
     dice = Random(data)
     name = dice.choice(("a.mcap", "a.bag", "a.db3", "a"))
-    before = set(Path("/tmp").glob("cartwheel-*/*"))
-    run = LiveRun("--record", name, "--record-topics", "/clock", "--overwrite")
-    recording = Path(name).resolve()
+    at_start = dice.random() < 0.3
+    options = ("--record", name, "--record-topics", "/clock", "--overwrite")
+    run = LiveRun(*options, wait=not at_start)
+    before = set(Path.cwd().iterdir())
     try:
-        processes = run.processes()
+        time.sleep(dice.random())
+        recorded = 0 if at_start else _now(run)
+        processes = run.processes() or [run.process.pid]
         if len(processes) > _MOST_PROCESSES:
             raise FaultError(f"{len(processes)} processes")
-        time.sleep(dice.random() * 2)
-        victim = run.process.pid if dice.random() < 0.4 else dice.choice(processes)
+        groups = _groups(processes) - {os.getpgrp()}
+        shared = _shared_memory(processes)
+        victim = dice.choice(processes)
         sent = dice.choice((signal.SIGKILL, signal.SIGKILL, signal.SIGTERM, signal.SIGINT))
+        what = f"{sent.name} to {victim} of {processes} ({_command(victim)})"
+        if not at_start:
+            is_recorder = "recording" in _command(victim)
+            time.sleep((_WRITTEN_S if is_recorder else _RECORDED_S) + dice.random())
         with contextlib.suppress(ProcessLookupError):
             os.kill(victim, sent)
         if victim != run.process.pid:
             # A bridge: the run goes on, or says why it ends.
             time.sleep(dice.random())
             if "Traceback" in run.output():
-                raise FaultError(f"after {sent.name} to a bridge:\n{run.output()}")
+                raise FaultError(f"after {what}:\n{run.output()}")
             with contextlib.suppress(ProcessLookupError):
                 run.process.send_signal(signal.SIGINT)
-        _wait_for_end(run, f"{sent.name} to {victim} of {processes}")
-        _check_recording(recording)
-        left = set(Path("/tmp").glob("cartwheel-*/*")) - before
-        own = [path for path in left if path.name.startswith(f"{run.process.pid}")]
-        if own:
-            raise FaultError(f"left behind: {own}")
+        _wait_for_end(run, what)
+        if not at_start:
+            _check_recording(Path(name).resolve(), recorded, what)
+        _check_leftovers(run, what, groups, shared)
+        if left := set(Path.cwd().iterdir()) - before - {Path(name).resolve()}:
+            raise FaultError(f"{what}: left behind {left}")
     finally:
         run.close()
+
+
+def _now(run: LiveRun) -> int:
+    """Simulated time in ns."""
+    with run.client() as client:
+        return int(client.request("status")["time_ns"])  # type: ignore[attr-defined]
+
+
+def _command(pid: int) -> str:
+    try:
+        return Path(f"/proc/{pid}/cmdline").read_bytes().replace(b"\0", b" ")[-100:].decode()
+    except OSError:
+        return "gone"
+
+
+def _groups(processes: Sequence[int]) -> set[int]:
+    found = set()
+    for pid in processes:
+        with contextlib.suppress(ProcessLookupError):
+            found.add(os.getpgid(pid))
+    return found
+
+
+def _shared_memory(processes: Sequence[int]) -> set[Path]:
+    """Files of /dev/shm that they have mapped."""
+    found = set()
+    for pid in processes:
+        with contextlib.suppress(OSError):
+            for line in Path(f"/proc/{pid}/maps").read_text().splitlines():
+                name = line.partition("/dev/shm/")[2]
+                if name and not name.endswith(" (deleted)"):
+                    found.add(Path("/dev/shm") / name)
+    return found
+
+
+def _check_leftovers(run: LiveRun, what: str, groups: set[int], shared: set[Path]) -> None:
+    """No process, shared memory or control socket may be left.
+
+    Raises:
+        FaultError: There is something.
+    """
+    living = [int(each.name) for each in Path("/proc").iterdir() if each.name.isdecimal()]
+    if left := [pid for pid in living if _groups([pid]) & groups and _command(pid)]:
+        raise FaultError(f"{what}: still there are {[_command(pid) for pid in left]}")
+    if kept := [path for path in shared if path.exists()]:
+        raise FaultError(f"{what}: left in /dev/shm: {kept}")
+    if run.process.returncode == -signal.SIGKILL:
+        # It could remove nothing: the next command that looks does.
+        subprocess.run([PROGRAM, "status"], env=run.environment, capture_output=True, check=False)
+    if entries := run.entries():
+        raise FaultError(f"{what}: left in its folder of sockets: {entries}")
 
 
 def _wait_for_end(run: LiveRun, what: str) -> None:
@@ -67,23 +134,33 @@ def _wait_for_end(run: LiveRun, what: str) -> None:
             with contextlib.suppress(Exception):
                 run.process.wait(0.1)
         if time.monotonic() > deadline:
-            commands = [Path(f"/proc/{pid}/cmdline").read_bytes()[-200:] for pid in left]
-            raise FaultError(f"{what}: still there are {commands}\n{run.output()}")
+            raise FaultError(
+                f"{what}: still there are {[_command(pid) for pid in left]}\n{run.output()}"
+            )
         time.sleep(0.1)
+    run.process.wait()
     if "Traceback" in run.output():
         raise FaultError(f"{what}:\n{run.output()}")
 
 
-def _check_recording(path: Path) -> None:
+def _check_recording(path: Path, until: int, what: str) -> None:
+    """It is readable, in order, and holds what was published until a time in ns.
+
+    Raises:
+        FaultError: It is not.
+    """
     from cartwheel.bridges.recording.opening import open_recording
 
     if not path.exists():
-        raise FaultError("there is no recording")
+        raise FaultError(f"{what}: there is no recording")
     recording = open_recording(path)
     times = [message.time_ns for message in recording.messages()]
-    if times != sorted(times):
-        raise FaultError("the recording's times are out of order")
     recording.close()
+    if times != sorted(times):
+        raise FaultError(f"{what}: the recording's times are out of order")
+    if not times or times[-1] < until - _CLOCK_NS:
+        last = times[-1] / 1e9 if times else None
+        raise FaultError(f"{what}: the recording ends at {last} s, not after {until / 1e9} s")
 
 
 def _world(data: bytes) -> None:

@@ -33,9 +33,10 @@ class LiveRun:
 
     Args:
         arguments: Further ones of ``cartwheel run``.
+        wait: Until it simulates.
     """
 
-    def __init__(self, *arguments: str) -> None:
+    def __init__(self, *arguments: str, wait: bool = True) -> None:
         self.folder = Path(tempfile.mkdtemp(prefix="cw", dir="/tmp"))  # sockets' paths are short
         self.mark = uuid.uuid4().hex
         ports = random.Random(self.mark).sample(range(20_000, 60_000), 3)
@@ -65,7 +66,8 @@ class LiveRun:
             preexec_fn=_unlimited,  # noqa: PLW1509 - the worker has one thread here
         )
         atexit.register(self.close)
-        self._wait_until_up()
+        if wait:
+            self._wait_until_up()
         self._memory = self.memory()
 
     def _wait_until_up(self) -> None:
@@ -115,6 +117,10 @@ class LiveRun:
     def output(self) -> str:
         """What it printed so far."""
         return (self.folder / "output").read_text(errors="replace")[-20_000:]
+
+    def entries(self) -> list[Path]:
+        """What it has in its folder of control sockets."""
+        return sorted((self.folder / "cartwheel").glob("*"))
 
     def check_output(self) -> None:
         """Looks at what was printed since the last time, and whether the run lives.
