@@ -9,6 +9,9 @@ from typing import Any, Literal
 
 Severity = Literal["info", "warning", "error"]
 
+_LONGEST = 500
+"""Characters of a name that is shown whole and compared with others."""
+
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Origin:
@@ -120,8 +123,9 @@ class UnknownNameError(CartwheelError):
         self, kind: str, name: str, existing: Iterable[str], *, origin: Origin | None = None
     ) -> None:
         known = sorted(set(existing))
+        shown = name if len(name) <= _LONGEST else f"{name[:_LONGEST]}…"
         super().__init__(
-            f'{kind} "{name}" does not exist', origin=origin, hint=suggestion(name, known)
+            f'{kind} "{shown}" does not exist', origin=origin, hint=suggestion(name, known)
         )
 
 
@@ -169,7 +173,7 @@ class Once:
 
 def likely(name: str, existing: Iterable[str], *, cutoff: float = 0.75) -> str:
     """A sentence that names the likely meant one of `existing`, or nothing."""
-    close = difflib.get_close_matches(name, list(existing), n=1, cutoff=cutoff)
+    close = _close(name, list(existing), cutoff)
     return f'Did you mean "{close[0]}"?' if close else ""
 
 
@@ -178,8 +182,15 @@ def suggestion(name: str, existing: Iterable[str]) -> str:
     known = list(existing)
     if not known:
         return "There are none."
-    close = difflib.get_close_matches(name, known, n=1, cutoff=0.6)
+    close = _close(name, known, 0.6)
     if close:
         return f'Did you mean "{close[0]}"?'
     shown = ", ".join(known[:12])
     return f"There are: {shown}{', …' if len(known) > 12 else ''}."
+
+
+def _close(name: str, known: list[str], cutoff: float) -> list[str]:
+    """The likely one; none for a name of megabytes, which others may ask for."""
+    if len(name) > _LONGEST:
+        return []
+    return difflib.get_close_matches(name, known, n=1, cutoff=cutoff)

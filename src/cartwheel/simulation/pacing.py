@@ -14,6 +14,8 @@ from cartwheel.simulation.snapshot import RunState, Snapshot
 
 _PATIENCE = 0.25
 """s of wall time that a slow simulation may lag before the lag is given up."""
+_COMMANDS = 0.05
+"""s of wall time that commands of other threads may take between two steps."""
 _SLICE = 0.01
 """s of wall time between two looks at the clock while running as fast as possible."""
 _WINDOW = 1.0
@@ -87,6 +89,7 @@ class Pacer:
             SimulationError: The simulation diverged, and nothing from outside had moved it.
         """
         simulation = self._simulation
+        simulation.command_time = _COMMANDS
         turns = {RunState.RUNNING: self._run_on, RunState.PAUSED: self._hold}
         while True:
             simulation.drain()

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 import queue
 import threading
+import time
 from collections.abc import Callable
 from concurrent.futures import Future
 from typing import TypeVar
@@ -36,6 +38,9 @@ class Run:
         """The thread that ran it last; None while none has."""
         self.closed = False
         """Whether it has ended for good."""
+        self.command_time = math.inf
+        """s of wall time that posted functions may take before time goes on. A pacer bounds it:
+        threads that post without a pause would hold time."""
         self.commands: queue.SimpleQueue[Callable[[], None]] = queue.SimpleQueue()
 
     def pause(self) -> None:
@@ -85,14 +90,18 @@ class Run:
     def end(self) -> None:
         """Takes no commands any more, and calls nobody; those that came last are run."""
         self.closed = True
+        self.command_time = math.inf
         self.drain()
         self.on_reset.clear()
 
     def drain(self) -> None:
-        """Runs what other threads posted."""
+        """Runs what other threads posted, for `command_time` at most."""
         self.owner = threading.get_ident()
+        end = time.perf_counter() + self.command_time
         while not self.commands.empty():
             self._obey(self.commands.get())
+            if time.perf_counter() >= end:
+                return
 
     def wait(self, seconds: float) -> None:
         """Sleeps, unless something is posted, which is run."""
