@@ -143,7 +143,7 @@ def test_what_nobody_reads_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
         link.tell("much", bytes(100_000))
     assert ended.wait(_PATIENCE)
     assert [str(fault) for fault in faults] == [
-        "the other end has left 1 MB unread: it is given up"
+        "the other end does not read its messages (1 MB wait): the connection is closed"
     ]
     with pytest.raises(ControlError):
         waiting.result(_PATIENCE)

@@ -127,7 +127,7 @@ def test_a_publisher_of_nonsense_is_left(bridge: Bridge, master: Master) -> None
             read_block(connection)
             send_header(connection, {"md5sum": "9f195f881246fdfa2798d1d3eebca84a"})
             connection.sendall(struct.pack("<I", 5) + b"short")
-            wait_for(lambda: run.told("sends nonsense"), "the report")
+            wait_for(lambda: run.told("sent a malformed message"), "the report")
             connection.settimeout(60)
             assert connection.recv(1) == b""
             connection.close()
@@ -241,7 +241,7 @@ def test_entities_are_refused(bridge: Bridge) -> None:
         "</methodName></methodCall>"
     ).encode()
     deep = b"<methodCall>" + b"<value><array><data>" * 5000
-    for hostile, reason in ((body, b"document type"), (deep, b"within each other")):
+    for hostile, reason in ((body, b"document type"), (deep, b"nested elements")):
         with caller(run) as sock:
             head = f"POST / HTTP/1.1\r\nContent-Length: {len(hostile)}\r\n\r\n"
             sock.sendall(head.encode() + hostile)
@@ -406,7 +406,7 @@ def test_all_connections_share_their_bounds(bridge: Bridge, master: Master) -> N
             read_block(sock)
         late = stack.enter_context(socket.create_connection(address(run), timeout=60))
         assert late.recv(1) == b""
-        wait_for(lambda: run.told("are all there can be"), "the report")
+        wait_for(lambda: run.told("the most there can be"), "the report")
     wait_for(lambda: not traffic.connections, "their ends")
     serves(master)
 

@@ -86,7 +86,10 @@ def test_lights_of_one_name():
         made.run(0.01)
         (told,) = [each for each in made.diagnostics if "light" in each.message]
     assert [light.name for light in world.lights] == ["a", "a_1"]
-    assert str(told) == 'w:2: warning: light "a" has the name of another: it is called "a_1" here'
+    assert (
+        str(told)
+        == 'w:2: warning: light "a" has the same name as another: it is renamed "a_1" here'
+    )
 
 
 @pytest.mark.parametrize("form", ["sdf", "urdf"])

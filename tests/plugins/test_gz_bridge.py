@@ -114,7 +114,7 @@ def test_what_has_no_effect_is_told(bridged):
     ("text", "line", "reason"),
     [
         ("a: 1", 0, "the file is no list of topics"),
-        ("- [", 1, "the file is no YAML: "),
+        ("- [", 1, "the file is not valid YAML: "),
         ("- one", 1, "an entry is no mapping"),
         ("\n- {ros_topic_name: /a}", 2, "an entry needs ros_topic_name, gz_topic_name and ros_"),
         ("- {topic_name: <ns>/a, ros_type_name: a/msg/B}", 1, '"<ns>/a" is no valid name'),

@@ -175,7 +175,7 @@ class ControlServer:
         try:
             wills.execute()
         except CartwheelError as error:
-            _log.warning("a message that was left for the end of a client: %s", error)
+            _log.warning("a client's final message cannot be published: %s", error)
 
     def _stream(self, client: Connection, frame: Frame) -> bool:
         """Serves a subscription to its end; returns whether there was one."""

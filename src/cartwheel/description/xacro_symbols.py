@@ -120,6 +120,6 @@ def read_yaml(text: str, path: Path, number: Callable[[str], float]) -> object:
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
         raise DescriptionError(
-            f"the file is no YAML: {getattr(error, 'problem', None) or error}",
+            f"the file is not valid YAML: {getattr(error, 'problem', None) or error}",
             origin=Origin(file=xml.shown_path(path), line=mark.line + 1 if mark else 0),
         ) from None

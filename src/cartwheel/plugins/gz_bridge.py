@@ -148,7 +148,7 @@ def read_bridge(path: Path) -> list[Bridged]:
         problem = getattr(error, "problem", None) or "it is no text"
         line = mark.line + 1 if mark is not None else 0
         raise CartwheelError(
-            f"the file is no YAML: {problem}", origin=Origin(file=str(path), line=line)
+            f"the file is not valid YAML: {problem}", origin=Origin(file=str(path), line=line)
         ) from None
     if entries is None:
         raise CartwheelError(

@@ -63,7 +63,7 @@ class Uploads:
             UploadError: It cannot be taken.
         """
         if size > MOST_BYTES:
-            raise UploadError(f"A file may have {MOST_BYTES // 1_000_000} MB.")
+            raise UploadError(f"A file may have at most {MOST_BYTES // 1_000_000} MB.")
         if parts != -(-size // PART_BYTES):
             raise UploadError("The parts of the file do not fit its size.")
         if client in self._by_client:

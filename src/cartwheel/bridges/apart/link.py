@@ -124,7 +124,11 @@ class Link:
             return
         if self._queued + len(frame) > _MOST:
             unread = f"{self._queued >> 20} MB"
-            self._on_fault(ControlError(f"the other end has left {unread} unread: it is given up"))
+            self._on_fault(
+                ControlError(
+                    f"the other end does not read its messages ({unread} wait): the connection is closed"
+                )
+            )
             self._end()
             return
         self._queue.append(memoryview(frame))

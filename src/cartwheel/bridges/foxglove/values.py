@@ -63,7 +63,7 @@ class Values:
         elif name == SPEED:
             number = isinstance(value, int | float) and not isinstance(value, bool)
             if not number:
-                raise GraphError("it must be a number; 0 is as fast as it can")
+                raise GraphError("expected a number; 0 is as fast as possible")
             controls.set_speed(float(value) or None)
         elif name in self._descriptions:
             raise GraphError("the description of a robot that stands there cannot be changed")

@@ -124,7 +124,9 @@ def _check_names(topic: RecordedTopic, name: str, fields: Any) -> None:
     """Refuses names that are none: classes are made of them, as Python's text."""
     words = [*name.split("/"), *(field[0] for field in fields)]
     if not all(word.isidentifier() for word in words):
-        raise RecordingError(f"{topic.name}: {name} is no name of a type, or has such a field")
+        raise RecordingError(
+            f"{topic.name}: {name} is not a valid type name, or has an invalid field name"
+        )
 
 
 def _check_arrays(topic: RecordedTopic, name: str, fields: Any) -> None:

@@ -87,7 +87,7 @@ def open_folder(path: Path, open_file: Callable[[Path], Recording]) -> Recording
     files = [path / name for name in names if name]
     for file in files:
         if not file.is_file():
-            raise RecordingError(f'"{path}" names a file that is not there: "{file.name}"')
+            raise RecordingError(f'"{path}" names a file that does not exist: "{file.name}"')
     files = files or sorted([*path.glob("*.mcap"), *path.glob("*.db3")])
     if not files:
         raise RecordingError(f'"{path}" is no recording: it holds neither .mcap nor .db3')

@@ -33,7 +33,7 @@ def read_values(body: bytes) -> tuple[tuple[Any, ...], str | None]:
         nonlocal depth
         depth += 1
         if depth > DEPTH:
-            raise MalformedError(f"more than {DEPTH} elements within each other")
+            raise MalformedError(f"more than {DEPTH} nested elements")
         made.start(tag, attributes)
 
     def end(tag: str) -> None:

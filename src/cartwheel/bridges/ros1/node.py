@@ -102,8 +102,8 @@ class Node:
         if self.traffic.full:
             sock.close()
             self._tell(
-                f"{self.traffic.most} connections of other nodes are all there can be: more are"
-                " refused"
+                f"other nodes have {self.traffic.most} connections, the most there can be: further"
+                " ones are refused"
             )
             return
         connection = Connection(self._loop, sock, self.traffic, on_header=self._assign)

@@ -48,7 +48,7 @@ def connect(host: str, port: int, seconds: float) -> socket.socket:
     try:
         addresses = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)
     except (UnicodeError, OverflowError, ValueError) as error:
-        raise OSError(f"no name of a computer: {error}") from None
+        raise OSError(f"invalid host name: {error}") from None
     failure = OSError("it has no address")
     for family, kind, protocol, _, address in addresses[:_ADDRESSES]:
         rest = deadline - time.monotonic()
@@ -131,7 +131,7 @@ class _Transport(xmlrpc.client.Transport):
     def parse_response(self, file: Any) -> Any:
         if file.getheader("Content-Encoding"):
             # A few bytes could be unpacked to any number.
-            raise ValueError("it is encoded, though nothing else was asked for than plain text")
+            raise ValueError("the answer is compressed, which was not requested")
         return read_values(file.read())[0]
 
 
@@ -170,7 +170,7 @@ class Peer:
         packed = [{"methodName": method, "params": list(rest)} for method, rest in calls]
         found = self._answer("system.multicall", (packed,))
         if not isinstance(found, list) or len(found) != len(calls):
-            raise RpcError(f"{self.uri} gives no answer for each of {len(calls)} calls")
+            raise RpcError(f"{self.uri} did not answer each of {len(calls)} calls")
         answers = []
         for answer in found:
             if isinstance(answer, list) and len(answer) == 1:

@@ -110,7 +110,7 @@ class TopicSubscription:
             self._tell(f"{self.topic}: {error}")
             return
         if len(uri) > _LONGEST or not uri.startswith("http://"):
-            self._tell(f"{self.topic}: {uri[:_LONGEST]} is no address of a publisher")
+            self._tell(f"{self.topic}: {uri[:_LONGEST]} is not a publisher's address")
             return
         link = self._links[uri] = _Link(uri, host)
         self._reach(link)
@@ -204,7 +204,7 @@ class TopicSubscription:
         try:
             message = decode_ros1(data, self.type_name, elements=_ELEMENTS)
         except CartwheelError as error:
-            self._tell(f"{self.topic}: {connection.peer} sends nonsense: {error}")
+            self._tell(f"{self.topic}: {connection.peer} sent a malformed message: {error}")
             connection.close()
             return
         self._deliver(message, len(data))

@@ -380,7 +380,7 @@ class _Subscription:
         try:
             message = decode_cdr(data, self.type)
         except GraphError as error:
-            self._bridge._warn(f"{self._name}: somebody sends nonsense: {error}")
+            self._bridge._warn(f"{self._name}: received a malformed message: {error}")
             return
         self._bridge._arrivals.deliver(self._name, self.type, message)
 

@@ -225,7 +225,7 @@ class Zenoh:
             elif len(self._others) < _TOKENS:
                 self._others[key] = topic
             else:
-                self._tell(f"more than {_TOKENS} publishers of others: not all are known")
+                self._tell(f"more than {_TOKENS} publishers of peers: further ones are ignored")
             if not self._told_due:
                 self._told_due = True
                 self.loop.after(_GATHER, self._tell_of_others)

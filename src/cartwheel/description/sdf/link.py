@@ -125,7 +125,7 @@ def named_apart(kind: str, parts: Iterable[P], ctx: Context) -> list[P]:
             name = next(each for each in numbered if each not in taken)
             ctx.tell(
                 "warning",
-                f'{kind} "{part.name}" has the name of another: it is called "{name}" here',
+                f'{kind} "{part.name}" has the same name as another: it is renamed "{name}" here',
                 part.origin,
             )
             mine = replace(part, name=name)

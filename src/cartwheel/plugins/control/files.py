@@ -124,7 +124,7 @@ def read_yaml(path: Path) -> dict[str, Any]:
         line = mark.line + 1 if mark is not None else 0
         problem = getattr(error, "problem", None) or "it is no YAML"
         raise PluginError(
-            f"the file is no YAML: {problem}", origin=Origin(file=str(path), line=line)
+            f"the file is not valid YAML: {problem}", origin=Origin(file=str(path), line=line)
         ) from None
     if content is None:
         return {}

@@ -319,7 +319,7 @@ def _duration(value: bytes, order: str) -> float:
 def _text(value: bytes, order: str) -> str:
     (length,) = struct.unpack_from(f"{order}I", value)
     if length > min(_LONGEST_NAME, len(value) - 4):
-        raise MalformedError("a text is longer than what holds it, or than any name")
+        raise MalformedError("a string is longer than its message, or than any name")
     return value[4 : 4 + max(0, length - 1)].decode()
 
 

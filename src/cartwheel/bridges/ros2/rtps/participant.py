@@ -558,7 +558,7 @@ class Participant:
         if not ours.topic or ours.topic != other.topic:
             return False
         if len(connected) >= _MATCHES and other.guid not in connected:
-            self._tell(f"more than {_MATCHES} at one end of {ours.topic}: not all are served")
+            self._tell(f"more than {_MATCHES} peers match {ours.topic}: not all are served")
             return False
         if ours.type != other.type or policy:
             self.on_misfit(ours, other, policy)
