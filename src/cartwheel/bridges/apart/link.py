@@ -126,7 +126,8 @@ class Link:
             unread = f"{self._queued >> 20} MB"
             self._on_fault(
                 ControlError(
-                    f"the other end does not read its messages ({unread} wait): the connection is closed"
+                    f"the other end does not read its messages ({unread} wait): "
+                    "the connection is closed"
                 )
             )
             self._end()
