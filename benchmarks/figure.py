@@ -48,11 +48,10 @@ QUICK = Effort(rounds=2, seconds=0.2, images=1, starts=1, carts=(1, 2))
 
 
 def medians(rounds: int, ways: Mapping[str, Callable[[], object]]) -> dict[str, float]:
-    """Median time in s of each way, all of them in turn in each round.
+    """Median wall time in s of each way, all of them in turn in each round.
 
-    It is the processor's time for all threads, which is a clock's where nobody else computes.
-    On a machine that others use too a clock tells more of them than of us, and even so only
-    times of the same round can be compared.
+    Other programs on the machine slow all ways of a round alike, so ratios of one run hold on a
+    busy machine too. Times themselves are worth quoting from an idle one.
     """
     times: dict[str, list[float]] = {name: [] for name in ways}
     for way in ways.values():
@@ -60,7 +59,7 @@ def medians(rounds: int, ways: Mapping[str, Callable[[], object]]) -> dict[str, 
     for _ in range(rounds):
         gc.collect()
         for name, way in ways.items():
-            start = time.process_time()
+            start = time.perf_counter()
             way()
-            times[name].append(time.process_time() - start)
+            times[name].append(time.perf_counter() - start)
     return {name: statistics.median(found) for name, found in times.items()}
