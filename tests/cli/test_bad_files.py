@@ -60,7 +60,7 @@ def test_a_missing_mesh_costs_its_shape_alone(program, name):
     done = program(*run)
     assert f"error: {said}" in done.stderr
     assert 'of link "base" is left out' in done.stderr
-    assert "robot   box, 2 kg, 1 links" in done.stdout
+    assert "robot   box, 2 kg, 1 link, 0 joints" in done.stdout
     strict = program(*run, "--strict", status=2)
     assert f"error: {said}" in strict.stderr
     assert strict.stdout == ""

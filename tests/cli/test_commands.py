@@ -217,6 +217,28 @@ def test_a_killed_teleop_stops_what_it_has_set_in_motion(cart):
     cart("reset")
 
 
+def test_a_suspended_teleop_stops_the_robot_and_goes_on_when_it_is_resumed(cart):
+    process = cart.start("teleop", "--speed", "0.4", stdin=subprocess.PIPE)
+
+    def drive():
+        process.stdin.write("i")
+        process.stdin.flush()
+        deadline = time.monotonic() + 120
+        while speed(cart) < 0.1:
+            assert time.monotonic() < deadline
+
+    drive()
+    process.send_signal(signal.SIGTSTP)
+    deadline = time.monotonic() + 120
+    while speed(cart) > 0.01:
+        assert time.monotonic() < deadline
+    process.send_signal(signal.SIGCONT)
+    drive()
+    process.stdin.close()
+    assert process.wait(120) == 0
+    cart("reset")
+
+
 def test_teleop_stamps_its_commands_where_they_are_read_so(program):
     (program.folder / "bridge.yaml").write_text(
         f"- {{topic_name: {CART_TOPIC}, ros_type_name: geometry_msgs/msg/TwistStamped}}"

@@ -31,7 +31,7 @@ def test_real_time_is_kept(program):
 def test_any_file_from_any_folder(program):
     (program.folder / "box.urdf").write_text(BOX)
     done = program("run", "box.urdf", "--headless", "--for", "0.1", "--speed", "max", "-x", "-1.5")
-    assert "robot   box, 2 kg, 1 links" in done.stdout
+    assert "robot   box, 2 kg, 1 link, 0 joints" in done.stdout
     assert "world   empty with ground_plane" in done.stdout
     done = program("run", "--headless", "--for", "0.1", "box.urdf", "--world", "walls")
     assert "world   " in done.stdout

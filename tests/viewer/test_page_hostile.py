@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import itertools
 import os
 import random
 import socket
@@ -65,11 +66,14 @@ def test_garbage_ends_nothing_and_is_not_printed(page: tuple[subprocess.Popen[st
                 for _ in range(20):
                     link.send(garbage(dice))
 
-    attack(10)
-    before = memory(process)
-    attack(15)
-    growth = memory(process) - before
-    assert growth < 30 << 20, growth
+    # What is used for the first time, such as the camera's renderer, comes at any time and once;
+    # what leaks grows in each round.
+    sizes = [memory(process)]
+    for _ in range(4):
+        attack(10)
+        sizes.append(memory(process))
+    growths = [after - before for before, after in itertools.pairwise(sizes)]
+    assert min(growths) < 10 << 20, growths
     # One that takes nothing, while another is served.
     with (
         connect(
@@ -88,4 +92,4 @@ def test_garbage_ends_nothing_and_is_not_printed(page: tuple[subprocess.Popen[st
     process.terminate()
     out, _ = process.communicate(timeout=60)
     assert process.returncode == 0
-    assert "Traceback" not in out
+    assert "Traceback" not in out, out

@@ -134,6 +134,21 @@ def note(text: str):
     return lambda m: "Notification" in m["type"] and text in str(m)
 
 
+def ended(transfer: str):
+    """Nothing more of an upload is expected."""
+    kind = "FileTransferPartAck"
+    return lambda m: (
+        m["type"] == kind
+        and m["transfer_uuid"] == transfer
+        and m["transferred_bytes"] == m["total_bytes"]
+    )
+
+
+def hidden(transfer: str):
+    """The note of an upload's progress goes."""
+    return lambda m: m["type"] == "RemoveNotificationMessage" and m["uuid"] == f"upload-{transfer}"
+
+
 def test_an_upload_reads_nothing_of_this_machine(simulation, tmp_path):
     (tmp_path / "secret.yaml").write_text("word: hidden")
     attacks = {
@@ -162,6 +177,9 @@ def test_uploads_are_bounded_while_they_arrive(simulation):
         whole = bytes(uploads.PART_BYTES)
         browser.send(start(upload, "large", uploads.MOST_BYTES + 1))
         browser.hear(note("20 MB"))
+        # Its button waits for the end, and the note of its progress for being taken away.
+        browser.hear(ended("large"))
+        browser.hear(hidden("large"))
         for index in range(200):
             browser.send(part(upload, "large", index, whole))
         browser.send(start(upload, "lies", 10, parts=1000))
@@ -170,6 +188,7 @@ def test_uploads_are_bounded_while_they_arrive(simulation):
         browser.send(start(upload, "more", 10))
         browser.send(part(upload, "more", 0, whole))
         browser.hear(note("wrong size"))
+        browser.hear(ended("more"))
         browser.send(start(upload, "first", 2 * len(whole)))
         browser.send(start(upload, "second", 2 * len(whole)))
         browser.hear(note("still being uploaded"))

@@ -3,6 +3,7 @@
 import pytest
 
 from cartwheel.viewer.panels.world import WorldPanel
+from cartwheel.viewer.uploads import MOST_BYTES
 
 from .conftest import CART, close_notes, eventually, project, write
 
@@ -57,6 +58,16 @@ def upload(page, path):
     with page.expect_file_chooser() as chooser:
         page.get_by_role("button", name="Open a file").click()
     chooser.value.set_files(path)
+
+
+def test_after_a_file_that_is_too_large_the_next_one_can_be_opened(page, arena, tmp_path):
+    large = tmp_path / "large.urdf"
+    large.write_bytes(bytes(MOST_BYTES + 1))
+    upload(page, large)
+    page.get_by_text("The file is too large").wait_for()
+    page.get_by_text("Uploading large.urdf").wait_for(state="hidden")
+    upload(page, write(tmp_path, "ball.urdf", BALL))
+    eventually(lambda: "ball" in arena.models(), what="the ball")
 
 
 def test_a_file_of_ones_own(page, arena, tmp_path):

@@ -56,7 +56,7 @@ def test_a_key_drives_what_reads_commands_with_a_stamp_too():
 def test_the_value_of_a_control_is_that_of_the_moment_it_was_used():
     page, seen = Page.__new__(Page), []
     page._jobs = queue.SimpleQueue()
-    slider = SimpleNamespace(value=3.0)
+    slider = SimpleNamespace(value=3.0, _impl=SimpleNamespace(removed=False))
     used = page.on_value(lambda _, value: seen.append(value))
     asyncio.run(used(SimpleNamespace(target=slider, client_id=1)))
     slider.value = 0.0  # A panel that follows the simulation sets it back.
@@ -195,7 +195,7 @@ def test_topics_show_type_and_stated_rate():
     )
     shown = list_html([info])
     assert "/imu/data" in shown
-    assert "sensor_msgs/Imu" in shown
+    assert "sensor_msgs/<wbr>Imu" in shown
     assert "100 Hz" in shown
     assert "dropped" not in shown
     slow = replace(info, subscribers=("a", "b"), dropped=(0, 3))

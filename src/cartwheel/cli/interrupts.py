@@ -140,13 +140,19 @@ def _on_unraisable(unraisable: sys.UnraisableHookArgs) -> None:
 
 def _watch(reader: socket.socket, _writer: socket.socket) -> None:
     """Ends the process where the first signal did not do so in time, or at a second one."""
-    reader.recv(1)
+    _await_signal(reader)
     for patience in (PATIENCE, FOR_THE_END):
         reader.settimeout(patience)
         try:
-            reader.recv(1)
+            _await_signal(reader)
             break
         except TimeoutError:
             if not _state.count:
                 break
     leave(_state.status, patience=0.05)
+
+
+def _await_signal(reader: socket.socket) -> None:
+    """The next of both; each signal that has a handler writes its number."""
+    while reader.recv(1)[0] not in (signal.SIGINT, signal.SIGTERM):
+        pass

@@ -470,6 +470,12 @@ class RobotDescription:
         """kg, of all links."""
         return sum(link.inertial.mass for link in self.links if link.inertial)
 
+    @property
+    def parts(self) -> str:
+        """How many links and joints it has, in words."""
+        counts = (len(self.links), "link"), (len(self.joints), "joint")
+        return ", ".join(f"{n} {noun}{'' if n == 1 else 's'}" for n, noun in counts)
+
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Physics:

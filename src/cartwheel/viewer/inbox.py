@@ -200,7 +200,11 @@ class Inbox:
             self._check_change(client, message)
         if isinstance(message, UploadStart):
             self._uploads.start(
-                client, message.transfer_uuid, message.size_bytes, message.part_count
+                client,
+                message.source_component_uuid,
+                message.transfer_uuid,
+                message.size_bytes,
+                message.part_count,
             )
         elif isinstance(message, UploadPart):
             self._uploads.add(

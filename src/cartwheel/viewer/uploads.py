@@ -30,6 +30,7 @@ class UploadError(Exception):
 
 @dataclass
 class _Upload:
+    component: str
     transfer: str
     size: int
     parts: int
@@ -50,11 +51,12 @@ class Uploads:
         self._server = server
         self._by_client: dict[int, _Upload] = {}
 
-    def start(self, client: int, transfer: str, size: int, parts: int) -> None:
+    def start(self, client: int, component: str, transfer: str, size: int, parts: int) -> None:
         """Admits a file.
 
         Args:
             client: The browser's number.
+            component: The button that was used.
             transfer: Name of the upload.
             size: Announced, bytes.
             parts: Announced.
@@ -62,16 +64,13 @@ class Uploads:
         Raises:
             UploadError: It cannot be taken.
         """
-        if size > MOST_BYTES:
-            raise UploadError(f"A file may have at most {MOST_BYTES // 1_000_000} MB.")
-        if parts != -(-size // PART_BYTES):
-            raise UploadError("The parts of the file do not fit its size.")
-        if client in self._by_client:
-            raise UploadError("Another file is still being uploaded from here.")
-        if len(self._by_client) >= MOST_AT_ONCE:
-            raise UploadError(f"{MOST_AT_ONCE} files are being uploaded; try again later.")
+        upload = _Upload(component, transfer, size, parts)
+        reason = self._refusal(client, upload)
+        if reason is not None:
+            self._release(client, upload)
+            raise UploadError(reason)
         if parts:
-            self._by_client[client] = upload = _Upload(transfer, size, parts)
+            self._by_client[client] = upload
             self._wait(client, upload)
 
     def add(self, client: int, transfer: str, index: int, length: int) -> None:
@@ -107,6 +106,31 @@ class Uploads:
             handles.append(connected.gui)
         for gui in handles:
             gui._current_file_upload_states.pop(upload.transfer, None)
+        self._release(client, upload)
+
+    def _refusal(self, client: int, upload: _Upload) -> str | None:
+        """Why a file cannot be taken, if so."""
+        if upload.size > MOST_BYTES:
+            most = MOST_BYTES // 1_000_000
+            return f"The file is too large: {upload.size / 1e6:.1f} MB; {most} MB are allowed."
+        if upload.parts != -(-upload.size // PART_BYTES):
+            return "The parts of the file do not fit its size."
+        if client in self._by_client:
+            return "Another file is still being uploaded from here."
+        if len(self._by_client) >= MOST_AT_ONCE:
+            return f"{MOST_AT_ONCE} files are being uploaded; try again later."
+        return None
+
+    def _release(self, client: int, upload: _Upload) -> None:
+        """Lets the browser use the button again: it waits for the end of what it sends."""
+        connected = self._server.get_clients().get(client)
+        if connected is None:
+            return
+        from viser import _messages
+
+        queue = connected._websock_connection.queue_message
+        queue(_messages.FileTransferPartAck(upload.component, upload.transfer, 0, 0))
+        queue(_messages.RemoveNotificationMessage(f"upload-{upload.transfer}"))
 
     def _wait(self, client: int, upload: _Upload) -> None:
         loop = self._server._event_loop

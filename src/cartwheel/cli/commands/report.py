@@ -78,8 +78,8 @@ class Report:
         for placed in simulation.scene.models:
             if placed.name == name:
                 description = placed.description
-                parts = f"{len(description.links)} links, {len(description.joints)} joints"
-                self._line("robot", f"{name}, {description.mass:.4g} kg, {parts}")
+                mass = f"{description.mass:.4g} kg"
+                self._line("robot", f"{name}, {mass}, {description.parts}")
         started = ControllerFiles.of(session.graph).started
         if started:
             self._line("control", ", ".join(each.name for each in started))

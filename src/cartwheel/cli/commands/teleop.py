@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import contextlib
 import os
+import signal
 import sys
+import termios
+import tty
 from collections.abc import Iterable, Iterator
-from typing import Any
+from typing import Any, Self
 
 from cartwheel.cli import interrupts
 from cartwheel.cli.commands.clients import connect
@@ -29,9 +32,9 @@ def drive(sim: int | None, topic: str | None, *, speed: float, turn: float) -> N
         if not client.publish(topic, kind, _message(driver, kind)):
             raise CartwheelError(f"nobody reads {topic}", hint="See: cartwheel topic list -v")
         try:
-            with single_keys():
+            with single_keys() as terminal, Suspension(terminal) as suspension:
                 note(f"driving {paint(topic, 'bold', stream=sys.stderr)}\n\n{HELP}\n")
-                for key in keys():
+                for key in keys(suspension):
                     driver.press(key)
                     # Where this process ends without a word, the simulation itself stops the robot.
                     client.publish(topic, kind, _message(driver, kind), at_end=_end(driver, kind))
@@ -74,25 +77,88 @@ def the_topic(found: Iterable[str]) -> str:
 
 
 @contextlib.contextmanager
-def single_keys() -> Iterator[None]:
-    """Makes a terminal hand over each key as it is pressed, and puts it back as it was."""
+def single_keys() -> Iterator[list[Any] | None]:
+    """Makes a terminal hand over each key as it is pressed, and puts it back as it was.
+
+    Yields how it was; None where standard input is no terminal.
+    """
     descriptor = sys.stdin.fileno()
     if not os.isatty(descriptor):
-        yield
+        yield None
         return
-    import termios
-    import tty
-
     before = termios.tcgetattr(descriptor)
     with interrupts.finally_do(lambda: termios.tcsetattr(descriptor, termios.TCSANOW, before)):
         # Ctrl-C stays a signal, which also another process can send.
         tty.setcbreak(descriptor, termios.TCSANOW)
-        yield
+        yield before
 
 
-def keys() -> Iterator[str]:
-    """Keys as they are pressed, or the letters of a pipe; ends with it."""
-    while data := os.read(sys.stdin.fileno(), 64):
+class _SuspendedError(Exception):
+    """SIGTSTP came."""
+
+
+class Suspension:
+    """Puts SIGTSTP, Ctrl-Z at a terminal, off until the robot has been stopped.
+
+    Args:
+        terminal: How it was before; None is no terminal.
+    """
+
+    def __init__(self, terminal: list[Any] | None) -> None:
+        self._terminal = terminal
+        self._asked = self._reading = False
+
+    def __enter__(self) -> Self:
+        signal.signal(signal.SIGTSTP, self._on_signal)
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        signal.signal(signal.SIGTSTP, signal.SIG_DFL)
+
+    def read(self) -> bytes | None:
+        """What comes next from standard input; None where the process is to be suspended."""
+        try:
+            return self._read()
+        except _SuspendedError:
+            return None
+
+    def suspend(self) -> None:
+        """Suspends the process, and returns once it goes on."""
+        self._asked = False
+        signal.signal(signal.SIGTSTP, signal.SIG_DFL)
+        descriptor = sys.stdin.fileno()
+        if self._terminal is not None:
+            termios.tcsetattr(descriptor, termios.TCSANOW, self._terminal)
+        os.kill(os.getpid(), signal.SIGTSTP)
+        if self._terminal is not None:
+            tty.setcbreak(descriptor, termios.TCSANOW)
+        signal.signal(signal.SIGTSTP, self._on_signal)
+
+    def _read(self) -> bytes | None:
+        self._reading = True
+        try:
+            return None if self._asked else os.read(sys.stdin.fileno(), 64)
+        finally:
+            self._reading = False
+
+    def _on_signal(self, *_: object) -> None:
+        # In the middle of a request to the simulation it waits for the next key.
+        self._asked = True
+        if self._reading:
+            self._reading = False
+            raise _SuspendedError
+
+
+def keys(suspension: Suspension) -> Iterator[str]:
+    """Keys as they are pressed, or the letters of a pipe; ends with it.
+
+    One that stops the robot comes before the process is suspended.
+    """
+    while (data := suspension.read()) != b"":
+        if data is None:
+            yield "k"
+            suspension.suspend()
+            continue
         text = data.decode("utf-8", "replace")
         # An arrow or a function key is an escape and letters that mean nothing here.
         yield from ("k",) if text.startswith("\x1b") else "".join(text.split("\n"))

@@ -67,15 +67,9 @@ def facts(description: RobotDescription) -> dict[str, str]:
     """What a description is, for `rows_html`."""
     return {
         "mass": "fixed" if description.static else f"{description.mass:.4g} kg",
-        "parts": f"{counted(len(description.links), 'link')}, "
-        f"{counted(len(description.joints), 'joint')}",
+        "parts": description.parts,
         "file": escape(description.origin.file.rsplit("/", 1)[-1]),
     }
-
-
-def counted(number: int, noun: str) -> str:
-    """A number with its noun."""
-    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
 
 
 def of_type(topics: Sequence[TopicInfo], type_name: str) -> list[str]:

@@ -16,7 +16,9 @@ from cartwheel.viewer.panels.base import Panel, escape
 from cartwheel.viewer.stage import Stage
 
 _STEPS = 400
-"""Of a slider."""
+"""Of a slider, at least."""
+_FINEST = 0.001
+"""rad or m of a slider's step, where its range is not a short one."""
 _SPEED = 1.0
 """rad/s or m/s at which a joint is sent somewhere, where its own limit is not lower."""
 _SOONEST = 0.2
@@ -36,14 +38,26 @@ def limits_of(joint: Joint) -> tuple[float, float]:
     return (low, high) if high > low else (low - reach, low + reach)
 
 
+def range_of(joint: Joint) -> tuple[float, float, float]:
+    """A slider's ends and step, rad or m, within the joint's range.
+
+    The page shows as many decimals as these have, and has room for a few.
+    """
+    low, high = limits_of(joint)
+    digits = -math.floor(math.log10(min(_FINEST, (high - low) / _STEPS)) + 1e-9)
+    scale = 10.0**digits
+    ends = math.ceil(low * scale - 1e-6) / scale, math.floor(high * scale + 1e-6) / scale
+    return *ends, 1 / scale
+
+
 def add_slider(gui: Any, joint: Joint, value: float, **options: Any) -> Any:
     """A slider over the joint's range."""
-    low, high = limits_of(joint)
+    low, high, step = range_of(joint)
     return gui.add_slider(
         joint.name,
         min=low,
         max=high,
-        step=(high - low) / _STEPS,
+        step=step,
         initial_value=min(high, max(low, value)),
         hint=f"{joint.type}, {'m' if joint.type == 'prismatic' else 'rad'}",
         **options,
@@ -140,7 +154,7 @@ class JointsPanel(Panel):
                     del group.sent[name]
                 value = min(slider.max, max(slider.min, value))
                 # What would not be seen to move is not sent to the browsers.
-                if abs(value - slider.value) > slider.step / 2:
+                if abs(value - slider.value) > (slider.max - slider.min) / (2 * _STEPS):
                     slider.value = value
 
     def _touch(self, group: _Group, name: str, event: Any, value: float) -> None:

@@ -83,12 +83,17 @@ def _lost(topic: TopicInfo) -> str:
     return f' <span class="cw-lost">{count} dropped</span>' if count else ""
 
 
+def _words(kind: str) -> str:
+    """A type that is only broken between its package and its name."""
+    return escape(kind).replace("/", "/<wbr>")
+
+
 def list_html(topics: Sequence[TopicInfo]) -> str:
     """A table of topics."""
     rows = "".join(
         f'<tr><td title="{escape(", ".join(topic.publishers) or "nobody")} → '
         f'{escape(", ".join(topic.readers) or "nobody")}">{escape(topic.name)}{_lost(topic)}</td>'
-        f'<td class="cw-dim">{escape(topic.type.replace("/msg/", "/"))}</td>'
+        f'<td class="cw-dim cw-words">{_words(topic.type.replace("/msg/", "/"))}</td>'
         f'<td class="cw-right">{f"{topic.rate:g} Hz" if topic.rate else ""}</td></tr>'
         for topic in topics
     )

@@ -165,7 +165,7 @@ def properties_html(placed: PlacedModel, pose: Pose) -> str:
     """A model's pose, mass and parts."""
     roll, pitch, yaw = (math.degrees(angle) for angle in pose.rpy)
     rows = {
-        "position": f"{pose.x:.3f}, {pose.y:.3f}, {pose.z:.3f} m",
-        "roll, pitch, yaw": f"{roll:.1f}, {pitch:.1f}, {yaw:.1f}°",
+        "position": f"{pose.x:z.3f}, {pose.y:z.3f}, {pose.z:z.3f} m",
+        "roll, pitch, yaw": f"{roll:z.1f}, {pitch:z.1f}, {yaw:z.1f}°",
     } | facts(placed.description)
     return f'<div class="cw" data-model="{escape(placed.name)}">{rows_html(rows)}</div>'
