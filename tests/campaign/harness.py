@@ -16,6 +16,9 @@ from tests.campaign.target import Target
 from tests.campaign.watching import Watched, watch
 
 _LONGEST_SLICE_S = 60.0
+_SHORTEST_SLICE_S = 0.3
+_STARTING_S = 1.0
+"""Wall time until a worker reads its first input, as long as none was measured."""
 
 
 @dataclass
@@ -89,11 +92,18 @@ class Campaign:
     def run(self, minutes: float) -> None:
         """Gives each target a slice of time in turn until the minutes are over."""
         end = time.monotonic() + minutes * 60
-        shares = sum(target.share for target in self.targets)
-        turn = min(_LONGEST_SLICE_S, minutes * 60 / shares)
+        turn = min(_LONGEST_SLICE_S, minutes * 60 / sum(each.share for each in self.targets))
+        starting = [_STARTING_S]
         while True:
-            for target in self.targets:
-                self._slice(target, turn * target.share)
+            for place, target in enumerate(self.targets):
+                rest = self.targets[place:]
+                begin = time.monotonic()
+                # Workers start in this time too: the rest is for inputs.
+                left = end - begin - len(rest) * sum(starting) / len(starting)
+                seconds = min(turn, left / sum(each.share for each in rest)) * target.share
+                seconds = max(seconds, _SHORTEST_SLICE_S)
+                self._slice(target, seconds)
+                starting.append(max(0.0, time.monotonic() - begin - seconds))
                 self.save()
                 print(f"{target.name:24} {self.counts[target.name].inputs:9} inputs", flush=True)
             if time.monotonic() + turn > end:

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import json
 from random import Random
+from types import SimpleNamespace
 
 import pytest
-from tests.campaign import mutating, registry
+from tests.campaign import harness, mutating, registry
 from tests.campaign.finding import Finding
-from tests.campaign.harness import Campaign, replay
+from tests.campaign.harness import Campaign, Counts, replay
 
 KINDS = {
     "exception": "exception",
@@ -44,6 +45,23 @@ def test_refused_inputs_are_no_findings_and_counts_go_on(tmp_path):
     second.run(0.01)
     assert second.counts[target.name].inputs > counted.inputs
     assert json.loads((tmp_path / "counts.json").read_text())["findings"] == []
+
+
+def test_starting_workers_is_part_of_the_time(tmp_path, monkeypatch):
+    now, slices = 0.0, []
+
+    def read(campaign, target, seconds):
+        nonlocal now
+        now += 1.2 + seconds
+        slices.append(seconds)
+        campaign.counts[target.name] = Counts()
+
+    monkeypatch.setattr(harness, "time", SimpleNamespace(monotonic=lambda: now))
+    monkeypatch.setattr(Campaign, "_slice", read)
+    Campaign(tmp_path, [registry.load("planted-none")] * 30).run(1.0)
+    assert len(slices) == 30
+    assert min(slices) > 0.5
+    assert now == pytest.approx(60.0, abs=1.0)
 
 
 def test_a_mended_finding_is_forgotten(tmp_path):

@@ -22,6 +22,8 @@ from random import Random
 COUNTERS = struct.Struct("<6Q")
 """Loaded (0 or 1), inputs begun, accepted, refused, with a finding, slowest in ms of CPU time."""
 _TROUBLE = (b"Traceback (most recent call last)", b"Cartwheel has a fault", b"Exception ignored in")
+_IMPORTING_S = 3.0
+"""Wall time of the first input that does not count."""
 _NEWEST = 4000
 """Inputs of the corpus that are kept."""
 
@@ -81,12 +83,14 @@ class _Worker:
             return
         inputs = self._inputs()
         first = next(inputs)
-        # Imports and seeds take what they take: the time is for inputs.
-        end = time.monotonic() + self._task["seconds"]
+        begin = time.monotonic()
+        end = 0.0
         for data in itertools.chain([first], inputs):
             new = self._one(data)
             if new and len(self._corpus) < _NEWEST:
                 self._keep(data)
+            # The first input imports what is needed: the time is for those after it.
+            end = end or min(time.monotonic(), begin + _IMPORTING_S) + self._task["seconds"]
             if time.monotonic() > end:
                 break
         self._coverage.save()
