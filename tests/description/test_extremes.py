@@ -13,7 +13,14 @@ from cartwheel.description import load_text
 from cartwheel.description.check import check, mending, structure
 from cartwheel.description.model import WorldDescription
 from cartwheel.description.node import Node
-from cartwheel.errors import CartwheelError, DescriptionError, DivergedError, Origin, WorldError
+from cartwheel.errors import (
+    CartwheelError,
+    DescriptionError,
+    DivergedError,
+    Origin,
+    PluginError,
+    WorldError,
+)
 from cartwheel.simulation.guard import Guard
 
 _VALUES = ("0", "-1", "1e308", "-1e308", "1e-308", "nan", "inf", "-inf", "1e9", "1e-9")
@@ -276,3 +283,64 @@ def test_rings_of_joints_are_found_once_each():
     parents = {"a": "b", "b": "c", "c": "b", "d": "e", "e": "root", "f": "f", "g": "a"}
     found = structure.rings({link: holder(parent) for link, parent in parents.items()})
     assert found == [["b", "c"], ["f"]]
+
+
+_SENSOR = """<robot name="r"><link name="a"/><gazebo reference="a">
+<sensor name="s" type="{}"><update_rate>{}</update_rate>
+{}
+<plugin name="p" filename="{}"/></sensor></gazebo></robot>"""
+_SCAN = """<ray><scan><horizontal>
+<samples>{}</samples>
+<resolution>{}</resolution><min_angle>-1</min_angle><max_angle>1</max_angle></horizontal>
+<vertical><samples>{}</samples></vertical></scan><range><min>0.1</min><max>9</max></range>
+<noise><type>gaussian</type>
+<stddev>{}</stddev></noise></ray>"""
+_CAMERA = """<camera><image><width>{}</width><height>{}</height></image>
+<clip><near>{}</near><far>{}</far></clip></camera>"""
+_TOO_MUCH = {
+    "no samples": ((0, 1, 1, 0), 4, "<samples> must be from 1 to 1,000,000, but is 0"),
+    "negative": ((-1, 1, 1, 0), 4, "<samples> must be from 1 to 1,000,000, but is -1"),
+    "samples": (("1e9", 1, 1, 0), 4, "<samples> must be from 1 to 1,000,000, but is 1e+09"),
+    "resolution": ((9, "1e308", 1, 0), 5, "<samples> times <resolution> must be at most 1,000,000"),
+    "rows": ((2000, 1, 2000, 0), 4, "at most 1,000,000 rays, but this one has 2000 x 2000"),
+    "noise": ((9, 1, 1, "1e308"), 8, '<stddev> of a noise must be a number from 0 to 1e+15'),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", _TOO_MUCH)
+def test_scans_beyond_their_bounds(case):
+    values, line, message = _TOO_MUCH[case]
+    text = _SENSOR.format("ray", 10, _SCAN.format(*values), "libgazebo_ros_laser.so")
+    with cw.World("empty") as world, pytest.raises(PluginError, match=re.escape(message)) as got:
+        world.spawn(load_text(text, file="r"))
+    assert str(got.value.origin) == f"r:{line}"
+
+
+@pytest.mark.parametrize("rate", ["1e-308", "1e300", "1e-9"])
+def test_a_rate_beyond_all_clocks(rate):
+    text = _SENSOR.format("ray", rate, _SCAN.format(9, 1, 1, 0.1), "libgazebo_ros_laser.so")
+    with cw.World("empty") as world:
+        world.spawn(load_text(text, file="r"))
+        (topic,) = (each.name for each in world.graph.topics() if "LaserScan" in each.type)
+        scans = world.mailbox(topic)
+        world.run(0.02)
+        assert scans.get() is not None
+        assert [each for each in world.diagnostics if each.details] == []
+
+
+@pytest.mark.parametrize(
+    ("values", "line", "message"),
+    [
+        ((1_000_000, 1_000_000, 0.1, 9), 3, "pixels, but this one has 1000000 x 1000000"),
+        (("1e308", 1, 0.1, 9), 3, "an image has from 1 x 1 to 33,177,600 pixels"),
+        ((-1, 1, 0.1, 9), 3, "an image has from 1 x 1 to 33,177,600 pixels"),
+        ((9, 9, "1e-308", 9), 4, "clip near must be at least 1e-09 m"),
+        ((9, 9, 0.1, "1e308"), 4, "far at most 1e+15 m"),
+        ((9, 9, 9, 0.1), 4, "clip near 9 must be below far 0.1"),
+    ],
+)
+def test_cameras_beyond_their_bounds(values, line, message):
+    text = _SENSOR.format("camera", 10, _CAMERA.format(*values), "libgazebo_ros_camera.so")
+    with pytest.raises(DescriptionError, match=re.escape(message)) as got:
+        load_text(text, file="r")
+    assert str(got.value.origin) == f"r:{line}"

@@ -114,7 +114,7 @@ def test_an_error_without_effect_is_told_with_its_line(make, error, message):
 def test_an_error_without_sense_leaves_its_sensor_out(make, wrong):
     (tag,) = wrong
     world = standing(make, magnetometer(noise(**wrong)))
-    assert any(f"<{tag}> of a noise makes no sense" in each for each in messages_of(world))
+    assert any(f"<{tag}> of a noise must be a number from" in each for each in messages_of(world))
 
 
 def test_sensors_of_one_name_on_two_links_have_errors_of_their_own(make):

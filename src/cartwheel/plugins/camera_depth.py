@@ -17,6 +17,7 @@ from cartwheel.plugins.camera_info import INFO
 from cartwheel.plugins.scan_messages import point_cloud2
 
 _MILLIMETRES = 1000.0
+_FURTHEST = float(np.finfo(np.float32).max)
 
 POINT = np.dtype(
     {
@@ -124,7 +125,9 @@ class Depths:
     def _told(
         self, depths: NDArray[np.float32], nearest: float, furthest: float
     ) -> NDArray[np.float32]:
-        near, far = depths <= nearest, depths >= furthest
+        # Limits beyond the depths' own type are those of the type.
+        near = depths <= max(-_FURTHEST, min(nearest, _FURTHEST))
+        far = depths >= max(-_FURTHEST, min(furthest, _FURTHEST))
         if self._options.beyond == "nan":
             # Where nothing is there is no depth, and infinitely far is not below infinity.
             return np.where(near | far, np.float32(np.nan), depths)

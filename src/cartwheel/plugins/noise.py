@@ -41,6 +41,8 @@ _FIELDS = {
     "precision": "precision",
 }
 """SDF's tags and what they are here."""
+_LARGEST = 1e15
+"""Variances are squares, which must stay in the range of numbers."""
 _SIGNED = ("mean", "bias_mean")
 
 
@@ -73,8 +75,14 @@ def read_noise(element: Element | None, report: Callable[[Diagnostic], None]) ->
             value = float(child.text) if child is not None else 0.0
         except ValueError:
             value = math.nan
-        if not math.isfinite(value) or (value < 0 and tag not in _SIGNED):
-            raise PluginError(f"<{tag}> of a noise makes no sense", origin=element.origin)
+        least = -_LARGEST if tag in _SIGNED else 0.0
+        if not least <= value <= _LARGEST:
+            assert child is not None
+            raise PluginError(
+                f"<{tag}> of a noise must be a number from {least:g} to {_LARGEST:g}, "
+                f'but is "{child.text.strip()}"',
+                origin=child.origin,
+            )
         values[field] = value
     noise = Noise(**values)
     idle = ""

@@ -14,7 +14,8 @@ from cartwheel.geometry import Array
 from cartwheel.plugins.noise import Noise, VectorNoise, read_noise
 from cartwheel.simulation import Part
 
-_MOST_RAYS = 4_000_000
+_MOST_RAYS = 1_000_000
+"""Of one scan; the densest real sensors have some 300,000. Each costs about 200 bytes."""
 _GPU_TYPES = {"gpu_ray", "gpu_lidar"}
 
 
@@ -93,8 +94,10 @@ def read_pattern(sensor: Sensor, report: Callable[[Diagnostic], None]) -> ScanPa
     vertical = _sweep(upright, report, samples=1) if upright is not None else _LEVEL
     if horizontal.count * vertical.count > _MOST_RAYS:
         raise PluginError(
-            f"a scan of {horizontal.count} x {vertical.count} rays is more than can be measured",
-            origin=across.origin,
+            f"a scan has at most {_MOST_RAYS:,} rays, but this one has "
+            f"{horizontal.count} x {vertical.count}",
+            origin=_place(across, "samples"),
+            hint="Lower <samples>.",
         )
     limits = ray.find("range")
     minimum = _number(limits, "min", 0.0)
@@ -119,8 +122,11 @@ def _sweep(element: Element, report: Callable[[Diagnostic], None], *, samples: i
     asked = _number(element, "samples", samples)
     resolution = _number(element, "resolution", 1.0)
     first, last = _number(element, "min_angle", 0.0), _number(element, "max_angle", 0.0)
-    if asked < 1:
-        raise PluginError(f"<samples> {asked:g} must be above 0", origin=_place(element, "samples"))
+    if not 1 <= asked <= _MOST_RAYS:
+        raise PluginError(
+            f"<samples> must be from 1 to {_MOST_RAYS:,}, but is {asked:g}",
+            origin=_place(element, "samples"),
+        )
     if asked != int(asked):
         # A quotient of angles, mostly.
         report(
@@ -136,6 +142,12 @@ def _sweep(element: Element, report: Callable[[Diagnostic], None], *, samples: i
             f"<resolution> {resolution:g} must be above 0",
             origin=_place(element, "resolution"),
             hint="It multiplies <samples>; 1 is one range a sample.",
+        )
+    if asked * resolution > _MOST_RAYS:
+        raise PluginError(
+            f"<samples> times <resolution> must be at most {_MOST_RAYS:,}, "
+            f"but is {asked * resolution:g}",
+            origin=_place(element, "resolution"),
         )
     if last < first:
         # As with Gazebo's rays.

@@ -11,6 +11,8 @@ _NEVER = 1 << 40
 """Steps."""
 _FINEST = 1_000_000
 """Of the denominators of rates."""
+SLOWEST = 1 / _FINEST
+"""Hz; tasks of lower rates run at this one."""
 _KEPT = 1 << 15
 """Steps of a cycle."""
 

@@ -22,7 +22,7 @@ from cartwheel.errors import (
 )
 from cartwheel.geometry import Array, Pose
 from cartwheel.simulation.attaching import AttachmentHandle, SurroundingsHandle
-from cartwheel.simulation.clock import NANOSECONDS, Task, always
+from cartwheel.simulation.clock import NANOSECONDS, SLOWEST, Task, always
 from cartwheel.simulation.contacts import read_contacts
 from cartwheel.simulation.engine import Engine
 from cartwheel.simulation.handles import (
@@ -394,7 +394,7 @@ class Part:
         """The mean time between the turns of a task of a rate in Hz; 0 is every step."""
         if rate <= 0:
             return self._engine.step_ns
-        return max(self._engine.step_ns, round(NANOSECONDS / rate))
+        return max(self._engine.step_ns, round(NANOSECONDS / max(rate, SLOWEST)))
 
     def random(self, name: str) -> np.random.Generator:
         """The noise of this moment, a sequence of its own for each named user.

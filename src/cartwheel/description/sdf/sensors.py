@@ -5,10 +5,16 @@ from __future__ import annotations
 import math
 
 from cartwheel.description.model import CameraIntrinsics, PluginTag, Sensor
+from cartwheel.description.numbers import LARGEST
 from cartwheel.description.sdf.context import read_pose
 from cartwheel.description.sdf.sensor_tags import mark_known
 from cartwheel.description.xml import Node, copied, to_element
 from cartwheel.geometry import Pose
+
+MOST_PIXELS = 7680 * 4320
+"""Of one camera's image: 8K. With colours and depths it takes 230 MB while it is drawn."""
+NEAREST = 1e-9
+"""m; OpenGL's numbers hold no nearer plane."""
 
 
 def read_plugin(node: Node) -> PluginTag:
@@ -74,12 +80,21 @@ def read_camera(node: Node) -> CameraIntrinsics:
     near = clip.number_at("near", default.near) if clip is not None else default.near
     far = clip.number_at("far", default.far) if clip is not None else default.far
     fov = node.number_at("horizontal_fov", default.horizontal_fov)
-    if width < 1 or height < 1 or width * height > 100_000_000:
+    if width < 1 or height < 1 or width * height > MOST_PIXELS:
         wrong = image.child("width" if width < 1 else "height") if image is not None else None
-        raise (wrong or node).fail(f"an image of {width} x {height} pixels is impossible")
-    if not 0 < near < far:
+        raise (wrong or node).fail(
+            f"an image has from 1 x 1 to {MOST_PIXELS:,} pixels, "
+            f"but this one has {width:.12g} x {height:.12g}"
+        )
+    if near < NEAREST or far > LARGEST:
+        wrong = clip.child("near" if near < NEAREST else "far") if clip is not None else None
+        raise (wrong or node).fail(
+            f"clip near must be at least {NEAREST:g} m and far at most {LARGEST:g} m, "
+            f"but they are {near:g} and {far:g}"
+        )
+    if not near < far:
         wrong = clip.child("near") if clip is not None else None
-        raise (wrong or node).fail(f"clip near {near} must be above 0 and below far {far}")
+        raise (wrong or node).fail(f"clip near {near:g} must be below far {far:g}")
     if not 0 < fov < 2 * math.pi:
         raise (node.child("horizontal_fov") or node).fail(
             f"horizontal_fov {fov} is no angle of view in radians",
