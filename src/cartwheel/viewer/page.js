@@ -70,26 +70,35 @@
   notice.className = "cw-offline-notice";
   notice.setAttribute("role", "alert");
   notice.innerHTML =
-    "<b>Connection lost.</b> What you see is the last state received. The simulation has ended or " +
-    "cannot be reached. If it has ended, start it again; this page connects by itself, or open " +
-    "the address that the simulation prints.";
+    "<b>Connection lost.</b> This page shows the last state that it received. The simulation has " +
+    "ended or cannot be reached. If it has ended, start it again. The page reconnects if the " +
+    "address is the same; otherwise open the new address.";
   document.body.appendChild(notice);
   let beat = null;
-  let heard = performance.now();
-  const silence = 10000; // ms
-  const watch = () => {
+  let drawn = performance.now();
+  let silent = 0; // ms
+  const longest = 10000; // ms
+  // Messages are read when a picture is drawn, which takes seconds where no GPU draws it. Only
+  // pictures without news count as silence, each of them for a second at most; a hidden page
+  // draws none.
+  const listen = () => {
+    const now = performance.now();
     const news = document.querySelector("[data-beat]")?.dataset.beat ?? null;
-    if (news !== beat || document.hidden) {
-      beat = news;
-      heard = performance.now();
-    }
+    silent = news === beat ? silent + Math.min(now - drawn, 1000) : 0;
+    beat = news;
+    drawn = now;
+    requestAnimationFrame(listen);
+  };
+  requestAnimationFrame(listen);
+  const watch = () => {
     const panel = document.querySelector(".cw");
     const frozen = panel?.closest('[style*="pointer-events: none"][style*="opacity: 0.5"]');
-    const lost = Boolean(frozen) || performance.now() - heard > silence;
+    const lost = Boolean(frozen) || silent > longest;
     if (root.classList.contains("cw-offline") && !lost) lighten();
     root.classList.toggle("cw-offline", lost);
+    // Notes stand below it.
+    root.style.setProperty("--cw-notice", `${notice.getBoundingClientRect().bottom}px`);
   };
-  document.addEventListener("visibilitychange", () => (heard = performance.now()));
   setInterval(watch, 500);
 
   // Shadows double the time of a picture where no GPU draws it.
