@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 from tests.bridges.test_foxglove import serving
-from websockets.exceptions import InvalidStatus
+from websockets.exceptions import ConnectionClosedOK, InvalidStatus
 from websockets.sync.client import connect
 
 from cartwheel.bridges.foxglove.bridge import APPS
@@ -48,3 +48,12 @@ def test_elsewhere_it_wants_the_token_in_its_address() -> None:
             assert caught.value.response.status_code == 403
         with pytest.raises(InvalidStatus):
             greeting(served.bridge.url, origin="http://evil.example")
+
+
+def test_the_end_of_a_run_says_farewell_through_the_gate() -> None:
+    with serving() as served:
+        link = connect(served.bridge.url, subprotocols=[PROTOCOL], open_timeout=60)
+        link.recv(timeout=60)
+    with pytest.raises(ConnectionClosedOK):
+        while True:
+            link.recv(timeout=60)

@@ -215,10 +215,11 @@ class FoxgloveBridge:
             publication.close()
         if self._log is not None:
             self._log.close()
+        if self._server is not None:
+            # First, so that its farewells still pass the gate.
+            self._server.stop()
         if self._gate is not None:
             self._gate.close()
-        if self._server is not None:
-            self._server.stop()
 
     def log(self, diagnostic: Diagnostic) -> None:
         """Says something on ``/rosout``; from any thread."""
