@@ -16,7 +16,7 @@ _SUFFIXES = (".xacro", ".urdf", ".sdf")
 _SEMANTICS = (".srdf", ".srdf.xacro")
 """MoveIt's, which begin as a robot does."""
 _SKIPPED = frozenset({"build", "devel", "install", "log", "node_modules", "__pycache__", "worlds"})
-_COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
+_COMMENT = re.compile(r"<!--.*?(?:-->|\Z)", re.DOTALL)
 _ROOT = re.compile(r"<(robot|sdf|gazebo)\b")
 _INCLUDE = re.compile(
     r"""<(?:xacro:)?include\b[^>]*?\bfilename\s*=\s*["']([^"']+)["']""", re.DOTALL

@@ -13,7 +13,7 @@ from pathlib import Path
 from cartwheel.description.regular import read_regular_text
 
 _COMMENT = re.compile(r"#[^\n]*")
-_INSTALL = re.compile(r"\binstall\s*\(\s*DIRECTORY\s+([^()]*)\)", re.IGNORECASE)
+_INSTALL = re.compile(r"\binstall\s*\(\s*DIRECTORY\s([^()]*)\)", re.IGNORECASE)
 _PROJECT = re.compile(r"\bproject\s*\(\s*([^\s()]+)", re.IGNORECASE)
 _MAX_LEVELS = 12
 _OPTIONS = frozenset({

@@ -10,10 +10,12 @@ import re
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 
+from cartwheel.description.regular import read_regular_text
+
 MAX_FILES = 300
 """Looked at; a description has some dozens."""
 _SHOWN = 8
-_COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
+_COMMENT = re.compile(r"<!--.*?(?:-->|\Z)", re.DOTALL)
 _NAMED = re.compile(r"(?:\$\(find(?:-pkg-share)?\s+|package://)([A-Za-z]\w*)\)?(/[^\s\"'<>]*)?")
 _INCLUDED = re.compile(r"""filename\s*=\s*["']([^"'$:]+\.xacro)["']""")
 
@@ -34,7 +36,7 @@ def also_missing(
     while waiting and len(seen) <= MAX_FILES:
         file = waiting.pop(0)
         try:
-            text = _COMMENT.sub("", file.read_text(encoding="utf-8", errors="replace"))
+            text = _COMMENT.sub("", read_regular_text(file))
         except OSError:
             continue
         included = [file.parent / path for path in _INCLUDED.findall(text)]

@@ -3,18 +3,23 @@
 from __future__ import annotations
 
 import difflib
+import itertools
 import math
 import re
 from collections.abc import Iterable
 
 from cartwheel.errors import DescriptionError, Origin
 
-_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\Z", re.ASCII)
+_NUMBER = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?\Z", re.ASCII)
 _INFINITE = re.compile(r"[+-]?inf(inity)?\Z", re.IGNORECASE)
 LARGEST = 1e15
 """Of places, sizes and directions; squares of what is larger leave the range of numbers."""
 FARTHEST_JOINT = 1e6
 """rad or m, of a joint's position at the start; the same bound as for commands while it runs."""
+_LONGEST_NAME = 200
+_MOST_NAMES = 2000
+"""Names, and their letters, among which the one that was meant is looked for: the time grows with
+their number, and with the square of their length."""
 _TRUE = frozenset({"true", "1", "yes", "on"})
 _FALSE = frozenset({"false", "0", "no", "off"})
 
@@ -96,6 +101,9 @@ def boolean(text: str, label: str, origin: Origin) -> bool:
 
 def likely(name: str, known: Iterable[str], cutoff: float = 0.7) -> str | None:
     """The one of `known` that a mistyped name likely means; letter case counts for nothing."""
+    if len(name) > _LONGEST_NAME:
+        return None
+    known = itertools.islice((each for each in known if len(each) <= _LONGEST_NAME), _MOST_NAMES)
     by_lower = {candidate.lower(): candidate for candidate in sorted(known, reverse=True)}
     close = difflib.get_close_matches(name.lower(), by_lower, n=1, cutoff=cutoff)
     return by_lower[close[0]] if close else None

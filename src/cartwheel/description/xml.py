@@ -26,7 +26,9 @@ MAX_BYTES = 64 * 1024 * 1024
 # What was matched stays matched: there would be two ways to part any comment from the next.
 _LATE_DECLARATION = re.compile(r"\A(?>\s+|<!--.*?-->)++<\?xml.*?\?>", re.DOTALL)
 _LATE_DECLARATION_BYTES = re.compile(_LATE_DECLARATION.pattern.encode(), re.DOTALL)
-_COMMENT = re.compile(r"(?s)<!--(.*?)-->|<!\[CDATA\[.*?\]\]>")
+# One without an end goes to the end of the text: otherwise each place where one begins would be
+# followed to there in vain.
+_COMMENT = re.compile(r"(?s)<!--(.*?)(-->|\Z)|<!\[CDATA\[.*?(?:\]\]>|\Z)")
 _COMMENT_BYTES = re.compile(_COMMENT.pattern.encode())
 MAX_DEPTH = 100
 """Deeper nesting is damage, and would end in Python's own recursion limit."""
@@ -208,13 +210,11 @@ def _plain_comments(text: str | bytes) -> str | bytes:
     """
     if isinstance(text, bytes):
         return _COMMENT_BYTES.sub(
-            lambda found: (
-                found[0] if found[1] is None else b"<!--" + found[1].replace(b"-", b" ") + b"-->"
-            ),
+            lambda found: b"<!--" + found[1].replace(b"-", b" ") + b"-->" if found[2] else found[0],
             text,
         )
     return _COMMENT.sub(
-        lambda found: found[0] if found[1] is None else "<!--" + found[1].replace("-", " ") + "-->",
+        lambda found: "<!--" + found[1].replace("-", " ") + "-->" if found[2] else found[0],
         text,
     )
 

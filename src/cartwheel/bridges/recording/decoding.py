@@ -20,8 +20,9 @@ _LONGEST = 1 << 20
 """Characters of a definition with all types that it needs."""
 _LONGEST_ARRAY = 10_000
 """Elements of a fixed array of texts or messages."""
-_NO_CODE = re.compile(r'"(?:[^"\\]|\\.)*"|//[^\n]*|/\*.*?\*/', re.DOTALL)
-"""In IDL: texts and comments."""
+_NO_CODE = re.compile(r'"(?:[^"\\]|\\(?:.|\Z))*(?:"|\Z)|//[^\n]*|/\*.*?(?:\*/|\Z)', re.DOTALL)
+"""In IDL: texts and comments. One without an end goes to the end of the text: otherwise each
+place where one begins would be followed to there in vain."""
 Decode = Callable[[bytes], Any]
 
 

@@ -9,9 +9,11 @@ from pathlib import Path
 from typing import Any
 
 from cartwheel.cli.console import paint, say, table
+from cartwheel.description import xml
 from cartwheel.description.check import RULES, Finding, PluginKnowledge, Report
 from cartwheel.description.check import check as check_description
 from cartwheel.description.model import PluginTag, Sensor
+from cartwheel.description.regular import read_regular_text
 from cartwheel.errors import DescriptionError, Diagnostic, PluginError
 
 SCHEMA = 1
@@ -183,7 +185,7 @@ def _excerpt(finding: Finding, styles: tuple[str, ...]) -> list[str]:
 
 def _lines_of(file: str) -> list[str]:
     try:
-        return Path(file).read_text(encoding="utf-8", errors="replace").splitlines()
+        return read_regular_text(Path(file), xml.MAX_BYTES).splitlines()
     except (OSError, ValueError):
         return []
 

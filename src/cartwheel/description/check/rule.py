@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 from cartwheel.description.check.finding import Finding, Remark
 from cartwheel.description.check.subject import Subject
 from cartwheel.errors import Severity
+
+MOST_FINDINGS = 200
+"""Of one rule. Each may search all names for the one that was meant."""
 
 Finder = Callable[[Subject], Iterable[Remark]]
 
@@ -22,7 +26,14 @@ class Rule:
     find: Finder
 
     def apply(self, subject: Subject) -> list[Finding]:
-        """What it finds."""
+        """What it finds, up to `MOST_FINDINGS` and one that says that there are more."""
+        remarks = list(itertools.islice(self.find(subject), MOST_FINDINGS + 1))
+        if len(remarks) > MOST_FINDINGS:
+            remarks[-1] = Remark(
+                message=f"there are more than {MOST_FINDINGS} findings of this rule",
+                origin=remarks[-1].origin,
+                hint="Mend these and check again.",
+            )
         return [
             Finding(
                 rule=self.name,
@@ -34,7 +45,7 @@ class Rule:
                 mark=remark.mark,
                 hint=remark.hint,
             )
-            for remark in self.find(subject)
+            for remark in remarks
         ]
 
 

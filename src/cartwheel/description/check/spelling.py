@@ -18,9 +18,12 @@ _SHORTEST = 4
 """Letters of a part that is enough to know the whole by."""
 _SHOWN = 4
 _LISTED = 12
+_LONGEST = 100
+"""Letters of a name that may be misspelt."""
+_MOST_COMPARED = 1000
 
 
-def meant(name: str, known: Iterable[str], *, parts: bool = True) -> str:
+def meant(name: str, known: Collection[str], *, parts: bool = True) -> str:
     """The one name that was meant; empty where none or several could be.
 
     A slip of the keyboard, another case or other separators, a prefix or suffix too many or too
@@ -31,9 +34,9 @@ def meant(name: str, known: Iterable[str], *, parts: bool = True) -> str:
         known: Those that exist.
         parts: Whether a prefix or suffix may be what is wrong.
     """
-    names = sorted(set(known) - {""})
-    if not name or name in names:
+    if not name or name in known:
         return ""
+    names = _comparable(name, known)
     plain = _plain(name)
     alike = [each for each in names if _plain(each) == plain]
     if alike:
@@ -57,13 +60,21 @@ def meant(name: str, known: Iterable[str], *, parts: bool = True) -> str:
 def nearest(name: str, known: Iterable[str]) -> str:
     """A sentence for where no name is surely meant: the nearest ones, or those that exist."""
     names = sorted(set(known) - {""})
-    close = difflib.get_close_matches(name, names, n=_SHOWN, cutoff=0.5)
+    close = difflib.get_close_matches(name, _comparable(name, known), n=_SHOWN, cutoff=0.5)
     shown = ", ".join(close or names[:_LISTED])
     if not names:
         return "There are none."
     if close:
         return f"The nearest {'are' if len(close) > 1 else 'is'} {shown}."
     return f"There are: {shown}{', …' if len(names) > _LISTED else ''}."
+
+
+def _comparable(name: str, known: Iterable[str]) -> list[str]:
+    """Names among which another is looked for; the time grows with their number and length."""
+    if len(name) > _LONGEST:
+        return []
+    near = {each for each in known if each and abs(len(each) - len(name)) <= _LONGEST}
+    return sorted(near)[:_MOST_COMPARED]
 
 
 def misspelt(

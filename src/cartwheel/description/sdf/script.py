@@ -5,11 +5,15 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 
 from cartwheel.description.model import Rgba
+from cartwheel.description.regular import read_regular_text
 
 MAX_BYTES = 4 * 1024 * 1024
+MAX_LINES = 2000
+"""Of one material."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,23 +36,32 @@ def find_script(name: str, places: list[Path]) -> Script | None:
     for folder in folders:
         files += sorted(file for file in folder.glob("*.material") if file.is_file())
     for file in files:
-        if file.stat().st_size > MAX_BYTES:
+        try:
+            lines, starts = _materials(file, file.stat().st_mtime_ns)
+        except OSError:
             continue
-        body = _body(file.read_text(errors="replace"), name)
-        if body is not None:
+        if name in starts:
+            begin = starts[name] + 1
+            body = list(_block(iter(lines[begin : begin + MAX_LINES])))
             nearby = [file.parent, file.parent.parent / "textures", *folders]
-            return _read(list(body), nearby)
+            return _read(body, nearby)
     return None
 
 
-def _body(text: str, name: str) -> list[list[str]] | None:
-    """The statements of ``material <name> { … }``."""
-    lines = iter(text.replace("{", "\n{\n").replace("}", "\n}\n").splitlines())
-    for line in lines:
+@lru_cache(maxsize=8)
+def _materials(file: Path, _changed: int) -> tuple[list[str], dict[str, int]]:
+    """A script's lines, and in which each ``material <name> { … }`` begins: the first counts.
+
+    It is read once for all that name it: a world may do so thousands of times.
+    """
+    text = read_regular_text(file, MAX_BYTES)
+    lines = text.replace("{", "\n{\n").replace("}", "\n}\n").splitlines()
+    starts: dict[str, int] = {}
+    for number, line in enumerate(lines):
         words = _words(line)
-        if len(words) >= 2 and words[0] == "material" and words[1].rstrip(":") == name:
-            return list(_block(lines))
-    return None
+        if len(words) >= 2 and words[0] == "material":
+            starts.setdefault(words[1].rstrip(":"), number)
+    return lines, starts
 
 
 def _block(lines: Iterator[str]) -> Iterator[list[str]]:

@@ -15,7 +15,7 @@ from cartwheel import yaml_text
 from cartwheel.description.packages import Packages
 from cartwheel.errors import CartwheelError, Origin, PluginError
 
-_CALL = re.compile(r"\$\(\s*([\w-]+)((?:\s+[^()]*)?)\)")
+_CALL = re.compile(r"\$\(\s*([\w-]+)((?:\s[^()]*)?)\)")
 
 
 def substitute(content: Any, path: Path, arguments: Mapping[str, str]) -> Any:

@@ -1,0 +1,100 @@
+"""Texts of strangers that would be searched for minutes: the time grows with their length alone."""
+
+import time
+
+import pytest
+
+from cartwheel.bridges.recording import decoding
+from cartwheel.corpus import finding
+from cartwheel.description import installed, load, load_text, missing, numbers, xml
+from cartwheel.description.check import check, spelling
+from cartwheel.errors import CartwheelError, suggestion
+from cartwheel.plugins.control.substitution import substitute
+
+MOST = 3.0
+"""s of CPU time. Each takes a minute and more where a search begins anew at each character."""
+
+
+@pytest.fixture(autouse=True)
+def soon():
+    start = time.thread_time()
+    yield
+    assert time.thread_time() - start < MOST
+
+
+def test_a_long_number():
+    digits = "1" * 100_000 + "x"
+    with pytest.raises(CartwheelError, match="number"):
+        load_text(
+            f'<robot name="r"><link name="l"><inertial><mass value="{digits}"/>'
+            '<inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link></robot>'
+        )
+
+
+@pytest.mark.parametrize("begin", ["<!--", "<![CDATA["])
+@pytest.mark.parametrize("kind", [str, str.encode])
+def test_comments_without_an_end(begin, kind):
+    with pytest.raises(CartwheelError):
+        xml.parse(kind("<robot>" + begin * 100_000))
+
+
+def test_a_comment_without_an_end_is_an_error():
+    with pytest.raises(CartwheelError, match="malformed"):
+        xml.parse("<robot><!-- a -- b </robot>")
+
+
+def test_comments_of_other_files(tmp_path):
+    for pattern in (finding._COMMENT, missing._COMMENT):
+        assert pattern.sub("", "a<!--" * 100_000) == "a"
+
+
+@pytest.mark.parametrize(("begin", "left"), [('"\\', ""), ("/*-", "")])
+def test_definitions_in_a_recording(begin, left):
+    assert decoding._NO_CODE.sub("", begin * 200_000) == left
+
+
+def test_spaces_in_a_parameter_file(tmp_path):
+    text = "$(find " + " " * 100_000
+    assert substitute({"a": text}, tmp_path / "a.yaml", {}) == {"a": text}
+
+
+def test_spaces_in_a_list_of_what_is_installed():
+    assert installed._INSTALL.search("install(DIRECTORY" + " " * 100_000) is None
+
+
+def test_long_names():
+    names = [f"{'ab' * 3000}{i}" for i in range(300)]
+    assert suggestion("ba" * 3000, names).startswith("There are")
+    assert numbers.likely("ba" * 3000, names) is None
+    assert spelling.meant("ba" * 3000, names) == ""
+
+
+def test_one_script_of_many_materials(tmp_path):
+    (tmp_path / "s.material").write_text(
+        "".join(f"material M{i}\n{{\n technique {{ pass {{ diffuse 1 0 0 1 }} }}\n}}\n"
+                for i in range(3000))
+    )  # fmt: skip
+    visual = (
+        '<visual name="v{}"><geometry><box><size>1 1 1</size></box></geometry><material><script>'
+        "<uri>s.material</uri><name>M2999</name></script></material></visual>"
+    )
+    file = tmp_path / "m.sdf"
+    file.write_text(
+        '<sdf version="1.6"><model name="m"><link name="l">'
+        + "".join(visual.format(i) for i in range(500))
+        + "</link></model></sdf>"
+    )
+    colours = {each.material.diffuse for each in load(file).links[0].visuals}
+    assert colours == {(1.0, 0.0, 0.0, 1.0)}
+
+
+def test_a_rule_stops_after_many_findings(tmp_path):
+    file = tmp_path / "r.urdf"
+    joints = "".join(
+        f'<joint name="j{i}" type="fixed"><parent link="no"/><child link="l"/></joint>'
+        for i in range(300)
+    )
+    file.write_text(f'<robot name="r"><link name="l"/>{joints}</robot>')
+    found = [each for each in check(file).findings if each.rule == "joint-link-unknown"]
+    assert len(found) <= 201
+    assert "more than 200" in "".join(each.message for each in found)
