@@ -114,7 +114,9 @@ class Desk:
         handles = self.page.server.get_clients()
         for number in sorted(clients - set(self._places)):
             if number in handles:
-                self._places[number] = self._welcome(Seat(handles[number]))
+                place = self._welcome(Seat(handles[number]))
+                self._places[number] = place
+                self.stage.seats[number] = place.seat
         if before != bool(self._places):
             for panel in self._panels:
                 (panel.watch if self._places else panel.leave)()
@@ -122,7 +124,6 @@ class Desk:
     def _welcome(self, seat: Seat) -> _Place:
         """Makes what belongs to a browser, as things are now."""
         stage = self.stage
-        stage.seats[seat.number] = seat
         look = Look(seat)
 
         def show() -> None:
@@ -144,8 +145,10 @@ class Desk:
 
     def _stop(self, number: int) -> None:
         """A browser does not answer any more: what it drives is stopped."""
-        if number in self._places:
-            self.panel(DrivePanel, number).leave()
+        place = self._places.get(number)
+        for panel in place.panels if place is not None else ():
+            if isinstance(panel, DrivePanel):  # a recording has none
+                panel.leave()
 
     def build(self) -> list[Panel]:
         """Makes what all browsers share."""
