@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import atexit
 import collections
 import contextlib
 import faulthandler
@@ -44,7 +45,8 @@ def main() -> None:
     os.chdir(room / "tmp")
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     _Worker(task, room, output).run()
-    # Threads that a target left behind hold nothing up.
+    # What targets opened is closed, and threads that they left behind hold nothing up.
+    atexit._run_exitfuncs()
     sys.stdout.flush()
     os._exit(0)
 
