@@ -4,6 +4,7 @@ BIN = $(VENV)/bin
 ARGS ?=
 FOLDER ?= robots
 MINUTES ?= 5
+WORKERS ?= 2
 export VENV
 
 .PHONY: run test campaign lint format bench corpus docs ros1 clean
@@ -12,9 +13,9 @@ run: ## the cart in the browser, with a post before its camera
 	@tools/setup.sh run
 	@$(BIN)/cartwheel run $(ARGS)
 
-test: ## all tests
+test: ## all tests, in WORKERS processes
 	@tools/setup.sh test
-	@$(BIN)/pytest -q $(ARGS)
+	@$(BIN)/pytest -q -n $(WORKERS) --dist loadfile $(ARGS)
 
 campaign: ## mutated inputs against all that reads files and sockets, for MINUTES
 	@tools/setup.sh test

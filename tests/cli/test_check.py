@@ -61,7 +61,7 @@ def test_notes_end_with_1_only_where_strict(checked):
 
 def test_what_cannot_be_read_ends_with_2(checked, program, tmp_path):
     checked("<robot", status=2)
-    checked('<gazebo version="1.0"><world name="w"/></gazebo>', status=2)
+    checked('<launch><node pkg="a" type="b" name="c"/></launch>', status=2)
     program("check", tmp_path / "nothing.urdf", status=2)
     program("check", status=2)
 

@@ -763,9 +763,9 @@ def test_a_second_collision_of_a_name_gets_another():
     (link,) = found.links
     assert [each.name for each in link.collisions] == ["c", "c_2", "c_1"]
     assert [each.name for each in link.visuals] == ["c"]
-    (told,) = [each for each in found.diagnostics if "the name of another" in each.message]
+    (told,) = [each for each in found.diagnostics if "the same name as another" in each.message]
     assert told.severity == "warning"
-    assert 'it is called "c_2" here' in told.message
+    assert 'it is renamed "c_2" here' in told.message
 
 
 def test_a_joint_to_a_missing_part_goes_with_it():
