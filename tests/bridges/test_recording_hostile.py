@@ -76,9 +76,9 @@ def test_chunks_that_all_overlap_are_refused_where_they_would_fill_memory(tmp_pa
     ("paths", "error"),
     [
         ("[.]", "neither .mcap nor .db3"),  # the folder itself, for ever
-        ("[a/..]", "not there"),
-        ("[/etc/passwd]", 'not there: "passwd"'),
-        ("[fifo]", "not there"),
+        ("[a/..]", "does not exist"),
+        ("[/etc/passwd]", 'does not exist: "passwd"'),
+        ("[fifo]", "does not exist"),
         ("5", "neither .mcap nor .db3"),
         ("{a: b}", "neither .mcap nor .db3"),
         ("&a [*a, *a]", "alias|neither"),

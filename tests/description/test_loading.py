@@ -85,7 +85,7 @@ def test_robot_or_world(folder):
         (b"<mujoco/>", "file:1: is a MuJoCo model"),
         (b"<COLLADA/>", "file:1: is a mesh"),
         (b"<html/>", "file:1: begins with <html>, which is no description"),
-        (b"<gazebo version='1.0'/>", "file:1: SDF version"),
+        (b"<gazebo version='1.0'/>", "file:1: there is neither a <model> nor a <world>"),
     ],
 )
 def test_other_files(folder, content, message):

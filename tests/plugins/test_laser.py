@@ -426,7 +426,7 @@ def test_many_rays_at_once_read_what_one_alone_reads(make):
         ({"most": "nan"}, "nan"),
         ({"noise": NOISE.format(mean=0, stddev=-1)}, "stddev"),
         ({"noise": "<noise><type>pink</type></noise>"}, "pink"),
-        ({"samples": 100_000_000}, "rays"),
+        ({"samples": 100_000_000}, "<samples>"),
     ],
 )
 def test_a_sensor_that_cannot_be_is_refused_with_its_place(make, wrong, said):

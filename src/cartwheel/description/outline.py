@@ -53,7 +53,7 @@ def solid(shape: Polyline) -> tuple[NDArray[np.float32], NDArray[np.int32]]:
             faces += [(start, start + i, start + i + 1) for i in range(1, len(piece) - 1)]
     edges = _edges(loops)
     parts = [part for edge in _split(edges) for part in itertools.pairwise(edge)]
-    starts, ends = np.array(parts).transpose(1, 0, 2)
+    starts, ends = np.array(parts, dtype=float).transpose(1, 0, 2)
     along = ends - starts
     size = np.ptp(np.array(edges).reshape(-1, 2), axis=0).max()
     across = np.column_stack([-along[:, 1], along[:, 0]])
