@@ -24,9 +24,14 @@ RED, BLUE = 0, 2
 @pytest.fixture(autouse=True, scope="module")
 def no_pyramid(shared_page, arena):
     """The camera's pyramid is blue, and has the post's red in it."""
-    shared_page.get_by_text("View", exact=True).click()
-    shared_page.get_by_label("Camera frustum").click()
-    shared_page.get_by_text("World", exact=True).click()
+    hide_frustum(shared_page)
+
+
+def hide_frustum(page):
+    """Uncovers what stands behind the camera's pyramid; each browser has its own toggles."""
+    page.get_by_text("View", exact=True).click()
+    page.get_by_label("Camera frustum").click()
+    page.get_by_text("World", exact=True).click()
 
 
 def colours(page):
@@ -79,6 +84,7 @@ def test_two_browsers_see_the_same(browser, arena, page):
     second = open_page(browser, arena)
     close_notes(page)
     close_notes(second)
+    hide_frustum(second)
     arena.ask(arena.simulation.pause)
     arena.ask(lambda: arena.simulation.set_pose("post", Pose((1.6, 0.4, 0.0))))
     for one in (page, second):
