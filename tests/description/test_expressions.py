@@ -185,7 +185,9 @@ BOMBS = [
 
 @pytest.mark.parametrize("expression", BOMBS, ids=lambda text: text[:40])
 def test_an_expression_cannot_make_much(expression):
-    with pytest.raises(DescriptionError, match=r"more than|wider than|no number above|nest|limit|parenthesis"):
+    with pytest.raises(
+        DescriptionError, match=r"more than|wider than|no number above|nest|limit|parenthesis"
+    ):
         value(expression)
 
 

@@ -122,7 +122,8 @@ SOUND = '<link name="sound"><pose>0 0 2 0 0 0</pose></link>'
         ),
         (
             '<link name="l"><inertial><mass>-2</mass></inertial></link>',
-            'the mass of link "l" must be above 0 and at most 1e+12 kg, but is -2: the link is left out.',
+            'the mass of link "l" must be above 0 and at most 1e+12 kg, but is -2: '
+            "the link is left out.",
         ),
         (
             '<frame name="f" attached_to="mas"/>',
