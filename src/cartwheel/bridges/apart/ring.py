@@ -131,13 +131,7 @@ def _memory(size: int) -> int:
             return file
 
 
-class RingWriter:
-    """The end that writes; for any thread.
-
-    Args:
-        files: The first of `RingFiles.pair`.
-    """
-
+class _End:
     def __init__(self, files: RingFiles) -> None:
         self._data = memoryview(mmap.mmap(files.memory, 0))
         os.close(files.memory)
@@ -145,6 +139,17 @@ class RingWriter:
         self._published = files.published
         self._freed = files.freed
         self._sock = socket.socket(fileno=files.sock)
+
+
+class RingWriter(_End):
+    """The end that writes; for any thread.
+
+    Args:
+        files: The first of `RingFiles.pair`.
+    """
+
+    def __init__(self, files: RingFiles) -> None:
+        super().__init__(files)
         self._lock = threading.Lock()
         self._room_comes = select.poll()
         self._room_comes.register(self._freed, select.POLLIN)
@@ -269,7 +274,7 @@ class RingWriter:
         return Put.TAKEN
 
 
-class RingReader:
+class RingReader(_End):
     """The end that reads, on a thread of its own.
 
     Args:
@@ -287,12 +292,7 @@ class RingReader:
         take: Callable[[int, int, bytes], None],
         on_fault: Callable[[Exception], None],
     ) -> None:
-        self._data = memoryview(mmap.mmap(files.memory, 0))
-        os.close(files.memory)
-        self._size = len(self._data)
-        self._published = files.published
-        self._freed = files.freed
-        self._sock = socket.socket(fileno=files.sock)
+        super().__init__(files)
         self._patient = patient
         self._take = take
         self._on_fault = on_fault
