@@ -2,11 +2,11 @@
 
 python -m tests.campaign.load --minutes 5
 
-It prints what it sees every `WINDOW` seconds, and its verdict as one line of JSON at the end. The
-exit status is 1 where a wire fell silent or did not deliver at its rate. How often a topic was
-published is read from the recording, which loses nothing; how far the simulation came in a window
-says how many messages a reader must have had in it. So the verdict does not depend on how fast the
-machine is.
+It prints what it sees in each window, and its verdict as one line of JSON at the end. The exit
+status is 1 where a wire fell silent or did not deliver at its rate. How often a topic was published
+is read from the recording, which loses nothing; how far the simulation came in a window says how
+many messages a reader must have had in it. So the verdict does not depend on how fast the machine
+is.
 """
 
 from __future__ import annotations
@@ -30,12 +30,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from tests.campaign.live import PROGRAM
+
 from benchmarks import wire_readers
 from cartwheel.control import ControlClient, running
 from cartwheel.errors import CartwheelError
 
-WINDOW = 20.0
-"""s of wall time in which messages are counted."""
 BUSY = 8
 """Processes that take what the processor has."""
 _START = 180.0
@@ -148,7 +148,7 @@ class Run:
         }
         self.process = subprocess.Popen(
             [
-                *("cartwheel", "run", "--headless", "--record", str(self.file)),
+                *(PROGRAM, "run", "--headless", "--record", str(self.file)),
                 *("--record-topics", "!*image_raw/*"),
                 *(word for wire in wires for word in options[wire]),
             ],
@@ -181,7 +181,7 @@ class Run:
         self.process.send_signal(signal.SIGINT)
         self.process.wait(_END)
         done = subprocess.run(
-            ["cartwheel", "info", "--json", str(self.file)],
+            [PROGRAM, "info", "--json", str(self.file)],
             stdout=subprocess.PIPE,
             check=True,
             text=True,
@@ -220,8 +220,8 @@ def faults_of(windows: list[Window], rates: dict[str, float]) -> list[str]:
     return found
 
 
-def measure(minutes: float, wires: list[str], busy: int) -> dict[str, Any]:
-    """Runs it; the verdict."""
+def measure(minutes: float, wires: list[str], busy: int, seconds: float) -> dict[str, Any]:
+    """Runs it with windows of some seconds; the verdict."""
     with contextlib.ExitStack() as stack:
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="load")))
         run = Run(folder, wires)
@@ -251,21 +251,21 @@ def measure(minutes: float, wires: list[str], busy: int) -> dict[str, Any]:
         end = time.monotonic() + 60 * minutes
         simulated = client.request("status")["time"]
         while not windows or time.monotonic() < end:
-            time.sleep(WINDOW)
+            time.sleep(seconds)
             now = client.request("status")["time"]
             counts = {wire: reader.counts() for wire, reader in readers.items()}
             windows.append(Window(simulated=now - simulated, counts=counts))
             simulated = now
             print(f"{windows[-1].simulated:.1f} s simulated: {counts}", file=sys.stderr)
-        seconds, recorded = run.recorded()
-        rates = {topic: recorded.get(topic, 0) / seconds for topic in TOPICS}
+        simulated, recorded = run.recorded()
+        rates = {topic: recorded.get(topic, 0) / simulated for topic in TOPICS}
         faults = faults_of(windows, rates)
         faults += [f"record: no messages of {topic}" for topic, rate in rates.items() if not rate]
         return {
             "ok": not faults,
             "faults": faults,
             "windows": len(windows),
-            "simulated": round(seconds, 1),
+            "simulated": round(simulated, 1),
             "rates": {topic: round(rate, 1) for topic, rate in rates.items()},
             "last": windows[-1].counts,
         }
@@ -277,13 +277,14 @@ def main() -> int:
     parser.add_argument("--minutes", type=float, default=5.0, help="wall time (default: 5)")
     parser.add_argument("--wires", default="ros1,ros2,foxglove", help="beside the recording")
     parser.add_argument("--busy", type=int, default=BUSY, help="processes (default: 8)")
+    parser.add_argument("--window", type=float, default=20.0, help="s of wall time (default: 20)")
     parser.add_argument("--read", nargs=2, help=argparse.SUPPRESS)
     given = parser.parse_args()
     if given.read:
         _count(*given.read)
         return 0
     try:
-        verdict = measure(given.minutes, given.wires.split(","), given.busy)
+        verdict = measure(given.minutes, given.wires.split(","), given.busy, given.window)
     except (OSError, CartwheelError, subprocess.SubprocessError) as error:
         verdict = {"ok": False, "faults": [f"{type(error).__name__}: {error}"]}
     print(json.dumps(verdict))
