@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import io
 import itertools
 import shutil
@@ -202,28 +203,37 @@ CREATE VIEW messages AS WITH RECURSIVE c(x) AS (VALUES(1) UNION ALL SELECT x + 1
 
 
 def _definition(data: bytes) -> None:
-    """A message definition of a recording, and a message of it."""
+    """A message definition of a recording, and two messages: all zeros, and as we write it."""
     from cartwheel.bridges.recording.decoding import decoder
+    from cartwheel.bridges.recording.encoding import codec
     from cartwheel.bridges.recording.reading import RecordedTopic
+    from cartwheel.errors import GraphError
+    from cartwheel.messages import from_dict
 
     number = next(_numbers)
     kind, _, text = data.decode(errors="replace").partition("\n")
+    is_idl = kind == "ros2idl"
     topic = RecordedTopic(
         name="/a",
-        type=f"shop{number}_msgs/msg/Gauge",
+        type=f"shop{number}/msg/Gauge" if is_idl else f"shop{number}_msgs/msg/Gauge",
         encoding="ros1" if kind == "ros1msg" else "cdr",
         schema=kind,
-        definition=text,
+        definition=text.replace("shop", f"shop{number}"),
     )
-    topic.definition = text.replace("shop", f"shop{number}")
-    if kind == "ros2idl":
-        topic.type = f"shop{number}/msg/Gauge"
-    decoder(topic)(b"\0\1\0\0" + bytes(64))
+    decode = decoder(topic)
+    with contextlib.suppress(GraphError):
+        decode(b"\0\1\0\0" + bytes(64))
+    ours = codec("ros1" if kind == "ros1msg" else "ros2")
+    try:
+        written = ours.encode(from_dict(topic.type, {}), 0)
+    except MemoryError:
+        return  # arrays of numbers may be longer than what is allowed here
+    decode(written)
 
 
 _DEFINITIONS = [
     b"ros2msg\nuint8 A=1\nfloat64 level 2.5\nstring<=5 name 'x'\nint32[] a [1, 2]\nbool[<=3] b\n"
-    b"Part[2] parts\n" + _RULE + b"MSG: shop_msgs/Part\nwstring w\nbyte[4] raw\n",
+    b"Part[2] parts\n" + _RULE + b"MSG: shop_msgs/Part\nstring w\nbyte[4] raw\n",
     b"ros1msg\nHeader header\ntime stamp\nduration d\nstring S=a b # c\nchar c\n"
     + _RULE
     + b"MSG: std_msgs/Header\nuint32 seq\ntime stamp\nstring frame_id\n",

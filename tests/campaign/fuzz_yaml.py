@@ -12,6 +12,39 @@ from tests.campaign.target import Target
 from cartwheel.errors import CartwheelError
 
 _ROOT = Path(__file__).parents[2]
+_ROS1 = b"""cart:
+  joint_state_controller:
+    type: joint_state_controller/JointStateController
+    publish_rate: 50
+  drive:
+    type: "diff_drive_controller/DiffDriveController"
+    left_wheel: ['left_wheel', $(arg prefix)left]
+    right_wheel: right_wheel
+    pose_covariance_diagonal: [0.001, 0.001, 0.001, 0.001, 0.001, 0.03]
+    linear: {x: {has_velocity_limits: true, max_velocity: 1.0e+0, min_velocity: -0.5}}
+  gazebo_ros_control/pid_gains:
+    left_wheel: {p: 10.0, i: 0.1, d: 1}
+  arm: &arm
+    type: effort_controllers/JointTrajectoryController
+    joints: [shoulder, elbow]
+    gains: {shoulder: {p: 100, d: 1, i: 1, i_clamp: 1}}
+  hand:
+    <<: *arm
+    joints: [finger]
+"""
+_ROS2 = b"""/ns:
+  controller_manager:
+    ros__parameters:
+      update_rate: 100  # Hz
+      drive:
+        type: diff_drive_controller/DiffDriveController
+/**/drive:
+  ros__parameters:
+    left_wheel_names: ["left"]
+    right_wheel_names: ["right"]
+    wheel_separation: .4
+    use_stamped_vel: !!bool "false"
+"""
 _BOMB = b"a: &a [x, x]\nb: &b [*a, *a]\nc: &c [*b, *b]\nd: &d {*c : *c, e: !!int '5'}\n"
 _TAGS = b"a: !degrees 5\nb: !!python/object/apply:os.getcwd []\nc: 2001-01-01\n<<: {d: 1}\n"
 _BRIDGE = b"""- ros_topic_name: "/scan"
@@ -65,7 +98,7 @@ def _bridge(path: Path) -> None:
 TARGETS = (
     Target(
         name="controllers",
-        seeds=lambda: [*_files(), _BOMB, _TAGS],
+        seeds=lambda: [*_files(), _ROS1, _ROS2, _BOMB, _TAGS],
         run_one=_reader(_controllers),
         allowed=(CartwheelError,),
         mutate=mutating.text,

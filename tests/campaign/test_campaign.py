@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 from random import Random
 from types import SimpleNamespace
@@ -82,6 +83,35 @@ def test_mutations_follow_from_the_seed(mutate):
     assert len(set(made[0])) > 100
 
 
-def test_every_target_reads_its_seeds():
+def test_every_target_has_seeds():
     for name in registry.names():
         assert registry.load(name).seeds(), name
+
+
+IN_A_RUN = ("live", "kills", "worlds-in-use")
+
+
+@pytest.mark.parametrize("name", [name for name in registry.names() if name not in IN_A_RUN])
+def test_a_target_accepts_what_is_like_its_seeds(name, tmp_path, monkeypatch):
+    """Where nothing is accepted, only what refuses is tried."""
+    monkeypatch.chdir(tmp_path)
+    target = registry.load(name)
+    seeds = target.seeds()
+    accepted = 0
+    for seed in seeds:
+        with contextlib.suppress(*target.allowed):
+            target.run_one(seed)
+            accepted += 1
+    assert accepted >= len(seeds) / 2
+
+
+def test_a_good_part_of_mutated_definitions_is_accepted(tmp_path):
+    """An input that is refused by what reads the message says nothing of the definition."""
+    target = registry.load("definitions")
+    seeds = target.seeds()
+    accepted = 0
+    for number in range(100):
+        with contextlib.suppress(*target.allowed):
+            target.run_one(target.mutate(seeds[number % len(seeds)], seeds, Random(number)))
+            accepted += 1
+    assert accepted > 15

@@ -20,6 +20,8 @@ _LONGEST = 1 << 20
 """Characters of a definition with all types that it needs."""
 _LONGEST_ARRAY = 10_000
 """Elements of a fixed array of texts or messages."""
+_MOST_NUMBERS = 1 << 30
+"""Elements of a fixed array of numbers."""
 _NO_CODE = re.compile(r'"(?:[^"\\]|\\(?:.|\Z))*(?:"|\Z)|//[^\n]*|/\*.*?(?:\*/|\Z)', re.DOTALL)
 """In IDL: texts and comments. One without an end goes to the end of the text: otherwise each
 place where one begins would be followed to there in vain."""
@@ -131,15 +133,16 @@ def _check_names(topic: RecordedTopic, name: str, fields: Any) -> None:
 
 
 def _check_arrays(topic: RecordedTopic, name: str, fields: Any) -> None:
-    """Refuses long fixed arrays of texts and messages: rosbags makes a line of code of each."""
+    """Refuses long fixed arrays: rosbags makes a line of code of each text and message in one."""
     for field, (kind, inner) in fields:
         if kind != Nodetype.ARRAY:
             continue
         (element, about), size = inner
-        if size > _LONGEST_ARRAY and (element != Nodetype.BASE or "string" in about[0]):
+        is_plain = element == Nodetype.BASE and "string" not in about[0]
+        most = _MOST_NUMBERS if is_plain else _LONGEST_ARRAY
+        if not 0 <= size <= most:
             raise RecordingError(
-                f"{topic.name}: {name}.{field} has {size} elements,"
-                f" at most {_LONGEST_ARRAY} are read"
+                f"{topic.name}: {name}.{field} has {size} elements, 0 to {most} are read"
             )
 
 
