@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import difflib
+import threading
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any, Literal
+
+from cartwheel.budget import Budget
 
 Severity = Literal["info", "warning", "error"]
 
@@ -154,21 +157,44 @@ def fault(message: str, error: BaseException, origin: Origin | None = None) -> D
 
 
 class Once:
-    """Says of texts whether they are told for the first time.
+    """Chooses which warnings are shown: each text once, and different ones at a bounded rate.
+
+    Texts may hold names that a stranger chose, so their number is bounded, but a warning that
+    comes after a flood is still shown. Those left out are counted. From any thread.
 
     Args:
-        most: Texts after which no other one counts as new: they may name whoever comes.
+        most: Different texts at once; after these, one every 10 s.
     """
 
-    def __init__(self, most: int) -> None:
-        self._most = most
-        self._told: set[str] = set()
+    PAUSE = 10.0
+    """s between two warnings in the long run."""
 
-    def __call__(self, text: str) -> bool:
-        if text in self._told or len(self._told) >= self._most:
-            return False
-        self._told.add(text)
-        return True
+    def __init__(self, most: int) -> None:
+        self._budget = Budget(most, 1 / self.PAUSE)
+        self._most = most
+        self._shown: dict[int, None] = {}
+        """Hashes of the latest texts, since a text may be long."""
+        self._left_out = 0
+        self._lock = threading.Lock()
+
+    def __call__(self, text: str) -> str | None:
+        """The text to show, with the number of those left out; None if it is not shown."""
+        with self._lock:
+            key = hash(text)
+            if key in self._shown:
+                return None
+            if not self._budget.take():
+                self._left_out += 1
+                return None
+            self._shown[key] = None
+            if len(self._shown) > self._most:
+                del self._shown[next(iter(self._shown))]
+            elif len(self._shown) == self._most:
+                return f"{text} (from now on at most one warning every {self.PAUSE:g} s is shown)"
+            if not self._left_out:
+                return text
+            left_out, self._left_out = self._left_out, 0
+            return f"{text} (warnings that are not shown: {left_out})"
 
 
 def likely(name: str, existing: Iterable[str], *, cutoff: float = 0.75) -> str:

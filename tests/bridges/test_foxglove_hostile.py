@@ -121,3 +121,127 @@ def test_parameters_of_many_names_are_read_one_by_one(served: Served, reader: Re
     }  # fmt: skip
     assert "/" not in asked
     reader.reads_on()
+
+
+def send_channels(link: ClientConnection, first: int, count: int, schema: str = "") -> None:
+    channels = [
+        {"id": number, "topic": f"/t{number}", "encoding": "json",
+         "schemaName": "std_msgs/msg/String", "schema": schema}
+        for number in range(first, first + count)
+    ]  # fmt: skip
+    link.send(json.dumps({"op": "advertise", "channels": channels}))
+
+
+def known_channels(served: Served) -> int:
+    return len(served.bridge._incoming._channels)
+
+
+def answered(link: ClientConnection) -> None:
+    """All that a client sent before is done."""
+    link.send(json.dumps({"op": "getParameters", "parameterNames": ["/x"], "id": "answered"}))
+    for data in link:
+        if isinstance(data, str) and json.loads(data).get("id") == "answered":
+            return
+
+
+def warnings(served: Served, text: str) -> list[str]:
+    return [one.message for one in served.reports if text in one.message]
+
+
+def test_a_client_advertises_a_bounded_number_of_channels(served: Served, reader: Reader) -> None:
+    with connected(served) as other:
+        for first in range(0, 5000, 100):
+            send_channels(other, first, 100)
+        answered(other)
+        assert known_channels(served) == 1000
+        # Those that it gives up make room for others.
+        other.send(json.dumps({"op": "unadvertise", "channelIds": list(range(500))}))
+        send_channels(other, 10_000, 100)
+        answered(other)
+        assert known_channels(served) == 600
+        assert reader.statuses >= 1
+    assert len(warnings(served, "at most 1000 channels")) == 1
+    reader.wait(lambda: not known_channels(served), "the end of its channels")
+    with connected(served) as other:
+        send_channels(other, 0, 1000)
+        answered(other)
+        assert known_channels(served) == 1000
+    reader.reads_on()
+
+
+def test_channels_of_all_clients_are_bounded_by_number_and_text(
+    served: Served, reader: Reader
+) -> None:
+    links = [connected(served) for _ in range(12)]
+    for link in links:
+        send_channels(link, 0, 1000)
+        answered(link)
+    assert known_channels(served) == 10_000
+    assert len(warnings(served, "all clients together have at most 10000 channels")) == 1
+    for link in links:
+        link.close()
+    reader.wait(lambda: not known_channels(served), "the end of their channels")
+    with connected(served) as other:
+        for number in range(20):
+            send_channels(other, number, 1, "x" * 100_000)
+        answered(other)
+        assert known_channels(served) == 10
+        assert len(warnings(served, "1 MiB of text")) == 1
+
+
+def test_a_text_that_is_not_json_or_too_large_reaches_no_server(
+    served: Served, reader: Reader
+) -> None:
+    with connected(served) as other:
+        for text in ("garbage", '{"op": "advertise", "n": ' + "9" * 5000 + "}", "[" * 100_000):
+            other.send(text)
+        answered(other)
+        assert warnings(served, "not JSON")
+        # In fragments, and with one of another kind between them.
+        parts = json.dumps({"op": "advertise", "channels": [
+            {"id": 7, "topic": "/t", "encoding": "json", "schemaName": "std_msgs/msg/String"},
+        ]})  # fmt: skip
+        other.send(iter([parts[:10], "", parts[10:50], parts[50:]]))
+        other.ping()
+        answered(other)
+        assert known_channels(served) == 1
+        with pytest.raises(ConnectionClosed):
+            other.send("x" * (1 << 21))
+            for _ in other:
+                pass
+    with connected(served) as other, pytest.raises(ConnectionClosed):
+        other.send(b"\x01" * (17 << 20))
+        for _ in other:
+            pass
+        other.ping().wait(PATIENCE)
+    reader.reads_on()
+
+
+def test_clients_set_a_bounded_number_of_parameters(served: Served, reader: Reader) -> None:
+    with connected(served) as other:
+        for first in range(0, 3000, 500):
+            values = [{"name": f"/n/p{first + n}", "value": n} for n in range(500)]
+            other.send(json.dumps({"op": "setParameters", "parameters": values}))
+        large = [{"name": "/large", "value": "x" * 70_000}, {"name": "/" + "n" * 300, "value": 1}]
+        other.send(json.dumps({"op": "setParameters", "parameters": large}))
+        # One that is known may change.
+        change = [{"name": "/n/p0", "value": 7}]
+        other.send(json.dumps({"op": "setParameters", "parameters": change}))
+        answered(other)
+    found = served.graph.parameters.get("/")
+    assert len(found["n"]) == 1000
+    assert found["n"]["p0"] == 7
+    assert not {"large", "n" * 300} & set(found)
+    assert len(warnings(served, "at most 1000 parameters")) == 1
+    assert len(warnings(served, "at most 64 KiB")) == 1
+    reader.reads_on()
+
+
+def test_clients_watch_a_bounded_number_of_parameters(served: Served, reader: Reader) -> None:
+    with connected(served) as other:
+        for first in range(0, 3000, 500):
+            names = [f"/w/p{first + number}" for number in range(500)]
+            other.send(json.dumps({"op": "subscribeParameterUpdates", "parameterNames": names}))
+        answered(other)
+    assert len(warnings(served, "at most 1000 watched parameters")) == 1
+    reader.reads_on()

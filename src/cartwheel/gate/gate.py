@@ -9,11 +9,13 @@ import threading
 from collections.abc import Callable
 from concurrent.futures import Future
 from http import HTTPStatus
+from typing import Protocol
 
 import h11
 
 from cartwheel.errors import Once
 from cartwheel.gate.access import Access, Refusal
+from cartwheel.gate.frames import FrameError, Frames, Room
 from cartwheel.gate.relay import relay
 from cartwheel.gate.request import HEAD_SIZE, Request, RequestError, next_event, read_request
 
@@ -51,6 +53,16 @@ _KEEP_ALIVE = {"TCP_KEEPIDLE": 60, "TCP_KEEPINTVL": 20, "TCP_KEEPCNT": 3}
 Refused = Callable[[str], None]
 
 
+class Client(Protocol):
+    """One client of a server, for as long as it is connected."""
+
+    def passes(self, text: bytes) -> bool:
+        """Whether the server gets a text that it sent; on the gate's thread."""
+
+    def end(self) -> None:
+        """It has gone; on the gate's thread."""
+
+
 class Gate:
     """Hands on what `access` lets through to the server behind.
 
@@ -63,6 +75,7 @@ class Gate:
         server: Address of the server behind.
         apps: Origins of programs that may connect beside the server's own pages.
         refused: Takes a line about each origin that is refused; on the gate's thread.
+        client: Makes what judges the texts of a new client; None lets all texts pass.
     """
 
     def __init__(
@@ -73,13 +86,16 @@ class Gate:
         *,
         apps: tuple[str, ...] = (),
         refused: Refused = lambda _: None,
+        client: Callable[[], Client] | None = None,
     ) -> None:
         self._listener = listener
         self._access = access
         self._server = server
         self._apps = apps
         self._refused = refused
-        self._is_new = Once(_SHOWN)
+        self._client = client
+        self._room = Room()
+        self._once = Once(_SHOWN)
         self._cookie = f"cartwheel-{listener.getsockname()[1]}"
         self._waiting: dict[asyncio.Task[None], None] = {}
         self._admitted = 0
@@ -175,7 +191,7 @@ class Gate:
         if found is not None and found.origin is not None:
             # A stranger's text: it may hold anything, and be as long as a head.
             origin = ascii(found.origin)[1:-1][:_SHOWN_LENGTH]
-            if self._is_new(origin):
+            if self._once(origin) is not None:
                 self._refused(origin)
         return found
 
@@ -194,13 +210,36 @@ class Gate:
             port = server.getsockname()[1]
             self._peers[port] = f"{address[0]}:{address[1]}"
             try:
-                await _exchange(sock, server, request)
+                await self._exchange(sock, server, request)
             finally:
                 del self._peers[port]
 
+    async def _exchange(self, sock: socket.socket, server: socket.socket, request: Request) -> None:
+        begun = await _begin(sock, server, request)
+        if begun is None:
+            return
+        if self._client is None:
+            await asyncio.get_running_loop().sock_sendall(server, begun)
+            await relay(sock, server)
+            return
+        client = self._client()
+        frames = Frames(client.passes, self._room)
+        try:
+            with contextlib.suppress(FrameError):
+                passed = frames.feed(memoryview(begun))
+                await asyncio.get_running_loop().sock_sendall(server, passed)
+                await relay(sock, server, frames)
+        finally:
+            frames.close()
+            client.end()
 
-async def _exchange(sock: socket.socket, server: socket.socket, request: Request) -> None:
-    """Hands on a request, and its answer; behind a handshake all that follows."""
+
+async def _begin(sock: socket.socket, server: socket.socket, request: Request) -> bytes | None:
+    """Hands on a request and its answer.
+
+    Returns:
+        What the client sent behind a websocket's handshake; None after any other answer.
+    """
     loop = asyncio.get_running_loop()
     inner = h11.Connection(h11.CLIENT, max_incomplete_event_size=HEAD_SIZE)
     async with asyncio.timeout(_HEAD_SECONDS):
@@ -212,11 +251,9 @@ async def _exchange(sock: socket.socket, server: socket.socket, request: Request
         headers = [pair for pair in answer.headers if pair[0].startswith(_WEBSOCKET)]
         switched = h11.InformationalResponse(status_code=101, headers=headers, reason=answer.reason)
         await _send(request, sock, switched, inner.trailing_data[0])
-        await loop.sock_sendall(server, request.connection.trailing_data[0])
-        await relay(sock, server)
-        return
+        return request.connection.trailing_data[0]
     if not isinstance(answer, h11.Response):
-        return
+        return None
     headers = [pair for pair in answer.headers if pair[0] in _CONTENT]
     headers += _protected(request.asked.host)
     kept = h11.Response(status_code=answer.status_code, headers=headers, reason=answer.reason)
@@ -224,6 +261,7 @@ async def _exchange(sock: socket.socket, server: socket.socket, request: Request
     while isinstance(event := await next_event(inner, server), h11.Data):
         await _send(request, sock, event)
     await _send(request, sock, h11.EndOfMessage())
+    return None
 
 
 async def _send(request: Request, sock: socket.socket, event: h11.Event, more: bytes = b"") -> None:

@@ -6,15 +6,23 @@ import asyncio
 import contextlib
 import socket
 
+from cartwheel.gate.frames import FrameError, Frames
+
 CHUNK = 1 << 18
 """Bytes that are held for each direction, and no more: a slow reader holds up the sender."""
 _LINGER = 10.0
 """s that one direction may go on once the other has ended."""
 
 
-async def relay(one: socket.socket, other: socket.socket) -> None:
-    """Copies until both directions have ended, or one breaks."""
-    pipes = [_Pipe(one, other), _Pipe(other, one)]
+async def relay(one: socket.socket, other: socket.socket, frames: Frames | None = None) -> None:
+    """Copies until both directions have ended, or one breaks.
+
+    Args:
+        one: Connection to a client.
+        other: Connection to a server.
+        frames: Looks at what the client sends; an error of it ends both directions.
+    """
+    pipes = [_Pipe(one, other, frames), _Pipe(other, one)]
     ends = [pipe.ended for pipe in pipes]
     try:
         done, _ = await asyncio.wait(ends, return_when=asyncio.FIRST_COMPLETED)
@@ -31,15 +39,19 @@ class _Pipe:
     Args:
         source: Read from; neither blocks.
         target: Written to.
+        frames: Chooses what is written.
     """
 
-    def __init__(self, source: socket.socket, target: socket.socket) -> None:
+    def __init__(
+        self, source: socket.socket, target: socket.socket, frames: Frames | None = None
+    ) -> None:
         self._loop = asyncio.get_running_loop()
         self._source = source
         self._target = target
         self._chunk = bytearray(CHUNK)
         self._rest = memoryview(b"")
-        self.ended: asyncio.Future[OSError | None] = self._loop.create_future()
+        self._frames = frames
+        self.ended: asyncio.Future[Exception | None] = self._loop.create_future()
         """The error with which it broke, where it did."""
         self._loop.add_reader(source, self._read)
 
@@ -61,6 +73,12 @@ class _Pipe:
             self._end(None)
             return
         self._rest = memoryview(self._chunk)[:size]
+        if self._frames is not None:
+            try:
+                self._rest = memoryview(self._frames.feed(self._rest))
+            except FrameError as error:
+                self._end(error)
+                return
         self._write()
         if self._rest and not self.ended.done():
             self._loop.remove_reader(self._source)
@@ -81,7 +99,7 @@ class _Pipe:
         except OSError as error:
             self._end(error)
 
-    def _end(self, error: OSError | None) -> None:
+    def _end(self, error: Exception | None) -> None:
         self._loop.remove_reader(self._source)
         self._loop.remove_writer(self._target)
         if error is None:

@@ -87,11 +87,11 @@ class Teller:
 
     def __init__(self, simulation: Simulation) -> None:
         self._simulation = simulation
-        self._is_new = Once(_REMEMBERED)
+        self._once = Once(_REMEMBERED)
 
     def __call__(self, text: str) -> None:
-        if self._is_new(text):
-            self._simulation.report(Diagnostic(severity="warning", message=text))
+        if shown := self._once(text):
+            self._simulation.report(Diagnostic(severity="warning", message=shown))
 
 
 def vector(value: Any, name: str, *, most: float = FARTHEST) -> Vec3:

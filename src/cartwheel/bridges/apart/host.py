@@ -64,7 +64,7 @@ class GraphHost:
         self._echo = echo
         self._title = title
         self._report = report
-        self._is_new = Once(_TOLD)
+        self._once = Once(_TOLD)
         self._losses = Losses(ring, self.later, self._warn)
         self._relays: dict[int, _Relay] = {}
         self._arrivals = Arrivals(graph, self._warn)
@@ -187,8 +187,8 @@ class GraphHost:
 
     def _warn(self, text: str) -> None:
         """Once for each text."""
-        if self._is_new(text):
-            self._report(Diagnostic(severity="warning", message=f"{self._title}: {text}"))
+        if shown := self._once(text):
+            self._report(Diagnostic(severity="warning", message=f"{self._title}: {shown}"))
 
 
 class _Relay:

@@ -46,7 +46,7 @@ class BridgeProcess:
         self._link: Link | None = None
         self._host: GraphHost | None = None
         self._report: Report = lambda _: None
-        self._is_new = Once(_TOLD)
+        self._once = Once(_TOLD)
         self._closing = False
         self.on_lost: Callable[[], None] = lambda: None
         """Told when the process has ended by itself; on another thread."""
@@ -180,5 +180,5 @@ class BridgeProcess:
 
     def _fault(self, error: Exception) -> None:
         text = f"{self.title}: {one_line(error)}"
-        if self._is_new(text):
-            self._report(Diagnostic(severity="warning", message=text))
+        if shown := self._once(text):
+            self._report(Diagnostic(severity="warning", message=shown))

@@ -12,6 +12,7 @@ from collections.abc import Callable
 from typing import Any
 
 from cartwheel.bridges.bridged import BridgedGraph, BridgedSubscription
+from cartwheel.bridges.foxglove.clients import Clients
 from cartwheel.bridges.foxglove.controls import Controls
 from cartwheel.bridges.foxglove.incoming import ENCODINGS, Incoming, offered
 from cartwheel.bridges.foxglove.listener import Listener, playback_state
@@ -20,6 +21,7 @@ from cartwheel.bridges.foxglove.log import Log
 from cartwheel.bridges.foxglove.publication import READER, Publication
 from cartwheel.bridges.foxglove.values import PAUSED, SPEED, Values
 from cartwheel.bridges.mirror import offered_by_others
+from cartwheel.budget import Budget
 from cartwheel.errors import CartwheelError, Diagnostic, Once, one_line
 from cartwheel.gate.access import Access, refused_page
 from cartwheel.gate.gate import Gate
@@ -108,8 +110,8 @@ class FoxgloveBridge:
         self._surveying = False
         self._surveyed = 0.0
         """When the graph was looked at last; monotonic, in s."""
-        self._is_new = Once(_TOLD)
-        self._statuses = _Budget(_STATUSES, _STATUS_RATE)
+        self._once = Once(_TOLD)
+        self._statuses = Budget(_STATUSES, _STATUS_RATE)
         self._told_ns = -1
         self._fine_due = 0.0
         self._log: Log | None = None
@@ -195,6 +197,7 @@ class FoxgloveBridge:
             (hidden, int(self._server.port)),
             apps=APPS,
             refused=lambda origin: self._report(refused_page("the Foxglove server", origin)),
+            client=Clients(self._warn).join,
         )
         self._gate.start()
 
@@ -404,38 +407,14 @@ class FoxgloveBridge:
 
     def _warn(self, text: str) -> None:
         """Once for each text, to the user and, not too often, to clients."""
-        if not self._is_new(text):
+        shown = self._once(text)
+        if not shown:
             return
-        self._report(Diagnostic(severity="warning", message=f"Foxglove: {text}"))
+        self._report(Diagnostic(severity="warning", message=f"Foxglove: {shown}"))
         if self._server is not None and not self._closed and self._statuses.take():
             from foxglove import StatusLevel
 
             self._server.publish_status(text, StatusLevel.Warning)
-
-
-class _Budget:
-    """How often something may be done; from any thread.
-
-    Args:
-        most: Times at once.
-        rate: Hz in the long run.
-    """
-
-    def __init__(self, most: int, rate: float) -> None:
-        self._most, self._rate = most, rate
-        self._left, self._since = float(most), time.monotonic()
-        self._lock = threading.Lock()
-
-    def take(self) -> bool:
-        """Whether it may be done now."""
-        with self._lock:
-            now = time.monotonic()
-            self._left = min(self._most, self._left + (now - self._since) * self._rate)
-            self._since = now
-            if self._left < 1.0:
-                return False
-            self._left -= 1.0
-            return True
 
 
 class _Slow(logging.Handler):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
@@ -9,8 +10,15 @@ from cartwheel.bridges.bridged import BridgedGraph
 from cartwheel.bridges.foxglove.controls import Controls
 from cartwheel.errors import CartwheelError, GraphError
 
+_MOST, _MOST_BYTES, _LARGEST = 1000, 4 << 20, 64 << 10
+"""Parameters that clients set, characters of their names and values, and of one of them."""
+_LONGEST_NAME = 256
 PAUSED, SPEED = "/cartwheel/paused", "/cartwheel/speed"
 """Whether time is held, and how fast it goes; a speed of 0 is as fast as it can."""
+
+
+class _FullError(GraphError):
+    """A parameter is too large, or there are too many."""
 
 
 class Values:
@@ -35,6 +43,9 @@ class Values:
         self._controls = controls
         self._descriptions = descriptions
         self._tell = tell
+        self._sizes: dict[str, int] = {}
+        """Characters of the parameters that clients have set."""
+        self._lock = threading.Lock()
 
     def get(self, names: list[str]) -> list[Any]:
         """The parameters of those names; all where none is given."""
@@ -50,8 +61,11 @@ class Values:
         for value in values:
             try:
                 self._set_one(value.name, value.get_value())
+            except _FullError as error:
+                # Without the name: it is one warning, however many parameters there are.
+                self._tell(error.message)
             except CartwheelError as error:
-                self._tell(f"{value.name}: {error.message}")
+                self._tell(f"{value.name[:_LONGEST_NAME]}: {error.message}")
         return self.get([value.name for value in values])
 
     def _set_one(self, name: str, value: Any) -> None:
@@ -68,7 +82,27 @@ class Values:
         elif name in self._descriptions:
             raise GraphError("the description of a robot that stands there cannot be changed")
         else:
-            self._graph.parameters.set(name, value)
+            with self._lock:
+                size = self._room_for(name, value)
+                self._graph.parameters.set(name, value)
+                self._sizes[name] = size
+
+    def _room_for(self, name: str, value: Any) -> int:
+        """The size of a parameter; refuses one that would fill the memory."""
+        size = len(name) + len(repr(value))
+        if len(name) > _LONGEST_NAME or size > _LARGEST:
+            raise _FullError(
+                f"a parameter has a name of at most {_LONGEST_NAME} characters, "
+                f"and a value of at most {_LARGEST >> 10} KiB"
+            )
+        known = self._sizes.get(name)
+        if known is None and len(self._sizes) >= _MOST:
+            raise _FullError(f"clients may set at most {_MOST} parameters")
+        if sum(self._sizes.values()) - (known or 0) + size > _MOST_BYTES:
+            raise _FullError(
+                f"the parameters that clients set may have at most {_MOST_BYTES >> 20} MiB"
+            )
+        return size
 
     def _one(self, name: str) -> Any:
         """A value; None where there is none, or more than one."""

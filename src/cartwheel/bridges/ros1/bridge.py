@@ -80,7 +80,7 @@ class Ros1Bridge:
         self.master_uri = master_uri(self._arguments.special)
         self._host = host = own_host(self._arguments.special, self.master_uri)
         self._core: OwnCore | None = None
-        self._is_new = Once(_TOLD)
+        self._once = Once(_TOLD)
         self._closed = False
         self._arrivals = Arrivals(graph, self._warn)
         self._loop = Loop(self._fault, name="ros1")
@@ -365,8 +365,8 @@ class Ros1Bridge:
     def _tell(self, severity: Any, text: str) -> None:
         """Once for each text that warns; what strangers wrote in it moves no cursor."""
         text = _printable(text)
-        if severity == "info" or self._is_new(text):
-            self._report(Diagnostic(severity=severity, message=f"ROS: {text}"))
+        if shown := text if severity == "info" else self._once(text):
+            self._report(Diagnostic(severity=severity, message=f"ROS: {shown}"))
 
     def _fault(self, error: Exception) -> None:
         self._warn(f"a fault of the bridge: {one_line(error)}")

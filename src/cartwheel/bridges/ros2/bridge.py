@@ -88,7 +88,7 @@ class Ros2Bridge:
             )
         self._graph = graph
         self._report = report
-        self._is_new = Once(_TOLD)
+        self._once = Once(_TOLD)
         self.name = f"/{node}"
         self._loop = Loop(self._fault, name="ros2")
         self.middleware = _middleware(rmw, self._loop, node, self._warn)
@@ -306,8 +306,8 @@ class Ros2Bridge:
 
     def _warn(self, text: str) -> None:
         """Once for each text."""
-        if self._is_new(text):
-            self._report(Diagnostic(severity="warning", message=f"ROS 2: {text}"))
+        if shown := self._once(text):
+            self._report(Diagnostic(severity="warning", message=f"ROS 2: {shown}"))
 
     def _fault(self, error: Exception) -> None:
         self._warn(f"a fault of the bridge: {one_line(error)}")

@@ -1,0 +1,140 @@
+"""What the library remembers of each client, kept within bounds: it has none of its own."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any
+
+_MOST, _MOST_BYTES = 1000, 1 << 20
+"""Entries of one kind of a client, and the length of their text."""
+_ALL, _ALL_BYTES = 10_000, 16 << 20
+"""The same of all clients together."""
+
+
+class Clients:
+    """Bounds the channels and the watched parameters of clients, together and each.
+
+    A text that asks for more is not handed on: the client stays connected, and is warned.
+
+    Args:
+        warn: Takes a warning, for clients and the user; on the gate's thread, as all here.
+    """
+
+    def __init__(self, warn: Callable[[str], None]) -> None:
+        self._warn = warn
+        self._channels = _Total("channels")
+        self._parameters = _Total("watched parameters")
+
+    def join(self) -> JoinedClient:
+        """A client has connected."""
+        return JoinedClient(_Share(self._channels), _Share(self._parameters), self._warn)
+
+
+class JoinedClient:
+    """One of them; see `cartwheel.gate.gate.Client`.
+
+    Args:
+        channels: That it advertises.
+        parameters: That it wants to hear of.
+        warn: See `Clients`.
+    """
+
+    def __init__(self, channels: _Share, parameters: _Share, warn: Callable[[str], None]) -> None:
+        self._channels = channels
+        self._parameters = parameters
+        self._warn = warn
+
+    def passes(self, text: bytes) -> bool:
+        """Whether the server gets a text."""
+        try:
+            self._take(json.loads(text.decode()))
+        except (ValueError, RecursionError):
+            # Not handed on either: the library may read more than Python does.
+            self._warn("a client sent a text that is not JSON: it is ignored")
+            return False
+        except _FullError as error:
+            self._warn(f"{error}: the rest is ignored")
+            return False
+        return True
+
+    def end(self) -> None:
+        """It has gone."""
+        self._channels.clear()
+        self._parameters.clear()
+
+    def _take(self, asked: Any) -> None:
+        operation = asked.get("op") if isinstance(asked, dict) else None
+        if operation == "advertise":
+            given = [one for one in _items(asked, "channels") if isinstance(one, dict)]
+            self._channels.add({repr(one.get("id")): len(repr(one)) for one in given})
+        elif operation == "unadvertise":
+            self._channels.remove(map(repr, _items(asked, "channelIds")))
+        elif operation == "subscribeParameterUpdates":
+            names = map(repr, _items(asked, "parameterNames"))
+            self._parameters.add({name: len(name) for name in names})
+        elif operation == "unsubscribeParameterUpdates":
+            self._parameters.remove(map(repr, _items(asked, "parameterNames")))
+
+
+class _FullError(Exception):
+    """There are too many entries."""
+
+
+class _Total:
+    """Entries of one kind of all clients.
+
+    Args:
+        title: Of the kind, in the plural.
+    """
+
+    def __init__(self, title: str) -> None:
+        self.title = title
+        self.count = 0
+        self.size = 0
+
+
+class _Share:
+    """Those of one client."""
+
+    def __init__(self, total: _Total) -> None:
+        self._total = total
+        self._sizes: dict[str, int] = {}
+
+    def add(self, sizes: Mapping[str, int]) -> None:
+        """Adds all or none.
+
+        Raises:
+            _FullError: They are too many, or their text is too long.
+        """
+        new = {name: size for name, size in sizes.items() if name not in self._sizes}
+        total, size = self._total, sum(new.values())
+        if len(self._sizes) + len(new) > _MOST or sum(self._sizes.values()) + size > _MOST_BYTES:
+            raise _FullError(
+                f"a client has at most {_MOST} {total.title}, with {_MOST_BYTES >> 20} MiB of text"
+            )
+        if total.count + len(new) > _ALL or total.size + size > _ALL_BYTES:
+            raise _FullError(
+                f"all clients together have at most {_ALL} {total.title}, "
+                f"with {_ALL_BYTES >> 20} MiB of text"
+            )
+        self._sizes.update(new)
+        total.count += len(new)
+        total.size += size
+
+    def remove(self, names: Iterable[str]) -> None:
+        """Removes those of these names that there are."""
+        for name in names:
+            size = self._sizes.pop(name, None)
+            if size is not None:
+                self._total.count -= 1
+                self._total.size -= size
+
+    def clear(self) -> None:
+        """Removes all."""
+        self.remove(list(self._sizes))
+
+
+def _items(asked: Mapping[str, Any], key: str) -> list[Any]:
+    found = asked.get(key)
+    return found if isinstance(found, list) else []

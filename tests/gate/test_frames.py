@@ -1,0 +1,78 @@
+"""Texts of a websocket's client are judged, whatever pieces they come in."""
+
+from __future__ import annotations
+
+import random
+
+import pytest
+from websockets.frames import Frame, Opcode
+
+from cartwheel.gate.frames import FrameError, Frames, Room
+
+
+def framed(opcode: Opcode, data: bytes, *, fin: bool = True) -> bytes:
+    return Frame(opcode, data, fin).serialize(mask=True)
+
+
+KEPT = [
+    framed(Opcode.BINARY, bytes(range(256)) * 300),
+    framed(Opcode.TEXT, b"good " * 100),
+    framed(Opcode.PING, b"now"),
+    framed(Opcode.TEXT, b""),
+    framed(Opcode.BINARY, b"a", fin=False) + framed(Opcode.CONT, b"b"),
+]
+REFUSED = [
+    framed(Opcode.TEXT, b"bad " * 70_000),
+    framed(Opcode.TEXT, b"b", fin=False) + framed(Opcode.CONT, b"", fin=False)
+    + framed(Opcode.CONT, b"ad"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_a_refused_text_is_left_out_whole_and_all_else_passes(seed: int) -> None:
+    pick = random.Random(seed)
+    stream = pick.sample([*KEPT, *REFUSED], 7)
+    seen: list[bytes] = []
+    room = Room(1 << 20)
+    frames = Frames(lambda text: seen.append(text) or not text.startswith(b"bad"), room)  # type: ignore[func-returns-value]
+    data, out = memoryview(b"".join(stream)), b""
+    while data:
+        size = pick.choice([1, 2, 7, 1000, 100_000])
+        out, data = out + frames.feed(data[:size]), data[size:]
+    assert out == b"".join(each for each in stream if each in KEPT)
+    assert sorted(seen) == sorted([b"good " * 100, b"", b"bad " * 70_000, b"bad"])
+    room.take(1 << 20)  # all is given back
+
+
+def test_a_control_frame_within_a_text_passes() -> None:
+    frames = Frames(lambda text: text == b"a text", Room())
+    ping = framed(Opcode.PING, b"")
+    begin, end = framed(Opcode.TEXT, b"a ", fin=False), framed(Opcode.CONT, b"text")
+    assert frames.feed(memoryview(begin + ping)) == ping
+    assert frames.feed(memoryview(end)) == begin + end
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        Frame(Opcode.TEXT, b"no mask").serialize(mask=False),
+        b"\x81\xff" + (1 << 20).to_bytes(8) + bytes(4),
+        b"\x82\xff" + (1 << 63).to_bytes(8) + bytes(4),
+        framed(Opcode.TEXT, b"", fin=False) + framed(Opcode.CONT, b"", fin=False) * 200_000,
+    ],
+)
+def test_what_is_no_frame_or_too_large_is_an_error(data: bytes) -> None:
+    with pytest.raises(FrameError):
+        Frames(lambda _: True, Room()).feed(memoryview(data))
+
+
+def test_incomplete_messages_of_all_clients_are_bounded() -> None:
+    room = Room(1000)
+    one, other = (Frames(lambda _: True, room) for _ in range(2))
+    head = b"\x82\xfe" + (800).to_bytes(2) + bytes(4)
+    one.feed(memoryview(head + bytes(700)))
+    with pytest.raises(FrameError):
+        other.feed(memoryview(head + bytes(700)))
+    other.close()
+    one.feed(memoryview(bytes(100)))
+    Frames(lambda _: True, room).feed(memoryview(head + bytes(700)))
