@@ -185,7 +185,7 @@ def test_time(cart):
 
 def test_teleop_over_a_pipe(cart):
     done = cart("teleop", stdin="qqi l k")
-    assert "travel 0.61 m/s" in done.stderr
+    assert "linear 0.61 m/s" in done.stderr
     assert CART_TOPIC in done.stderr
     process = cart.start("teleop", "--speed", "0.4", stdin=subprocess.PIPE)
     process.stdin.write("i")
@@ -273,7 +273,7 @@ def test_teleop_at_a_terminal_leaves_it_as_it_was(cart, end):
     )
     read_until(leader, b"Ctrl-C ends")
     os.write(leader, b"i")
-    read_until(leader, b"travel 0.50")
+    read_until(leader, b"linear 0.50")
     assert termios.tcgetattr(follower)[3] != before[3]
     if end is None:
         process.send_signal(signal.SIGTERM)

@@ -178,7 +178,7 @@ def test_the_keyboard_drives_the_cart(desk: Desk, shell: Terminal) -> None:
     before = place()
     keys = desk.terminal()
     keys.type("rosrun teleop_twist_keyboard teleop_twist_keyboard.py /cmd_vel:=/part2_cmr/cmd_vel")
-    keys.wait_for("travel 0.50 m/s")
+    keys.wait_for("linear 0.50 m/s")
     keys.press(",")
     assert eventually(lambda: place() < before - 0.3)
     keys.press("k")

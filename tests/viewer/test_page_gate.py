@@ -38,7 +38,7 @@ def upload(browser: Browser) -> None:
          "part_count": 1, "size_bytes": len(BALL)}
     )  # fmt: skip
     browser.send({"type": "FileTransferPart", **transfer, "part_index": 0, "content": BALL})
-    browser.hear(lambda m: "Notification" in m["type"] and "stands in the world" in str(m))
+    browser.hear(lambda m: "Notification" in m["type"] and "was added to the world" in str(m))
 
 
 def test_a_foreign_page_cannot_upload_a_file(simulation: Running) -> None:

@@ -58,6 +58,6 @@ def test_a_slider_moves_its_joint_and_follows_it(page, arena, arm):
 
 def test_without_an_arm_the_page_says_so(page):
     page.get_by_role("tab", name="Joints").click()
-    page.get_by_text("No controller takes positions of joints.").wait_for()
+    page.get_by_text("No controller accepts joint positions.").wait_for()
     assert page.get_by_role("slider").count() == 0
     page.get_by_text("World", exact=True).click()

@@ -183,7 +183,7 @@ def test_uploads_are_bounded_while_they_arrive(simulation):
         for index in range(200):
             browser.send(part(upload, "large", index, whole))
         browser.send(start(upload, "lies", 10, parts=1000))
-        browser.hear(note("do not fit"))
+        browser.hear(note("does not match"))
         # It announces little and sends much.
         browser.send(start(upload, "more", 10))
         browser.send(part(upload, "more", 0, whole))
@@ -191,12 +191,12 @@ def test_uploads_are_bounded_while_they_arrive(simulation):
         browser.hear(ended("more"))
         browser.send(start(upload, "first", 2 * len(whole)))
         browser.send(start(upload, "second", 2 * len(whole)))
-        browser.hear(note("still being uploaded"))
+        browser.hear(note("already uploading"))
         browser.send(part(upload, "first", 0, whole))
         browser.send(part(upload, "first", 0, whole))
         browser.send(start(upload, "ball", len(BALL)))
         browser.send(part(upload, "ball", 0, BALL))
-        browser.hear(note("ball stands in the world"))
+        browser.hear(note("ball was added to the world"))
     simulation.process.terminate()
     out, _ = simulation.process.communicate(timeout=60)
     assert "Traceback" not in out

@@ -89,6 +89,6 @@ def test_a_topic_is_echoed(page, arena):
     page.locator(".cw-echo").wait_for()
     assert "angular_velocity:" in page.locator(".cw-echo").inner_text()
     page.get_by_label("Echo").click()
-    page.get_by_role("option", name="nothing").click()
+    page.get_by_role("option", name="none").click()
     page.locator(".cw-echo").wait_for(state="detached")
     page.get_by_text("IMU", exact=True).click()

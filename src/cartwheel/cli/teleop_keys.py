@@ -44,7 +44,7 @@ HELP = """\
    j  k  l      turn on the spot; k stops           J K L   for robots that can
    m  ,  .      backward                            M < >
 
-   q z  both speeds up, down      w x  travel      e c  turning      t b  up, down
+   q z  both speeds up, down      w x  linear      e c  angular      t b  up, down
    any other key stops            Ctrl-C ends"""
 
 
@@ -79,4 +79,4 @@ class Driver:
         return self.move[3] * self.turn
 
     def __str__(self) -> str:
-        return f"travel {self.speed:.2f} m/s   turn {self.turn:.2f} rad/s"
+        return f"linear {self.speed:.2f} m/s   angular {self.turn:.2f} rad/s"

@@ -123,13 +123,13 @@ class DescriptionViewer:
         gui, page = self._page.gui, self._page
         moving = [j for j in self._description.joints if j.drivable and j.mimic is None]
         if not moving:
-            gui.add_html('<div class="cw cw-dim">No joint moves.</div>')
+            gui.add_html('<div class="cw cw-dim">No movable joints.</div>')
             return
         for joint in moving:
             slider = add_slider(gui, joint, 0.0)
             slider.on_update(page.do(self._move))
             self._sliders[joint.name] = slider
-        gui.add_button("Zero", icon=page.viser.Icon.REFRESH).on_click(page.do(self._zero))
+        gui.add_button("Set all to zero", icon=page.viser.Icon.REFRESH).on_click(page.do(self._zero))
 
     def _zero(self) -> None:
         for slider in self._sliders.values():

@@ -91,7 +91,7 @@ class Page:
         self._lightly: set[int] = set()
         lightly = self.gui.add_command(
             "Toggle shadows",
-            description="Without shadows: twice as fast where no GPU draws",
+            description="Without a GPU, shadows double the rendering time",
             hotkey=_LIGHTLY,
         )
         lightly.on_trigger(self.on(self._draw_lightly))
@@ -122,7 +122,7 @@ class Page:
                 self.show_error(error)
             except Exception as error:  # noqa: BLE001 - a fault here must not take the page away
                 _log.exception("the viewer failed")
-                self.notify("The viewer failed", f"{type(error).__name__}: {error}", color="red")
+                self.notify("Error in the viewer", f"{type(error).__name__}: {error}", color="red")
 
     def wake(self) -> None:
         """Lets `run` look whether it is to stop."""

@@ -124,7 +124,7 @@ class Scans(Panel):
     def _tell(self, topic: str, frame: str, model: str) -> None:
         if topic not in self._told:
             self._told.add(topic)
-            self.page.notify(f"{topic} is not drawn", f'its frame "{frame}" is no link of {model}')
+            self.page.notify(f"{topic} is not drawn", f'{model} has no link "{frame}"')
 
 
 def _node(topic: str) -> str:

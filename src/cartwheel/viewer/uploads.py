@@ -86,7 +86,7 @@ class Uploads:
         expected = min(PART_BYTES, upload.size - index * PART_BYTES)
         if index in upload.seen or length != expected:
             self.drop(client)
-            raise UploadError("A part of the file has the wrong size, or came twice.")
+            raise UploadError("A part of the file has the wrong size or was sent twice.")
         upload.seen.add(index)
         upload.timer.cancel()
         if len(upload.seen) == upload.parts:
@@ -112,13 +112,13 @@ class Uploads:
         """Why a file cannot be taken, if so."""
         if upload.size > MOST_BYTES:
             most = MOST_BYTES // 1_000_000
-            return f"The file is too large: {upload.size / 1e6:.1f} MB; {most} MB are allowed."
+            return f"The file is too large: {upload.size / 1e6:.1f} MB; the limit is {most} MB."
         if upload.parts != -(-upload.size // PART_BYTES):
-            return "The parts of the file do not fit its size."
+            return "The number of parts does not match the file's size."
         if client in self._by_client:
-            return "Another file is still being uploaded from here."
+            return "This browser is already uploading a file."
         if len(self._by_client) >= MOST_AT_ONCE:
-            return f"{MOST_AT_ONCE} files are being uploaded; try again later."
+            return f"Too many uploads at a time; the limit is {MOST_AT_ONCE}. Try again later."
         return None
 
     def _release(self, client: int, upload: _Upload) -> None:

@@ -30,7 +30,7 @@ def drive(sim: int | None, topic: str | None, *, speed: float, turn: float) -> N
         kind = read.get(topic, TWIST)
         driver = Driver(speed, turn)
         if not client.publish(topic, kind, _message(driver, kind)):
-            raise CartwheelError(f"nobody reads {topic}", hint="See: cartwheel topic list -v")
+            raise CartwheelError(f"{topic} has no subscribers", hint="See: cartwheel topic list -v")
         try:
             with single_keys() as terminal, Suspension(terminal) as suspension:
                 note(f"driving {paint(topic, 'bold', stream=sys.stderr)}\n\n{HELP}\n")
@@ -66,7 +66,7 @@ def the_topic(found: Iterable[str]) -> str:
     driven = [name for name in found if name.rsplit("/", 1)[-1] == "cmd_vel"] or found
     if not driven:
         raise CartwheelError(
-            "no robot here is driven by a Twist", hint="It needs a plugin such as diff_drive."
+            "no robot subscribes to a Twist", hint="It needs a plugin such as diff_drive."
         )
     if len(driven) > 1:
         raise CartwheelError(

@@ -66,7 +66,7 @@ def rows_html(rows: Mapping[str, str]) -> str:
 def facts(description: RobotDescription) -> dict[str, str]:
     """What a description is, for `rows_html`."""
     return {
-        "mass": "fixed" if description.static else f"{description.mass:.4g} kg",
+        "mass": "static" if description.static else f"{description.mass:.4g} kg",
         "parts": description.parts,
         "file": escape(description.origin.file.rsplit("/", 1)[-1]),
     }

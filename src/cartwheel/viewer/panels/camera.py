@@ -18,7 +18,7 @@ from cartwheel.viewer.stage import Stage
 from cartwheel.viewer.tap import Tap
 
 IMAGE = "sensor_msgs/msg/Image"
-_NONE = "no camera"
+_NONE = "none"
 _RATE = 15.0
 """Hz of wall time: more is not seen, and each image is compressed for the way."""
 _LAYOUTS = {
@@ -60,7 +60,7 @@ class CameraPanel(Panel):
         self._topic = self.gui.add_dropdown("Topic", (_NONE,), visible=False)
         self._topic.on_update(self.page.do(self._choose))
         self._image = self.gui.add_image(_blank(), format="jpeg", jpeg_quality=85, visible=False)
-        self._caption = self.gui.add_html(_caption("No camera publishes an image."))
+        self._caption = self.gui.add_html(_caption("No image topic is published."))
 
     def watch(self) -> None:
         self._choose()
@@ -92,7 +92,7 @@ class CameraPanel(Panel):
         picture = pixels_of(message)
         size = f"{message.width} × {message.height} {escape(message.encoding)}"
         if picture is None:
-            self._say(f"{size}: this encoding cannot be shown.")
+            self._say(f"{size}: unsupported encoding")
             return
         self._image.image = picture
         if not self._image.visible:
@@ -108,10 +108,10 @@ class CameraPanel(Panel):
         self._shown, self._rate, self._mark = 0, 0.0, (0, 0)
         if wanted not in self._topics:
             self._image.visible = False
-            self._say("No camera publishes an image.")
+            self._say("No image topic is published.")
         elif not self._on.value:
             self._image.visible = False
-            self._say("Switched off: nothing is rendered.")
+            self._say("Image off: this page does not subscribe to it.")
         else:
             self._tap = Tap(self.graph, wanted)
 

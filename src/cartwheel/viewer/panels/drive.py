@@ -32,12 +32,12 @@ _LABELS = {
     "m": "backward left",
     ",": "backward",
     ".": "backward right",
-    "q": "faster",
-    "z": "slower",
-    "w": "faster straight",
-    "x": "slower straight",
-    "e": "faster turns",
-    "c": "slower turns",
+    "q": "both speeds up",
+    "z": "both speeds down",
+    "w": "linear speed up",
+    "x": "linear speed down",
+    "e": "angular speed up",
+    "c": "angular speed down",
 }
 _ANGLES = {"u": -45, "i": 0, "o": 45, "j": -90, "l": 90, "m": -135, ",": 180, ".": 135}
 

@@ -41,7 +41,7 @@ class ImuPanel(Panel):
         self._box: Mailbox | None = None
         self._rows: deque[tuple[float, ...]] = deque()
         self._due = Every(_RATE)
-        self._note = self.gui.add_html(_note("No IMU publishes."))
+        self._note = self.gui.add_html(_note("No IMU topic is published."))
         self._plots = [
             self._plot("angular velocity, rad/s", ("x", "y", "z"), least=0.2),
             self._plot("linear acceleration, m/s²", ("x", "y", "z"), least=1.0),
@@ -64,7 +64,7 @@ class ImuPanel(Panel):
         self.leave()
         self._topic = topic
         self._rows.clear()
-        self._note.content = _note(escape(topic) or "No IMU publishes.")
+        self._note.content = _note(escape(topic) or "No IMU topic is published.")
         for heading, plot in self._plots:
             heading.visible = plot.visible = bool(topic)
         if self.page.clients:

@@ -38,7 +38,7 @@ class InsertPanel(Panel):
     def __init__(self, stage: Stage) -> None:
         super().__init__(stage)
         page, gui = self.page, self.gui
-        gui.add_html('<div class="cw cw-dim cw-rows">In front of the robot</div>')
+        gui.add_html('<div class="cw cw-dim cw-rows">Insert in front of the robot</div>')
         for name, path in palette(share() / "models").items():
             label = name.replace("_", " ")
             button = gui.add_button(label, color="gray", icon=page.viser.Icon.PLUS)
@@ -69,7 +69,7 @@ class InsertPanel(Panel):
         self.page.then(simulation.call(spawn), self._inserted)
 
     def _inserted(self, name: str) -> None:
-        self.page.notify("Inserted", f"{name} stands in the world.", color="green", seconds=3.0)
+        self.page.notify("Inserted", f"{name} was added to the world.", color="green", seconds=3.0)
 
 
 class UploadPanel(Panel):
@@ -87,7 +87,7 @@ class UploadPanel(Panel):
         self._inserting = inserting
         most = MOST_BYTES // 1_000_000
         gui.add_html(
-            f'<div class="cw cw-dim">URDF, xacro or SDF of your own, up to {most} MB</div>'
+            f'<div class="cw cw-dim">Your own URDF, xacro or SDF file, up to {most} MB</div>'
         )
         upload = gui.add_upload_button("Open a file", icon=page.viser.Icon.UPLOAD)
         upload.on_upload(page.on(lambda event: self._upload(event.target.value)))

@@ -113,7 +113,7 @@ class JointsPanel(Panel):
         self._tab = tab
         self._groups: list[_Group] = []
         self._none = self.gui.add_html(
-            '<div class="cw cw-dim">No controller takes positions of joints.</div>'
+            '<div class="cw cw-dim">No controller accepts joint positions.</div>'
         )
         self._send_due, self._follow_due = Every(20), Every(4)
         self._known: tuple[tuple[JointInput, ...], int] | None = None

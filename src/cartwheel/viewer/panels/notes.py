@@ -37,4 +37,4 @@ def notes_html(diagnostics: Sequence[Diagnostic]) -> str:
         f'<div class="cw-dim">{escape(note.origin) if note.origin else ""}</div></div>'
         for note in sorted(diagnostics, key=lambda note: order[note.severity])
     )
-    return f'<div class="cw cw-list">{notes or "Nothing to warn of."}</div>'
+    return f'<div class="cw cw-list">{notes or "No warnings."}</div>'

@@ -13,7 +13,7 @@ from cartwheel.viewer.seat import Seat
 from cartwheel.viewer.stage import Stage
 from cartwheel.viewer.tap import Tap
 
-_NONE = "nothing"
+_NONE = "none"
 _LONGEST = 6000
 """Characters of a message: more than a screen full is not read."""
 
