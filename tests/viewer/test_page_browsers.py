@@ -30,10 +30,10 @@ def fresh(arena):
 
 
 @contextlib.contextmanager
-def seated(arena):
+def seated(arena, **options):
     """A browser that is connected, and its number."""
     before = set(arena.viewer._desk._places)
-    with browsing(int(arena.url.rpartition(":")[2])) as browser:
+    with browsing(int(arena.url.rpartition(":")[2]), **options) as browser:
         browser.look()
         (number,) = eventually(lambda: set(arena.viewer._desk._places) - before, what="the seat")
         yield browser, number
@@ -139,6 +139,24 @@ def test_selection_toggles_and_choices_are_each_browsers_own(fresh):
         assert own
         assert {m["owner"] for m in own} == {str(second)}
         assert not [m for m in own if "collision_" in m["name"] or "visual_" in m["name"]]
+
+
+def test_a_browser_keeps_its_toggles(fresh):
+    with seated(fresh) as (browser, _):
+        change(browser, "Collision shapes", True)
+        change(browser, "Camera frustum", False)
+        script = browser.hear(lambda m: "camera;" in str(m.get("source")))["source"]
+    cookie = script.partition('"')[2].partition(";")[0]
+    port = fresh.url.rpartition(":")[2]
+    assert cookie == f"cartwheel-view-{port}=collision.camera"
+    with seated(fresh, additional_headers={"Cookie": f"a=b; {cookie}.unknown"}) as (again, number):
+        display = fresh.viewer._desk.stage.seats[number].display
+        assert (display.collision, display.camera, display.visual) == (True, False, True)
+        uuid = again.control("Collision shapes")
+        assert again.hear(lambda m: m.get("uuid") == uuid)["value"]
+        again.hear(lambda m: str(m.get("name", "")).startswith("/models/post/collision_"))
+    with seated(fresh) as (_, number):
+        assert not fresh.viewer._desk.stage.seats[number].display.collision
 
 
 def test_what_a_browser_holds_in_the_air_falls_when_it_is_gone(fresh):

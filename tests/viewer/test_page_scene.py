@@ -104,3 +104,18 @@ def test_two_browsers_see_the_same(browser, arena, page):
         eventually(lambda one=one: colours(one)[0] < 0.1 * red, what="the post to go")
     second.close()
     assert set(arena.models()) == {"ground_plane", CART}
+
+
+def test_toggles_outlive_a_reload(page):
+    def toggle():
+        page.get_by_text("View", exact=True).click()
+        return page.get_by_label("Link names")
+
+    toggle().click()
+    kept = "document.cookie.includes('names')"
+    eventually(lambda: page.evaluate(kept), what="the cookie")
+    page.reload()
+    page.locator("[data-key='i']").wait_for()
+    eventually(lambda: toggle().is_checked(), what="the toggle")
+    toggle().click()
+    eventually(lambda: not page.evaluate(kept), what="the cookie")

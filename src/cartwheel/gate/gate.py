@@ -99,14 +99,20 @@ class Gate:
         self._cookie = f"cartwheel-{listener.getsockname()[1]}"
         self._waiting: dict[asyncio.Task[None], None] = {}
         self._admitted = 0
-        self._peers: dict[int, str] = {}
+        self._peers: dict[int, tuple[str, str]] = {}
         self._own_loop: asyncio.AbstractEventLoop | None = None
         self._serving: Future[None] | None = None
         self._ended = threading.Event()
 
     def peer(self, port: int) -> str | None:
         """The client behind a connection that reaches the server from a port."""
-        return self._peers.get(port)
+        return self._peers[port][0] if port in self._peers else None
+
+    def cookie(self, port: int, name: str) -> str:
+        """A cookie of that client, empty if it has none; its text is not checked."""
+        _, cookies = self._peers.get(port, ("", ""))
+        pairs = (pair.strip().partition("=") for pair in cookies.split(";"))
+        return next((value for found, _, value in pairs if found == name), "")
 
     def start(self, loop: asyncio.AbstractEventLoop | None = None) -> None:
         """Begins to accept connections.
@@ -208,7 +214,7 @@ class Gate:
             async with asyncio.timeout(_HEAD_SECONDS):
                 await loop.sock_connect(server, self._server)
             port = server.getsockname()[1]
-            self._peers[port] = f"{address[0]}:{address[1]}"
+            self._peers[port] = f"{address[0]}:{address[1]}", asked.cookies
             try:
                 await self._exchange(sock, server, request)
             finally:

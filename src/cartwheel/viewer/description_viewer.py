@@ -142,10 +142,11 @@ class DescriptionViewer:
         self._seats = {n: seat for n, seat in self._seats.items() if n in self._page.clients}
         for number in sorted(self._page.clients - set(self._seats)):
             if number in handles:
-                self._seats[number] = seat = Seat(handles[number])
+                self._seats[number] = seat = Seat(self._page, handles[number])
                 show = partial(self._show, seat, Look(seat))
                 with self._view:
                     add_toggles(self._page, seat, _TOGGLES, show)
+                show()
 
     def _show(self, seat: Seat, look: Look) -> None:
         look.show({self._description.name: self._model})

@@ -114,7 +114,7 @@ class Desk:
         handles = self.page.server.get_clients()
         for number in sorted(clients - set(self._places)):
             if number in handles:
-                place = self._welcome(Seat(handles[number]))
+                place = self._welcome(Seat(self.page, handles[number]))
                 self._places[number] = place
                 self.stage.seats[number] = place.seat
         if before != bool(self._places):
@@ -141,6 +141,7 @@ class Desk:
             if snapshot is not None:
                 panel.show_models(snapshot)
             panel.watch()
+        show()
         return _Place(seat, show, Overlays(seat, stage.trail), panels)
 
     def _stop(self, number: int) -> None:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import dataclasses
 from dataclasses import dataclass
+from typing import Self
 
 
 @dataclass(kw_only=True, slots=True)
@@ -32,3 +34,14 @@ class Display:
     """Points and forces that the bumpers report."""
     follow: bool = False
     """The browser's camera goes with the robot."""
+
+    def changes(self) -> str:
+        """The toggles that differ from their defaults, separated by dots."""
+        fields = dataclasses.fields(self)
+        return ".".join(f.name for f in fields if getattr(self, f.name) is not f.default)
+
+    @classmethod
+    def of(cls, changes: str) -> Self:
+        """The toggles with such changes; unknown names are ignored."""
+        changed = changes.split(".")
+        return cls(**{f.name: (f.name in changed) is not f.default for f in dataclasses.fields(cls)})

@@ -98,6 +98,8 @@ class Page:
         self._beats = 0
         self._beat_due = Every(1 / _BEAT)
         self._pulses: dict[int, Any] = {}
+        self._toggles: dict[int, str] = {}
+        self._cookie = f"cartwheel-view-{listener.getsockname()[1]}"
         self.server.on_client_connect(self._arrived)
         self.server.on_client_disconnect(self.on(self._disconnected))
         # On viser's own loop: no other thread takes Python's lock from the simulation.
@@ -191,6 +193,24 @@ class Page:
             for pulse in self._pulses.values():
                 pulse.content = _pulse(self._beats)
 
+    # -- toggles
+
+    def toggles(self, client: int) -> str:
+        """What a browser has kept since `keep_toggles`; not checked."""
+        return self._toggles.get(client, "")
+
+    def keep_toggles(self, client: Any, text: str) -> None:
+        """Lets a browser keep its toggles, over reloads and restarts of the simulation.
+
+        Args:
+            client: viser's handle.
+            text: Letters and dots.
+        """
+        from viser import _messages
+
+        script = f'document.cookie = "{self._cookie}={text}; Path=/; SameSite=Strict"'
+        client._websock_connection.queue_message(_messages.RunJavascriptMessage(source=script))
+
     # -- notes
 
     def show_error(self, error: CartwheelError) -> None:
@@ -227,9 +247,12 @@ class Page:
         client.gui._release_cross_scope_nesting = lambda: None
         # What is still written to a browser that is just leaving is no fault.
         client._websock_connection.get_message_buffer()._warned_push_after_done = True
-        self.post(lambda: self._connected(client), client=client.client_id)
+        port = self.server._websock_server._live_connections[client.client_id].remote_address[1]
+        toggles = self._gate.cookie(port, self._cookie)
+        self.post(lambda: self._connected(client, toggles), client=client.client_id)
 
-    def _connected(self, client: Any) -> None:
+    def _connected(self, client: Any, toggles: str) -> None:
+        self._toggles[client.client_id] = toggles
         self.clients |= {client.client_id}
         self._pulses[client.client_id] = client.gui.add_html(_pulse(0))
         self.on_clients()
@@ -238,6 +261,7 @@ class Page:
         self.clients -= {client.client_id}
         self._lightly.discard(client.client_id)
         self._pulses.pop(client.client_id, None)
+        self._toggles.pop(client.client_id, None)
         try:
             self.on_clients()
         finally:

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from cartwheel.viewer.display import Display
+from cartwheel.viewer.page import Page
 
 
 class Seat:
@@ -15,15 +16,16 @@ class Seat:
     browser's own scene, where a node hides that of the same name that all have.
 
     Args:
+        page: That it shows.
         client: viser's handle.
     """
 
-    def __init__(self, client: Any) -> None:
+    def __init__(self, page: Page, client: Any) -> None:
         self.number: int = client.client_id
         self.client = client
         self.gui: Any = client.gui
         self.scene: Any = client.scene
-        self.display = Display()
+        self.display = Display.of(page.toggles(self.number))
         self._blanks: dict[str, dict[str, Any]] = {}
 
     def hide(self, kind: str, nodes: Iterable[str]) -> None:

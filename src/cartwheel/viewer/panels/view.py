@@ -46,6 +46,7 @@ def add_toggles(
 
     def take(name: str, _: Any, value: bool) -> None:
         setattr(seat.display, name, bool(value))
+        page.keep_toggles(seat.client, seat.display.changes())
         changed()
 
     boxes = {}
