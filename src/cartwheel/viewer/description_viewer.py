@@ -129,7 +129,9 @@ class DescriptionViewer:
             slider = add_slider(gui, joint, 0.0)
             slider.on_update(page.do(self._move))
             self._sliders[joint.name] = slider
-        gui.add_button("Set all to zero", icon=page.viser.Icon.REFRESH).on_click(page.do(self._zero))
+        gui.add_button("Set all to zero", icon=page.viser.Icon.REFRESH).on_click(
+            page.do(self._zero)
+        )
 
     def _zero(self) -> None:
         for slider in self._sliders.values():

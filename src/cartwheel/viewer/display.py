@@ -44,4 +44,6 @@ class Display:
     def of(cls, changes: str) -> Self:
         """The toggles with such changes; unknown names are ignored."""
         changed = changes.split(".")
-        return cls(**{f.name: (f.name in changed) is not f.default for f in dataclasses.fields(cls)})
+        return cls(
+            **{f.name: (f.name in changed) is not f.default for f in dataclasses.fields(cls)}
+        )
