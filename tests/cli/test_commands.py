@@ -285,6 +285,57 @@ def test_teleop_at_a_terminal_leaves_it_as_it_was(cart, end):
     os.close(follower)
 
 
+def test_ctrl_z_at_a_terminal_stops_the_robot_and_fg_drives_on(cart):
+    leader, follower = pty.openpty()
+    shell = subprocess.Popen(
+        ["bash", "--noprofile", "--norc", "--noediting", "-i"],
+        stdin=follower,
+        stdout=follower,
+        stderr=follower,
+        env=cart.environment,
+        cwd=cart.folder,
+        preexec_fn=take_terminal,
+    )
+
+    def type_in(text):
+        os.write(leader, text.encode())
+
+    def has_echo():
+        return bool(termios.tcgetattr(follower)[3] & termios.ECHO)
+
+    def wait_for(condition):
+        deadline = time.monotonic() + 120
+        while not condition():
+            assert time.monotonic() < deadline
+            time.sleep(0.01)
+
+    try:
+        type_in(f"{PROGRAM} teleop --speed 0.4\n")
+        read_until(leader, b"Ctrl-C ends")
+        type_in("i")
+        wait_for(lambda: speed(cart) > 0.1)
+        assert not has_echo()
+        type_in("\x1a")
+        wait_for(lambda: speed(cart) < 0.01)
+        read_until(leader, b"Stopped")
+        assert has_echo()
+        type_in("fg\n")
+        wait_for(lambda: not has_echo())
+        type_in("i")
+        wait_for(lambda: speed(cart) > 0.1)
+        type_in("\x03")
+        wait_for(has_echo)
+        wait_for(lambda: speed(cart) < 0.01)
+        type_in("echo status=$?\n")
+        read_until(leader, b"status=0")
+    finally:
+        shell.kill()
+        shell.wait()
+        os.close(leader)
+        os.close(follower)
+    cart("reset")
+
+
 def take_terminal():
     os.setsid()
     import fcntl

@@ -71,6 +71,9 @@ def browsing(port: int, **options: Any) -> Iterator[Browser]:
         f"ws://127.0.0.1:{port}",
         subprotocols=[f"viser-v{viser.__version__}"],  # type: ignore[list-item]
         max_size=None,
+        # Tests read late: neither frames that wait nor a silent moment end a connection.
+        max_queue=None,
+        ping_interval=None,
         close_timeout=0.2,
         open_timeout=60,
         **options,
