@@ -288,13 +288,12 @@ def test_teleop_at_a_terminal_leaves_it_as_it_was(cart, end):
 def test_ctrl_z_at_a_terminal_stops_the_robot_and_fg_drives_on(cart):
     leader, follower = pty.openpty()
     shell = subprocess.Popen(
-        ["bash", "--noprofile", "--norc", "--noediting", "-i"],
+        ["setsid", "--ctty", "bash", "--noprofile", "--norc", "--noediting", "-i"],
         stdin=follower,
         stdout=follower,
         stderr=follower,
         env=cart.environment,
         cwd=cart.folder,
-        preexec_fn=take_terminal,
     )
 
     def type_in(text):
