@@ -13,6 +13,7 @@ from collections.abc import Callable
 from concurrent.futures import Future
 from typing import Any
 
+from cartwheel.bridges.apart.workers import THREADS, WAITING, Workers
 from cartwheel.bridges.loop import READ, WRITE, Loop, taken
 from cartwheel.errors import CartwheelError, ControlError, one_line
 
@@ -21,10 +22,14 @@ _CALL, _TELL, _ANSWER = range(3)
 _PATIENCE = 30.0
 """s that the other end may take to answer, where it is in the middle of something."""
 
+_LOOKS = 5.0
+"""s between two looks at whether the other end reads again."""
 _LATE = 1 << 20
 """Bytes that wait to be sent, beyond which what may be dropped is dropped."""
 _MOST = 256 << 20
 """Bytes beyond which the other end is given up."""
+_OVERHEAD = 1 << 10
+"""Bytes that a frame occupies besides its content while it waits."""
 
 Handler = Callable[..., Any]
 
@@ -57,11 +62,17 @@ class Link:
         self._waiting: dict[int, Future[Any]] = {}
         self._numbers = itertools.count()
         self._received = bytearray()
+        self._workers = Workers(name)
         self._queue: deque[memoryview] = deque()
-        self._queued = 0
-        """Bytes of them: the other end may stand still."""
+        self._counting = threading.Lock()
+        self._posted = self._sent = 0
+        """Bytes for the other end, and those of them that it got: it may stand still, and the
+        loop may."""
+        self._full = False
         self.dropped = 0
-        """What was told and not sent."""
+        """Messages for which it was too late, so that they were not sent."""
+        self._reported = 0
+        """Of these, those that the user has heard of."""
         self._ended = False
         self.loop = Loop(on_fault, name=name)
         sock.setblocking(False)
@@ -95,7 +106,8 @@ class Link:
             self._waiting[number] = future
             self._write(frame)
 
-        self.loop.post(send)
+        if not self._post(frame, send):
+            _fail(future, _gone())
         return future
 
     def ask(self, name: str, *arguments: Any) -> Any:
@@ -110,38 +122,76 @@ class Link:
     def tell(self, name: str, *arguments: Any) -> None:
         """Calls a function there and does not ask what became of it."""
         frame = _frame(_TELL, 0, name, arguments)
-        self.loop.post(lambda: self._write(frame))
+        self._post(frame, lambda: self._write(frame))
 
     def tell_in_time(self, name: str, *arguments: Any) -> None:
         """As `tell`, for what is no loss where the other end is slow: it is dropped there."""
+        if self._queued > _LATE:
+            with self._counting:
+                self.dropped += 1
+                is_first = self.dropped == self._reported + 1
+            if is_first:
+                self.loop.post(self._report_late)
+            return
         frame = _frame(_TELL, 0, name, arguments)
-        self.loop.post(lambda: self._write_in_time(frame))
+        self._post(frame, lambda: self._write(frame))
+
+    @property
+    def _queued(self) -> int:
+        return self._posted - self._sent
+
+    def _post(self, frame: bytes, write: Callable[[], None]) -> bool:
+        """Leaves a frame with the loop; false if the link has ended, or too much waits."""
+        size = len(frame) + _OVERHEAD
+        with self._counting:
+            if self._full or self._ended:
+                return False
+            self._full = fills = self._queued + size > _MOST
+            if not fills:
+                self._posted += size
+        self.loop.post(self._give_up if fills else write)
+        return not fills
 
     # -- on the link's thread
 
     def _write(self, frame: bytes) -> None:
         if self._ended:
             return
-        if self._queued + len(frame) > _MOST:
-            unread = f"{self._queued >> 20} MB"
-            self._on_fault(
-                ControlError(
-                    f"the other end does not read its messages ({unread} wait): "
-                    "the connection is closed"
-                )
-            )
-            self._end()
-            return
         self._queue.append(memoryview(frame))
-        self._queued += len(frame)
         if len(self._queue) == 1:
             self._flush()
 
-    def _write_in_time(self, frame: bytes) -> None:
-        if self._queued > _LATE:
-            self.dropped += 1
-        else:
-            self._write(frame)
+    def _give_up(self) -> None:
+        if self._ended:
+            return
+        unread = f"{self._queued >> 20} MB"
+        self._on_fault(
+            ControlError(
+                f"the other end does not read its messages ({unread} wait): "
+                "the connection is closed"
+            )
+        )
+        self._end()
+
+    def _report_late(self) -> None:
+        """Says that messages are dropped, and how many they were once others are sent again."""
+        if self._ended:
+            return
+        if self._reported == 0:
+            self._on_fault(ControlError("the other end is slow: feedback of goals is dropped"))
+        self.loop.after(_LOOKS, self._count_late)
+
+    def _count_late(self) -> None:
+        if self._ended:
+            return
+        if self._queued > _LATE // 2:
+            self.loop.after(_LOOKS, self._count_late)
+            return
+        with self._counting:
+            count, self._reported = self.dropped - self._reported, self.dropped
+        self._on_fault(
+            ControlError(f"the other end reads again; {count} messages of feedback were dropped")
+        )
 
     def _flush(self) -> None:
         while self._queue:
@@ -153,12 +203,13 @@ class Link:
             except OSError:
                 self._end()
                 return
-            self._queued -= count
             rest = self._queue[0][count:]
             if rest:
                 self._queue[0] = rest
             else:
                 self._queue.popleft()
+                count += _OVERHEAD
+            self._sent += count
         self.loop.watch(self._sock, READ, self._ready)
 
     def _ready(self, events: int) -> None:
@@ -200,12 +251,14 @@ class Link:
                     future.set_exception(error)
             return
         handler, threaded = self._handlers[name]
-        if threaded:
-            threading.Thread(
-                target=self._run, args=(kind, number, handler, content), name=name, daemon=True
-            ).start()
-        else:
+        if not threaded:
             self._run(kind, number, handler, content)
+        elif not self._workers.run(lambda: self._run(kind, number, handler, content)):
+            busy = ControlError(f"{THREADS} calls run and {WAITING} wait: {name} is refused")
+            if kind == _TELL:
+                self._on_fault(busy)
+            else:
+                self._answer(number, busy, None)
 
     def _run(self, kind: int, number: int, handler: Handler, arguments: Any) -> None:
         try:
@@ -235,7 +288,7 @@ class Link:
             # Others' errors may hold what cannot be sent.
             error = RuntimeError(one_line(error))
         frame = _frame(_ANSWER, number, "", (error, value))
-        self.loop.post(lambda: self._write(frame))
+        self._post(frame, lambda: self._write(frame))
 
     def _end(self) -> None:
         if self._ended:

@@ -1,0 +1,45 @@
+"""A bounded number of threads for what takes long."""
+
+from __future__ import annotations
+
+import threading
+from collections import deque
+from collections.abc import Callable
+
+THREADS, WAITING = 64, 1000
+"""Jobs at a time, and jobs that wait for their turn."""
+
+
+class Workers:
+    """Runs each job on a thread, which ends when no job waits. Nothing waits for the threads.
+
+    Args:
+        name: Of the threads.
+    """
+
+    def __init__(self, name: str) -> None:
+        self._name = name
+        self._lock = threading.Lock()
+        self._jobs: deque[Callable[[], None]] = deque()
+        self._count = 0
+
+    def run(self, job: Callable[[], None]) -> bool:
+        """Whether the job, which must not raise, is run now or later; from any thread."""
+        with self._lock:
+            if len(self._jobs) >= WAITING:
+                return False
+            self._jobs.append(job)
+            if self._count >= THREADS:
+                return True
+            self._count += 1
+        threading.Thread(target=self._work, name=self._name, daemon=True).start()
+        return True
+
+    def _work(self) -> None:
+        while True:
+            with self._lock:
+                if not self._jobs:
+                    self._count -= 1
+                    return
+                job = self._jobs.popleft()
+            job()
