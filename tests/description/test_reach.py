@@ -4,9 +4,11 @@ import os
 from pathlib import Path
 
 import pytest
+from PIL import Image
 
 from cartwheel.description import load
-from cartwheel.description.loading import open_description
+from cartwheel.description.loading import load_plain, open_description
+from cartwheel.description.reach import Reach, is_inside
 from cartwheel.errors import DescriptionError
 
 NS = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
@@ -177,3 +179,78 @@ def test_a_description_in_the_home_folder_reads_nothing_hidden(workspace, monkey
         else:
             with pytest.raises(DescriptionError, match="outside of the folders"):
                 open_description(home / "robot.xacro", {})
+
+
+def plain(text, workspace, **options):
+    reach = Reach(folders=(workspace / "allowed",))
+    return load_plain(text, file="<model_xml of r>", reach=reach, **options)
+
+
+@pytest.mark.parametrize(
+    "named",
+    ["{0}/beside/a.yaml", " \n {0}/beside/a.yaml\n", "beside/a.yaml", "./beside/a.yaml",
+     "allowed/link.yaml", "allowed/../beside/a.yaml", "{0}/beside/missing.yaml"],
+)  # fmt: skip
+@pytest.mark.parametrize("tag", ["parameters", "gz:parameters"])
+def test_a_text_names_no_controller_file_elsewhere(workspace, monkeypatch, named, tag):
+    monkeypatch.chdir(workspace)
+    (workspace / "allowed").mkdir()
+    (workspace / "allowed" / "a.yaml").write_text("a: 1")
+    (workspace / "allowed" / "link.yaml").symlink_to(workspace / "beside/a.yaml")
+    text = """<robot name="r" xmlns:gz="g"><link name="a"/><gazebo>
+      <plugin filename="libgazebo_ros2_control.so" name="c"><{tag}>{named}</{tag}></plugin>
+    </gazebo></robot>"""
+    with pytest.raises(DescriptionError, match="outside of the folders"):
+        plain(text.format(tag=tag, named=named.format(workspace)), workspace)
+    for kept in ("allowed/a.yaml", f"{workspace}/allowed/a.yaml", "allowed/missing.yaml"):
+        plain(text.format(tag=tag, named=kept), workspace)
+
+
+def test_what_the_page_uploads_names_no_controller_file_elsewhere(workspace):
+    uploaded = workspace / "upload"
+    uploaded.mkdir()
+    text = """<robot name="r"><link name="a"/><gazebo>
+      <plugin filename="libgazebo_ros2_control.so" name="c"><parameters>{}</parameters></plugin>
+    </gazebo></robot>"""
+    (uploaded / "r.urdf").write_text(text.format(workspace / "beside/a.yaml"))
+    with pytest.raises(DescriptionError, match="outside of the folders"):
+        load(uploaded / "r.urdf", reach=Reach(folders=(uploaded,)))
+
+
+def test_a_script_of_strangers_names_no_picture_elsewhere(workspace):
+    uploaded = workspace / "upload"
+    uploaded.mkdir()
+    for folder in ("beside", "upload"):
+        Image.new("RGB", (2, 2)).save(workspace / folder / "p.png")
+    # The file is the description and its own script.
+    text = """<sdf version="1.7">
+<!--
+material Own {{ technique {{ pass {{ texture_unit {{ texture {} }} }} }} }}
+-->
+<model name="m"><link name="l"><visual name="v"><geometry><sphere><radius>1</radius></sphere>
+</geometry><material><script><uri>m.sdf</uri><name>Own</name></script></material></visual></link>
+</model></sdf>"""
+
+    def texture(named):
+        (uploaded / "m.sdf").write_text(text.format(named))
+        found = load(uploaded / "m.sdf", reach=Reach(folders=(uploaded,)))
+        return found.links[0].visuals[0].material.texture
+
+    assert texture("p.png") == uploaded / "p.png"
+    assert texture(workspace / "beside/p.png") is None
+    assert texture("../beside/p.png") is None
+
+
+def test_the_way_back_from_a_link_leaves_a_trusted_folder(workspace):
+    trusted = workspace / "trusted"
+    (trusted / "pack/meshes").mkdir(parents=True)
+    (trusted / "pack/meshes/a.stl").write_text("")
+    (trusted / "pack/away").symlink_to(workspace / "away/three")
+    (workspace / "away/secret.yaml").write_text("")
+    linked = workspace / "linked"
+    linked.symlink_to(trusted)
+    for folder in (trusted, linked):
+        assert is_inside(folder / "pack/meshes/../meshes/a.stl", folder)
+        assert is_inside(folder / "pack/away/a.yaml", folder)
+        assert not is_inside(folder / "pack/away/../secret.yaml", folder)
+        assert not is_inside(folder / "../away/secret.yaml", folder)

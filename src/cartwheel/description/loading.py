@@ -9,7 +9,7 @@ from pathlib import Path
 from cartwheel.description import xml
 from cartwheel.description.model import RobotDescription, WorldDescription
 from cartwheel.description.packages import Packages
-from cartwheel.description.plain import refuse_xacro
+from cartwheel.description.plain import refuse_xacro, require_files
 from cartwheel.description.reach import Reach
 from cartwheel.description.shipped import find_description
 from cartwheel.description.xml import Node
@@ -196,6 +196,8 @@ def understand(opened: Opened) -> RobotDescription | WorldDescription:
         DescriptionError: it is no description, or something in it is wrong.
     """
     root = opened.root
+    if opened.packages.reach is not None:
+        require_files(root, opened.packages)
     if root.tag == "robot":
         from cartwheel.description.urdf import read_urdf
 

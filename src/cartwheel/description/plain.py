@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from typing import NoReturn
 
 from cartwheel.description.packages import FIND, Packages
@@ -46,14 +47,33 @@ def refuse_xacro(root: Node, packages: Packages) -> bool:
                 _refuse("${…}", node.origin)
             if command := _COMMAND.search(word):
                 _refuse(f"$({command[1]} …)", node.origin)
-        # The file of a ros2_control plugin.
-        if node.tag == "parameters" and (text.startswith("/") or ".." in text):
-            packages.require(packages.folder / text, "the file", node.origin)
         if text != node.text or any(words[name] != node.attributes[name] for name in words):
             changed = True
             node.text = text
             node.set_attributes(words)
     return changed
+
+
+def require_files(root: Node, packages: Packages) -> None:
+    """Refuses files that only a plugin opens: those that ros2_control names in `<parameters>`.
+
+    Raises:
+        DescriptionError: The description may not read such a file.
+    """
+    for plugin in _all(root, "plugin"):
+        for node in _all(plugin, "parameters"):
+            if text := node.text.strip():
+                packages.require(packages.folder / text, "the file", node.origin)
+
+
+def _all(root: Node, tag: str) -> Iterator[Node]:
+    """The elements below one whose tag is this, with any prefix."""
+    left = [root]
+    while left:
+        node = left.pop()
+        left.extend(node.children)
+        if node.tag.rpartition(":")[2] == tag:
+            yield node
 
 
 def _found(text: str, node: Node, packages: Packages) -> str:

@@ -45,9 +45,18 @@ def is_below(path: Path, folder: Path) -> bool:
 
 
 def is_inside(path: Path, folder: Path) -> bool:
-    """Whether a path is in a folder by its name: links of a folder that the user trusts count."""
+    """Whether a path is in a folder by its name: links of a folder that the user trusts count.
+
+    But ``..`` behind a link leads to where the link does.
+    """
     try:
-        return Path(os.path.normpath(path.absolute())).is_relative_to(folder.absolute())
+        parts = path.absolute().parts
+        back = len(parts) - parts[::-1].index("..") if ".." in parts else 0
+        file = Path(os.path.realpath(Path(*parts[:back])), *parts[back:])
+        return any(
+            file.is_relative_to(root)
+            for root in (folder.absolute(), Path(os.path.realpath(folder)))
+        )
     except (OSError, ValueError):
         return False
 

@@ -76,7 +76,9 @@ def _scripted(name: str, uris: list[Node], script: Node, ctx: Context) -> Materi
             places.append(ctx.packages.resolve(uri.text, uri.origin, what="script", folder=True))
         except DescriptionError as error:
             lost.append(error.message)
-    found = find_script(name, places)
+    packages = ctx.packages
+    may_read = packages.may_read if packages.reach is not None else lambda _: True
+    found = find_script(name, places, may_read)
     if found is None:
         message = unknown_material(name)
         if places and not name.startswith("Gazebo/"):

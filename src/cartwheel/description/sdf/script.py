@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -29,8 +29,16 @@ class Script:
     """The texture that is named but not there."""
 
 
-def find_script(name: str, places: list[Path]) -> Script | None:
-    """The material of that name in any script of the folders and files; None where none has it."""
+def find_script(
+    name: str, places: list[Path], may_read: Callable[[Path], bool] = lambda _: True
+) -> Script | None:
+    """The material of that name in any script of the folders and files; None where none has it.
+
+    Args:
+        name: Of the material.
+        places: Folders and files.
+        may_read: Whether a texture may be read that a script names.
+    """
     folders = [place for place in places if place.is_dir()]
     files = [place for place in places if place.is_file()]
     for folder in folders:
@@ -44,7 +52,7 @@ def find_script(name: str, places: list[Path]) -> Script | None:
             begin = starts[name] + 1
             body = list(_block(iter(lines[begin : begin + MAX_LINES])))
             nearby = [file.parent, file.parent.parent / "textures", *folders]
-            return _read(body, nearby)
+            return _read(body, nearby, may_read)
     return None
 
 
@@ -82,7 +90,9 @@ def _words(line: str) -> list[str]:
     return line.partition("//")[0].replace('"', " ").split()
 
 
-def _read(statements: list[list[str]], nearby: list[Path]) -> Script:
+def _read(
+    statements: list[list[str]], nearby: list[Path], may_read: Callable[[Path], bool]
+) -> Script:
     """The first pass counts: further ones add effects that are not rendered."""
     diffuse = emissive = ambient = None
     texture: Path | None = None
@@ -96,7 +106,8 @@ def _read(statements: list[list[str]], nearby: list[Path]) -> Script:
         elif key == "emissive" and emissive is None:
             emissive = _colour(values)
         elif key == "texture" and values and texture is None and missing is None:
-            found = [folder / values[0] for folder in nearby if (folder / values[0]).is_file()]
+            named = [folder / values[0] for folder in nearby]
+            found = [path for path in named if may_read(path) and path.is_file()]
             texture = found[0] if found else None
             missing = None if found else values[0]
         elif key == "scale" and scale is None and texture is not None:

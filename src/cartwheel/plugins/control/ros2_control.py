@@ -136,7 +136,8 @@ class Ros2Control(ControlPlugin):
         path = Path(text)
         origin = self.tag.origin
         if not path.is_absolute():
-            path = Path(origin.file).parent / path
+            # A text that came over a wire has no folder: the current one, as for its meshes.
+            path = Path("" if origin.file.startswith("<") else origin.file).parent / path
         if not path.is_file():
             message = f'<parameters> "{text}": there is no such file: nothing of it is started'
             self.part.report(Diagnostic(severity="error", message=message, origin=origin))
