@@ -132,14 +132,16 @@ def test_files_that_arguments_name_are_read(workspace, monkeypatch):
 @pytest.mark.parametrize(
     ("path", "reason", "included"),
     [
-        ("pipe", "cannot be read", "does not exist"),
-        ("zero", "outside of the folders", "does not exist"),
+        ("pipe", "cannot be read", "robot.xacro:1: .*pipe\" is not a regular file"),
+        ("folder", "cannot be read", "robot.xacro:1: .*folder\" is a folder"),
+        ("zero", "outside of the folders", "outside of the folders"),
         ("large", "cannot be read", "too large"),
     ],
 )
 def test_only_regular_files_of_some_size_are_read(workspace, path, reason, included):
     folder = workspace / "ws/src/one/urdf"
     os.mkfifo(folder / "pipe")
+    (folder / "folder").mkdir()
     (folder / "zero").symlink_to("/dev/zero")
     with (folder / "large").open("wb") as file:
         file.truncate(10**10)
@@ -165,6 +167,8 @@ def test_meshes_and_pictures_are_regular_files(workspace, path, tag):
     found = load(path)
     assert found.diagnostics
     assert not any("root:" in each.message for each in found.diagnostics)
+    if path in ("/dev/zero", "pipe"):
+        assert any("is not a regular file" in each.message for each in found.diagnostics)
 
 
 def test_a_description_in_the_home_folder_reads_nothing_hidden(workspace, monkeypatch):

@@ -1,6 +1,7 @@
 """xacro as in ROS; origins through includes and macros; what is told when it fails."""
 
 import os
+import re
 import subprocess
 import sys
 import threading
@@ -293,6 +294,26 @@ def test_macros_that_grow_without_bound_end(folder):
     body = f'<xacro:macro name="m0">{"<a/>" * 100}</xacro:macro>{doubling}<xacro:m39/>'
     write("robot.xacro", body)
     assert "make more than" in failure()
+
+
+@pytest.mark.parametrize("call", ['<xacro:m{}/>', '<xacro:call macro="m{}"/>'])
+def test_macro_calls_are_bounded(folder, call):
+    each = "".join(
+        f'<xacro:macro name="m{n}">{call.format(n - 1) * 2}</xacro:macro>\n' for n in range(1, 40)
+    )
+    write("robot.xacro", f'<xacro:macro name="m0"/>\n{each}<xacro:m39/>')
+    first, *calls = failure().splitlines()
+    message = r"robot\.xacro:\d+: there are more than 10,000 macro calls; the last is <xacro:m\d+>"
+    assert re.fullmatch(message, first)
+    assert len(calls) == 7
+    assert calls[0].startswith("  Does a macro call itself")
+    assert re.fullmatch(r"  in robot\.xacro:\d+ xacro:m\d+", calls[1])
+
+
+def test_nine_thousand_macro_calls_expand(folder):
+    macro = '<xacro:macro name="m0"/>\n<xacro:macro name="m1"><xacro:m0/><xacro:m0/></xacro:macro>'
+    write("robot.xacro", macro + "<xacro:m1/>" * 3000 + "<a/>")
+    assert [child.tag for child in expanded().root.children] == ["a"]
 
 
 def test_unknown_argument_is_told_with_the_declared_ones(folder):

@@ -149,6 +149,9 @@ class Packages:
                     return each
         if self.reach is not None and not any(map(self.may_read, candidates)):
             self._refuse(f'the {what} "{uri}"', origin)
+        allowed = (each for each in candidates if self.reach is None or self.may_read(each))
+        if any(map(_is_special, allowed)):
+            raise DescriptionError(f'the {what} "{uri}" is not a regular file', origin=origin)
         raise DescriptionError(
             f'the {what} "{uri}" does not exist', origin=origin, hint=_absent(candidates)
         )
@@ -508,6 +511,14 @@ def _is_file(path: Path) -> bool:
 def _is_dir(path: Path) -> bool:
     try:
         return path.is_dir()
+    except (OSError, ValueError):
+        return False
+
+
+def _is_special(path: Path) -> bool:
+    """Whether it is a folder, pipe, socket or device."""
+    try:
+        return path.exists() and not path.is_file()
     except (OSError, ValueError):
         return False
 

@@ -16,7 +16,7 @@ import keyword
 import os
 import re
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from pathlib import Path
 from types import ModuleType, SimpleNamespace
@@ -44,7 +44,10 @@ from cartwheel.errors import (
 
 MAX_ELEMENTS = 100_000
 """Elements that macros may make: some fifty times what the largest robots have."""
-
+MAX_CALLS = 10_000
+"""Calls of macros, nested ones included: eight times what the largest robots need."""
+MAX_SHOWN = 6
+"""Calls that lead to the last one of too many."""
 MAX_MATCHES = 1000
 """Files that one include with a wildcard takes."""
 _PART_SIZE = 200
@@ -160,6 +163,9 @@ class _Run:
     symbols: Any = None
     macros: Any = None
     made: int = 0
+    """Elements, so far."""
+    called: int = 0
+    """Calls of macros, so far."""
     document: Any = None
     budget: Budget = field(default_factory=Budget)
 
@@ -201,8 +207,19 @@ class _Run:
         )
 
     def copy_body(self, body: _Element) -> _Element:
-        """A macro's body for the call in progress, noted in all its elements."""
+        """A macro's body for the call in progress, noted in all its elements.
+
+        Raises:
+            DescriptionError: There are too many calls, or too many elements.
+        """
         call = self.calls[-1]
+        self.called += 1
+        if self.called > MAX_CALLS:
+            raise DescriptionError(
+                f"there are more than {MAX_CALLS:,} macro calls; the last is <{call.tagName}>",
+                origin=replace(call.origin, stack=call.origin.stack[:MAX_SHOWN]),
+                hint="Does a macro call itself, or another one, more often than needed?",
+            )
         copy = _clone(body, (f"{call.origin} {call.tagName}", *call.origin.stack))
         self.count(copy)
         return copy
@@ -416,13 +433,16 @@ def _bind(module: ModuleType, run: _Run) -> None:
 
     def parse(_: object, filename: str) -> minidom.Document:
         path = Path(filename)
-        if not path.is_file() and not path.is_dir():
+        if not path.exists():
             # The caller recognises a missing file, which may be optional, by this exception,
             # and expects its entry to be gone from the stack.
             space.filestack.pop()
             missing = FileNotFoundError(2, "no such file", filename)
             raise space.XacroException("included file", exc=missing)
         run.packages.require(path, "the included file", run.origin())
+        if not path.is_file():
+            what = "is a folder" if path.is_dir() else "is not a regular file"
+            raise DescriptionError(f'the included file "{filename}" {what}', origin=run.origin())
         return _parse(xml.read_bytes(path), xml.shown_path(path), run)
 
     def abs_filename_spec(given: str) -> str:
