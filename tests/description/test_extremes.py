@@ -1,5 +1,6 @@
 """Numbers and names at their extremes: a model that works, or an error with its place."""
 
+import math
 import random
 import re
 import warnings
@@ -301,9 +302,10 @@ _TOO_MUCH = {
     "no samples": ((0, 1, 1, 0), 4, "<samples> must be from 1 to 1,000,000, but is 0"),
     "negative": ((-1, 1, 1, 0), 4, "<samples> must be from 1 to 1,000,000, but is -1"),
     "samples": (("1e9", 1, 1, 0), 4, "<samples> must be from 1 to 1,000,000, but is 1e+09"),
-    "resolution": ((9, "1e308", 1, 0), 5, "<samples> times <resolution> must be at most 1,000,000"),
+    "resolution": ((9, "1e308", 1, 0), 5, "must be a number from -1e+15 to 1e+15"),
+    "both": ((9, "1e9", 1, 0), 5, "<samples> times <resolution> must be at most 1,000,000"),
     "rows": ((2000, 1, 2000, 0), 4, "at most 1,000,000 rays, but this one has 2000 x 2000"),
-    "noise": ((9, 1, 1, "1e308"), 8, '<stddev> of a noise must be a number from 0 to 1e+15'),
+    "noise": ((9, 1, 1, "1e308"), 8, '<stddev> "1e308" must be a number from 0 to 1e+15'),
 }  # fmt: skip
 
 
@@ -344,3 +346,107 @@ def test_cameras_beyond_their_bounds(values, line, message):
     with pytest.raises(DescriptionError, match=re.escape(message)) as got:
         load_text(text, file="r")
     assert str(got.value.origin) == f"r:{line}"
+
+
+_PLACES = {
+    "urdf origin": ('<robot name="r"><link name="a"/><link name="b"/>'
+                    '<joint name="j" type="fixed"><parent link="a"/><child link="b"/>\n'
+                    '<origin xyz="0 0 {}"/></joint></robot>', "origin xyz must be at most 1e+09 m"),
+    "sdf model": ('<sdf version="1.7"><model name="m">\n<pose>0 {} 0 0 0 0</pose>'
+                  '<link name="a"/></model></sdf>', "pose must be at most 1e+09 m"),
+    "sdf quaternion": ('<sdf version="1.9"><model name="m">\n'
+                       '<pose rotation_format="quat_xyzw">{} 0 0 0 0 0 1</pose>'
+                       '<link name="a"/></model></sdf>', "pose must be at most 1e+09 m"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("value", ["1.1e9", "-1e10", "1e12", "9e14"])
+@pytest.mark.parametrize("case", _PLACES)
+def test_a_pose_far_beyond_all_worlds(case, value):
+    text, message = _PLACES[case]
+    with pytest.raises(DescriptionError, match=re.escape(message)) as got:
+        load_text(text.format(value), file="r")
+    assert str(got.value.origin) == "r:2"
+    assert load_text(text.format("1e9"), file="r")
+
+
+_ARM = """<robot name="r"><link name="a"/>{}{}
+<joint name="i" type="continuous"><parent link="a"/><child link="b"/></joint>
+<joint name="j" type="continuous"><parent link="a"/><child link="c"/>
+{}</joint>
+{}</robot>""".replace("{}{}", "".join(
+    f'<link name="{name}"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" '
+    'ixz="0" iyz="0"/></inertial></link>' for name in "bc"
+))  # fmt: skip
+_FOLLOWER = """<gazebo><plugin name="p" filename="libgazebo_mimic_joint_plugin.so">
+<joint>i</joint><mimicJoint>j</mimicJoint>
+<{0}>{1}</{0}></plugin></gazebo>"""
+
+
+@pytest.mark.parametrize("value", ["1e308", "-1e15", "1.1e6"])
+@pytest.mark.parametrize("name", ["multiplier", "offset"])
+def test_a_joint_that_follows_by_an_absurd_ratio(name, value):
+    mimic = f'<mimic joint="i" {name}="{value}"/>'
+    message = rf"mimic {name} must be from -1e\+06 to 1e\+06"
+    with pytest.raises(DescriptionError, match=message) as got:
+        load_text(_ARM.format(mimic, ""), file="r")
+    assert str(got.value.origin) == "r:4"
+    described = load_text(_ARM.format("", _FOLLOWER.format(name, value)), file="r")
+    message = rf'<{name}> "{re.escape(value)}" must be a number from -1e\+06 to 1e\+06'
+    with cw.World("empty") as world, pytest.raises(PluginError, match=message) as failed:
+        world.spawn(described)
+    assert str(failed.value.origin) == "r:7"
+
+
+_DRIVES = {
+    "skid steer": (
+        "libgazebo_ros_skid_steer_drive.so",
+        "wheelSeparation",
+        "must be from 1e-09 to 1e+06",
+    ),
+    "new diff drive": ("gz-sim-diff-drive-system", "wheel_radius", "must be from 1e-09 to 1e+06"),
+}
+
+
+@pytest.mark.parametrize("value", ["1e308", "1e15", "1e-300"])
+@pytest.mark.parametrize("case", _DRIVES)
+def test_wheels_of_an_absurd_size(case, value):
+    filename, tag, message = _DRIVES[case]
+    plugin = f"""<gazebo><plugin name="p" filename="{filename}">
+<leftFrontJoint>i</leftFrontJoint><rightFrontJoint>j</rightFrontJoint>
+<leftRearJoint>i</leftRearJoint><rightRearJoint>j</rightRearJoint>
+<left_joint>i</left_joint><right_joint>j</right_joint>
+<{tag}>{value}</{tag}></plugin></gazebo>"""
+    described = load_text(_ARM.format("", plugin), file="r")
+    if value == "1e308":
+        message = f'<{tag}> "{value}" must be a number from -1e+15 to 1e+15'
+    with cw.World("empty") as world, pytest.raises(PluginError, match=re.escape(message)) as got:
+        world.spawn(described)
+    assert str(got.value.origin) == ("r:9" if value == "1e308" else "r:5")
+
+
+def test_a_divergence_names_the_place_of_its_link():
+    text = _ARM.format("", "").replace("<link", "\n<link", 1)
+    described = load_text(text, file="r")
+    with cw.World("empty") as world:
+        world.spawn(described)
+        world.session.simulation.data.joint("r::j").qvel[0] = math.nan
+        with pytest.raises(DivergedError, match=r'diverged by .* s, first at "r::a"') as got:
+            world.run(0.1)
+    assert str(got.value.origin) == "r:2"
+
+
+_CAMERA_NUMBERS = {
+    "distortion": ("<distortion><k1>{}</k1></distortion>", "<k1> must be from -1e+06 to 1e+06"),
+    "noise": ("<noise><type>gaussian</type><stddev>{}</stddev></noise>", "<stddev> must be from"),
+}
+
+
+@pytest.mark.parametrize("case", _CAMERA_NUMBERS)
+def test_a_lens_that_nothing_has(case):
+    inside, message = _CAMERA_NUMBERS[case]
+    camera = f"<camera>\n{inside.format('1e308')}</camera>"
+    text = _SENSOR.format("camera", 10, camera, "libgazebo_ros_camera.so")
+    with pytest.raises(DescriptionError, match=re.escape(message)) as got:
+        load_text(text, file="r")
+    assert str(got.value.origin) == "r:4"

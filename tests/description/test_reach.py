@@ -132,8 +132,8 @@ def test_files_that_arguments_name_are_read(workspace, monkeypatch):
 @pytest.mark.parametrize(
     ("path", "reason", "included"),
     [
-        ("pipe", "cannot be read", "robot.xacro:1: .*pipe\" is not a regular file"),
-        ("folder", "cannot be read", "robot.xacro:1: .*folder\" is a folder"),
+        ("pipe", "cannot be read", 'robot.xacro:1: .*pipe" is not a regular file'),
+        ("folder", "cannot be read", 'robot.xacro:1: .*folder" is a folder'),
         ("zero", "outside of the folders", "outside of the folders"),
         ("large", "cannot be read", "too large"),
     ],

@@ -296,7 +296,7 @@ def test_macros_that_grow_without_bound_end(folder):
     assert "make more than" in failure()
 
 
-@pytest.mark.parametrize("call", ['<xacro:m{}/>', '<xacro:call macro="m{}"/>'])
+@pytest.mark.parametrize("call", ["<xacro:m{}/>", '<xacro:call macro="m{}"/>'])
 def test_macro_calls_are_bounded(folder, call):
     each = "".join(
         f'<xacro:macro name="m{n}">{call.format(n - 1) * 2}</xacro:macro>\n' for n in range(1, 40)

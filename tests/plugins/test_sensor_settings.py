@@ -114,7 +114,7 @@ def test_an_error_without_effect_is_told_with_its_line(make, error, message):
 def test_an_error_without_sense_leaves_its_sensor_out(make, wrong):
     (tag,) = wrong
     world = standing(make, magnetometer(noise(**wrong)))
-    assert any(f"<{tag}> of a noise must be a number from" in each for each in messages_of(world))
+    assert any(f"<{tag}>" in each and " a number" in each for each in messages_of(world))
 
 
 def test_sensors_of_one_name_on_two_links_have_errors_of_their_own(make):
@@ -264,8 +264,8 @@ def test_axes_that_are_not_there_are_told(make, frame):
     ("frame", "message"),
     [
         ("<localization>UP</localization>", '<localization> "UP" is none of'),
-        ("<custom_rpy>1 2</custom_rpy>", "is not three numbers"),
-        ("<custom_rpy>1 2 nan</custom_rpy>", "is not three numbers"),
+        ("<custom_rpy>1 2</custom_rpy>", "has 2 numbers, not 3"),
+        ("<custom_rpy>1 2 nan</custom_rpy>", "must be a number from"),
     ],
 )
 def test_axes_without_sense_leave_the_sensor_out(make, frame, message):

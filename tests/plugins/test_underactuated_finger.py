@@ -73,7 +73,7 @@ def test_what_meets_something_stays_and_the_rest_goes_on(make):
     ("old", "new", "error", "reason"),
     [
         (">near<", ">ner<", UnknownNameError, 'movable joint "ner" does not exist'),
-        (">2<", ">0<", PluginError, "other than 0"),
+        (">2<", ">0<", PluginError, "must be at least 1e-06"),
         ("<name>near</name>", "", PluginError, "needs <name>"),
     ],
 )

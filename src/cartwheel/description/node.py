@@ -197,7 +197,8 @@ class Node:
         if not self.text:
             return Pose()
         values = self.vector(6)
-        return Pose.from_xyz_rpy(values[:3], values[3:])
+        place = numbers.position(values[:3], self.tag, self.origin)
+        return Pose.from_xyz_rpy(place, values[3:])
 
     # The text of a descendant, by its path.
 

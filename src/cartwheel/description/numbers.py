@@ -6,14 +6,19 @@ import difflib
 import itertools
 import math
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 from cartwheel.errors import DescriptionError, Origin
+from cartwheel.geometry import Vec3
 
 _NUMBER = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?\Z", re.ASCII)
 _INFINITE = re.compile(r"[+-]?inf(inity)?\Z", re.IGNORECASE)
 LARGEST = 1e15
 """Of places, sizes and directions; squares of what is larger leave the range of numbers."""
+FARTHEST = 1e9
+"""m, of a pose's position: the engine takes states of 1e10 for diverged."""
+MOST_RATIO = 1e6
+"""Of a joint that follows another one, and of gears."""
 FARTHEST_JOINT = 1e6
 """rad or m, of a joint's position at the start; the same bound as for commands while it runs."""
 _LONGEST_NAME = 200
@@ -83,6 +88,35 @@ def vector(text: str, size: int, label: str, origin: Origin) -> tuple[float, ...
             origin=origin,
         )
     return values
+
+
+def position(values: Sequence[float], label: str, origin: Origin) -> Vec3:
+    """The position of a pose, in m.
+
+    Raises:
+        DescriptionError: It is too far away.
+    """
+    x, y, z = values
+    if max(abs(x), abs(y), abs(z)) > FARTHEST:
+        raise DescriptionError(
+            f"{label} must be at most {FARTHEST:g} m away along each axis, but is "
+            f"{x:g} {y:g} {z:g}",
+            origin=origin,
+        )
+    return (x, y, z)
+
+
+def within(value: float, most: float, label: str, origin: Origin) -> float:
+    """A number of a bounded magnitude.
+
+    Raises:
+        DescriptionError: It is larger.
+    """
+    if abs(value) > most:
+        raise DescriptionError(
+            f"{label} must be from {-most:g} to {most:g}, but is {value:g}", origin=origin
+        )
+    return value
 
 
 def boolean(text: str, label: str, origin: Origin) -> bool:

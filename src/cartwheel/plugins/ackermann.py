@@ -288,7 +288,7 @@ class GzAckermann(SteeredDrive):
     def configure(self) -> None:
         config: GzAckermannParameters = self.config
         origin, part = self.tag.origin, self.part
-        self.check_above_zero(
+        self.check_lengths(
             wheel_base=config.wheel_base,
             wheel_separation=config.wheel_separation,
             kingpin_width=config.kingpin_width,

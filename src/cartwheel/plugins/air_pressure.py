@@ -5,12 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from cartwheel.errors import PluginError
 from cartwheel.messages import header, message_class
 from cartwheel.plugins.base import Plugin
 from cartwheel.plugins.gz_sensor import default_topic, frame_tag
 from cartwheel.plugins.noise import VectorNoise, read_noise
-from cartwheel.plugins.parameters import tag
+from cartwheel.plugins.parameters import number, tag
 
 SEA_LEVEL = 101325.0
 """Pa."""
@@ -22,8 +21,11 @@ EXPONENT = 9.80665 * 0.0289644 / (8.31446 * LAPSE)
 
 
 def pressure_at(height: float) -> float:
-    """Pa at a height in m above the sea: the international standard atmosphere up to 11 km."""
-    return float(SEA_LEVEL * (1 - LAPSE * height / TEMPERATURE) ** EXPONENT)
+    """Pa at a height in m above the sea: the international standard atmosphere up to 11 km.
+
+    Its formula reaches 0 at 44 km.
+    """
+    return float(SEA_LEVEL * max(1 - LAPSE * height / TEMPERATURE, 0.0) ** EXPONENT)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -50,12 +52,7 @@ class AirPressure(Plugin[AirPressureParameters]):
         self._link, self._mount = part.link(sensor.link), sensor.pose.position
         self._frame = self.frame(self.config.frame or sensor.link)
         reference = sensor.element.find("air_pressure/reference_altitude")
-        try:
-            self._reference = float(reference.text) if reference is not None else 0.0
-        except ValueError:
-            raise PluginError(
-                "<reference_altitude> is not a number", origin=sensor.origin
-            ) from None
+        self._reference = number(reference) if reference is not None else 0.0
         noise = read_noise(sensor.element.find("air_pressure/pressure/noise"), part.report)
         self._noise = VectorNoise(
             part, f"pressure {sensor.link} {sensor.name}", [noise], rate=sensor.update_rate

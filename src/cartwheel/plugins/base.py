@@ -21,8 +21,9 @@ from cartwheel.graph import (
 from cartwheel.graph.reconfigure import OnChange, Value
 from cartwheel.plugins.gz_bridge import GzBridge
 from cartwheel.plugins.inputs import obeyable, obeyable_positions
-from cartwheel.plugins.parameters import read
+from cartwheel.plugins.parameters import SMALLEST, read
 from cartwheel.simulation import LinkHandle, Part
+from cartwheel.simulation.limits import FARTHEST
 
 
 class Closable(Protocol):
@@ -247,11 +248,30 @@ class Plugin(Generic[C]):
         """Refuses parameters, given by the names of their tags.
 
         Raises:
-            PluginError: One is 0 or below.
+            PluginError: One is 0 or below, or so small that nothing can be divided by it.
         """
         for name, value in values.items():
-            if value <= 0:
-                raise PluginError(f"<{name}> {value:g} must be above 0", origin=self.tag.origin)
+            if value < SMALLEST:
+                least = "above 0" if value <= 0 else f"at least {SMALLEST:g}"
+                raise PluginError(f"<{name}> {value:g} must be {least}", origin=self.place_of(name))
+
+    def check_lengths(self, **values: float) -> None:
+        """Refuses sizes of a drive in m, given by the names of their tags.
+
+        Raises:
+            PluginError: One is 0 or below, or not of a size that anything has.
+        """
+        self.check_above_zero(**values)
+        for name, value in values.items():
+            if value > FARTHEST:
+                raise PluginError(
+                    f"<{name}> {value:g} must be at most {FARTHEST:g} m", origin=self.place_of(name)
+                )
+
+    def place_of(self, tag: str) -> Origin | None:
+        """Where a tag of the plugin is written, or the plugin itself."""
+        found = self.tag.element.find(tag)
+        return found.origin if found is not None else self.tag.origin
 
     @property
     def title(self) -> str:

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar, TypeVar
 
 from cartwheel.description.model import CameraIntrinsics
-from cartwheel.errors import PluginError
+from cartwheel.description.sdf.sensors import MOST_BENT
 from cartwheel.plugins.camera_base import CameraBase
 from cartwheel.plugins.camera_depth import DepthOptions
 from cartwheel.plugins.camera_eye import Eye, EyeTopics, joined
 from cartwheel.plugins.camera_info import Rectified
 from cartwheel.plugins.camera_lens import Distortion
-from cartwheel.plugins.parameters import tag
+from cartwheel.plugins.parameters import tag, vector
 
 _NINE = 9
 
@@ -45,11 +45,13 @@ class CameraParameters:
     cx: float = tag("Cx", "cx", default=0.0, unit="px", doc="0 is (width + 1) / 2.")
     cy: float = tag("Cy", "cy", default=0.0, unit="px", doc="0 is (height + 1) / 2.")
     cx_prime: float = tag("CxPrime", "cx_prime", default=0.0, unit="px", doc="Accepted.")
-    k1: float = tag("distortionK1", "distortion_k1", default=0.0, doc="Radial; see above.")
-    k2: float = tag("distortionK2", "distortion_k2", default=0.0, doc="Radial.")
-    k3: float = tag("distortionK3", "distortion_k3", default=0.0, doc="Radial.")
-    t1: float = tag("distortionT1", "distortion_t1", default=0.0, doc="Tangential.")
-    t2: float = tag("distortionT2", "distortion_t2", default=0.0, doc="Tangential.")
+    k1: float = tag(
+        "distortionK1", "distortion_k1", default=0.0, most=MOST_BENT, doc="Radial; see above."
+    )
+    k2: float = tag("distortionK2", "distortion_k2", default=0.0, most=MOST_BENT, doc="Radial.")
+    k3: float = tag("distortionK3", "distortion_k3", default=0.0, most=MOST_BENT, doc="Radial.")
+    t1: float = tag("distortionT1", "distortion_t1", default=0.0, most=MOST_BENT, doc="Tangential.")
+    t2: float = tag("distortionT2", "distortion_t2", default=0.0, most=MOST_BENT, doc="Tangential.")
     auto_distortion: bool = tag(
         "autoDistortion", "auto_distortion", default=False, doc="Accepted: it is always so."
     )
@@ -141,15 +143,8 @@ class RosCamera(CameraBase[P]):
         config = self.config
         turn = None
         if config.rectification:
-            try:
-                turn = tuple(float(word) for word in config.rectification.split())
-            except ValueError:
-                turn = ()
-            if len(turn) != _NINE or not all(map(math.isfinite, turn)):
-                raise PluginError(
-                    f'<rectification_matrix> "{config.rectification}" is not nine numbers',
-                    origin=self.tag.origin,
-                )
+            element = self.tag.element.find("rectification_matrix") or self.tag.element
+            turn = vector(replace(element, text=config.rectification), _NINE)
         return Rectified(
             turn=turn,
             fx=config.p_fx,

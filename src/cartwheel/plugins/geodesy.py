@@ -6,8 +6,8 @@ import math
 from dataclasses import dataclass
 
 from cartwheel.description.model import Element
-from cartwheel.errors import PluginError
 from cartwheel.geometry import Vec3
+from cartwheel.plugins.parameters import number as stated
 
 EQUATOR = 6378137.0
 """m, the ellipsoid's larger half axis."""
@@ -84,10 +84,7 @@ def world_datum(spherical: Element | None) -> Datum | None:
 
     def number(name: str) -> float:
         child = spherical.find(name)
-        try:
-            return float(child.text) if child is not None else 0.0
-        except ValueError:
-            raise PluginError(f"<{name}> is not a number", origin=spherical.origin) from None
+        return stated(child) if child is not None else 0.0
 
     return Datum(
         latitude=math.radians(number("latitude_deg")),

@@ -12,6 +12,7 @@ from cartwheel.messages import message_class
 from cartwheel.plugins.base import Plugin
 from cartwheel.plugins.gz_drive import gz_name
 from cartwheel.plugins.parameters import tag
+from cartwheel.simulation.limits import FARTHEST
 
 _FLOAT = "std_msgs/msg/Float64"
 
@@ -42,7 +43,9 @@ class JointPositionParameters(_Gains):
         default=False,
         doc="Goes there at most at cmd_max, whatever the joint bears, instead of the PID.",
     )
-    initial: float = tag("initial_position", default=0.0, doc="Held from the start, rad or m.")
+    initial: float = tag(
+        "initial_position", default=0.0, most=FARTHEST, doc="Held from the start, rad or m."
+    )
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -50,7 +53,7 @@ class JointVelocityParameters(_Gains):
     force: bool = tag(
         "use_force_commands", default=False, doc="By the PID, instead of a servo that holds it."
     )
-    initial: float = tag("initial_velocity", default=0.0, doc="Held from the start.")
+    initial: float = tag("initial_velocity", default=0.0, most=FARTHEST, doc="Held from the start.")
 
 
 class PidGains(Protocol):

@@ -16,6 +16,7 @@ from cartwheel.plugins.gz_drive import gz_name
 from cartwheel.plugins.gz_joint_controller import GzPid
 from cartwheel.plugins.parameters import tag
 from cartwheel.simulation.clock import NANOSECONDS
+from cartwheel.simulation.limits import FARTHEST
 
 _TRAJECTORY = "trajectory_msgs/msg/JointTrajectory"
 _KINDS = ("position", "velocity")
@@ -41,7 +42,11 @@ class JointTrajectoryParameters:
         "joint_name", default=(), doc="Joint; once for each. All of one axis when missing."
     )
     initial: tuple[float, ...] = tag(
-        "initial_position", default=(), unit="rad or m", doc="Held at first, for each joint; 0."
+        "initial_position",
+        default=(),
+        unit="rad or m",
+        most=FARTHEST,
+        doc="Held at first, for each joint; 0.",
     )
     position_p_gain: tuple[float, ...] = _gains("position", "p_gain", "Proportional gain")
     position_i_gain: tuple[float, ...] = _gains("position", "i_gain", "Integral gain")

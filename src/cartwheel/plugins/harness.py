@@ -12,9 +12,12 @@ from cartwheel.description.model import Element
 from cartwheel.errors import PluginError, UnknownNameError
 from cartwheel.geometry import Array, Vec3, rotate
 from cartwheel.plugins.base import Plugin
-from cartwheel.plugins.parameters import tag
+from cartwheel.plugins.parameters import number, tag, vector
 from cartwheel.simulation.attaching import AttachmentHandle
 from cartwheel.simulation.handles import LinkHandle
+from cartwheel.simulation.limits import FARTHEST
+
+_SHORTEST = 1e-9
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -28,7 +31,9 @@ class HarnessParameters:
         "winch", default="", doc="`<joint>`: the one that is wound. Its `<pid>` has no effect."
     )
     detach: str = tag("detach", default="", doc="The joint that ends when it is told to.")
-    velocity: float = tag("init_vel", default=0.0, unit="m/s", doc="Of the winch at first (ROS 2).")
+    velocity: float = tag(
+        "init_vel", default=0.0, unit="m/s", most=FARTHEST, doc="Of the winch at first (ROS 2)."
+    )
 
 
 @dataclass(kw_only=True, slots=True)
@@ -103,14 +108,10 @@ class Harness(Plugin[HarnessParameters]):
             )
         link = texts["child"].removeprefix(f"{self.part.description.name}::")
         handle = self.part.link(link, origin=element.origin)
-        try:
-            x, y, z = (float(word) for word in (texts["axis/xyz"] or "0 0 1").split())
-        except ValueError:
-            raise PluginError(
-                f'the axis of joint "{name}" is not three numbers', origin=element.origin
-            ) from None
+        axis = element.find("axis/xyz")
+        x, y, z = vector(axis, 3) if axis is not None and texts["axis/xyz"] else (0.0, 0.0, 1.0)
         length = math.hypot(x, y, z)
-        if not 0 < length < math.inf:
+        if length < _SHORTEST:
             raise PluginError(f'joint "{name}" has no axis', origin=element.origin)
         limits = [
             self._limit(element, f"axis/limit/{what}", default)
@@ -125,10 +126,7 @@ class Harness(Plugin[HarnessParameters]):
 
     def _limit(self, element: Element, path: str, default: float) -> float:
         child = element.find(path)
-        try:
-            return float(child.text) if child is not None else default
-        except ValueError:
-            raise PluginError(f"<{path}> is not a number", origin=element.origin) from None
+        return number(child, endless=True) if child is not None else default
 
     def _named(self, name: str) -> _Rope:
         if name not in self._ropes:

@@ -19,6 +19,7 @@ from cartwheel.geometry import (
 )
 from cartwheel.plugins.geodesy import world_datum
 from cartwheel.plugins.noise import VectorNoise, read_noise
+from cartwheel.plugins.parameters import vector
 from cartwheel.simulation import Part
 
 _NORTH = {
@@ -163,12 +164,5 @@ def _reference(part: Part, imu: Element) -> Quat:
 
 
 def _three(element: Element) -> tuple[float, float, float]:
-    try:
-        roll, pitch, yaw = (float(word) for word in element.text.split())
-    except ValueError:
-        roll = pitch = yaw = math.nan
-    if not math.isfinite(roll + pitch + yaw):
-        raise PluginError(
-            f'<{element.tag}> "{element.text}" is not three numbers', origin=element.origin
-        )
+    roll, pitch, yaw = vector(element, 3)
     return roll, pitch, yaw

@@ -58,7 +58,7 @@ class MecanumDrive(Plugin[MecanumParameters]):
 
     def configure(self) -> None:
         config, part, origin = self.config, self.part, self.tag.origin
-        self.check_above_zero(
+        self.check_lengths(
             wheelbase=config.wheel_base,
             wheel_separation=config.wheel_separation,
             wheel_radius=config.wheel_radius,

@@ -6,17 +6,21 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from cartwheel.description.model import Mimic
+from cartwheel.description.numbers import MOST_RATIO
 from cartwheel.errors import PluginError
 from cartwheel.plugins.base import Plugin
 from cartwheel.plugins.parameters import tag
+from cartwheel.simulation.limits import FARTHEST
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class MimicJointParameters:
     joint: str = tag("joint", default="left_joint", doc="Joint that leads.")
     mimic_joint: str = tag("mimicJoint", default="right_joint", doc="Joint that follows.")
-    multiplier: float = tag("multiplier", default=1.0, doc="Of the leader's position.")
-    offset: float = tag("offset", default=0.0, unit="rad or m", doc="Added to it.")
+    multiplier: float = tag(
+        "multiplier", default=1.0, most=MOST_RATIO, doc="Of the leader's position."
+    )
+    offset: float = tag("offset", default=0.0, unit="rad or m", most=FARTHEST, doc="Added to it.")
     max_effort: float = tag(
         "maxEffort", default=1.0, unit="N m or N", doc="Has no effect: the joint follows exactly."
     )

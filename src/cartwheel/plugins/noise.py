@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from cartwheel.description.model import Element
+from cartwheel.description.numbers import LARGEST
 from cartwheel.errors import Diagnostic, PluginError
 from cartwheel.geometry import Array
+from cartwheel.plugins.parameters import number
 from cartwheel.simulation import Part
 
 
@@ -41,8 +42,6 @@ _FIELDS = {
     "precision": "precision",
 }
 """SDF's tags and what they are here."""
-_LARGEST = 1e15
-"""Variances are squares, which must stay in the range of numbers."""
 _SIGNED = ("mean", "bias_mean")
 
 
@@ -71,19 +70,8 @@ def read_noise(element: Element | None, report: Callable[[Diagnostic], None]) ->
     values = {}
     for tag, field in _FIELDS.items():
         child = element.find(tag)
-        try:
-            value = float(child.text) if child is not None else 0.0
-        except ValueError:
-            value = math.nan
-        least = -_LARGEST if tag in _SIGNED else 0.0
-        if not least <= value <= _LARGEST:
-            assert child is not None
-            raise PluginError(
-                f"<{tag}> of a noise must be a number from {least:g} to {_LARGEST:g}, "
-                f'but is "{child.text.strip()}"',
-                origin=child.origin,
-            )
-        values[field] = value
+        least = -LARGEST if tag in _SIGNED else 0.0
+        values[field] = number(child, least=least) if child is not None else 0.0
     noise = Noise(**values)
     idle = ""
     if noise.precision and name != "gaussian_quantized":

@@ -9,26 +9,39 @@ from collections.abc import Iterable
 from typing import Any, TypeVar, get_args, get_origin
 
 from cartwheel.description.model import Element
+from cartwheel.description.numbers import LARGEST
 from cartwheel.errors import Diagnostic, PluginError, likely
 
 C = TypeVar("C")
 
 _COMMON = {"ros", "robotNamespace", "alwaysOn", "always_on", "robotParam", "rosDebugLevel"}
 """Read for every plugin by its base, or without meaning here and harmless."""
+_SHOWN = 80
+"""Characters of a value in an error."""
+SMALLEST = 1e-9
+"""Of what must be above 0, in SI units."""
+_MOST_COUNT = 2**31 - 1
 _TRUE = {"true", "1", "yes", "on"}
 _FALSE = {"false", "0", "no", "off"}
 
 
-def tag(*names: str, default: Any = dataclasses.MISSING, unit: str = "", doc: str) -> Any:
+def tag(
+    *names: str,
+    default: Any = dataclasses.MISSING,
+    unit: str = "",
+    most: float | None = None,
+    doc: str,
+) -> Any:
     """A dataclass field that is read from the first of these tags that is written.
 
     Args:
         names: The tag and its other spellings; ``a/b`` for a nested one.
         default: When none is written; without one the tag must be there.
         unit: Of the value, SI.
+        most: The largest magnitude; else `LARGEST`, of whole numbers that of 32 bits.
         doc: One line for the reference.
     """
-    metadata = {"tags": names, "unit": unit, "doc": doc}
+    metadata = {"tags": names, "unit": unit, "doc": doc, "most": most}
     if default is dataclasses.MISSING:
         return dataclasses.field(metadata=metadata)
     return dataclasses.field(default=default, metadata=metadata)
@@ -62,12 +75,12 @@ def read(
                 diagnostics.append(told)
             if get_origin(kind) is tuple and Ellipsis in get_args(kind):
                 values[item.name] = tuple(
-                    _value(get_args(kind)[0], child)
+                    _value(get_args(kind)[0], child, item.metadata["most"])
                     for name in names
                     for child in element.find_all(name)
                 )
             else:
-                values[item.name] = _value(kind, found)
+                values[item.name] = _value(kind, found, item.metadata["most"])
         elif item.default is dataclasses.MISSING:
             raise PluginError(
                 f"<{element.tag}> needs <{names[0]}>: {item.metadata['doc']}", origin=element.origin
@@ -95,7 +108,37 @@ def _first(element: Element) -> tuple[Element, Diagnostic]:
     )
 
 
-def _value(kind: Any, element: Element) -> Any:
+def number(
+    element: Element,
+    *,
+    least: float = -LARGEST,
+    most: float = LARGEST,
+    endless: bool = False,
+) -> float:
+    """The number that an element states, for plugins and sensors alike.
+
+    Args:
+        element: Its text is the number.
+        least: The smallest one that is allowed.
+        most: The largest one that is allowed.
+        endless: Whether a limit may be there: larger ones, and infinity, are then infinite.
+
+    Raises:
+        PluginError: It is not a number, or not from `least` to `most`; with its place.
+    """
+    return _number(element, element.text.strip(), least, most, endless=endless)
+
+
+def vector(element: Element, size: int) -> tuple[float, ...]:
+    """The numbers that an element states, with white space between.
+
+    Raises:
+        PluginError: There are not `size` of them, or one is not allowed; see `number`.
+    """
+    return _vector(element, size, LARGEST)
+
+
+def _value(kind: Any, element: Element, most: float | None) -> Any:
     text = element.text.strip()
     options = get_args(kind)
     if type(None) in options:
@@ -115,32 +158,52 @@ def _value(kind: Any, element: Element) -> Any:
             f'<{element.tag}> "{text}" is neither true nor false', origin=element.origin
         )
     if kind is float:
-        return _number(element, text)
+        most = LARGEST if most is None else most
+        return _number(element, text, -most, most)
     if kind is int:
-        number = _number(element, text)
+        most = _MOST_COUNT if most is None else most
+        number = _number(element, text, -most, most)
         if number != int(number):
             raise PluginError(
                 f'<{element.tag}> "{text}" is not a whole number', origin=element.origin
             )
         return int(number)
     if get_origin(kind) is tuple:
-        numbers = tuple(_number(element, word) for word in text.split())
-        if len(numbers) != len(options):
-            raise PluginError(
-                f'<{element.tag}> "{text}" has {len(numbers)} numbers, not {len(options)}',
-                origin=element.origin,
-            )
-        return numbers
+        return _vector(element, len(options), LARGEST if most is None else most)
     return text
 
 
-def _number(element: Element, text: str) -> float:
+def _vector(element: Element, size: int, most: float) -> tuple[float, ...]:
+    words = element.text.split()
+    if len(words) != size:
+        raise PluginError(
+            f'<{element.tag}> "{shown(element.text)}" has {len(words)} numbers, not {size}',
+            origin=element.origin,
+        )
+    return tuple(_number(element, word, -most, most) for word in words)
+
+
+def _number(
+    element: Element, text: str, least: float, most: float, *, endless: bool = False
+) -> float:
+    origin = element.origin
     try:
         number = float(text)
     except ValueError:
         raise PluginError(
-            f'<{element.tag}> "{text}" is not a number', origin=element.origin
+            f'<{element.tag}> "{shown(text)}" is not a number', origin=origin
         ) from None
-    if not math.isfinite(number):
-        raise PluginError(f'<{element.tag}> "{text}" is not a finite number', origin=element.origin)
+    if endless and abs(number) > LARGEST:
+        return math.copysign(math.inf, number)
+    if not least <= number <= most:
+        raise PluginError(
+            f'<{element.tag}> "{shown(text)}" must be a number from {least:g} to {most:g}',
+            origin=origin,
+        )
     return number
+
+
+def shown(text: str) -> str:
+    """A value for an error, cut where it is long."""
+    text = text.strip()
+    return text if len(text) <= _SHOWN else f"{text[:_SHOWN]}…"

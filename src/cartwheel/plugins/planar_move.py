@@ -10,6 +10,7 @@ from cartwheel.plugins.base import Plugin
 from cartwheel.plugins.gz_drive import gz_name
 from cartwheel.plugins.odometry import NO_COVARIANCE, Odometry, planar_covariance, planar_motion
 from cartwheel.plugins.parameters import tag
+from cartwheel.simulation.limits import FARTHEST
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -114,10 +115,18 @@ class PlanarMove(Plugin[PlanarMoveParameters]):
 class VelocityControlParameters:
     topic: str = tag("topic", default="", doc="Twist; /model/<name>/cmd_vel when empty.")
     initial_linear: tuple[float, float, float] | None = tag(
-        "initial_linear", default=None, unit="m/s", doc="Velocity to begin with."
+        "initial_linear",
+        default=None,
+        unit="m/s",
+        most=FARTHEST,
+        doc="Velocity to begin with.",
     )
     initial_angular: tuple[float, float, float] | None = tag(
-        "initial_angular", default=None, unit="rad/s", doc="Turning to begin with."
+        "initial_angular",
+        default=None,
+        unit="rad/s",
+        most=FARTHEST,
+        doc="Turning to begin with.",
     )
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -12,6 +11,7 @@ from cartwheel.description.model import Element, Sensor
 from cartwheel.errors import Diagnostic, Origin, PluginError
 from cartwheel.geometry import Array
 from cartwheel.plugins.noise import Noise, VectorNoise, read_noise
+from cartwheel.plugins.parameters import number
 from cartwheel.simulation import Part
 
 _MOST_RAYS = 1_000_000
@@ -172,16 +172,7 @@ def _place(element: Element, tag: str) -> Origin:
 
 def _number(element: Element | None, tag: str, default: float, *, endless: bool = False) -> float:
     child = element.find(tag) if element is not None else None
-    if child is None:
-        return default
-    text = child.text.strip()
-    try:
-        number = float(text)
-    except ValueError:
-        number = math.nan
-    if math.isnan(number) or (math.isinf(number) and not (endless and number > 0)):
-        raise PluginError(f'<{tag}> "{text}" is not a finite number', origin=child.origin)
-    return number
+    return number(child, endless=endless) if child is not None else default
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

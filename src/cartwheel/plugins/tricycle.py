@@ -175,11 +175,11 @@ class TricycleDrive(SteeredDrive):
         torque = config.wheel_torque
         if torque is None:
             torque = 0.15 if ros2 else 5.0
-        self.check_above_zero(
+        self.check_above_zero(wheelTorque=torque)
+        self.check_lengths(
             actuatedWheelDiameter=config.wheel_diameter,
             encoderWheelDiameter=config.encoder_diameter,
             encoderWheelSeparation=config.encoder_separation,
-            wheelTorque=torque,
         )
         names = (config.steering_joint, config.wheel_joint, config.left_joint, config.right_joint)
         joints = [part.joint(name, origin=origin) for name in names]

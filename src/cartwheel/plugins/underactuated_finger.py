@@ -9,8 +9,11 @@ from typing import ClassVar
 from cartwheel.description.model import Element
 from cartwheel.errors import PluginError
 from cartwheel.plugins.base import Plugin
-from cartwheel.plugins.parameters import tag
+from cartwheel.plugins.parameters import number, tag
+from cartwheel.simulation.limits import FARTHEST
 from cartwheel.simulation.servo import ServoHandle
+
+_LEAST_SCALE = 1 / FARTHEST
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -52,22 +55,20 @@ class UnderactuatedFinger(Plugin[UnderactuatedFingerParameters]):
 
     def _phalanx(self, element: Element) -> _Phalanx:
         found = {}
-        for name in ("name", "scale_factor"):
-            child = element.find(name)
+        for each in ("name", "scale_factor"):
+            child = element.find(each)
             if child is None:
-                raise PluginError(f"<virtualJoint> needs <{name}>", origin=element.origin)
-            found[name] = child.text.strip()
-        try:
-            scale = float(found["scale_factor"])
-        except ValueError:
-            scale = math.nan
-        if not math.isfinite(scale) or scale == 0:
+                raise PluginError(f"<virtualJoint> needs <{each}>", origin=element.origin)
+            found[each] = child
+        scale = number(found["scale_factor"], least=-FARTHEST, most=FARTHEST)
+        if abs(scale) < _LEAST_SCALE:
             raise PluginError(
-                f'<scale_factor> "{found["scale_factor"]}" must be a number other than 0',
-                origin=element.origin,
+                f"<scale_factor> must be at least {_LEAST_SCALE:g} or at most {-_LEAST_SCALE:g}",
+                origin=found["scale_factor"].origin,
             )
-        servo = self.part.servo(found["name"], max_effort=None, origin=element.origin)
-        joint = self.part.description.joint(found["name"])
+        name = found["name"].text.strip()
+        servo = self.part.servo(name, max_effort=None, origin=element.origin)
+        joint = self.part.description.joint(name)
         low, high = (joint.axis.lower, joint.axis.upper) if joint is not None else (None, None)
         return _Phalanx(
             servo=servo,

@@ -10,6 +10,8 @@ from cartwheel.errors import Diagnostic, PluginError
 from cartwheel.geometry import Quat, Vec3
 from cartwheel.plugins.drive import Drive
 from cartwheel.plugins.odometry import AxleReckoning
+from cartwheel.plugins.parameters import SMALLEST
+from cartwheel.simulation.limits import FARTHEST
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -43,6 +45,11 @@ class WheelDrive(Drive):
                 if value <= 0:
                     raise PluginError(
                         f"the wheels' {what} {value:g} must be above 0", origin=origin
+                    )
+                if not SMALLEST <= value <= FARTHEST:
+                    raise PluginError(
+                        f"the wheels' {what} {value:g} must be from {SMALLEST:g} to {FARTHEST:g} m",
+                        origin=origin,
                     )
         names = [name for pair in pairs for name in (pair.left, pair.right)]
         self._pairs = list(pairs)

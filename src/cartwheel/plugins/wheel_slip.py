@@ -14,7 +14,7 @@ from cartwheel.errors import PluginError
 from cartwheel.graph import ReconfigureParameter
 from cartwheel.messages import message_class
 from cartwheel.plugins.base import Plugin
-from cartwheel.plugins.parameters import tag
+from cartwheel.plugins.parameters import number, tag
 from cartwheel.simulation.handles import JointHandle
 from cartwheel.simulation.slipping import SlipHandle
 
@@ -164,12 +164,4 @@ class WheelSlip(Plugin[WheelSlipParameters]):
 def _number(element: Element, name: str) -> float:
     """A child's number; 0 where there is none."""
     child = element.find(name)
-    if child is None:
-        return 0.0
-    try:
-        number = float(child.text)
-    except ValueError:
-        number = math.nan
-    if not math.isfinite(number):
-        raise PluginError(f'<{name}> "{child.text.strip()}" is not a number', origin=child.origin)
-    return number
+    return number(child) if child is not None else 0.0

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import tempfile
 from collections import deque
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import mujoco
 import numpy as np
 
-from cartwheel.errors import DivergedError
+from cartwheel.errors import DivergedError, Origin
 
 _KEPT = 40
 """States, one for each check."""
@@ -31,9 +32,13 @@ class Guard:
 
     The engine would write its warnings to a file in the current folder and, left alone,
     quietly start a diverged simulation anew.
+
+    Args:
+        place_of: The place in a file of the link that a body of the engine stands for.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, place_of: Callable[[str], Origin | None] = lambda _: None) -> None:
+        self._place_of = place_of
         mujoco.set_mju_user_warning(_swallow)
         self._states: deque[tuple[float, Any, Any]] = deque(maxlen=_KEPT)
         self._seen: dict[int, int] = {}
@@ -100,6 +105,7 @@ class Guard:
         name = mujoco.mj_id2name(self._model, mujoco.mjtObj.mjOBJ_BODY, body) or "world"
         return DivergedError(
             f'the simulation diverged by {self._data.time:.3f} s, first at "{name}"',
+            origin=self._place_of(name),
             hint=f"{_likely(self._model, body)}{where}",
         )
 

@@ -11,6 +11,7 @@ from cartwheel.errors import (
     Diagnostic,
     DivergedError,
     Once,
+    Origin,
     PluginError,
     SimulationError,
     UnknownNameError,
@@ -77,7 +78,7 @@ class Simulation(Run):
         self._world_tasks: list[Task] = []
         self.engine.on_tasks.append(self._gather_tasks)
         self.engine.on_entries.append(lambda: self._compile(self._residents))
-        self._guard = Guard()
+        self._guard = Guard(self._place_of)
         self._guard_due = 0
         self._separation = Separation()
         self._recovered = 0
@@ -317,6 +318,15 @@ class Simulation(Run):
         self._gather_tasks()
         for callback in self.on_reset:
             callback()
+
+    def _place_of(self, body: str) -> Origin | None:
+        """Where the link of a body is written, or its model."""
+        for name, resident in self._residents.items():
+            if body.startswith(f"{name}::"):
+                description = resident.entry.description
+                link = description.link(body.removeprefix(f"{name}::"))
+                return link.origin if link is not None else description.origin
+        return None
 
     def recover(self, error: DivergedError) -> bool:
         """Takes every model to where it was spawned, at rest, after a divergence; time goes on.

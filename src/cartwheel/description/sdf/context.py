@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from cartwheel.description.numbers import LARGEST
+from cartwheel.description.numbers import LARGEST, position
 from cartwheel.errors import DescriptionError, Diagnostic, Origin, Severity, suggestion
 from cartwheel.geometry import Pose, Quat, quat_normalize
 
@@ -83,7 +83,7 @@ def read_pose(node: Node | None) -> Pose:
             orientation: Quat = quat_normalize(q)
         except ValueError as error:
             raise node.fail(f"pose: {error}") from None
-        return Pose((x, y, z), orientation)
+        return Pose(position((x, y, z), "pose", node.origin), orientation)
     words = node.text.split()
     if len(words) == 6:
         values = node.vector(6)
@@ -94,7 +94,7 @@ def read_pose(node: Node | None) -> Pose:
     angles = values[3:]
     if in_degrees:
         angles = tuple(math.radians(angle) for angle in angles)
-    return Pose.from_xyz_rpy(values[:3], angles)
+    return Pose.from_xyz_rpy(position(values[:3], "pose", node.origin), angles)
 
 
 def reference_of(pose: Node | None) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from cartwheel.description import numbers
 from cartwheel.description.model import Joint, Mimic
 from cartwheel.description.sdf.context import Context
 from cartwheel.description.sdf.frames import WORLD, Frames
@@ -30,7 +31,12 @@ def mesh_gears(
         for ignored in ("axis", "axis2", "physics", "pose", "sensor"):
             for part in node.all(ignored):
                 part.mark()
-        ratio = node.number_at("gearbox_ratio", 1.0)
+        ratio = numbers.within(
+            node.number_at("gearbox_ratio", 1.0),
+            numbers.MOST_RATIO,
+            "gearbox_ratio",
+            (node.child("gearbox_ratio") or node).origin,
+        )
         reference = node.text_at("gearbox_reference_body").strip()
         ends = []
         for tag in ("parent", "child"):

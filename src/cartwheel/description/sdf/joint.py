@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
+from cartwheel.description import numbers
 from cartwheel.description.model import Axis, Joint, JointType, Mimic, Sensor
 from cartwheel.description.sdf.context import Context, read_pose, reference_of, require_name
 from cartwheel.description.sdf.frames import WORLD, Frames
@@ -254,8 +255,15 @@ def _mimic(axis: Node) -> Mimic | None:
     node = axis.child("mimic")
     if node is None:
         return None
-    multiplier = node.number_at("multiplier", 1.0)
-    offset = node.number_at("offset", 0.0) - multiplier * node.number_at("reference", 0.0)
+
+    def bounded(path: str, default: float, most: float) -> float:
+        origin = (node.child(path) or node).origin
+        return numbers.within(node.number_at(path, default), most, f"<{path}>", origin)
+
+    farthest = numbers.FARTHEST_JOINT
+    multiplier = bounded("multiplier", 1.0, numbers.MOST_RATIO)
+    offset = bounded("offset", 0.0, farthest) - multiplier * bounded("reference", 0.0, farthest)
+    numbers.within(offset, farthest, "offset - multiplier x reference of <mimic>", node.origin)
     return Mimic(joint=node.require("joint").strip(), multiplier=multiplier, offset=offset)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from cartwheel.description.model import CameraIntrinsics, PluginTag, Sensor
-from cartwheel.description.numbers import LARGEST
+from cartwheel.description.numbers import LARGEST, within
 from cartwheel.description.sdf.context import read_pose
 from cartwheel.description.sdf.sensor_tags import mark_known
 from cartwheel.description.xml import Node, copied, to_element
@@ -13,6 +13,12 @@ from cartwheel.geometry import Pose
 
 MOST_PIXELS = 7680 * 4320
 """Of one camera's image: 8K. With colours and depths it takes 230 MB while it is drawn."""
+MOST_BENT = 1e6
+"""Of a coefficient of distortion; those of real lenses are below 100."""
+NARROWEST = 1e-6
+"""rad, of a camera's view."""
+_LOUDEST = 1e6
+"""Of the noise of pixels, whose full brightness is 1."""
 NEAREST = 1e-9
 """m; OpenGL's numbers hold no nearer plane."""
 
@@ -95,9 +101,9 @@ def read_camera(node: Node) -> CameraIntrinsics:
     if not near < far:
         wrong = clip.child("near") if clip is not None else None
         raise (wrong or node).fail(f"clip near {near:g} must be below far {far:g}")
-    if not 0 < fov < 2 * math.pi:
+    if not NARROWEST <= fov < 2 * math.pi:
         raise (node.child("horizontal_fov") or node).fail(
-            f"horizontal_fov {fov} is no angle of view in radians",
+            f"horizontal_fov {fov:g} must be from {NARROWEST:g} to {2 * math.pi:.4g} rad",
             f"In degrees it would be {math.radians(fov):.4g}." if fov > 0 else None,
         )
     centre = node.find("distortion/center")
@@ -112,15 +118,20 @@ def read_camera(node: Node) -> CameraIntrinsics:
         format=(image.text_at("format") if image is not None else "") or default.format,
         near=near,
         far=far,
-        k1=node.number_at("distortion/k1", 0.0),
-        k2=node.number_at("distortion/k2", 0.0),
-        k3=node.number_at("distortion/k3", 0.0),
-        p1=node.number_at("distortion/p1", 0.0),
-        p2=node.number_at("distortion/p2", 0.0),
+        k1=_bounded(node, "distortion/k1", MOST_BENT),
+        k2=_bounded(node, "distortion/k2", MOST_BENT),
+        k3=_bounded(node, "distortion/k3", MOST_BENT),
+        p1=_bounded(node, "distortion/p1", MOST_BENT),
+        p2=_bounded(node, "distortion/p2", MOST_BENT),
         distortion_center=(cx, cy),
         noise_mean=mean,
         noise_stddev=stddev,
     )
+
+
+def _bounded(node: Node, path: str, most: float) -> float:
+    origin = (node.find(path) or node).origin
+    return within(node.number_at(path, 0.0), most, f"<{path.rsplit('/', 1)[-1]}>", origin)
 
 
 def _noise(node: Node | None) -> tuple[float, float]:
@@ -132,7 +143,7 @@ def _noise(node: Node | None) -> tuple[float, float]:
         return 0.0, 0.0
     if kind != "gaussian":
         raise node.fail(f'noise of type "{kind}" is not supported', "There are: none, gaussian.")
-    mean, stddev = node.number_at("mean", 0.0), node.number_at("stddev", 0.0)
+    mean, stddev = (_bounded(node, name, _LOUDEST) for name in ("mean", "stddev"))
     if stddev < 0:
         raise node.fail("<stddev> of a noise makes no sense below 0")
     return mean, stddev

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Iterable
 
+from cartwheel.description import numbers
 from cartwheel.description.model import Axis, Joint, JointType, Mimic, SoftLimits
 from cartwheel.description.urdf.link import UrdfContext, read_origin
 from cartwheel.description.xml import Node
@@ -157,10 +158,14 @@ def _not_negative(dynamics: Node | None, attribute: str, joint: str) -> float:
 
 
 def _mimic(node: Node) -> Mimic:
+    def bounded(name: str, default: float, most: float) -> float:
+        value = node.number_of(name, default)
+        return numbers.within(value, most, f"mimic {name}", node.origin)
+
     return Mimic(
         joint=node.require("joint").strip(),
-        multiplier=node.number_of("multiplier", 1.0),
-        offset=node.number_of("offset", 0.0),
+        multiplier=bounded("multiplier", 1.0, numbers.MOST_RATIO),
+        offset=bounded("offset", 0.0, numbers.FARTHEST_JOINT),
     )
 
 

@@ -58,7 +58,7 @@ def read_origin(node: Node) -> Pose:
     origin = node.child("origin")
     if origin is None:
         return Pose()
-    xyz = origin.vec3_of("xyz", (0.0, 0.0, 0.0))
+    xyz = numbers.position(origin.vec3_of("xyz", (0.0, 0.0, 0.0)), "origin xyz", origin.origin)
     return Pose.from_xyz_rpy(xyz, origin.vec3_of("rpy", (0.0, 0.0, 0.0)))
 
 

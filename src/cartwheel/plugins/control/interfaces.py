@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from cartwheel.description.model import Element, RobotDescription
+from cartwheel.description.numbers import LARGEST, MOST_RATIO
 from cartwheel.errors import Diagnostic, Origin, PluginError
+from cartwheel.plugins.parameters import shown
+from cartwheel.simulation.limits import FARTHEST
 
 COMMANDS = ("position", "velocity", "effort")
 """What a joint can be commanded by."""
@@ -206,13 +210,13 @@ def _joint(element: Element, name: str, notes: list[Diagnostic]) -> JointInterfa
     for interface in element.find_all("state_interface"):
         kind = interface.attribute("name") or ""
         states.append(kind)
-        start = _number(_parameters(interface), "initial_value", interface)
+        start = _number(_parameters(interface), "initial_value", interface, FARTHEST)
         if kind == "position" and start is not None:
             initial = start
     values = _parameters(element)
     mimic = None
     if values.get("mimic"):
-        multiplier = _number(values, "multiplier", element)
+        multiplier = _number(values, "multiplier", element, MOST_RATIO)
         mimic = (values["mimic"], 1.0 if multiplier is None else multiplier)
     return JointInterfaces(
         name=name,
@@ -236,16 +240,28 @@ def _parameters(element: Element) -> dict[str, str]:
     }
 
 
-def _number(values: Mapping[str, str], name: str, element: Element) -> float | None:
+def _number(
+    values: Mapping[str, str], name: str, element: Element, most: float = math.inf
+) -> float | None:
+    """A parameter's number; None where there is none, or a nan, by which ROS 2 leaves it open."""
     text = values.get(name, "")
     if not text or re.fullmatch(r"[{$].*", text):
         return None
     try:
-        return float(text)
+        number = float(text)
     except ValueError:
         raise PluginError(
-            f'<param name="{name}"> "{text}" is not a number', origin=element.origin
+            f'<param name="{name}"> "{shown(text)}" is not a number', origin=element.origin
         ) from None
+    if math.isnan(number):
+        return None
+    if abs(number) > most or LARGEST < abs(number) < math.inf:
+        most = min(most, LARGEST)
+        raise PluginError(
+            f'<param name="{name}"> "{shown(text)}" must be a number from {-most:g} to {most:g}',
+            origin=element.origin,
+        )
+    return number
 
 
 def _movable(description: RobotDescription, name: str) -> bool:

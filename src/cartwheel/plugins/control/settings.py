@@ -8,9 +8,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from operator import getitem
 from typing import Any
 
+from cartwheel.description.numbers import LARGEST
 from cartwheel.errors import PluginError, likely
+from cartwheel.plugins.parameters import shown
 
 _MISSING: Any = object()
+_MOST_COUNT = 1_000_000
 
 
 class Settings:
@@ -57,7 +60,7 @@ class Settings:
         return list(self._values)
 
     def number(self, name: str, default: float = _MISSING) -> float:
-        """A finite number."""
+        """A number, or either infinity."""
         value = self._get(name, default)
         if isinstance(value, str):
             # rosparam keeps numbers such as 1e-3, which YAML takes for text.
@@ -67,9 +70,7 @@ class Settings:
                 raise self._wrong(name, value, "a number") from None
         if isinstance(value, bool) or not isinstance(value, int | float):
             raise self._wrong(name, value, "a number")
-        if math.isnan(value):
-            raise self._wrong(name, value, "a number")
-        return float(value)
+        return self._bounded(name, value)
 
     def optional_number(self, name: str) -> float | None:
         """A number, or None where there is none, or a nan, by which ROS 2 leaves it open."""
@@ -81,8 +82,10 @@ class Settings:
     def integer(self, name: str, default: int = _MISSING) -> int:
         """A whole number."""
         value = self.number(name, default)
-        if value != int(value):
-            raise self._wrong(name, value, "a whole number")
+        if abs(value) > _MOST_COUNT or value != int(value):
+            raise self._wrong(
+                name, value, f"a whole number from {-_MOST_COUNT:,} to {_MOST_COUNT:,}"
+            )
         return int(value)
 
     def boolean(self, name: str, default: bool = _MISSING) -> bool:
@@ -120,7 +123,7 @@ class Settings:
         )
         if not good:
             raise self._wrong(name, value, "a list of numbers")
-        return [float(one) for one in value]
+        return [self._bounded(name, one) for one in value]
 
     def unread(self) -> list[str]:
         """Names of the values that nobody asked for."""
@@ -144,6 +147,12 @@ class Settings:
     def error(self, message: str) -> PluginError:
         """Something that makes no sense, with its place; to be raised by the caller."""
         return PluginError(f"controller {self.name}: {message}{self._place()}")
+
+    def _bounded(self, name: str, value: float) -> float:
+        if math.isnan(value) or LARGEST < abs(value) < math.inf:
+            wanted = "a number" if math.isnan(value) else f"from {-LARGEST:g} to {LARGEST:g}"
+            raise self._wrong(name, value, wanted)
+        return float(value)
 
     def _place(self) -> str:
         return f" ({self.source})" if self.source else ""
@@ -173,7 +182,7 @@ class Settings:
     def _wrong(self, name: str, value: Any, wanted: str) -> PluginError:
         return PluginError(
             f'controller {self.name}: the parameter "{self._prefix}{name}" must be {wanted}, '
-            f"not {value!r}{self._place()}"
+            f"not {shown(repr(value))}{self._place()}"
         )
 
 

@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 
 LEFT, UP = (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 """What wheels and steerings turn about, in the robot's axes."""
+_MOST_KEPT = 10_000
+"""Velocities that an average is taken of."""
 _NEVER = -(1 << 62)
 
 
@@ -141,8 +143,10 @@ class WheelOdometry:
         if rate <= 0:
             raise settings.error(f'"publish_rate" {rate:g} must be above 0')
         size = settings.integer("velocity_rolling_window_size", 10)
-        if size < 1:
-            raise settings.error('"velocity_rolling_window_size" must be at least 1')
+        if not 1 <= size <= _MOST_KEPT:
+            raise settings.error(
+                f'"velocity_rolling_window_size" must be from 1 to {_MOST_KEPT:,}, not {size:,}'
+            )
         self._recent: deque[tuple[float, float, float]] = deque(maxlen=size)
         self._rhythm = Rhythm(rate)
         self.reckoning = DeadReckoning()
