@@ -305,8 +305,10 @@ def test_what_a_limit_for_files_forbids_is_too_large(ends: Ends) -> None:
     assert [number for number, _, _ in taken] == [2]
 
 
-def test_a_patient_writer_waits_for_a_slow_reader(ends: Ends) -> None:
-    held = threading.Event()
+def test_a_patient_writer_waits_for_a_slow_reader(
+    ends: Ends, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    held, full = threading.Event(), threading.Event()
     taken = []
 
     def take(number: int, _: int, data: bytes) -> None:
@@ -314,19 +316,34 @@ def test_a_patient_writer_waits_for_a_slow_reader(ends: Ends) -> None:
         taken.append((number, len(data)))
 
     writer, reader, _ = ends(1 << 16, patient=True, take=take)
+    real = writer.put
+
+    def put(number: int, time_ns: int, data: bytes) -> Put:
+        found = real(number, time_ns, data)
+        if found is Put.FULL:
+            full.set()
+        return found
+
+    monkeypatch.setattr(writer, "put", put)
     reader.start()
+    put_in: list[Put] = []
     waited: list[float] = []
 
     def write() -> None:
-        waited.extend(writer.put_patiently(number, 0, bytes(5000))[1] for number in range(40))
+        for number in range(40):
+            found, seconds = writer.put_patiently(number, 0, bytes(5000))
+            put_in.append(found)
+            waited.append(seconds)
 
     thread = threading.Thread(target=write)
     thread.start()
-    time.sleep(0.2)
-    assert thread.is_alive()
+    # 40 messages of 5,000 bytes do not fit into 65,536, and the reader takes none.
+    assert full.wait(_PATIENCE)
+    assert 0 < len(put_in) < 40
     held.set()
     thread.join(_PATIENCE)
-    assert sum(waited) > 0.05
+    assert put_in == [Put.TAKEN] * 40
+    assert sum(waited) > 0
     reader.read_to(writer.written)
     assert taken == [(number, 5000) for number in range(40)]
 

@@ -27,12 +27,13 @@ import cartwheel as cw
 from cartwheel.bridges.recording import Recorder, writing
 from cartwheel.bridges.recording.backlog import Backlog, Item
 from cartwheel.bridges.recording.formats import encoding_for
+from cartwheel.bridges.recording.opening import open_recording
 from cartwheel.bridges.recording.patterns import Patterns
 from cartwheel.bridges.recording.sink import Sink
 from cartwheel.bridges.recording.writing import open_writer
 from cartwheel.errors import RecordingError
 from cartwheel.graph import Graph
-from cartwheel.messages import encode_cdr, from_dict, message_class
+from cartwheel.messages import encode_cdr, from_dict, message_class, ros1_writing, ros2
 from cartwheel.messages.ros1 import encode_ros1, ros1_type
 
 PROGRAM = Path(sys.executable).with_name("cartwheel")
@@ -481,9 +482,10 @@ def test_a_kill_leaves_all_but_the_last_second(name: str, tmp_path: Path) -> Non
     assert times == [max(i * 10_000_000, int(name == "drive.bag")) for i in range(len(times))]
 
 
-def test_a_recorder_that_is_killed_early_has_the_beginning(tmp_path: Path) -> None:
+@pytest.mark.parametrize("name", NAMES)
+def test_a_recorder_that_is_killed_early_has_the_beginning(name: str, tmp_path: Path) -> None:
     """As soon as it has handed on anything; the run says so and ends."""
-    path = tmp_path / "drive.mcap"
+    path = tmp_path / name
     process = subprocess.Popen(
         [PROGRAM, "run", "--headless", "--record", str(path), "--record-topics", "/clock"],
         stdout=subprocess.DEVNULL,
@@ -496,8 +498,7 @@ def test_a_recorder_that_is_killed_early_has_the_beginning(tmp_path: Path) -> No
         while not times:
             assert time.monotonic() < deadline and process.poll() is None
             time.sleep(0.01)
-            if path.exists():
-                times = [t for t, _ in _read_broken("drive.mcap", path)["/clock"]]
+            times = _times_so_far(path)
         (recorder,) = Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
         os.kill(int(recorder), signal.SIGKILL)
         _, said = process.communicate(timeout=120)
@@ -506,23 +507,83 @@ def test_a_recorder_that_is_killed_early_has_the_beginning(tmp_path: Path) -> No
         process.wait()
     assert process.returncode == 2
     assert "its process was ended" in said
-    times = [t for t, _ in _read_broken("drive.mcap", path)["/clock"]]
-    assert times == [i * 10_000_000 for i in range(len(times))]
+    kept = [t for t, _ in _read_broken(name, path)["/clock"]]
+    assert len(kept) >= len(times)
+    assert kept == [max(i * 10_000_000, int(name == "drive.bag")) for i in range(len(kept))]
+
+
+_DELAY = """
+import sys
+if "recording" in sys.argv:
+    import time
+    from cartwheel.bridges.recording.recorder import Recorder
+    start = Recorder.start
+    Recorder.start = lambda self: (time.sleep(2.0), start(self))[1]
+"""
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_run_waits_until_its_recorder_is_ready(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its process takes 2 s longer than usual: time begins after that, and nothing is missed."""
+    (tmp_path / "sitecustomize.py").write_text(_DELAY)
+    paths = (str(tmp_path), os.environ.get("PYTHONPATH", ""))
+    monkeypatch.setenv("PYTHONPATH", os.pathsep.join(path for path in paths if path))
+    run_program(
+        *("run", "--headless", "--speed", "max", "--for", "1"),
+        *("--record", name, "--record-topics", "/clock"),
+        folder=tmp_path,
+    )
+    found = read_with_rosbags(tmp_path / name)
+    first = int(name == "drive.bag")
+    assert [t for t, _ in found["/clock"]] == [max(i * 10_000_000, first) for i in range(100)]
+
+
+@pytest.mark.parametrize(
+    ("name", "makes"), [("a.mcap", "ros2.message_class"), ("a.bag", "ros1_writing._flat")]
+)
+def test_definitions_are_made_before_the_first_message(
+    name: str, makes: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """On the thread that writes they would hold up what is to be written in the first second."""
+    ros2.ros2_definition.cache_clear()
+    ros1_writing._plan.cache_clear()
+    module, _, function = makes.partition(".")
+    real = getattr({"ros2": ros2, "ros1_writing": ros1_writing}[module], function)
+    threads: set[str] = set()
+
+    def make(*arguments: Any) -> Any:
+        threads.add(threading.current_thread().name)
+        return real(*arguments)
+
+    monkeypatch.setattr(f"cartwheel.messages.{makes}", make)
+    with cw.World("empty") as world:
+        world.spawn("rosbots.xacro")
+        with world.record(tmp_path / name, topics=["/odom", "/joint_states", "/tf"]):
+            assert threads == {"MainThread"}
+            world.run(0.1)
+    assert threads == {"MainThread"}
+
+
+def _times_so_far(path: Path) -> list[int]:
+    """Of the messages in a file that is being written; reading it changes nothing."""
+    try:
+        recording = open_recording(path)
+    except RecordingError:
+        return []  # it is not there, or has just begun
+    try:
+        return [message.time_ns for message in recording.messages()]
+    finally:
+        recording.close()
 
 
 def _holds_much(file: Path) -> bool:
     """Whether a file that is being written would keep more than a second if that ended now."""
-    if file.suffix != ".db3" or not file.exists():
+    if file.suffix != ".db3":
         return file.exists() and file.stat().st_size > 200_000
     # Its empty tables are as large as that.
-    base = sqlite3.connect(f"file:{file}?mode=ro", uri=True)
-    try:
-        (count,) = base.execute("SELECT COUNT(*) FROM messages").fetchone()
-    except sqlite3.OperationalError:
-        return False  # it is being written, or has no tables yet
-    finally:
-        base.close()
-    return bool(count > 2000)
+    return len(_times_so_far(file)) > 2000
 
 
 def _read_broken(name: str, path: Path) -> Found:

@@ -13,7 +13,7 @@ from pathlib import Path
 from tests.campaign import registry
 from tests.campaign.finding import Finding
 from tests.campaign.target import Target
-from tests.campaign.watching import Watched, watch
+from tests.campaign.watching import Watched, sweep, watch
 
 _LONGEST_SLICE_S = 60.0
 _SHORTEST_SLICE_S = 0.3
@@ -91,6 +91,7 @@ class Campaign:
 
     def run(self, minutes: float) -> None:
         """Gives each target a slice of time in turn until the minutes are over."""
+        sweep()
         end = time.monotonic() + minutes * 60
         turn = min(_LONGEST_SLICE_S, minutes * 60 / sum(each.share for each in self.targets))
         starting = [_STARTING_S]
@@ -123,6 +124,8 @@ class Campaign:
             }
             watched = watch(target, task, room)
             _add(counts, watched)
+            if watched.stopped:
+                raise KeyboardInterrupt
             # A worker that died is started anew, for the rest of the slice.
             left = seconds - (time.monotonic() - begin)
             if watched.ended or left < 0:

@@ -37,7 +37,8 @@ class LiveRun:
     """
 
     def __init__(self, *arguments: str, wait: bool = True) -> None:
-        self.folder = Path(tempfile.mkdtemp(prefix="cw", dir="/tmp"))  # sockets' paths are short
+        # Sockets' paths are short; the name says whose it is, see `watching.sweep`.
+        self.folder = Path(tempfile.mkdtemp(prefix=f"cw{os.getpid()}-", dir="/tmp"))
         self.mark = uuid.uuid4().hex
         ports = random.Random(self.mark).sample(range(20_000, 60_000), 3)
         self.page, self.foxglove, self.master = ports

@@ -26,6 +26,8 @@ _LOADING_S = 300.0
 _LEAST_WALL_S = 60.0
 """A busy machine gives an input this much wall time, however little CPU time it may take."""
 _POLL_S = 0.05
+_SOCKETS = Path("/tmp")
+"""Where live runs have a folder each, since the path of a socket must be short."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -39,6 +41,8 @@ class Watched:
     slowest_ms: int
     ended: bool
     """False: it was killed or died, and its last input is a finding."""
+    stopped: bool = False
+    """The campaign was interrupted meanwhile."""
 
 
 def watch(target: Target, task: Mapping[str, Any], room: Path) -> Watched:
@@ -72,9 +76,11 @@ def watch(target: Target, task: Mapping[str, Any], room: Path) -> Watched:
         stdout=subprocess.DEVNULL,
         stderr=(room / "starting").open("wb"),
     )
-    reason = ""
+    reason, stopped = "", False
     try:
         reason = _guard(process, target, counters)
+    except KeyboardInterrupt:
+        stopped = True
     finally:
         if process.poll() is None and reason:
             process.send_signal(signal.SIGUSR1)  # it writes where it is
@@ -84,7 +90,18 @@ def watch(target: Target, task: Mapping[str, Any], room: Path) -> Watched:
             os.killpg(process.pid, signal.SIGKILL)
         process.wait()
         shutil.rmtree(room / "tmp", ignore_errors=True)
+        sweep()
     loaded, begun, accepted, refused, faulty, slowest = COUNTERS.unpack(counters.read_bytes())
+    if stopped:
+        return Watched(
+            begun=begun,
+            accepted=accepted,
+            refused=refused,
+            faulty=faulty,
+            slowest_ms=slowest,
+            ended=True,
+            stopped=True,
+        )
     if not loaded or (begun == 0 and process.returncode):
         _startless(target, room).save(room.parent / "findings")
         return Watched(begun=0, accepted=0, refused=0, faulty=1, slowest_ms=0, ended=True)
@@ -101,6 +118,14 @@ def watch(target: Target, task: Mapping[str, Any], room: Path) -> Watched:
         slowest_ms=slowest,
         ended=not reason,
     )
+
+
+def sweep() -> None:
+    """Removes folders of live runs whose worker has ended without doing it."""
+    for folder in _SOCKETS.glob("cw[0-9]*-*"):
+        pid = folder.name[2:].partition("-")[0]
+        if not Path("/proc", pid).exists():
+            shutil.rmtree(folder, ignore_errors=True)
 
 
 def _startless(target: Target, room: Path) -> Finding:

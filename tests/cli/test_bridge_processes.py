@@ -131,16 +131,34 @@ def test_a_wire_that_stands_still_does_not_hold_the_simulation(program: Program)
     assert not _alive(child)
 
 
+_HELD = """
+import sys
+if "broken.urdf" in sys.argv:
+    import time
+    from pathlib import Path
+    from cartwheel.description import xml
+    read = xml.read_bytes
+    def held(path, *more, **options):
+        end = time.monotonic() + 60
+        while not Path("go on").exists() and time.monotonic() < end:
+            time.sleep(0.01)
+        return read(path, *more, **options)
+    xml.read_bytes = held
+"""
+
+
 def test_a_file_that_cannot_be_read_leaves_nothing_behind(program: Program) -> None:
     (program.folder / "broken.urdf").write_text("<robot")
-    began = time.monotonic()
+    # It is read when both processes are there.
+    (program.folder / "sitecustomize.py").write_text(_HELD)
+    paths = (str(program.folder), program.environment.get("PYTHONPATH", ""))
+    program.environment["PYTHONPATH"] = os.pathsep.join(path for path in paths if path)
     process = program.start("run", "broken.urdf", "--headless", "--ros2", "--record", "a.mcap")
-    seen: set[int] = set()
-    while process.poll() is None:
-        seen.update(_children(process))
-        assert time.monotonic() < began + _PATIENCE
-    _, error = process.communicate()
+    _until(lambda: len(_children(process)) == 2)
+    children = _children(process)
+    (program.folder / "go on").touch()
+    _, error = process.communicate(timeout=_PATIENCE)
     assert process.returncode == 2
     assert "broken.urdf:1" in error
-    assert not any(map(_alive, seen))
+    _until(lambda: not any(map(_alive, children)))
     assert not (program.folder / "a.mcap").exists()

@@ -13,6 +13,7 @@ from typing import Any
 from cartwheel.bridges.bridged import BridgedGraph, BridgedSubscription
 from cartwheel.bridges.mirror import offered_by_others
 from cartwheel.bridges.recording.backlog import Backlog, Item
+from cartwheel.bridges.recording.encoding import codec
 from cartwheel.bridges.recording.formats import (
     Encoding,
     check_writable,
@@ -30,6 +31,7 @@ from cartwheel.errors import (
     one_line,
 )
 from cartwheel.graph import TopicInfo
+from cartwheel.messages import decode_cdr, encode_cdr, zero
 
 READER = "recorder"
 """Our name in the graph."""
@@ -148,6 +150,7 @@ class Recorder:
         self._begin(self.path)
         self._graph.on_change.append(self._changed)
         self._survey()
+        self._prepare()
         self._thread.start()
 
     def close(self) -> Summary:
@@ -232,6 +235,18 @@ class Recorder:
         for name, info in topics.items():
             if name not in self._taps and self._patterns.match(name):
                 self._taps[name] = _Tap(self, self._graph, info)
+
+    def _prepare(self) -> None:
+        """Makes what each type needs: at its first message it would hold up all others.
+
+        ROS 2's bytes come as they are written; for ROS 1 code is made that reads and writes them.
+        """
+        made = codec(self._encoding)
+        for tap in self._taps.values():
+            with suppress(CartwheelError):
+                made.schema(tap.type)
+                if self._encoding == "ros1":
+                    made.encode(decode_cdr(encode_cdr(zero(tap.type)), tap.type), 0)
 
     # -- on the recorder's thread
 
