@@ -62,7 +62,7 @@ def take(page: Any, session: Session) -> bytes:
             time.sleep(0.01)
     page.mouse.move(720, 880)
     page.wait_for_timeout(2500)
-    return bytes(page.screenshot(timeout=120_000))
+    return bytes(page.screenshot(timeout=300_000))
 
 
 def write(png: bytes) -> None:
@@ -104,7 +104,7 @@ def main() -> None:
         with sync_playwright() as playwright:
             browser = playwright.chromium.launch(executable_path=chromium, args=FLAGS)
             page = browser.new_page(viewport={"width": 1440, "height": 900})
-            page.set_default_timeout(60_000)
+            page.set_default_timeout(300_000)
             page.goto(viewer.url)
             write(take(page, session))
             browser.close()

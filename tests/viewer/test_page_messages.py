@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import socket
 from typing import Any
 
 import pytest
@@ -168,6 +169,29 @@ def test_an_upload_reads_nothing_of_this_machine(simulation, tmp_path):
             browser.send(start(upload, answer, len(content)) | {"filename": "r.xacro"})
             browser.send(part(upload, answer, 0, content))
             browser.hear(note(answer))
+
+
+def test_browsers_that_die_amid_an_upload_leave_room_for_others(simulation):
+    size = 2 * uploads.PART_BYTES
+    for _ in range(uploads.MOST_AT_ONCE + 1):
+        with browsing(simulation.port) as browser:
+            browser.look()
+            upload = browser.control("Open a file")
+            browser.send(start(upload, "half", size))
+            browser.send(part(upload, "half", 0, bytes(uploads.PART_BYTES)))
+            browser.hear(lambda m: m["type"] == "FileTransferPartAck")
+            browser.link.socket.shutdown(socket.SHUT_RDWR)
+    with browsing(simulation.port) as browser:
+        browser.look()
+        upload = browser.control("Open a file")
+        browser.send(start(upload, "ball", len(BALL)))
+        browser.send(part(upload, "ball", 0, BALL))
+        browser.hear(note("ball was added to the world"))
+        simulation.process.kill()
+        with pytest.raises(ConnectionClosed):
+            browser.hear(lambda _: False)
+    out, _ = simulation.process.communicate(timeout=60)
+    assert out.count("Traceback") == 0
 
 
 def test_uploads_are_bounded_while_they_arrive(simulation):
