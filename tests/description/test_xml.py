@@ -52,7 +52,7 @@ def test_comments_may_hold_dashes(encode):
         ("", 1, "is not XML"),
         ('<!DOCTYPE a [\n<!ENTITY x "y">]><a>&x;</a>', 2, "entities are not allowed"),
         (b'<?xml version="1.0" encoding="none"?><a/>', 1, "cannot be decoded"),
-        (b"<a>\n\xff</a>", 2, "malformed XML"),
+        (b"<a>\n\xff</a>", 2, "is not UTF-8"),
         ("<a>\ud800</a>", 1, "cannot be decoded"),
         ("<a>\n" * 500, 101, "nested more than 100 deep"),
     ],
@@ -224,3 +224,14 @@ def test_a_declaration_after_a_comment_is_read_as_gazebo_reads_it():
     for given in (text, text.encode()):
         root = xml.parse(given, "w.world")
         assert (root.tag, root.origin.line, root.children[0].origin.line) == ("a", 4, 5)
+
+
+def test_bytes_that_are_not_utf_8_are_named_with_the_remedy():
+    text = '<robot name="r">\n<link name="Tür"/></robot>'
+    with pytest.raises(DescriptionError, match="the byte 0xfc at column 14 is not UTF-8") as got:
+        xml.parse(text.encode("latin-1"), "r.urdf")
+    assert str(got.value.origin) == "r.urdf:2"
+    declared = '<?xml version="1.0" encoding="ISO-8859-1"?>'
+    assert declared in (got.value.hint or "")
+    for encoding, head in (("utf-8", ""), ("latin-1", declared)):
+        assert xml.parse((head + text).encode(encoding)).children[0].require("name") == "Tür"

@@ -144,6 +144,10 @@ class Handler(Protocol):
         """A piece of the innermost element's text."""
 
 
+_INVALID_TOKEN = expat.errors.codes[expat.errors.XML_ERROR_INVALID_TOKEN]
+_DECLARATION = '<?xml version="1.0" encoding="ISO-8859-1"?>'
+
+
 def run_expat(text: str | bytes, file: str, handler: Handler) -> None:
     """Reads XML and reports malformed text as a `DescriptionError` with its place."""
     parser = expat.ParserCreate()
@@ -175,10 +179,15 @@ def run_expat(text: str | bytes, file: str, handler: Handler) -> None:
     parser.EndElementHandler = end
     parser.CharacterDataHandler = handler.data
     parser.EntityDeclHandler = entity
+    plain = _plain_comments(_declared_first(text))
     try:
-        parser.Parse(_plain_comments(_declared_first(text)), True)
+        parser.Parse(plain, True)
     except expat.ExpatError as error:
+        byte = plain[parser.ErrorByteIndex :][:1] if isinstance(plain, bytes) else b""
         reason, hint = _explain(error, still_open)
+        if error.code == _INVALID_TOKEN and byte > b"\x7f":
+            reason = f"the byte 0x{byte.hex()} at column {error.offset + 1} is not UTF-8"
+            hint = f"Save the file as UTF-8, or state its encoding in line 1: {_DECLARATION}"
         raise DescriptionError(
             reason, origin=Origin(file=file, line=error.lineno), hint=hint
         ) from error
