@@ -4,13 +4,21 @@ from __future__ import annotations
 
 import contextlib
 import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
 from random import Random
 from types import SimpleNamespace
 
 import pytest
-from tests.campaign import harness, mutating, registry
+from tests.campaign import harness, mutating, registry, watching
 from tests.campaign.finding import Finding
 from tests.campaign.harness import Campaign, Counts, replay
+from tests.campaign.watching import ROOT
+from tests.campaign.worker import COUNTERS
 
 KINDS = {
     "exception": "exception",
@@ -115,3 +123,71 @@ def test_a_good_part_of_mutated_definitions_is_accepted(tmp_path):
             target.run_one(target.mutate(seeds[number % len(seeds)], seeds, Random(number)))
             accepted += 1
     assert accepted > 15
+
+
+def test_a_stopped_campaign_goes_on_where_it_was(tmp_path):
+    """By Ctrl-C, by SIGTERM, and by a kill; no worker is left, and what was read is counted."""
+    counted = 0
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGKILL, signal.SIGINT):
+        campaign = subprocess.Popen(
+            [
+                *(sys.executable, "-m", "tests.campaign", "--minutes", "60", "--resume"),
+                *("--targets", "zenoh", "--folder", str(tmp_path)),
+            ],
+            cwd=ROOT,
+            env={**os.environ, "PYTHONPATH": os.pathsep.join((str(ROOT), str(ROOT / "src")))},
+            stdout=subprocess.PIPE,
+            text=True,
+        )
+        try:
+            wait_for(lambda: read_by(tmp_path) > 20, "inputs")
+            workers = workers_of(tmp_path)
+            assert workers
+            campaign.send_signal(number)
+            said, _ = campaign.communicate(timeout=60)
+        finally:
+            campaign.kill()
+        wait_for(lambda: not workers_of(tmp_path), "the end of the worker")
+        if number != signal.SIGKILL:
+            assert "stopped; --resume goes on" in said
+            assert campaign.returncode == 0
+            state = json.loads((tmp_path / "counts.json").read_text())
+            assert state["inputs"] > counted + 20
+            counted = state["inputs"]
+        (tmp_path / "zenoh" / "counters").unlink()
+
+
+def read_by(folder):
+    """Inputs that the worker at hand has begun to read."""
+    file = folder / "zenoh" / "counters"
+    return COUNTERS.unpack(file.read_bytes())[1] if file.exists() and file.stat().st_size else 0
+
+
+def workers_of(folder):
+    """Processes of workers whose room is in a folder."""
+    found = []
+    for process in Path("/proc").glob("[0-9]*"):
+        with contextlib.suppress(OSError):
+            words = (process / "cmdline").read_text()
+            state = (process / "stat").read_text().rpartition(")")[2].split()[0]
+            if "tests.campaign.worker" in words and str(folder) in words and state != "Z":
+                found.append(int(process.name))
+    return found
+
+
+def wait_for(condition, what):
+    deadline = time.monotonic() + 60
+    while not condition():
+        assert time.monotonic() < deadline, f"no {what} within 60 s"
+        time.sleep(0.02)
+
+
+def test_folders_of_workers_that_have_ended_are_removed(tmp_path, monkeypatch):
+    monkeypatch.setattr(watching, "_SOCKETS", tmp_path)
+    ended = subprocess.Popen([sys.executable, "-c", ""])
+    ended.wait()
+    left, used = tmp_path / f"cw{ended.pid}-a", tmp_path / f"cw{os.getpid()}-b"
+    for folder in (left, used, tmp_path / "cw_other"):
+        folder.mkdir()
+    watching.sweep()
+    assert sorted(tmp_path.iterdir()) == [used, tmp_path / "cw_other"]
