@@ -20,6 +20,8 @@ _PORTS = {"http": "80", "https": "443"}
 _ANY = {"": "127.0.0.1", "0.0.0.0": "127.0.0.1", "::": "::1"}  # noqa: S104
 """All addresses of this computer, and the one that it reaches itself by."""
 _TOKEN_BYTES = 24
+_NOBODY = ("null", "")
+"""Origins that name no site."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -115,7 +117,7 @@ class Access:
             )
         origin = asked.origin
         if origin is not None and not self._admits(origin.lower(), host, apps):
-            remedy = "" if origin == "null" else f" To allow them: --allow-origin {origin}"
+            remedy = "" if origin in _NOBODY else f" To allow them: --allow-origin {origin}"
             return Refusal(
                 status=403,
                 text=f"Web pages of the origin {origin} may not connect.{remedy}",
@@ -170,8 +172,8 @@ def refused_page(title: str, origin: str) -> Diagnostic:
         title: Of the server.
         origin: The page's, safe to print.
     """
-    remedy = "" if origin == "null" else f"; to allow it: --allow-origin {origin}"
-    message = f"{title} refused a web page of the origin {origin}{remedy}"
+    remedy = "" if origin in _NOBODY else f"; to allow it: --allow-origin {origin}"
+    message = f"{title} refused a web page of the origin {origin or '(empty)'}{remedy}"
     return Diagnostic(severity="warning", message=message)
 
 

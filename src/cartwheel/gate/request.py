@@ -102,6 +102,13 @@ async def next_event(connection: h11.Connection, sock: socket.socket) -> h11.Eve
 
 
 def _checked(event: h11.Request, connection: h11.Connection) -> Request:
+    # h11 bounds only a head that is not complete yet.
+    size = len(event.target) + sum(len(name) + len(value) + 4 for name, value in event.headers)
+    if size > HEAD_SIZE:
+        status = HTTPStatus.REQUEST_HEADER_FIELDS_TOO_LARGE
+        raise RequestError(status, f"a request's head has at most {HEAD_SIZE} bytes")
+    if event.http_version not in (b"1.0", b"1.1"):
+        raise RequestError(HTTPStatus.HTTP_VERSION_NOT_SUPPORTED, "only HTTP/1 is spoken here")
     if event.method != b"GET":
         raise RequestError(HTTPStatus.METHOD_NOT_ALLOWED, "only GET is answered")
     # Not an address in full: then two would say which server is meant.
