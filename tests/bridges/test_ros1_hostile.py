@@ -19,6 +19,8 @@ from tests.bridges.ros1_peers import Master, Subscriber, read_block, send_header
 from cartwheel.bridges.ros1.attempts import THREADS, Attempts
 from cartwheel.bridges.ros1.connection import BLOCK
 from cartwheel.bridges.ros1.http import BUSY
+from cartwheel.bridges.ros1.master import MasterParameters
+from cartwheel.bridges.ros1.registrar import Registrar
 from cartwheel.bridges.ros1.rpc import Peer, RpcError
 from cartwheel.bridges.ros1.subscription import MOST
 
@@ -419,3 +421,31 @@ def test_what_strangers_call_themselves_moves_no_cursor(bridge: Bridge) -> None:
     wait_for(lambda: run.told("expects a (1) on /odom"), "the report")
     assert not run.told("\x1b")
     assert run.told("/?[2J expects")
+
+
+def test_a_master_that_answers_nonsense_takes_no_name(monkeypatch: pytest.MonkeyPatch) -> None:
+    taken: list[str] = []
+    found: list[bool] = []
+    registrar = Registrar(
+        master_uri="http://localhost:1",
+        node="/gazebo",
+        uri="http://localhost:2/",
+        service_uri="rosrpc://localhost:3",
+        parameters=MasterParameters(
+            "http://localhost:1", node="/gazebo", outer=str, wake=lambda: None
+        ),
+        survey=list,
+        on_publishers=lambda _topic, _uris: None,
+        on_lost=lambda _: None,
+        on_found=lambda: found.append(True),
+        on_taken=taken.append,
+        on_fault=lambda _: None,
+    )
+    for answer in (["http://x"] * 3, [], {"a": 1}, 5, True, b"http://x"):
+        monkeypatch.setattr(registrar._peer, "call", lambda *_, answer=answer: answer)
+        registrar._look()
+        assert taken == []
+        assert not registrar._stopped
+    monkeypatch.setattr(registrar._peer, "call", lambda *_: "http://elsewhere:4/")
+    registrar._look()
+    assert taken == ["http://elsewhere:4/"]

@@ -99,3 +99,29 @@ def test_ros1_has_its_types_on_five_topics(worker):
     assert feedback.drain()[0].feedback.position == 0.1
     topics.close()
     assert worker.graph.topics() == [info for info in worker.graph.topics() if not info.publishers]
+
+
+def test_a_flood_of_goals_is_bounded(worker):
+    topics = ActionTopics(worker.graph, worker.action)
+    told = []
+    worker.graph.subscribe("/grip/status", lambda message: told.append(len(message.status_list)))
+    last = None
+    for number in range(300):
+        goal = worker.submit(f"quick {number}")
+        if last is not None:
+            last.cancel(worker.result())
+        last = goal
+    assert len(worker.action.goals) <= 100
+    assert max(told) <= 100
+    # The latest are still known, and one under way is not forgotten.
+    assert worker.action.goal("quick 250") is not None
+    assert worker.action.goal("quick 100") is None
+    long = [worker.submit(f"long {number}") for number in range(130)]
+    states = [goal.state for goal in long]
+    assert states.count(GoalState.ACTIVE) == 99
+    assert states[99:] == [GoalState.REJECTED] * 31
+    assert "100 goals are under way" in long[-1].text
+    assert len(worker.action.goals) <= 101
+    worker.action.cancel()
+    assert worker.submit("again").state is GoalState.ACTIVE
+    topics.close()

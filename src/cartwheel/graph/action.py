@@ -12,12 +12,14 @@ from collections.abc import Callable, Iterable
 from typing import Any, Protocol
 
 from cartwheel.graph.names import resolve_name
-from cartwheel.messages import message_class
+from cartwheel.messages import message_class, zero
 
 _KEPT_NS = 10_000_000_000
 """How long a goal that is done is known at least, for those who ask for its result."""
 _KEPT = 20
 """So many of them are known however long ago they ended."""
+_MOST = 100
+"""Goals that are known at a time: each change of one publishes the states of all."""
 
 
 class GoalState(enum.Enum):
@@ -201,8 +203,12 @@ class Action:
         if identity in self._goals:
             return None
         made = Goal(self, identity, now if stamp_ns is None else stamp_ns, goal)
+        is_full = len(self._goals) >= _MOST
         self._goals[identity] = made
-        self._on_goal(made)
+        if is_full:
+            made.reject(zero(f"{self.type}_Result"), f"{_MOST} goals are under way already")
+        else:
+            self._on_goal(made)
         return made
 
     def cancel(self, *, identity: str = "", before_ns: int = 0) -> list[Goal]:
@@ -238,6 +244,9 @@ class Action:
         done = [goal for goal in self._goals.values() if goal.done]
         for goal in self._late(done, now):
             del self._goals[goal.id]
+        # Clients may send any number of goals within the time for which one is kept.
+        for goal in done[: max(0, len(self._goals) - _MOST + 1)]:
+            self._goals.pop(goal.id, None)
 
     @staticmethod
     def _late(done: list[Goal], now: int) -> Iterable[Goal]:

@@ -129,6 +129,9 @@ class Registrar:
             raise
         except RpcError:
             known = None
+        if not isinstance(known, str):
+            # Not an address: no other node took the name.
+            known = None
         self._parameters.reachable = True
         if known is None and self._registered:
             self._registered.clear()
