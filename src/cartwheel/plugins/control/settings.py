@@ -149,8 +149,10 @@ class Settings:
         return PluginError(f"controller {self.name}: {message}{self._place()}")
 
     def _bounded(self, name: str, value: float) -> float:
-        if math.isnan(value) or LARGEST < abs(value) < math.inf:
-            wanted = "a number" if math.isnan(value) else f"from {-LARGEST:g} to {LARGEST:g}"
+        # A whole number of YAML can be too long for a float.
+        unset = isinstance(value, float) and math.isnan(value)
+        if unset or LARGEST < abs(value) < math.inf:
+            wanted = "a number" if unset else f"from {-LARGEST:g} to {LARGEST:g}"
             raise self._wrong(name, value, wanted)
         return float(value)
 
