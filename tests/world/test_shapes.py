@@ -140,7 +140,7 @@ def test_a_fine_round_has_a_hull_of_few_corners_that_is_as_large(make, tmp_path)
     assert world.model("ball").pose.z == pytest.approx(radius, abs=4 * 2 * radius / corners)
 
 
-def test_a_lone_triangle_is_drawn_and_costs_nothing_else(make, tmp_path):
+def test_a_lone_triangle_is_drawn_as_it_is_and_is_solid(make, tmp_path):
     """Such parts are all over what architects' programs write."""
     (tmp_path / "shard.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
     shape = f"<geometry><mesh><uri>file://{tmp_path}/shard.obj</uri></mesh></geometry>"
@@ -149,7 +149,14 @@ def test_a_lone_triangle_is_drawn_and_costs_nothing_else(make, tmp_path):
         <visual name="v">{shape}</visual><collision name="c">{shape}</collision></link></model>"""
     )
     model = make.world(shard).session.simulation.model
-    assert model.mesh_facenum.min() == 1
+    body = model.body("shard::l").id
+    drawn, solid = [i for i in range(model.ngeom) if model.geom_bodyid[i] == body]
+    assert model.mesh_facenum[model.geom_dataid[drawn]] == 1
+    assert (model.geom_contype[drawn], model.geom_conaffinity[drawn]) == (0, 0)
+    # The engine takes no shape without a volume.
+    assert model.geom(solid).name == "shard::l::c"
+    assert model.mesh_facenum[model.geom_dataid[solid]] > 1
+    assert model.geom_contype[solid] != 0
 
 
 def test_a_plane_that_is_seen_on_a_moving_link_is_a_plate(make):
