@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import os
 import tempfile
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -31,6 +32,9 @@ from cartwheel.description.model import (
 from cartwheel.errors import Origin
 from cartwheel.geometry import Pose
 
+if os.environ.get("CARTWHEEL_CODES_ONLY"):
+    from tests.codes_only import sitecustomize
+
 GRAVITY = 9.8
 HERE = Pose()
 _PLACE = Origin(file="test.sdf", line=1)
@@ -44,6 +48,21 @@ settings.register_profile(
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
 )
 settings.load_profile("cartwheel")
+
+
+def pytest_configure() -> None:
+    if os.environ.get("CARTWHEEL_CODES_ONLY"):
+        folder = str(Path(sitecustomize.__file__).parent)
+        os.environ["PYTHONPATH"] = os.pathsep.join(
+            filter(None, (folder, os.environ.get("PYTHONPATH", "")))
+        )
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    if os.environ.get("CARTWHEEL_CODES_ONLY"):
+        left_out = [item for item in items if item.get_closest_marker("wording")]
+        config.hook.pytest_deselected(items=left_out)
+        items[:] = [item for item in items if not item.get_closest_marker("wording")]
 
 
 @pytest.fixture(scope="session", autouse=True)

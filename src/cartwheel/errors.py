@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import difflib
 import threading
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
@@ -12,6 +12,8 @@ from cartwheel.budget import Budget
 
 Severity = Literal["info", "warning", "error"]
 
+_SIMILAR = 0.6
+"""How alike two names are at least, where one is proposed for the other."""
 _LONGEST = 500
 """Characters of a name that is shown whole and compared with others."""
 
@@ -30,41 +32,145 @@ class Origin:
         return f"{self.file}:{self.line}" if self.line else self.file
 
 
+Value = str | float | bool | tuple[str, ...] | tuple[float, ...] | None
+"""What a diagnostic is about, for programs: a name, a number in SI units, several of one kind."""
+Place = Literal["", "element", "attribute", "inside", "after", "line"]
+"""Where the text of a fix goes.
+
+``element`` replaces the element at the diagnostic's line; ``attribute`` replaces its attribute of
+the same name, or is added to it; ``inside`` goes in before its closing tag; ``after`` follows
+it. In YAML ``line`` replaces the line behind its indentation, and ``after`` is a new line below,
+with the same indentation. Empty: the text shows what to write, but no exact place is known.
+"""
+
+
+@dataclass(frozen=True, slots=True)
+class Code:
+    """One kind of diagnostic. `cartwheel.codes` holds all of them and their explanations.
+
+    Args:
+        number: Such as ``CW204``. Published numbers never change and are never reused.
+        name: Such as ``wheel-separation-mismatch``.
+        severity: The default one.
+        summary: What is reported, as a phrase.
+    """
+
+    number: str
+    name: str
+    severity: Severity
+    summary: str
+
+    def __str__(self) -> str:
+        return f"{self.number} {self.name}"
+
+    def diagnostic(
+        self,
+        message: str,
+        *,
+        origin: Origin | None = None,
+        hint: str = "",
+        severity: Severity | None = None,
+        mark: str = "",
+        values: Mapping[str, Value] | None = None,
+    ) -> Diagnostic:
+        """A diagnostic of this kind.
+
+        Args:
+            message: One sentence without place and code.
+            origin: The place in the user's file.
+            hint: The likely fix, as a sentence.
+            severity: Where it differs from the code's.
+            mark: The text in the source line that the caret points to; by default the whole tag.
+            values: What the message names, for programs: tests, rules, JSON.
+        """
+        return Diagnostic(
+            code=self,
+            severity=severity or self.severity,
+            message=message,
+            origin=origin,
+            hint=hint,
+            mark=mark,
+            values=values or {},
+        )
+
+
+UNCLASSIFIED = Code("CW000", "unclassified", "error", "a diagnostic without a code of its own")
+"""Of diagnostics that have no code yet."""
+
+
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Diagnostic:
-    """Something a user should know about a file that nevertheless loads."""
+    """Something a user should know: about a file, a plugin, a wire or the run."""
 
     severity: Severity
     message: str
+    """One sentence without place and code."""
+    code: Code = UNCLASSIFIED
     origin: Origin | None = None
+    hint: str = ""
+    """The likely fix, as a sentence."""
+    values: Mapping[str, Value] = field(default_factory=dict, compare=False)
+    """What the message names, for programs."""
+    mark: str = ""
+    """The text in the source line that the caret points to; empty for the whole tag."""
+    instead: str = ""
+    """The text to write."""
+    place: Place = ""
+    """Where `instead` goes."""
+    also: tuple[str, ...] = ()
+    """Messages of further diagnostics of this code at the same place."""
     details: str = field(default="", compare=False)
-    """Python's traceback, for the author of what failed."""
+    """A Python traceback, for the author of the code that failed."""
 
     def __str__(self) -> str:
         place = f"{self.origin}: " if self.origin else ""
-        return f"{place}{self.severity}: {self.message}"
+        code = f" [{self.code}]" if self.code is not UNCLASSIFIED else ""
+        return f"{place}{self.severity}: {self.message}{code}"
 
 
 class CartwheelError(Exception):
-    """Base of every error that is the user's to mend; the command line prints it and exits with 2.
+    """Base of every error that the user can correct; the command line prints it and exits with 2.
 
     Args:
-        message: One sentence without its place.
+        message: One sentence without place and code.
+        code: Its kind; by default that of the class.
         origin: The place in the user's file.
-        hint: The likely fix, a sentence of its own.
+        hint: The likely fix, as a sentence.
+        values: What the message names, for programs.
+        mark: The text in the source line that the caret points to.
     """
 
+    code: Code = UNCLASSIFIED
+
     def __init__(
-        self, message: str, *, origin: Origin | None = None, hint: str | None = None
+        self,
+        message: str,
+        *,
+        code: Code | None = None,
+        origin: Origin | None = None,
+        hint: str | None = None,
+        values: Mapping[str, Value] | None = None,
+        mark: str = "",
     ) -> None:
         self.message = message
+        if code is not None:
+            self.code = code
         self.origin = origin
         self.hint = hint
+        self.values: Mapping[str, Value] = values or {}
+        self.mark = mark
         super().__init__(message)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """For other processes: subclasses are made of other arguments."""
-        return _remade, (type(self), self.message, self.origin, self.hint)
+        """For other processes: subclasses have other arguments."""
+        state = {
+            "code": self.code,
+            "origin": self.origin,
+            "hint": self.hint,
+            "values": self.values,
+            "mark": self.mark,
+        }
+        return _restored, (type(self), self.message, state)
 
     def __str__(self) -> str:
         text = f"{self.origin}: {self.message}" if self.origin else self.message
@@ -74,12 +180,22 @@ class CartwheelError(Exception):
             text += "".join(f"\n  in {frame}" for frame in self.origin.stack)
         return text
 
+    def diagnostic(self, severity: Severity = "error") -> Diagnostic:
+        """The same as a diagnostic, for what goes on in spite of it or shows it."""
+        return Diagnostic(
+            code=self.code,
+            severity=severity,
+            message=self.message,
+            origin=self.origin,
+            hint=self.hint or "",
+            values=self.values,
+            mark=self.mark,
+        )
 
-def _remade(
-    kind: type[CartwheelError], message: str, origin: Origin | None, hint: str | None
-) -> CartwheelError:
+
+def _restored(kind: type[CartwheelError], message: str, state: Mapping[str, Any]) -> CartwheelError:
     error = kind.__new__(kind, message)
-    CartwheelError.__init__(error, message, origin=origin, hint=hint)
+    CartwheelError.__init__(error, message, **state)
     return error
 
 
@@ -120,38 +236,69 @@ class StaticModelError(PluginError):
 
 
 class UnknownNameError(CartwheelError):
-    """A name that does not exist; says which do and which was likely meant."""
+    """A name that does not exist; says which do and which was likely meant.
+
+    Its values are ``kind``, ``name`` and ``meant``: the likely one, or empty.
+    """
 
     def __init__(
-        self, kind: str, name: str, existing: Iterable[str], *, origin: Origin | None = None
+        self,
+        kind: str,
+        name: str,
+        existing: Iterable[str],
+        *,
+        code: Code | None = None,
+        origin: Origin | None = None,
     ) -> None:
         known = sorted(set(existing))
         shown = name if len(name) <= _LONGEST else f"{name[:_LONGEST]}…"
+        close = _close(name, known, _SIMILAR)
         super().__init__(
-            f'{kind} "{shown}" does not exist', origin=origin, hint=suggestion(name, known)
+            f'{kind} "{shown}" does not exist',
+            code=code,
+            origin=origin,
+            hint=_suggested(close, known),
+            values={"kind": kind, "name": shown, "meant": close[0] if close else ""},
         )
 
 
 def one_line(error: Exception) -> str:
-    """An error for who shows a line alone: the user's with place and hint, ours with its class."""
+    """An error on one line: ours with place and hint, others with their class."""
     if not isinstance(error, CartwheelError):
         return f"{type(error).__name__}: {error}"
     place = f"{error.origin}: " if error.origin else ""
     return f"{place}{error.message}{f'. {error.hint}' if error.hint else ''}"
 
 
-def fault(message: str, error: BaseException, origin: Origin | None = None) -> Diagnostic:
-    """What to say of code that raised an error; the traceback is in the details."""
+def fault(
+    message: str,
+    error: BaseException,
+    origin: Origin | None = None,
+    *,
+    code: Code = UNCLASSIFIED,
+    values: Mapping[str, Value] | None = None,
+) -> Diagnostic:
+    """The diagnostic for code that raised an error, with the traceback in its details.
+
+    Args:
+        message: What failed; the error's own message follows it.
+        error: What was raised.
+        origin: The place in the user's file; that of the error where it has one.
+        code: The kind of diagnostic.
+        values: For programs. ``cause`` is added: the number of the error's code, or its class.
+    """
     import traceback  # only at a fault: its import would slow every start
 
-    said, place = f"{type(error).__name__}: {error}", origin
+    said, place, cause = f"{type(error).__name__}: {error}", origin, type(error).__name__
     if isinstance(error, CartwheelError):
         said = f"{error.message}{f'. {error.hint}' if error.hint else ''}"
-        place = error.origin or origin
+        place, cause = error.origin or origin, error.code.number
     return Diagnostic(
+        code=code,
         severity="error",
         message=f"{message}: {said}",
         origin=place,
+        values={**(values or {}), "cause": cause},
         details="".join(traceback.format_exception(error)).rstrip(),
     )
 
@@ -206,9 +353,12 @@ def likely(name: str, existing: Iterable[str], *, cutoff: float = 0.75) -> str:
 def suggestion(name: str, existing: Iterable[str]) -> str:
     """A sentence that names the likely meant one of `existing`, or lists them."""
     known = list(existing)
+    return _suggested(_close(name, known, _SIMILAR), known)
+
+
+def _suggested(close: Sequence[str], known: Sequence[str]) -> str:
     if not known:
         return "There are none."
-    close = _close(name, known, 0.6)
     if close:
         return f'Did you mean "{close[0]}"?'
     shown = ", ".join(known[:12])

@@ -28,8 +28,8 @@ def test_run(program, name):
     file, text, place = BAD[name]
     (program.folder / file).write_text(text)
     done = program("run", file, "--headless", "--for", "1", status=2)
-    assert done.stderr.startswith("error: "), done.stderr
-    assert place in done.stderr
+    first = done.stderr.splitlines()[0]
+    assert place in first and "error: " in first, done.stderr
     if name not in ("malformed", "empty"):
         assert "\n  " in done.stderr.rstrip(), "no hint"
     assert done.stdout == ""
@@ -40,14 +40,14 @@ def test_spawn(cart, name):
     file, text, place = BAD[name]
     (cart.folder / file).write_text(text)
     done = cart("spawn", file, status=2)
-    assert done.stderr.startswith("error: "), done.stderr
-    assert place in done.stderr
+    first = done.stderr.splitlines()[0]
+    assert place in first and "error: " in first, done.stderr
     assert "bad" not in cart("models").stdout
 
 
 LOST = {
-    "package": ("no_such_package", 'bad.urdf:6: the package "no_such_package" was not found; '),
-    "mesh": ("rosbots_description", "bad.urdf:6: the mesh "),
+    "package": ("no_such_package", 'bad.urdf:6: error: the package "no_such_package" was not found; '),
+    "mesh": ("rosbots_description", "bad.urdf:6: error: the mesh "),
 }
 
 
@@ -58,11 +58,11 @@ def test_a_missing_mesh_costs_its_shape_alone(program, name):
     (program.folder / "bad.urdf").write_text(text)
     run = ("run", "bad.urdf", "--headless", "--for", "0.1", "--speed", "max")
     done = program(*run)
-    assert f"error: {said}" in done.stderr
+    assert said in done.stderr
     assert 'of link "base" is left out' in done.stderr
     assert "robot   box, 2 kg, 1 link, 0 joints" in done.stdout
     strict = program(*run, "--strict", status=2)
-    assert f"error: {said}" in strict.stderr
+    assert said in strict.stderr
     assert strict.stdout == ""
     assert "[file-missing]" in program("check", "bad.urdf", status=1).stdout
 
@@ -71,7 +71,7 @@ def test_a_missing_file(cart):
     (cart.folder / "robot.urdf").write_text(BOX)
     for command in (("run", "--headless"), ("spawn",), ("convert", "--to", "urdf"), ("view",)):
         done = cart(*command, "robt.urdf", status=2)
-        assert done.stderr.startswith("error: robt.urdf: ")
+        assert done.stderr.startswith("robt.urdf: error: ")
         assert 'Did you mean "robot.urdf"?' in done.stderr
 
 

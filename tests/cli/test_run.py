@@ -43,7 +43,7 @@ def test_topics_have_the_names_of_a_bridge(program):
     )
     run = ("run", "--headless", "--for", "0.1", "--speed", "max", "--bridge", "bridge.yaml")
     done = program(*run)
-    assert "bridge.yaml:1: nothing here publishes or reads" in done.stderr
+    assert "bridge.yaml:1: warning: nothing here publishes or reads" in done.stderr
     done = program(*run, "--strict", status=2)
     assert "nothing here publishes or reads" in done.stderr
 
@@ -75,9 +75,9 @@ def test_warnings_have_their_place_and_strict_makes_them_errors(program):
     )
     (program.folder / "box.urdf").write_text(text)
     done = program("run", "box.urdf", "--headless", "--for", "0.1", "--speed", "max")
-    assert 'warning: box.urdf:8: plugin "libnone.so" is not supported' in done.stderr
+    assert 'box.urdf:8: warning: plugin "libnone.so" is not supported' in done.stderr
     done = program("run", "box.urdf", "--headless", "--for", "0.1", "--strict", status=2)
-    assert 'error: box.urdf:8: plugin "libnone.so"' in done.stderr
+    assert 'box.urdf:8: error: plugin "libnone.so"' in done.stderr
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
@@ -222,7 +222,7 @@ def test_a_terminal_gets_colours_and_something_to_try(program):
         (["--seed", "x"], "--seed"),
         (["--port", "70000"], "--port"),
         (["a.urdf", "b.urdf"], '"b.urdf" is one file too many after "a.urdf"'),
-        (["--world", "nowhere"], "nowhere: no such file"),
+        (["--world", "nowhere"], "nowhere: error: no such file"),
     ],
 )
 def test_wrong_options(program, arguments, text):

@@ -10,6 +10,7 @@ from cartwheel.cli import (
     check,
     control,
     corpus,
+    explain,
     files,
     info,
     model,
@@ -52,6 +53,7 @@ def options(
 run.add_to(app)
 files.add_to(app)
 check.add_to(app)
+explain.add_to(app)
 corpus.add_to(app)
 info.add_to(app)
 play.add_to(app)

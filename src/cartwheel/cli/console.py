@@ -6,10 +6,7 @@ import os
 import re
 import sys
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING, TextIO
-
-if TYPE_CHECKING:
-    from cartwheel.errors import Diagnostic
+from typing import TextIO
 
 _CODES = {"bold": "1", "dim": "2", "red": "31", "green": "32", "yellow": "33", "cyan": "36"}
 _STYLES = "|".join(_CODES.values())
@@ -68,17 +65,6 @@ def print_error(text: str) -> None:
 def print_warning(text: str) -> None:
     """What a user should know, though the command goes on."""
     note(paint("warning: ", "yellow", stream=sys.stderr) + text)
-
-
-def print_diagnostic(diagnostic: Diagnostic) -> None:
-    """What is to be known about a file, with which the command goes on all the same."""
-    place = f"{diagnostic.origin}: " if diagnostic.origin else ""
-    if diagnostic.severity == "info":
-        note(f"{paint('info: ', 'dim', stream=sys.stderr)}{place}{diagnostic.message}")
-    elif diagnostic.severity == "warning":
-        print_warning(f"{place}{diagnostic.message}")
-    else:
-        print_error(f"{place}{diagnostic.message}")
 
 
 def say_table(rows: Sequence[Sequence[str]]) -> None:

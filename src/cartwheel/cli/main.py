@@ -41,7 +41,9 @@ def run() -> int:
         return 128 + interrupted.number
     except CartwheelError as error:
         if not interrupts.came():
-            print_error(str(error))
+            from cartwheel.cli.showing import print_diagnostic
+
+            print_diagnostic(error.diagnostic())
         return 2
     except BrokenPipeError:
         # Whoever read our output has seen enough, as `head` does.

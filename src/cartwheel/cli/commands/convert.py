@@ -7,7 +7,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from cartwheel.cli.commands.grouping import grouped
-from cartwheel.cli.console import note, print_diagnostic
+from cartwheel.cli.console import note
+from cartwheel.cli.showing import print_diagnostic
 from cartwheel.errors import CartwheelError
 
 

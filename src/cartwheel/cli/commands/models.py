@@ -9,7 +9,8 @@ from typing import Any
 
 from cartwheel.cli.commands.clients import connect
 from cartwheel.cli.commands.grouping import grouped
-from cartwheel.cli.console import note, print_diagnostic, say, say_table
+from cartwheel.cli.console import note, say, say_table
+from cartwheel.cli.showing import print_diagnostic
 from cartwheel.errors import Diagnostic, Origin
 
 

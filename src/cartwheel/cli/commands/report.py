@@ -13,11 +13,11 @@ from cartwheel.cli.console import (
     is_terminal,
     note,
     paint,
-    print_diagnostic,
     print_warning,
     say,
     table,
 )
+from cartwheel.cli.showing import print_diagnostic
 from cartwheel.control.registry import Running
 from cartwheel.gate.access import Access, refused_page
 from cartwheel.plugins.control.files import ControllerFiles

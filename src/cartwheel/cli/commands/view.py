@@ -9,7 +9,8 @@ from pathlib import Path
 from cartwheel.cli import interrupts
 from cartwheel.cli.commands.grouping import grouped
 from cartwheel.cli.commands.ports import refuse_taken
-from cartwheel.cli.console import paint, print_diagnostic, say
+from cartwheel.cli.console import paint, say
+from cartwheel.cli.showing import print_diagnostic
 from cartwheel.gate.access import Access, refused_page
 
 

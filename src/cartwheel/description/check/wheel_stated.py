@@ -9,10 +9,9 @@ from typing import Literal
 from cartwheel.description.check import control_claims as claimed
 from cartwheel.description.check import nodes
 from cartwheel.description.check.control_files import Controller, Value
-from cartwheel.description.check.finding import Place
 from cartwheel.description.check.subject import Robot, Subject
 from cartwheel.description.model import PluginTag
-from cartwheel.errors import Origin
+from cartwheel.errors import Origin, Place
 
 Measure = Literal["apart", "base", "reach", "radius", "diameter"]
 """``apart`` is across the robot, ``base`` along it; ``reach`` is the half of both together."""

@@ -253,7 +253,7 @@ class JointTrajectoryController(Controller):
             trajectory = self._reader.read(goal.goal.trajectory, time_ns, self._following)
             paths, ends = self._tolerances.of(goal.goal)
         except InvalidTrajectoryError as error:
-            goal.reject(self._result(error.code, error.message), error.message)
+            goal.reject(self._result(error.result, error.message), error.message)
             return
         self._preempt("another goal took its place")
         self._goal_path, self._goal_end = paths, ends

@@ -23,7 +23,7 @@ class InvalidTrajectoryError(PluginError):
 
     def __init__(self, code: int, message: str) -> None:
         super().__init__(message)
-        self.code = code
+        self.result = code
 
 
 class TrajectoryReader:

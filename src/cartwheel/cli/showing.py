@@ -1,0 +1,125 @@
+"""How a diagnostic looks in the terminal: its line with a caret, its fix and its code."""
+
+from __future__ import annotations
+
+import re
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TextIO
+
+from cartwheel.cli.console import note, paint
+from cartwheel.errors import UNCLASSIFIED, Diagnostic
+
+STYLES = {"error": ("red", "bold"), "warning": ("yellow", "bold"), "info": ("cyan",)}
+"""The colours of each severity."""
+_WORDS = {"info": "note"}
+_LINES_SHOWN = 10
+_LOOK_AHEAD = 8
+"""Lines of an element that are searched for the caret's text."""
+
+
+def shown(
+    diagnostic: Diagnostic, others: Sequence[Diagnostic] = (), *, stream: TextIO | None = None
+) -> str:
+    """A diagnostic with the line it is about, a caret, and the text to write.
+
+    Args:
+        diagnostic: To be shown.
+        others: The same message for other lines of the same file.
+        stream: Where it is printed; stdout by default. Only terminals get colours.
+    """
+    out = stream or sys.stdout
+    styles = STYLES[diagnostic.severity]
+    word = paint(f"{_WORDS.get(diagnostic.severity, diagnostic.severity)}:", *styles, stream=out)
+    place = paint(f"{diagnostic.origin}: ", "bold", stream=out) if diagnostic.origin else ""
+    code = paint(f" [{_code(diagnostic)}]", "dim", stream=out) if _code(diagnostic) else ""
+    lines = [f"{place}{word} {diagnostic.message}{code}"]
+    lines += _excerpt(diagnostic, styles, out)
+    if diagnostic.instead:
+        verb = "add:" if diagnostic.place in ("inside", "after") else "write:"
+        lines.append(f"  {paint(verb, 'green', stream=out)} {diagnostic.instead}")
+    if diagnostic.hint:
+        lines.append(f"  {diagnostic.hint}")
+    if diagnostic.also:
+        names = [m[1] for each in diagnostic.also if (m := re.search(r'"([^"]*)"', each))]
+        more = ", ".join(dict.fromkeys(names[:6])) + (", …" if len(names) > 6 else "")
+        lines.append(f"  and {len(diagnostic.also)} more from this line: {more}")
+    if others:
+        numbers = [str(one.origin.line) for one in others if one.origin is not None]
+        more = ", …" if len(numbers) > _LINES_SHOWN else ""
+        lines.append(f"  and {len(others)} more, in line {', '.join(numbers[:_LINES_SHOWN])}{more}")
+    if diagnostic.origin is not None:
+        lines += [paint(f"  in {frame}", "dim", stream=out) for frame in diagnostic.origin.stack]
+    return "\n".join(lines)
+
+
+def print_diagnostic(diagnostic: Diagnostic) -> None:
+    """Prints a diagnostic to stderr, behind what was written to stdout."""
+    sys.stdout.flush()
+    note(shown(diagnostic, stream=sys.stderr))
+
+
+def column_of(diagnostic: Diagnostic) -> int:
+    """The column of what a diagnostic is about, from 1; 0 where it is not known."""
+    origin = diagnostic.origin
+    if origin is None or not origin.line:
+        return 0
+    lines = _lines_of(origin.file)
+    return _caret(lines, origin.line, diagnostic.mark)[1] + 1 if origin.line <= len(lines) else 0
+
+
+def _code(diagnostic: Diagnostic) -> str:
+    if diagnostic.code is not UNCLASSIFIED:
+        return str(diagnostic.code)
+    return str(getattr(diagnostic, "rule", ""))
+
+
+def _excerpt(diagnostic: Diagnostic, styles: tuple[str, ...], out: TextIO) -> list[str]:
+    origin = diagnostic.origin
+    if origin is None or not origin.line:
+        return []
+    lines = _lines_of(origin.file)
+    if origin.line > len(lines):
+        return []
+    number, column, width = _caret(lines, origin.line, diagnostic.mark)
+    # Tabs are one column wide here, as the caret's line cannot know the terminal's stops.
+    source = lines[number - 1].replace("\t", " ")
+    indent = len(source) - len(source.lstrip())
+    label = f"{number:>5} | "
+    under = " " * (len(label) + column - indent)
+    return [
+        paint(label, "dim", stream=out) + source[indent:].rstrip(),
+        under + paint("^" + "~" * (width - 1), *styles, stream=out),
+    ]
+
+
+def _lines_of(file: str) -> list[str]:
+    from cartwheel.description import xml
+    from cartwheel.description.regular import read_regular_text
+
+    try:
+        return read_regular_text(Path(file), xml.MAX_BYTES).splitlines()
+    except (OSError, ValueError):
+        return []
+
+
+def _caret(lines: Sequence[str], first: int, mark: str) -> tuple[int, int, int]:
+    """Line, column from 0, and width of what a finding is about."""
+    if mark:
+        pattern = rf"\b{re.escape(mark)}\s*=\s*(\"[^\"]*\"|'[^']*')" if mark.isidentifier() else ""
+        for number in range(first, min(first + _LOOK_AHEAD, len(lines) + 1)):
+            line = lines[number - 1]
+            match = re.search(pattern, line) if pattern else None
+            if match is not None:
+                return number, match.start(), match.end() - match.start()
+            if mark in line:
+                return number, line.index(mark), len(mark)
+            if ">" in line:
+                break
+    line = lines[first - 1]
+    match = re.search(r"<[\w:.-]+[^>]*>?", line)
+    if match is None:
+        start = len(line) - len(line.lstrip())
+        return first, start, max(1, len(line.strip()))
+    return first, match.start(), match.end() - match.start()

@@ -1,0 +1,79 @@
+"""All kinds of diagnostics: their codes, and what each of them means.
+
+A module for each hundred holds the codes, as constants; ``texts/`` holds an explanation of each,
+from which `cartwheel explain` and the documentation are made.
+"""
+
+from __future__ import annotations
+
+import importlib
+import re
+from functools import cache
+from importlib import resources
+from types import ModuleType
+
+from cartwheel.errors import Code, UnknownNameError
+
+MODULES = {
+    "command": "Command line",
+    "files": "Files, XML, xacro and YAML",
+    "robot": "Links, joints, masses and wheels",
+    "tags": "Tags, attributes and materials",
+    "devices": "Sensors, plugins and controllers, as described",
+    "running": "Sensors, plugins and controllers, as they run",
+    "world": "World and physics",
+    "graph": "Topics, services and messages",
+    "wires": "ROS 1, ROS 2, Foxglove and network access",
+    "recording": "Recording, playback and the page",
+}
+"""The modules with codes, in the order of their numbers, and their titles."""
+_HEADING = re.compile(r"^## (CW\d{3}) (\S+)\n", re.MULTILINE)
+
+
+def codes_of(module: str) -> tuple[Code, ...]:
+    """The codes of a module of `MODULES`, by number."""
+    loaded: ModuleType = importlib.import_module(f"cartwheel.codes.{module}")
+    return tuple(
+        sorted(
+            (each for each in vars(loaded).values() if isinstance(each, Code)),
+            key=lambda each: each.number,
+        )
+    )
+
+
+@cache
+def all_codes() -> tuple[Code, ...]:
+    """All of them, by number."""
+    return tuple(code for module in MODULES for code in codes_of(module))
+
+
+def code_named(text: str) -> Code:
+    """The code with a number or a name, in any case.
+
+    Raises:
+        UnknownNameError: There is none.
+    """
+    wanted = text.strip().lower()
+    for code in all_codes():
+        if wanted in (code.number.lower(), code.name, str(code).lower()):
+            return code
+    from cartwheel.codes import command
+
+    names = [name for code in all_codes() for name in (code.number, code.name)]
+    raise UnknownNameError("the code", text, names, code=command.UNKNOWN_CODE)
+
+
+def explanation(code: Code) -> str:
+    """What a code means, why it matters, and an example, as Markdown without the heading."""
+    return _explanations()[code.number]
+
+
+@cache
+def _explanations() -> dict[str, str]:
+    found: dict[str, str] = {}
+    for module in MODULES:
+        text = (resources.files(__name__) / "texts" / f"{module}.md").read_text(encoding="utf-8")
+        parts = _HEADING.split(text)
+        for number, body in zip(parts[1::3], parts[3::3], strict=True):
+            found[number] = body.strip()
+    return found

@@ -1,0 +1,1 @@
+"""CW101 to CW199: files, XML, xacro and YAML."""

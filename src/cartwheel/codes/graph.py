@@ -1,0 +1,1 @@
+"""CW701 to CW799: topics, services and messages."""

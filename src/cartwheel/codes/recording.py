@@ -1,0 +1,1 @@
+"""CW901 to CW999: recording, playback and the page."""

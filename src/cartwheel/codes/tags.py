@@ -1,0 +1,1 @@
+"""CW301 to CW399: tags, attributes and materials."""

@@ -1,0 +1,1 @@
+"""CW601 to CW699: world and physics."""
