@@ -46,7 +46,10 @@ def test_spawn(cart, name):
 
 
 LOST = {
-    "package": ("no_such_package", 'bad.urdf:6: error: the package "no_such_package" was not found; '),
+    "package": (
+        "no_such_package",
+        'bad.urdf:6: error: the package "no_such_package" was not found',
+    ),
     "mesh": ("rosbots_description", "bad.urdf:6: error: the mesh "),
 }
 
