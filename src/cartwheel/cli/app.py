@@ -12,6 +12,7 @@ from cartwheel.cli import (
     corpus,
     explain,
     files,
+    help,
     info,
     model,
     play,
@@ -23,7 +24,8 @@ from cartwheel.cli import (
 
 app = typer.Typer(
     name="cartwheel",
-    help="Simulates the robot you described: xacro, URDF or SDF with its <gazebo> tags.",
+    cls=help.Group,
+    help="Simulate ROS robots from their xacro, URDF or SDF files. No Gazebo, GPU or ROS needed.",
     no_args_is_help=True,
     add_completion=False,
     rich_markup_mode=None,
@@ -41,10 +43,13 @@ def _print_version(wanted: bool) -> None:
 @app.callback()
 def options(
     verbose: Annotated[
-        bool, typer.Option("--verbose", help="Show the traceback of a fault of Cartwheel.")
+        bool, typer.Option("--verbose", help="Show a traceback if Cartwheel itself fails.")
     ] = False,
     version: Annotated[
-        bool, typer.Option("--version", is_eager=True, callback=_print_version, help="Print it.")
+        bool,
+        typer.Option(
+            "--version", is_eager=True, callback=_print_version, help="Show the version and exit."
+        ),
     ] = False,
 ) -> None:
     """Options of all commands."""
@@ -60,5 +65,6 @@ play.add_to(app)
 model.add_to(app)
 control.add_to(app)
 teleop.add_to(app)
-app.add_typer(topic.app, name="topic")
-app.add_typer(service.app, name="service")
+app.add_typer(topic.app, name="topic", rich_help_panel=help.CONTROL)
+app.add_typer(service.app, name="service", rich_help_panel=help.CONTROL)
+help.add(app, files.version, group=help.OTHER)

@@ -5,31 +5,41 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import typer
 
+from cartwheel.cli import help
 from cartwheel.control.registry import VARIABLE
 from cartwheel.errors import CartwheelError
 
 _MAPPING = re.compile(r"([A-Za-z_][\w.-]*):=(.*)", re.DOTALL)
 
+RECORDING = "Recording: a .mcap, .bag or .db3 file, or a rosbag2 folder."
+
 Sim = Annotated[
     int | None,
     typer.Option(
-        "--sim", metavar="PID", help=f"Which simulation, where several run. Also {VARIABLE}."
+        "--sim",
+        metavar="PID",
+        help=f"Process id of the simulation to use if several run. {VARIABLE} sets it too.",
     ),
 ]
 Names = Annotated[
     list[str] | None,
-    typer.Argument(metavar="[FILE] [NAME:=VALUE]...", show_default=False),
+    typer.Argument(
+        metavar="[FILE] [NAME:=VALUE]...",
+        show_default=False,
+        help="Robot description (xacro, URDF or SDF), and values for its xacro arguments.",
+    ),
 ]
 PackagePath = Annotated[
     list[Path] | None,
     typer.Option(
         "--package-path",
         metavar="FOLDER",
-        help="Look for packages and models here first. May be given again.",
+        help="Search this folder first for packages and models. Can be repeated.",
+        rich_help_panel=help.LOOKUP,
     ),
 ]
 AllowPath = Annotated[
@@ -37,24 +47,39 @@ AllowPath = Annotated[
     typer.Option(
         "--allow-path",
         metavar="FOLDER",
-        help="Allow services to read files below this folder, besides packages and models. Can be"
-        " repeated.",
+        help="Let services read files in this folder, in addition to packages and models."
+        " Can be repeated.",
+        rich_help_panel=help.LOOKUP,
     ),
 ]
-X = Annotated[float | None, typer.Option("-x", metavar="M", help="Place in the world.")]
-Y = Annotated[float | None, typer.Option("-y", metavar="M")]
-Z = Annotated[float | None, typer.Option("-z", metavar="M")]
-Roll = Annotated[float | None, typer.Option("-R", metavar="RAD", help="Roll, pitch and yaw.")]
-Pitch = Annotated[float | None, typer.Option("-P", metavar="RAD")]
-Yaw = Annotated[float | None, typer.Option("-Y", metavar="RAD")]
+
+
+def _pose(flag: str, unit: str, text: str) -> Any:
+    return typer.Option(flag, metavar=unit, help=text, rich_help_panel=help.ROBOT)
+
+
+X = Annotated[float | None, _pose("-x", "M", "Initial x position in the world.")]
+Y = Annotated[float | None, _pose("-y", "M", "Initial y position in the world.")]
+Z = Annotated[float | None, _pose("-z", "M", "Initial z position in the world.")]
+Roll = Annotated[float | None, _pose("-R", "RAD", "Initial roll.")]
+Pitch = Annotated[float | None, _pose("-P", "RAD", "Initial pitch.")]
+Yaw = Annotated[float | None, _pose("-Y", "RAD", "Initial yaw.")]
 Model = Annotated[
-    str | None, typer.Option("--model", metavar="NAME", help="Its name in the world.")
+    str | None,
+    typer.Option(
+        "--model",
+        metavar="NAME",
+        help="Name of the model in the world. Default: the name in the file.",
+        rich_help_panel=help.ROBOT,
+    ),
 ]
 Host = Annotated[
     str,
     typer.Option(
-        help="Address for the viewer and Foxglove's server. With 0.0.0.0 other computers can"
-        " connect; they need the token in the printed address."
+        metavar="ADDRESS",
+        help="Address that the page and Foxglove's server listen on. With 0.0.0.0 other"
+        " computers can connect; they need the token in the printed address.",
+        rich_help_panel=help.PAGE,
     ),
 ]
 AllowOrigin = Annotated[
@@ -62,18 +87,32 @@ AllowOrigin = Annotated[
     typer.Option(
         "--allow-origin",
         metavar="ORIGIN",
-        help="Admit web pages of this origin, for example https://robots.example.org, and"
-        " browsers that use its name for the server. Can be repeated.",
+        help="Accept connections from web pages of this origin, such as"
+        " https://robots.example.org. Can be repeated.",
+        rich_help_panel=help.PAGE,
     ),
 ]
 Port = Annotated[
-    int, typer.Option(min=0, max=65535, help="Port of the viewer; 0 takes a free one.")
+    int,
+    typer.Option(
+        min=0,
+        max=65535,
+        metavar="PORT",
+        help="Port of the page; 0 selects a free port.",
+        rich_help_panel=help.PAGE,
+    ),
 ]
-
-Headless = Annotated[bool, typer.Option("--headless", help="Without the viewer.")]
-Paused = Annotated[bool, typer.Option("--paused", help="Begin with time held.")]
+Headless = Annotated[
+    bool, typer.Option("--headless", help="Do not serve the page.", rich_help_panel=help.PAGE)
+]
+Paused = Annotated[bool, typer.Option("--paused", help="Start paused.", rich_help_panel=help.TIME)]
 OpenBrowser = Annotated[
-    bool | None, typer.Option("--open/--no-open", help="Open the browser; on a desktop it is.")
+    bool | None,
+    typer.Option(
+        "--open/--no-open",
+        help="Open the page in the browser. Default: only on a desktop.",
+        rich_help_panel=help.PAGE,
+    ),
 ]
 
 

@@ -7,29 +7,38 @@ from typing import Annotated
 
 import typer
 
-from cartwheel.cli import arguments
+from cartwheel.cli import arguments, help
 
 
 def add_to(app: typer.Typer) -> None:
     """Adds the command."""
-    app.command()(check)
+    help.add(app, check, group=help.FILES)
 
 
 def check(
     words: arguments.Names = None,
     *,
     json: Annotated[
-        bool, typer.Option("--json", help="Write the findings as JSON; docs/check.md has it.")
+        bool,
+        typer.Option("--json", help="Print the findings as JSON.", rich_help_panel=help.REPORT),
     ] = False,
     strict: Annotated[
-        bool, typer.Option("--strict", help="Status 1 for notes too, not for warnings alone.")
+        bool,
+        typer.Option(
+            "--strict", help="Exit with status 1 for notes too.", rich_help_panel=help.REPORT
+        ),
     ] = False,
     ignore: Annotated[
         list[str] | None,
-        typer.Option("--ignore", metavar="RULE", help="Leave a rule out. May be given again."),
+        typer.Option(
+            "--ignore",
+            metavar="RULE",
+            help="Skip this rule. Can be repeated.",
+            rich_help_panel=help.REPORT,
+        ),
     ] = None,
     rules: Annotated[
-        bool, typer.Option("--list", help="List the rules, and check nothing.")
+        bool, typer.Option("--list", help="List all rules and exit.", rich_help_panel=help.REPORT)
     ] = False,
     package_path: arguments.PackagePath = None,
     controllers: Annotated[
@@ -37,14 +46,15 @@ def check(
         typer.Option(
             "--controllers",
             metavar="FILE",
-            help="YAML of ros_control or ros2_control, checked too; may be repeated.",
+            help="Also check this ros_control or ros2_control YAML file. Can be repeated.",
+            rich_help_panel=help.LOOKUP,
         ),
     ] = None,
 ) -> None:
-    """Tell what breaks or misleads in a description, where, and what to write instead.
+    """Find mistakes in a robot description, with suggested fixes.
 
-    The exit status is 0 where there is no error and no warning (with --strict no note either), 1
-    where there are findings, and 2 where the file cannot be read or is no description.
+    Exits with status 0 if there are no errors or warnings (with --strict: no notes either), 1 if
+    there are, and 2 if the file cannot be read or is not a robot description.
     """
     from cartwheel.cli.commands import check as work
 

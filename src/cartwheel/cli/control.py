@@ -6,6 +6,7 @@ from typing import Annotated
 
 import typer
 
+from cartwheel.cli import help
 from cartwheel.cli.arguments import Sim
 from cartwheel.errors import CartwheelError
 
@@ -13,7 +14,7 @@ from cartwheel.errors import CartwheelError
 def add_to(app: typer.Typer) -> None:
     """Adds the commands."""
     for command in (status, pause, resume, step, reset, speed):
-        app.command()(command)
+        help.add(app, command, group=help.CONTROL)
 
 
 def parse_speed(text: str) -> float | None:
@@ -38,45 +39,57 @@ def parse_speed(text: str) -> float | None:
 
 
 def status(sim: Sim = None) -> None:
-    """Print what runs."""
+    """Show the state, time and speed of the simulation."""
     from cartwheel.cli.commands import timing
 
     timing.print_status(sim)
 
 
 def pause(sim: Sim = None) -> None:
-    """Hold time."""
+    """Pause the simulation."""
     from cartwheel.cli.commands import timing
 
     timing.ask(sim, "pause")
 
 
 def resume(sim: Sim = None) -> None:
-    """Let time go on."""
+    """Resume a paused simulation."""
     from cartwheel.cli.commands import timing
 
     timing.ask(sim, "resume")
 
 
-def step(count: Annotated[int, typer.Argument(metavar="[N]", min=1)] = 1, sim: Sim = None) -> None:
-    """Make N steps of a simulation that is paused, or is paused by this."""
+def step(
+    count: Annotated[
+        int, typer.Argument(metavar="[N]", min=1, help="Number of steps. Default: 1.")
+    ] = 1,
+    sim: Sim = None,
+) -> None:
+    """Pause the simulation, then advance it by N steps."""
     from cartwheel.cli.commands import timing
 
     timing.ask(sim, "step", count=count)
 
 
 def reset(sim: Sim = None) -> None:
-    """Take time to zero and every model to where it was spawned."""
+    """Reset time to zero and all models to their initial poses."""
     from cartwheel.cli.commands import timing
 
     timing.ask(sim, "reset")
 
 
 def speed(
-    value: Annotated[str, typer.Argument(metavar="FACTOR|max", show_default=False)],
+    value: Annotated[
+        str,
+        typer.Argument(
+            metavar="FACTOR|max",
+            show_default=False,
+            help="Real-time factor; max is as fast as possible.",
+        ),
+    ],
     sim: Sim = None,
 ) -> None:
-    """Set the wanted real-time factor."""
+    """Set the target real-time factor."""
     from cartwheel.cli.commands import timing
 
     timing.ask(sim, "speed", speed=parse_speed(value))

@@ -7,26 +7,31 @@ from typing import Annotated
 
 import typer
 
-from cartwheel.cli import arguments
+from cartwheel.cli import arguments, help
 
 
 def add_to(app: typer.Typer) -> None:
     """Adds the command."""
-    app.command()(corpus)
+    help.add(app, corpus, group=help.FILES)
 
 
 def corpus(
-    folders: Annotated[list[Path], typer.Argument(metavar="FOLDER|FILE...", show_default=False)],
-    json: Annotated[
-        bool, typer.Option("--json", help="Write the results as JSON; docs/corpus.md has it.")
-    ] = False,
+    folders: Annotated[
+        list[Path],
+        typer.Argument(
+            metavar="FOLDER|FILE...", show_default=False, help="Folders to search, or robot files."
+        ),
+    ],
+    json: Annotated[bool, typer.Option("--json", help="Print the results as JSON.")] = False,
     standing: Annotated[
         float,
-        typer.Option("--for", metavar="SECONDS", min=1.0, help="How long each is left standing."),
+        typer.Option(
+            "--for", metavar="SECONDS", min=1.0, help="Simulated time that each robot stands still."
+        ),
     ] = 10.0,
     package_path: arguments.PackagePath = None,
 ) -> None:
-    """Try every robot of a folder: does it load, stand, publish, drive and reach?"""
+    """Try every robot in a folder: load, stand, publish, drive, reach."""
     from cartwheel.cli.commands import corpus as work
 
     status = work.corpus(folders, package_path or [], json=json, standing=standing)

@@ -6,20 +6,24 @@ from typing import Annotated
 
 import typer
 
+from cartwheel.cli import help
+
 
 def add_to(app: typer.Typer) -> None:
     """Adds the command."""
-    app.command()(explain)
+    help.add(app, explain, group=help.FILES)
 
 
 def explain(
     codes: Annotated[
         list[str] | None,
-        typer.Argument(metavar="[CODE]...", show_default=False, help="A number or a name."),
+        typer.Argument(
+            metavar="[CODE]...", show_default=False, help="Code or name, such as CW204."
+        ),
     ] = None,
-    json: Annotated[bool, typer.Option("--json", help="Write JSON.")] = False,
+    json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
-    """Explain diagnostic codes, such as CW204; without a code, list all of them."""
+    """Explain a diagnostic code, or list all codes."""
     from cartwheel.cli.commands import explain as work
 
     work.explain(codes or [], json=json)

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from cartwheel.cli import arguments
+from cartwheel.cli import arguments, help
 from cartwheel.cli.console import say_version
 
 
@@ -21,8 +21,8 @@ class Format(enum.StrEnum):
 
 def add_to(app: typer.Typer) -> None:
     """Adds the commands."""
-    for command in (view, convert, version):
-        app.command()(command)
+    help.add(app, view, group=help.SIMULATE)
+    help.add(app, convert, group=help.FILES)
 
 
 def view(
@@ -32,7 +32,7 @@ def view(
     port: arguments.Port = 8080,
     package_path: arguments.PackagePath = None,
 ) -> None:
-    """Show a description alone: joints, frames, inertia, no physics."""
+    """Show a robot description: joints, frames, inertia; no physics."""
     from cartwheel.cli.commands import view as work
 
     file, values = arguments.split(words)
@@ -47,14 +47,15 @@ def view(
 
 
 def convert(
-    to: Annotated[Format, typer.Option("--to", help="What to write.", show_default=False)],
+    to: Annotated[Format, typer.Option("--to", help="Output format.", show_default=False)],
     words: arguments.Names = None,
     output: Annotated[
-        Path | None, typer.Option("-o", "--output", metavar="OUT", help="By default stdout.")
+        Path | None,
+        typer.Option("-o", "--output", metavar="FILE", help="Output file. Default: stdout."),
     ] = None,
     package_path: arguments.PackagePath = None,
 ) -> None:
-    """Write a description as plain URDF, or as MuJoCo's MJCF."""
+    """Convert a robot description to plain URDF or MuJoCo's MJCF."""
     from cartwheel.cli.commands import convert as work
 
     file, values = arguments.split(words)
@@ -62,5 +63,5 @@ def convert(
 
 
 def version() -> None:
-    """Print the version."""
+    """Show the version."""
     say_version()

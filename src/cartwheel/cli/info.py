@@ -7,18 +7,22 @@ from typing import Annotated
 
 import typer
 
+from cartwheel.cli import arguments, help
+
 
 def add_to(app: typer.Typer) -> None:
     """Adds the command."""
-    app.command()(info)
+    help.add(app, info, group=help.FILES)
 
 
 def info(
-    file: Annotated[Path, typer.Argument(metavar="FILE", show_default=False)],
+    file: Annotated[
+        Path, typer.Argument(metavar="FILE", show_default=False, help=arguments.RECORDING)
+    ],
     *,
-    json: Annotated[bool, typer.Option("--json", help="As JSON.")] = False,
+    json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
-    """List a recording: topics, types, counts, rates. FILE is .mcap, .bag, .db3 or a folder."""
+    """List the topics of a recording, with types, counts and rates."""
     from cartwheel.cli.commands import info as work
 
     work.info(file, as_json=json)

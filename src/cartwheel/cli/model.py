@@ -6,15 +6,14 @@ from typing import Annotated
 
 import typer
 
-from cartwheel.cli import arguments
+from cartwheel.cli import arguments, help
 from cartwheel.cli.arguments import Sim
 
 
 def add_to(app: typer.Typer) -> None:
     """Adds the commands."""
-    app.command()(spawn)
-    app.command()(delete)
-    app.command("models")(models)
+    for command in (spawn, delete, models):
+        help.add(app, command, group=help.CONTROL)
 
 
 def spawn(
@@ -30,7 +29,7 @@ def spawn(
     package_path: arguments.PackagePath = None,
     sim: Sim = None,
 ) -> None:
-    """Put a model into the running simulation: a file, or the name of a shipped model."""
+    """Spawn a model from a file, or a shipped model by its name."""
     from cartwheel.cli.commands import models as work
 
     file, values = arguments.split(words)
@@ -45,16 +44,19 @@ def spawn(
 
 
 def delete(
-    model: Annotated[str, typer.Argument(metavar="MODEL", show_default=False)], sim: Sim = None
+    model: Annotated[
+        str, typer.Argument(metavar="MODEL", show_default=False, help="Name of the model.")
+    ],
+    sim: Sim = None,
 ) -> None:
-    """Take a model out of the running simulation."""
+    """Delete a model."""
     from cartwheel.cli.commands import models as work
 
     work.delete(sim, model)
 
 
 def models(sim: Sim = None) -> None:
-    """List what stands in the world."""
+    """List the models in the world, with their poses."""
     from cartwheel.cli.commands import models as work
 
     work.print_list(sim)

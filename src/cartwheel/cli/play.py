@@ -7,29 +7,47 @@ from typing import Annotated
 
 import typer
 
-from cartwheel.cli import arguments
+from cartwheel.cli import arguments, help
 from cartwheel.cli.control import parse_speed
 
 
 def add_to(app: typer.Typer) -> None:
     """Adds the command."""
-    app.command()(play)
+    help.add(app, play, group=help.SIMULATE)
 
 
 def play(
-    file: Annotated[Path, typer.Argument(metavar="FILE", show_default=False)],
+    file: Annotated[
+        Path, typer.Argument(metavar="FILE", show_default=False, help=arguments.RECORDING)
+    ],
     *,
     headless: arguments.Headless = False,
     speed: Annotated[
-        str, typer.Option(metavar="FACTOR|max", help="1 is as it was; max as fast as it can.")
+        str,
+        typer.Option(
+            metavar="FACTOR|max",
+            help="Playback speed: 1 is the recorded speed, max is as fast as possible.",
+            rich_help_panel=help.TIME,
+        ),
     ] = "1",
     start: Annotated[
-        float, typer.Option("--start", metavar="SECONDS", help="After the beginning.")
+        float,
+        typer.Option(
+            "--start",
+            metavar="SECONDS",
+            help="Start this long after the beginning.",
+            rich_help_panel=help.TIME,
+        ),
     ] = 0.0,
-    loop: Annotated[bool, typer.Option("--loop", help="Begin again at the end.")] = False,
+    loop: Annotated[
+        bool, typer.Option("--loop", help="Start again at the end.", rich_help_panel=help.TIME)
+    ] = False,
     paused: arguments.Paused = False,
     world: Annotated[
-        str | None, typer.Option(metavar="FILE|NAME", help="Things to show around the robot.")
+        str | None,
+        typer.Option(
+            metavar="FILE|NAME", help="World to show around the robot.", rich_help_panel=help.WORLD
+        ),
     ] = None,
     host: arguments.Host = "127.0.0.1",
     allow_origin: arguments.AllowOrigin = None,
@@ -37,7 +55,7 @@ def play(
     open_browser: arguments.OpenBrowser = None,
     package_path: arguments.PackagePath = None,
 ) -> None:
-    """Play a recording, in the browser and on topics. FILE is .mcap, .bag, .db3 or a folder."""
+    """Play a recording in the browser and on topics."""
     from cartwheel.cli.commands import play as work
 
     work.play(

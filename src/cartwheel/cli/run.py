@@ -7,35 +7,41 @@ from typing import Annotated
 
 import typer
 
-from cartwheel.cli import arguments
+from cartwheel.cli import arguments, help
 from cartwheel.cli.control import parse_speed
 
 
 def add_to(app: typer.Typer) -> None:
     """Adds the command."""
-    app.command()(run)
+    help.add(app, run, group=help.SIMULATE)
 
 
 def run(
     *,
     words: arguments.Names = None,
     world: Annotated[
-        str | None, typer.Option(metavar="FILE|NAME", help="A world's file, or a shipped one.")
+        str | None,
+        typer.Option(
+            metavar="FILE|NAME",
+            help="World to simulate: an SDF file, or the name of a shipped world.",
+            rich_help_panel=help.WORLD,
+        ),
     ] = None,
-    headless: arguments.Headless = False,
-    speed: Annotated[
-        str, typer.Option(metavar="FACTOR|max", help="1 is real time; max as fast as it can.")
-    ] = "1",
-    seconds: Annotated[
-        float | None, typer.Option("--for", metavar="SECONDS", help="Of simulated time, then end.")
-    ] = None,
-    paused: arguments.Paused = False,
-    seed: Annotated[int, typer.Option(min=0, help="Of all noise.")] = 0,
-    strict: Annotated[bool, typer.Option("--strict", help="Make every warning an error.")] = False,
-    host: arguments.Host = "127.0.0.1",
-    allow_origin: arguments.AllowOrigin = None,
-    port: arguments.Port = 8080,
-    open_browser: arguments.OpenBrowser = None,
+    seed: Annotated[
+        int,
+        typer.Option(
+            min=0,
+            metavar="N",
+            help="Seed of all sensor noise.",
+            rich_help_panel=help.WORLD,
+        ),
+    ] = 0,
+    strict: Annotated[
+        bool,
+        typer.Option(
+            "--strict", help="Treat every warning as an error.", rich_help_panel=help.WORLD
+        ),
+    ] = False,
     x: arguments.X = None,
     y: arguments.Y = None,
     z: arguments.Z = None,
@@ -43,47 +49,117 @@ def run(
     pitch: arguments.Pitch = None,
     yaw: arguments.Yaw = None,
     model: arguments.Model = None,
-    package_path: arguments.PackagePath = None,
-    allow_path: arguments.AllowPath = None,
     controllers: Annotated[
         list[Path] | None,
         typer.Option(
             "--controllers",
             metavar="FILE",
-            help="YAML of ros_control or ros2_control, whose controllers start; may be repeated.",
+            help="Start the controllers of this ros_control or ros2_control YAML file."
+            " Can be repeated.",
+            rich_help_panel=help.ROBOT,
         ),
     ] = None,
+    speed: Annotated[
+        str,
+        typer.Option(
+            metavar="FACTOR|max",
+            help="Real-time factor: 1 is real time, max is as fast as possible.",
+            rich_help_panel=help.TIME,
+        ),
+    ] = "1",
+    seconds: Annotated[
+        float | None,
+        typer.Option(
+            "--for",
+            metavar="SECONDS",
+            help="Stop after this much simulated time.",
+            rich_help_panel=help.TIME,
+        ),
+    ] = None,
+    paused: arguments.Paused = False,
+    headless: arguments.Headless = False,
+    host: arguments.Host = "127.0.0.1",
+    port: arguments.Port = 8080,
+    allow_origin: arguments.AllowOrigin = None,
+    open_browser: arguments.OpenBrowser = None,
+    ros1: Annotated[
+        bool,
+        typer.Option(
+            "--ros1",
+            help="Run as a ROS 1 node, with Gazebo's topics and services.",
+            rich_help_panel=help.WIRES,
+        ),
+    ] = False,
+    ros1_node: Annotated[
+        str,
+        typer.Option(
+            "--ros1-node",
+            metavar="NAME",
+            help="Name of the ROS 1 node. __name:=NAME sets it too.",
+            rich_help_panel=help.WIRES,
+        ),
+    ] = "gazebo",
+    ros2: Annotated[
+        bool,
+        typer.Option(
+            "--ros2",
+            help="Run as a ROS 2 node, with Gazebo's topics and services.",
+            rich_help_panel=help.WIRES,
+        ),
+    ] = False,
+    ros2_node: Annotated[
+        str,
+        typer.Option(
+            "--ros2-node",
+            metavar="NAME",
+            help="Name of the ROS 2 node.",
+            rich_help_panel=help.WIRES,
+        ),
+    ] = "gazebo",
+    rmw: Annotated[
+        str,
+        typer.Option(
+            "--rmw",
+            metavar="dds|zenoh",
+            help="Middleware of the ROS 2 node.",
+            rich_help_panel=help.WIRES,
+        ),
+    ] = "dds",
     bridge: Annotated[
         list[Path] | None,
         typer.Option(
             "--bridge",
             metavar="FILE",
-            help="YAML of ros_gz_bridge, whose names topics have; may be repeated.",
+            help="Rename topics as this ros_gz_bridge YAML file configures. Can be repeated.",
+            rich_help_panel=help.WIRES,
         ),
     ] = None,
-    ros1: Annotated[
+    foxglove: Annotated[
         bool,
-        typer.Option("--ros1", help="Be a node of ROS 1, with Gazebo's topics and services."),
+        typer.Option(
+            "--foxglove",
+            help="Serve Foxglove and Lichtblick on the address of --host.",
+            rich_help_panel=help.WIRES,
+        ),
     ] = False,
-    ros1_node: Annotated[
-        str, typer.Option("--ros1-node", metavar="NAME", help="Its name; also __name:=NAME.")
-    ] = "gazebo",
-    ros2: Annotated[
-        bool,
-        typer.Option("--ros2", help="Be a node of ROS 2, with Gazebo's topics and services."),
-    ] = False,
-    ros2_node: Annotated[
-        str, typer.Option("--ros2-node", metavar="NAME", help="Its name.")
-    ] = "gazebo",
-    rmw: Annotated[
-        str, typer.Option("--rmw", metavar="dds|zenoh", help="Which middleware ROS 2 uses.")
-    ] = "dds",
+    foxglove_port: Annotated[
+        int,
+        typer.Option(
+            "--foxglove-port",
+            min=0,
+            max=65535,
+            metavar="PORT",
+            help="Port of Foxglove's server; 0 selects a free port.",
+            rich_help_panel=help.WIRES,
+        ),
+    ] = 8765,
     record: Annotated[
         list[Path] | None,
         typer.Option(
             "--record",
             metavar="FILE",
-            help="Record: .mcap, .bag, .db3 or a folder. May be given again.",
+            help="Record to a .mcap, .bag or .db3 file, or to a rosbag2 folder. Can be repeated.",
+            rich_help_panel=help.RECORDING,
         ),
     ] = None,
     record_topics: Annotated[
@@ -91,33 +167,41 @@ def run(
         typer.Option(
             "--record-topics",
             metavar="PATTERN",
-            help="What to record: /camera/*, re:EXPRESSION, !PATTERN to leave out. May be"
-            " given again; all topics without it, images too.",
+            help="Record only matching topics: /camera/*, re:EXPRESSION, or !PATTERN to exclude."
+            " Can be repeated. Default: all topics, images included.",
+            rich_help_panel=help.RECORDING,
         ),
     ] = None,
     record_encoding: Annotated[
         str | None,
-        typer.Option("--record-encoding", metavar="ros1|ros2", help="Of a .mcap's messages."),
+        typer.Option(
+            "--record-encoding",
+            metavar="ros1|ros2",
+            help="Encoding of the messages in a .mcap file.",
+            rich_help_panel=help.RECORDING,
+        ),
     ] = None,
     overwrite: Annotated[
-        bool, typer.Option("--overwrite", help="Replace a recording of that name.")
+        bool,
+        typer.Option(
+            "--overwrite",
+            help="Replace an existing recording of the same name.",
+            rich_help_panel=help.RECORDING,
+        ),
     ] = False,
-    foxglove: Annotated[
-        bool, typer.Option("--foxglove", help="Serve Foxglove and Lichtblick, on --host.")
-    ] = False,
-    foxglove_port: Annotated[
-        int, typer.Option("--foxglove-port", min=0, max=65535, help="0 takes any.")
-    ] = 8765,
+    package_path: arguments.PackagePath = None,
+    allow_path: arguments.AllowPath = None,
     verbose: Annotated[
-        bool, typer.Option("--verbose", help="Also say what is merely worth knowing.")
+        bool, typer.Option("--verbose", help="Show informational messages.")
     ] = False,
 ) -> None:
-    """Simulate a robot: FILE is a xacro, URDF or SDF; the shipped cart where none is given.
+    """Simulate a robot, by default the shipped cart.
 
-    FILE may also be a world, which then stands alone. NAME:=VALUE sets an argument of the
-    xacro file; world:=FILE is the same as --world. With --ros1, what ROS's nodes take is
-    taken as well: __name:=NAME, _PARAMETER:=VALUE, /TOPIC:=OTHER, and TOPIC:=OTHER beside a
-    world.
+    FILE can also be a world, which is then simulated without a robot. NAME:=VALUE sets an
+    argument of the xacro file; world:=FILE is the same as --world.
+
+    With --ros1 the arguments of a ROS 1 node work too: __name:=NAME, _PARAMETER:=VALUE,
+    /TOPIC:=OTHER, and, if FILE is a world, TOPIC:=OTHER.
     """
     from cartwheel.cli.commands.options import Options
     from cartwheel.cli.commands.run import simulate

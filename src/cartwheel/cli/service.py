@@ -6,31 +6,37 @@ from typing import Annotated
 
 import typer
 
+from cartwheel.cli import help
 from cartwheel.cli.arguments import Sim
 
-app = typer.Typer(help="List and call services.", no_args_is_help=True)
+app = typer.Typer(cls=help.Group, help="List and call services.", no_args_is_help=True)
 
 
-@app.command("list")
+@app.command("list", cls=help.Command)
 def list_services(
     verbose: Annotated[
-        bool, typer.Option("-v", "--verbose", help="Also types and who serves.")
+        bool, typer.Option("-v", "--verbose", help="Also show types and servers.")
     ] = False,
     sim: Sim = None,
 ) -> None:
-    """List the services."""
+    """List services."""
     from cartwheel.cli.commands import services
 
     services.print_list(sim, verbose=verbose)
 
 
-@app.command()
+@app.command(cls=help.Command)
 def call(
-    service: Annotated[str, typer.Argument(metavar="SERVICE", show_default=False)],
-    request: Annotated[list[str] | None, typer.Argument(metavar="[YAML]...")] = None,
+    service: Annotated[
+        str, typer.Argument(metavar="SERVICE", show_default=False, help="Name of the service.")
+    ],
+    request: Annotated[
+        list[str] | None,
+        typer.Argument(metavar="[YAML]...", help="Request. Default: all fields zero or empty."),
+    ] = None,
     sim: Sim = None,
 ) -> None:
-    """Call a service and print its answer."""
+    """Call a service and print the response."""
     from cartwheel.cli.commands import services
 
     services.call(sim, service, request or [])

@@ -6,24 +6,30 @@ from typing import Annotated
 
 import typer
 
+from cartwheel.cli import help
 from cartwheel.cli.arguments import Sim
 
 
 def add_to(app: typer.Typer) -> None:
     """Adds the command."""
-    app.command()(teleop)
+    help.add(app, teleop, group=help.CONTROL)
 
 
 def teleop(
     topic: Annotated[
         str | None,
-        typer.Option(metavar="TOPIC", help="Where to publish; else the one Twist read."),
+        typer.Option(
+            metavar="TOPIC",
+            help="Topic to publish on. Default: the only one with a Twist subscriber.",
+        ),
     ] = None,
-    speed: Annotated[float, typer.Option(min=0, help="m/s to begin with.")] = 0.5,
-    turn: Annotated[float, typer.Option(min=0, help="rad/s to begin with.")] = 1.0,
+    speed: Annotated[float, typer.Option(min=0, metavar="M/S", help="Initial linear speed.")] = 0.5,
+    turn: Annotated[
+        float, typer.Option(min=0, metavar="RAD/S", help="Initial angular speed.")
+    ] = 1.0,
     sim: Sim = None,
 ) -> None:
-    """Drive by keys, those of teleop_twist_keyboard."""
+    """Drive a robot with the keys of teleop_twist_keyboard."""
     from cartwheel.cli.commands import teleop as work
 
     work.drive(sim, topic, speed=speed, turn=turn)

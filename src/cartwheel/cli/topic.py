@@ -6,92 +6,113 @@ from typing import Annotated
 
 import typer
 
+from cartwheel.cli import help
 from cartwheel.cli.arguments import Sim
 
-app = typer.Typer(help="List, print, measure and write topics.", no_args_is_help=True)
+app = typer.Typer(
+    cls=help.Group, help="List, print, measure and publish topics.", no_args_is_help=True
+)
 
-Topic = Annotated[str, typer.Argument(metavar="TOPIC", show_default=False)]
+Topic = Annotated[
+    str, typer.Argument(metavar="TOPIC", show_default=False, help="Name of the topic.")
+]
 
 
-@app.command("list")
+@app.command("list", cls=help.Command)
 def list_topics(
     verbose: Annotated[
         bool,
-        typer.Option("-v", "--verbose", help="Also types, rates and who is at the ends."),
+        typer.Option("-v", "--verbose", help="Also show types, rates, publishers and subscribers."),
     ] = False,
     sim: Sim = None,
 ) -> None:
-    """List the topics."""
+    """List topics."""
     from cartwheel.cli.commands import topics
 
     topics.print_list(sim, verbose=verbose)
 
 
-@app.command()
+@app.command(cls=help.Command)
 def info(topic: Topic, sim: Sim = None) -> None:
-    """Print a topic's type, publishers and subscribers."""
+    """Show the type, publishers and subscribers of a topic."""
     from cartwheel.cli.commands import topics
 
     topics.print_info(sim, topic)
 
 
-@app.command()
+@app.command(cls=help.Command)
 def echo(
     *,
     topic: Topic,
     count: Annotated[
-        int | None, typer.Option("-n", "--count", min=1, help="End after so many messages.")
+        int | None, typer.Option("-n", "--count", min=1, metavar="N", help="Stop after N messages.")
     ] = None,
     no_arr: Annotated[
-        bool, typer.Option("--no-arr", "--noarr", help="Leave out what arrays hold.")
+        bool, typer.Option("--no-arr", "--noarr", help="Do not print the values of arrays.")
     ] = False,
-    full: Annotated[bool, typer.Option("--full", help="Print long arrays to their end.")] = False,
+    full: Annotated[bool, typer.Option("--full", help="Print long arrays in full.")] = False,
     field: Annotated[
         str | None, typer.Option(metavar="A.B.C", help="Print only this field.")
     ] = None,
     sim: Sim = None,
 ) -> None:
-    """Print the messages of a topic."""
+    """Print the messages of a topic as they arrive."""
     from cartwheel.cli.commands import topics
 
     topics.echo(sim, topic, count=count, arrays=not no_arr, full=full, field=field)
 
 
-@app.command()
+@app.command(cls=help.Command)
 def hz(
     topic: Topic,
     count: Annotated[
-        int | None, typer.Option("-n", "--count", min=1, help="End after so many reports.")
+        int | None, typer.Option("-n", "--count", min=1, metavar="N", help="Stop after N reports.")
     ] = None,
-    window: Annotated[int, typer.Option(min=2, help="Messages to average over.")] = 10_000,
+    window: Annotated[
+        int, typer.Option(min=2, metavar="N", help="Average over N messages.")
+    ] = 10_000,
     sim: Sim = None,
 ) -> None:
-    """Measure a topic's rate, in simulated time."""
+    """Measure the rate of a topic in simulated time."""
     from cartwheel.cli.commands import rate
 
     rate.measure(sim, topic, count=count, window=window)
 
 
-@app.command()
+@app.command(cls=help.Command)
 def pub(
     *,
     topic: Topic,
-    type_name: Annotated[str, typer.Argument(metavar="TYPE", show_default=False)],
-    message: Annotated[list[str] | None, typer.Argument(metavar="[YAML]...")] = None,
+    type_name: Annotated[
+        str,
+        typer.Argument(
+            metavar="TYPE",
+            show_default=False,
+            help="Message type, such as geometry_msgs/Twist or geometry_msgs/msg/Twist.",
+        ),
+    ],
+    message: Annotated[
+        list[str] | None,
+        typer.Argument(metavar="[YAML]...", help="Message. Default: all fields zero or empty."),
+    ] = None,
     rate: Annotated[
-        float | None, typer.Option("-r", "--rate", metavar="HZ", help="Publish again and again.")
+        float | None,
+        typer.Option("-r", "--rate", metavar="HZ", help="Publish repeatedly at this rate."),
     ] = None,
     once: Annotated[
-        bool, typer.Option("-1", "--once", help="Publish once, as without --rate.")
+        bool, typer.Option("-1", "--once", help="Publish once; the default without --rate.")
     ] = False,
     count: Annotated[
-        int | None, typer.Option("-n", "--count", min=1, help="With --rate: end after so many.")
+        int | None,
+        typer.Option(
+            "-n", "--count", min=1, metavar="N", help="With --rate, stop after N messages."
+        ),
     ] = None,
     sim: Sim = None,
 ) -> None:
-    """Publish a message: '{linear: {x: 0.5}}', or the fields in their order.
+    """Publish a message to a topic.
 
-    The type is written geometry_msgs/Twist or geometry_msgs/msg/Twist.
+    The message is YAML, such as '{linear: {x: 0.5}}', or the values of its fields in order.
     """
     from cartwheel.cli.commands import topics
 

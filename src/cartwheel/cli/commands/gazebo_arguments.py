@@ -77,37 +77,36 @@ def parse_server(program: str, words: Sequence[str]) -> ServerArguments:
     parser = _Parser(
         prog=program,
         add_help=False,
-        description="Simulates a world. The options are gzserver's.",
-        epilog="name:=value are arguments of the ROS node, such as __name:=gazebo.",
+        description="Simulates a world. Accepts the options of gzserver.",
+        epilog="name:=value sets an argument of the ROS node, such as __name:=gazebo.",
     )
     add = parser.add_argument
-    add("world", nargs="*", metavar="WORLD", help=f"a world's file; {WORLD} where none is named. "
-        "Looked for here, in the folders of GAZEBO_RESOURCE_PATH, and among those that come "
-        "with Cartwheel")  # fmt: skip
-    add("-h", "--help", action="store_true", help="print this")
-    add("-v", "--version", action="store_true", help="print the version")
-    add("--verbose", action="store_true", help="also say what is merely worth knowing")
-    add("-q", "--quiet", action="store_true", help="accepted; see --verbose")
-    add("-u", "--pause", action="store_true", help="begin with time held")
-    add("--seed", type=_whole, metavar="N", default=0, help="of all noise")
-    add("--iters", type=_whole, metavar="N", help="make so many steps, then end")
+    add("world", nargs="*", metavar="WORLD", help=f"world file; default: {WORLD}. Searched in the "
+        "current folder, in GAZEBO_RESOURCE_PATH, and among the shipped worlds")  # fmt: skip
+    add("-h", "--help", action="store_true", help="show this message and exit")
+    add("-v", "--version", action="store_true", help="show the version and exit")
+    add("--verbose", action="store_true", help="show informational messages")
+    add("-q", "--quiet", action="store_true", help="accepted; the default")
+    add("-u", "--pause", action="store_true", help="start paused")
+    add("--seed", type=_whole, metavar="N", default=0, help="seed of all sensor noise")
+    add("--iters", type=_whole, metavar="N", help="stop after N steps")
     add("-s", "--server-plugin", action="append", metavar="FILE", default=[],
-        help="those of gazebo_ros are part of Cartwheel; others do not apply")  # fmt: skip
+        help="gazebo_ros plugins are built in; others are ignored with a warning")  # fmt: skip
     add("--allow-path", action="append", metavar="FOLDER", default=[], type=Path,
-        help="services may read files below it, besides packages and models")  # fmt: skip
-    add("--lockstep", action="store_true", help="accepted: cameras never miss a frame here")
+        help="let services read files in this folder, besides packages and models")  # fmt: skip
+    add("--lockstep", action="store_true", help="accepted; cameras never drop a frame")
     add("-e", "--physics", metavar="ENGINE", default="ode",
-        help="accepted: MuJoCo computes, by the parameters for ode")  # fmt: skip
-    inert = parser.add_argument_group("without effect; each says so")
+        help="accepted; the engine is MuJoCo, with the parameters for ode")  # fmt: skip
+    inert = parser.add_argument_group("ignored, with a warning")
     inert.add_argument("-r", "--record", action="store_true", help=argparse.SUPPRESS)
     for name in ("encoding", "path", "period", "filter"):
         inert.add_argument(f"--record_{name}", metavar="X", help=argparse.SUPPRESS)
     inert.add_argument("--record_resources", action="store_true", help=argparse.SUPPRESS)
     inert.add_argument("-p", "--play", metavar="FILE", help=argparse.SUPPRESS)
-    inert.add_argument("-o", "--profile", metavar="NAME", help="presets of physics")
-    inert.add_argument("--initial_sim_time", metavar="S", default="0", help="time begins at 0")
-    inert.add_argument("--minimal_comms", action="store_true", help="of Gazebo's transport")
-    inert.add_argument("--headless", action="store_true", help="the launch files' argument")
+    inert.add_argument("-o", "--profile", metavar="NAME", help="physics preset")
+    inert.add_argument("--initial_sim_time", metavar="S", default="0", help="time starts at 0")
+    inert.add_argument("--minimal_comms", action="store_true", help="option of Gazebo's transport")
+    inert.add_argument("--headless", action="store_true", help="argument of launch files")
     given = parser.parse_args([word for word in words if ":=" not in word])
     if given.play is not None:
         raise CartwheelError(
@@ -139,16 +138,16 @@ def parse_client(words: Sequence[str]) -> ClientArguments:
     parser = _Parser(
         prog="gzclient",
         add_help=False,
-        description="Shows the running simulation in the browser, until one of them ends.",
+        description="Shows the running simulation in the browser, until either ends.",
     )
     add = parser.add_argument
     add("world", nargs="*", help=argparse.SUPPRESS)
-    add("-h", "--help", action="store_true", help="print this")
-    add("-v", "--version", action="store_true", help="print the version")
+    add("-h", "--help", action="store_true", help="show this message and exit")
+    add("-v", "--version", action="store_true", help="show the version and exit")
     add("--verbose", action="store_true", help="accepted")
     add("-q", "--quiet", action="store_true", help="accepted")
     add("-g", "--gui-client-plugin", "--gui-plugin", action="append", metavar="FILE", default=[],
-        help="plugins of Gazebo's window do not apply")  # fmt: skip
+        help="plugins of Gazebo's window are ignored with a warning")  # fmt: skip
     given = parser.parse_args([word for word in words if ":=" not in word])
     notes = [
         f"-g {plugin} does not apply: the page takes no plugins of Gazebo's window"

@@ -1,0 +1,95 @@
+"""``--help``: options and commands in groups, as plain text.
+
+An option or command belongs to the group that its ``rich_help_panel`` names. Typer draws such
+groups as boxes; here they are sections, which any terminal, pipe and screen reader can show.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import Any
+
+import typer
+from typer.core import TyperCommand, TyperGroup
+
+SIMULATE = "Simulate and view"
+CONTROL = "Control a running simulation"
+FILES = "Check and convert files"
+OTHER = "Other commands"
+
+WORLD = "World"
+ROBOT = "Robot"
+TIME = "Time"
+PAGE = "Page in the browser"
+WIRES = "ROS and Foxglove"
+RECORDING = "Recording"
+LOOKUP = "Files and folders"
+REPORT = "Report"
+
+_GENERAL = "Options"
+
+
+class Command(TyperCommand):
+    """A command whose help has a section for each group of options."""
+
+    def collect_usage_pieces(self, ctx: Any) -> list[str]:
+        """The words of the usage line; the metavar of an argument states what is optional."""
+        return [str(self.options_metavar), *(a.metavar or a.name for a in _arguments(self, ctx))]
+
+    def format_options(self, ctx: Any, formatter: Any) -> None:
+        """Writes the sections."""
+        _write(formatter, {"Arguments": [_record(a) for a in _arguments(self, ctx)]})
+        _write(formatter, _option_sections(self, ctx))
+
+
+class Group(TyperGroup):
+    """A command with commands of its own, in a section for each group."""
+
+    def format_options(self, ctx: Any, formatter: Any) -> None:
+        """Writes the sections."""
+        sections: dict[str, list[tuple[str, str]]] = {}
+        width = formatter.width - 6 - max(map(len, self.commands))
+        for name, command in self.commands.items():
+            title = getattr(command, "rich_help_panel", None) or "Commands"
+            sections.setdefault(title, []).append((name, command.get_short_help_str(width)))
+        _write(formatter, sections)
+        _write(formatter, _option_sections(self, ctx))
+
+
+def add(
+    app: typer.Typer, function: Callable[..., Any], *, group: str, name: str | None = None
+) -> None:
+    """Adds a command to a program, in a group of commands."""
+    app.command(name, cls=Command, rich_help_panel=group)(function)
+
+
+def _arguments(command: Any, ctx: Any) -> list[Any]:
+    return [p for p in command.get_params(ctx) if p.param_type_name == "argument"]
+
+
+def _record(argument: Any) -> tuple[str, str]:
+    return argument.metavar or argument.name, argument.help or ""
+
+
+def _option_sections(command: Any, ctx: Any) -> dict[str, list[tuple[str, str]]]:
+    """The options by group, in the order of the parameters; those without a group come last."""
+    sections: dict[str, list[tuple[str, str]]] = {}
+    general: list[tuple[str, str]] = []
+    for option in command.get_params(ctx):
+        record = option.get_help_record(ctx)
+        if record is None or option.param_type_name == "argument":
+            continue
+        group = getattr(option, "rich_help_panel", None)
+        (sections.setdefault(group, []) if group else general).append(record)
+    return {**sections, _GENERAL: general}
+
+
+def _write(formatter: Any, sections: dict[str, list[tuple[str, str]]]) -> None:
+    for title, records in sections.items():
+        if records:
+            with formatter.section(title):
+                formatter.write_dl(_aligned(records))
+
+
+def _aligned(records: Iterable[tuple[str, str]]) -> list[tuple[str, str]]:
+    return [(name, text or " ") for name, text in records]
