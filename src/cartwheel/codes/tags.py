@@ -1,1 +1,118 @@
 """CW301 to CW399: tags, attributes and materials."""
+
+from cartwheel.errors import Code
+
+TAG_IGNORED = Code(
+    "CW301",
+    "tag-ignored",
+    "warning",
+    "a tag or attribute that is ignored, often because it is misspelt",
+)
+TAG_MISPLACED = Code(
+    "CW302",
+    "tag-misplaced",
+    "warning",
+    "a tag at a place where it has no effect",
+)
+TAG_REPEATED = Code(
+    "CW303",
+    "tag-repeated",
+    "warning",
+    "a repeated tag of which only the first counts",
+)
+TAG_EMPTY = Code(
+    "CW304",
+    "tag-empty",
+    "warning",
+    "an empty tag: its default counts",
+)
+TAG_MISSING = Code(
+    "CW305",
+    "tag-missing",
+    "error",
+    "a required tag or attribute that is missing",
+)
+TYPE_UNKNOWN = Code(
+    "CW306",
+    "type-unknown",
+    "error",
+    "a type or keyword that does not exist",
+)
+NOT_SIMULATED = Code(
+    "CW307",
+    "not-simulated",
+    "info",
+    "something valid that Cartwheel does not simulate",
+)
+VALUE_IGNORED = Code(
+    "CW308",
+    "value-ignored",
+    "warning",
+    "a value that is corrected or ignored",
+)
+VALUE_INVALID = Code(
+    "CW309",
+    "value-invalid",
+    "error",
+    "a value that is malformed or out of range",
+)
+NAME_UNKNOWN = Code(
+    "CW310",
+    "name-unknown",
+    "error",
+    "a reference to a link, frame or model that does not exist",
+)
+NAME_TAKEN = Code(
+    "CW311",
+    "name-taken",
+    "error",
+    "two elements of one scope with the same name",
+)
+SENSOR_TWICE = Code(
+    "CW312",
+    "sensor-twice",
+    "warning",
+    "two sensors of one link with the same name",
+)
+MATERIAL_UNKNOWN = Code(
+    "CW313",
+    "material-unknown",
+    "warning",
+    "a material that Gazebo does not have",
+)
+MATERIAL_UNDEFINED = Code(
+    "CW314",
+    "material-undefined",
+    "warning",
+    "a material that is not defined",
+)
+MATERIAL_DIFFERS = Code(
+    "CW315",
+    "material-differs",
+    "warning",
+    "a material with two different definitions",
+)
+FRAMES_CIRCULAR = Code(
+    "CW316",
+    "frames-circular",
+    "error",
+    "frames that are relative or attached to each other in a circle",
+)
+DEFAULT_USED = Code(
+    "CW317",
+    "default-used",
+    "warning",
+    "a missing tag whose default is unlikely to be meant",
+)
+ELEMENT_LEFT_OUT = Code(
+    "CW318",
+    "element-left-out",
+    "warning",
+    "an element that is left out because something else is missing",
+)
+MODEL_EMPTY = Code(
+    "CW319",
+    "model-empty",
+    "error",
+    "a robot or model without links",
+)
