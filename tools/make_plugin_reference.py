@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Write docs/plugins.md from the plugins themselves: names, tags, units, defaults, topics.
+"""Write the plugin reference from the plugins: docs/plugins.md and a page each in docs/plugins/.
 
-    python tools/make_plugin_reference.py            # writes the file
-    python tools/make_plugin_reference.py --check    # exits with 1 where the file is out of date
+    python tools/make_plugin_reference.py            # writes the pages
+    python tools/make_plugin_reference.py --check    # exits with 1 if a page is out of date
 
-The tags come from the parameter dataclasses. The topics come from a plugin that is really made,
-on a robot of three links, with every switch on; nothing here knows a plugin by name.
+The tags come from the parameter dataclasses. The topics come from a plugin that really runs, on a
+small robot, with every switch on; this script knows no plugin by name.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from __future__ import annotations
 import argparse
 import dataclasses
 import inspect
+import re
 import sys
 import typing
 from collections.abc import Iterator
@@ -38,16 +39,18 @@ from cartwheel.plugins.base import Plugin
 from cartwheel.plugins.catalogue import all_plugins
 from cartwheel.session import Session
 
-TARGET = Path(__file__).resolve().parent.parent / "docs" / "plugins.md"
+DOCS = Path(__file__).resolve().parent.parent / "docs"
+INDEX, FOLDER = "plugins.md", "plugins"
 HERE = Origin(file="<reference>")
 MODEL, SENSOR = "my_robot", "my_sensor"
 _NEEDED = {("joint", ""), ("body", "")}
 """Fields and their defaults, which say what to move or watch all the same."""
+_MADE = "<!-- Written by tools/make_plugin_reference.py from the code: run `make docs`. -->"
 
-INTRODUCTION = """\
+INTRODUCTION = f"""\
 # Plugins and sensors
 
-<!-- Made by tools/make_plugin_reference.py from the code: `make docs` writes it anew. -->
+{_MADE}
 
 What Cartwheel reads inside `<plugin filename="…">`, plugin by plugin. A tag may be written in any
 of its spellings; the first that is present counts. A tag that a plugin does not know is reported
@@ -74,59 +77,102 @@ brake and its forces stop. An error message names the plugin, its model and the 
 
 
 def main() -> int:
-    """Writes or checks the file; returns the exit status."""
-    parser = argparse.ArgumentParser(description="Write docs/plugins.md from the plugins.")
-    parser.add_argument("--check", action="store_true", help="only say whether it is up to date")
+    """Writes or checks the pages; returns the exit status."""
+    parser = argparse.ArgumentParser(description="Write the plugin reference from the plugins.")
+    parser.add_argument("--check", action="store_true", help="write nothing; report stale pages")
     arguments = parser.parse_args()
-    text = reference()
+    pages = reference()
+    present = {INDEX, *(f"{FOLDER}/{path.name}" for path in (DOCS / FOLDER).glob("*.md"))}
+    stale = sorted(present - pages.keys())
+    for name, text in pages.items():
+        path = DOCS / name
+        if not path.is_file() or path.read_text() != text:
+            stale.append(name)
     if arguments.check:
-        if TARGET.is_file() and TARGET.read_text() == text:
-            return 0
-        print(f"{TARGET.name} is out of date: run `make docs`", file=sys.stderr)
-        return 1
-    TARGET.write_text(text)
+        if stale:
+            print(f"run `make docs`: out of date are {', '.join(stale)}", file=sys.stderr)
+        return bool(stale)
+    (DOCS / FOLDER).mkdir(exist_ok=True)
+    for name in stale:
+        if name in pages:
+            (DOCS / name).write_text(pages[name])
+        else:
+            (DOCS / name).unlink()
     return 0
 
 
-def reference() -> str:
-    """The whole page."""
-    # Not those of packages that happen to be installed here.
+def reference() -> dict[str, str]:
+    """All pages: the text by the path below docs."""
+    # Without those of packages that happen to be installed here.
     ours = [plugin for plugin in all_plugins() if plugin.__module__.startswith("cartwheel.")]
-    contents = "\n".join(f"- [`{_title(p)}`](#{_anchor(_title(p))})" for p in ours)
-    return "\n".join([INTRODUCTION, contents, "", *(_section(plugin) for plugin in ours)])
+    pages = {f"{FOLDER}/{_slug(plugin)}.md": _page(plugin) for plugin in ours}
+    assert len(pages) == len(ours), "two plugins have the same page"
+    tables = [
+        _index(
+            "In a model", [p for p in ours if p.filenames and not p.for_sensor and not p.for_world]
+        ),
+        _index("In a sensor", [p for p in ours if p.filenames and p.for_sensor]),
+        _index("In a world", [p for p in ours if p.filenames and p.for_world]),
+        _index("Sensors without a plugin", [p for p in ours if not p.filenames]),
+    ]
+    return {INDEX: "\n".join([INTRODUCTION, *tables]), **pages}
 
 
-def _section(plugin: type[Plugin[Any]]) -> str:
-    lines = [f"## {_title(plugin)}", "", *_prose(plugin), ""]
+def _index(heading: str, plugins: list[type[Plugin[Any]]]) -> str:
+    rows = []
+    for plugin in plugins:
+        first, *others = plugin.filenames or plugin.serves
+        names = [f"[`{first}`]({FOLDER}/{_slug(plugin)}.md)", *(f"`{name}`" for name in others)]
+        summary = " ".join(_prose(plugin)[0].split()).split(". ")[0].rstrip(".")
+        rows.append(f"| {', '.join(names)} | {summary}. |".replace("..", "."))
+    column = "File name" if plugins[0].filenames else "Sensor type"
+    return "\n".join([f"## {heading}", "", f"| {column} | Purpose |", "|---|---|", *rows, ""])
+
+
+def _page(plugin: type[Plugin[Any]]) -> str:
+    lines = [f"# {_title(plugin)}", "", _MADE, "", *_prose(plugin), ""]
     if len(plugin.filenames) > 1:
         others = ", ".join(f"`{name}`" for name in plugin.filenames[1:])
-        lines += [f"Also answers to {others}.", ""]
+        lines += [f"Other file names: {others}.", ""]
     if not plugin.filenames:
         kinds = ", ".join(f"`{kind}`" for kind in plugin.serves)
-        lines += [f"Serves sensors of the types {kinds} that have no `<plugin>`.", ""]
+        lines += [f"For sensors of type {kinds} without a `<plugin>`.", ""]
     elif plugin.for_world:
-        lines += ["Written directly inside a `<world>`.", ""]
+        lines += ["Place it directly inside a `<world>`.", ""]
     elif plugin.for_sensor:
-        lines += ["Written inside a `<sensor>`.", ""]
+        lines += ["Place it inside a `<sensor>`.", ""]
     else:
-        lines += [
-            "Written directly inside a `<gazebo>` of a URDF or a `<model>` of an SDF.",
-            "",
-        ]
-    lines += ["| tag | other spellings | value | default | what it is |", "|---|---|---|---|---|"]
-    lines += [_row(item, kind) for item, kind in _fields(plugin)]
-    lines += ["", "| topic or service | type | with these defaults |", "|---|---|---|"]
-    lines += _interface(plugin)
-    return "\n".join([*lines, ""])
+        lines += ["Place it directly inside a `<gazebo>` of a URDF or a `<model>` of an SDF.", ""]
+    fields = [_row(item, kind) for item, kind in _fields(plugin)]
+    if fields:
+        lines += ["## Tags", "", "| Tag | Other spellings | Value | Default | Meaning |"]
+        lines += ["|---|---|---|---|---|", *fields, ""]
+    interface = _interface(plugin)
+    if interface:
+        lines += ["## Topics and services", ""]
+        lines += ["With each boolean tag `true` and the other tags at their defaults.", ""]
+        lines += ["| Name | Type | Role |", "|---|---|---|", *interface, ""]
+    return "\n".join([*lines, f"[All plugins and sensors](../{INDEX})", ""])
 
 
 def _title(plugin: type[Plugin[Any]]) -> str:
-    return plugin.filenames[0] if plugin.filenames else f"sensor {plugin.serves[0]}"
+    return plugin.filenames[0] if plugin.filenames else f"{plugin.serves[0]} sensor"
+
+
+def _slug(plugin: type[Plugin[Any]]) -> str:
+    return _title(plugin).removesuffix(".so").replace(" ", "-")
 
 
 def _prose(plugin: type[Plugin[Any]]) -> list[str]:
     paragraphs = inspect.cleandoc(plugin.__doc__ or "").replace("``", "`").split("\n\n")
-    return "\n\n".join(" ".join(part.split()) for part in paragraphs).splitlines()
+    return "\n\n".join(_markdown(" ".join(part.split())) for part in paragraphs).splitlines()
+
+
+def _markdown(text: str) -> str:
+    """Text in which a tag is code, so that no page takes it for HTML."""
+    parts = text.split("`")
+    parts[::2] = [re.sub(r"</?\w+>", r"`\g<0>`", part) for part in parts[::2]]
+    return "`".join(parts)
 
 
 def _fields(plugin: type[Plugin[Any]]) -> Iterator[tuple[dataclasses.Field[Any], Any]]:
@@ -141,7 +187,7 @@ def _row(item: dataclasses.Field[Any], kind: Any) -> str:
     value = _kind(kind)
     if item.metadata["unit"]:
         value = f"{value}, {item.metadata['unit']}"
-    cells = [f"`{first}`", spellings, value, _default(item), item.metadata["doc"]]
+    cells = [f"`{first}`", spellings, value, _default(item), _markdown(item.metadata["doc"])]
     return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"
 
 
@@ -153,16 +199,16 @@ def _kind(kind: Any) -> str:
         return _kind(next(option for option in options if option is not type(None)))
     if typing.get_origin(kind) is tuple:
         if options[-1] is Ellipsis:
-            return "texts" if options[0] is str else "numbers"
+            return "strings" if options[0] is str else "numbers"
         return f"{len(options)} numbers"
-    names = {bool: "true or false", float: "number", int: "whole number", str: "text"}
+    names = {bool: "boolean", float: "number", int: "integer", str: "string"}
     return names.get(kind, getattr(kind, "__name__", str(kind)))
 
 
 def _default(item: dataclasses.Field[Any]) -> str:
     value = item.default
     if value is dataclasses.MISSING:
-        return "must be given"
+        return "required"
     if value is None or value == "":
         return ""
     if isinstance(value, bool):
@@ -209,7 +255,7 @@ def _tag(plugin: type[Plugin[Any]]) -> PluginTag:
 
 
 def _needed(item: dataclasses.Field[Any], kind: Any) -> str:
-    """What stands in a tag that must be given."""
+    """The content of a required tag."""
     if kind in (float, int):
         return "1"
     if typing.get_origin(kind) is typing.Literal:
@@ -291,10 +337,6 @@ def _ray() -> Element:
 
 def _element(tag: str, *, text: str = "", children: tuple[Element, ...] = ()) -> Element:
     return Element(tag=tag, text=text, children=children, origin=HERE)
-
-
-def _anchor(heading: str) -> str:
-    return "".join(c for c in heading.lower() if c.isalnum() or c in "-_ ").replace(" ", "-")
 
 
 if __name__ == "__main__":
