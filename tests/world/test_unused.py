@@ -82,7 +82,7 @@ LOOP = """<sdf version="1.7"><model name="loop"><link name="a"/><link name="b"/>
         ("revolute", "", None),
         ("fixed", "", None),
         ("revolute", "<dynamics><damping>1</damping></dynamics>", "turns freely"),
-        ("prismatic", "", "a prismatic joint that closes a loop of joints holds one point alone"),
+        ("prismatic", "", "a prismatic joint that closes a loop constrains only one point"),
     ],
 )
 def test_what_a_joint_that_closes_a_loop_does_not_do_is_told(kind, axis, said) -> None:
@@ -99,4 +99,4 @@ def test_a_restitution_above_1_is_told(coefficient, told) -> None:
       {coefficient}</restitution_coefficient></bounce></surface></collision>"""
     said = [each for each in notes(bounce) if "restitution" in each]
     assert len(said) == bool(told)
-    assert all("(2 times): an impact gains no energy" in each for each in said)
+    assert all("(2 times): an impact cannot add energy" in each for each in said)

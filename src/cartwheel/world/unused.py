@@ -1,4 +1,4 @@
-"""What a description states and the physics does not do: told, never passed over."""
+"""Elements of a description that have no effect on the physics: each is reported."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from cartwheel.world import contact
 from cartwheel.world.shapes import picture_error
 
 _SURFACE = {
-    "slip1": "friction is Coulomb's",
-    "slip2": "friction is Coulomb's",
-    "min_depth": "contacts are as hard as the step allows",
-    "max_vel": "contacts part as fast as they must",
-    "max_contacts": "all contacts count",
-    "surface_radius": "the patch that touches does not grow with depth: state a patch_radius",
-    "collide_without_contact": "it touches nothing, and a contact sensor does not see it",
+    "slip1": "friction is Coulomb friction, without slip",
+    "slip2": "friction is Coulomb friction, without slip",
+    "min_depth": "contacts are as stiff as the step allows",
+    "max_vel": "the speed at which contacts separate is not limited",
+    "max_contacts": "all contacts are used",
+    "surface_radius": "the contact patch does not grow with depth: set patch_radius",
+    "collide_without_contact": "it has no contacts, and contact sensors do not see it",
 }
 _HELD = ("fixed", "revolute", "continuous", "ball")
 """Types of joints that hold what they should where they close a loop."""
@@ -28,7 +28,7 @@ _CONTROL = ("ros_control", "ros2_control")
 
 
 def unused(description: RobotDescription) -> Iterator[Diagnostic]:
-    """One note for each kind of thing that has no effect, at the first place that states it."""
+    """One note for each kind of element without effect, at its first occurrence."""
     found: dict[str, tuple[Origin, int, str]] = {}
 
     def note(what: str, origin: Origin, why: str) -> None:
@@ -39,36 +39,36 @@ def unused(description: RobotDescription) -> Iterator[Diagnostic]:
         for collision in link.collisions:
             shape = collision.shape
             if description.static and isinstance(shape, Mesh) and standing_parts(shape).hulls:
-                why = "a part of it has too many facets, and its hull collides"
+                why = "a part of it has too many facets and collides as its convex hull"
                 note("the surface of a mesh", collision.origin, why)
             if isinstance(shape, Mesh) and shape.convex_decomposition and not description.static:
-                why = "what moves collides as its hull"
+                why = "meshes that move collide as their convex hull"
                 note("the convex decomposition of a mesh", collision.origin, why)
             surface = collision.surface
             for field, why in _SURFACE.items():
-                # 0 is what Gazebo writes where nothing is asked for.
+                # Gazebo writes 0 for "not set".
                 if getattr(surface, field):
                     note(field, collision.origin, why)
             if surface.restitution and contact.bounce("", surface) is None:
-                why = "nothing reaches its <threshold>, which is 100000 m/s where none is stated"
+                why = "no impact reaches its <threshold>, which is 100000 m/s by default"
                 note("restitution", collision.origin, why)
             if (surface.restitution or 0.0) > 1:
-                note("a restitution above 1", collision.origin, "an impact gains no energy")
+                note("a restitution above 1", collision.origin, "an impact cannot add energy")
         if link.linear_damping or link.angular_damping:
-            note("velocity decay", link.origin, "the air does not brake")
+            note("velocity decay", link.origin, "air drag is not simulated")
     for joint in _closing(description):
         if joint.type not in _HELD:
-            why = f"a {joint.type} joint that closes a loop of joints holds one point alone"
+            why = f"a {joint.type} joint that closes a loop constrains only one point"
             note("the axis of a joint", joint.origin, why)
         elif joint.type != "fixed" and joint.resists:
-            why = "a joint that closes a loop of joints turns freely"
+            why = "a joint that closes a loop turns freely"
             note("a joint's limits, damping, friction or spring", joint.origin, why)
     heeded = _controlled(description)
     for joint in description.joints:
         if joint.axis.velocity is not None and joint.drivable and joint.name not in heeded:
-            note("a joint's velocity limit", joint.origin, "only controllers heed it")
+            note("a joint's velocity limit", joint.origin, "only controllers use it")
         if joint.stop_cfm is not None or joint.stop_erp is not None:
-            note("a joint's stop_cfm or stop_erp", joint.origin, "stops are as hard as can be")
+            note("a joint's stop_cfm or stop_erp", joint.origin, "joint limits are always stiff")
     for what, (origin, count, why) in found.items():
         times = f" ({count} times)" if count > 1 else ""
         yield Diagnostic(

@@ -722,7 +722,7 @@ def test_names_with_a_prefix_are_for_other_programs_and_told_once():
     assert infos == [
         "gz:semantics is for other programs",
         "my:colour is for other programs",
-        "<static> in <model> has no effect: the first counts",
+        "<static> in <model> has no effect: the first one is used",
     ]
 
 

@@ -240,7 +240,7 @@ def test_saved_state_moves_models_lights_and_lone_links():
     assert {d.severity for d in found.diagnostics} == {"info"}
     stranger, time = sorted((d.message for d in found.diagnostics), reverse=True)
     assert "stranger" in stranger
-    assert time == "<sim_time> in <state> has no effect: time begins at 0"
+    assert time == "<sim_time> in <state> has no effect: time starts at 0"
 
 
 ARM = """<model name="arm"><link name="base"/>

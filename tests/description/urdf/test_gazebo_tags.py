@@ -266,7 +266,7 @@ def test_light():
         (on("base", "<min_depth>3</min_depth>"), "Did you mean <minDepth>?"),
         (
             on("base", "<canonicalBody>base</canonicalBody>"),
-            "<canonicalBody> has no effect here: the root link is the robot's own frame",
+            "<canonicalBody> has no effect here: the root link always is the canonical body",
         ),
         (on("base", "<projector/>x"), "<projector> is empty"),
         (on("base", '<projector name="p"/>'), "<projector> has no effect here"),
@@ -332,5 +332,5 @@ def test_a_fudge_factor_is_no_loss():
     (diagnostic,) = load(on("hinge", "<fudgeFactor>1</fudgeFactor>")).diagnostics
     assert (diagnostic.severity, diagnostic.message) == (
         "info",
-        "<fudgeFactor> is not needed: limits here do not overshoot",
+        "<fudgeFactor> is not needed: joint limits here do not overshoot",
     )

@@ -25,13 +25,13 @@ LINK_TAGS = (
 )  # fmt: skip
 
 _IDLE = {
-    "canonicalBody": "the root link is the robot's own frame",
-    "projector": "no pattern is projected",
-    "audio_source": "nothing is heard",
-    "audio_sink": "nothing is heard",
-    "battery": "a link carries no battery",
-    "particle_emitter": "there is no smoke",
-    "enable_wind": "there is no wind",
+    "canonicalBody": "the root link always is the canonical body",
+    "projector": "projectors are not supported",
+    "audio_source": "audio is not supported",
+    "audio_sink": "audio is not supported",
+    "battery": "batteries of links are not supported",
+    "particle_emitter": "particle emitters are not supported",
+    "enable_wind": "wind is not simulated",
     "must_be_base_link": "the root link always is the base",
 }
 _SURFACE = {

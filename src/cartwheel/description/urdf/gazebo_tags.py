@@ -28,12 +28,12 @@ _WITH_PARTS = ("sensor", "plugin", "light", "visual", "collision")
 ROBOT_TAGS = ("plugin", "static", "self_collide", "selfCollide", *INSERTED)
 
 _ROBOT_IDLE = {
-    "gripper": "nothing is attached by touching it",
-    "allow_auto_disable": "bodies that rest always cost next to nothing",
-    "enable_wind": "there is no wind",
-    "pose": "where a robot stands is said when it is spawned",
-    "model": "a model inside a URDF is not built",
-    "verbose": "it never had one",
+    "gripper": "grippers are not supported: use libgazebo_grasp_fix.so",
+    "allow_auto_disable": "bodies at rest sleep automatically",
+    "enable_wind": "wind is not simulated",
+    "pose": "the pose is set when the robot is spawned",
+    "model": "models inside a URDF are not supported",
+    "verbose": "Gazebo ignores it too",
 }
 
 
@@ -199,7 +199,8 @@ def _read_joint_tags(
             fields[name] = found.boolean() or fields.get(name, False)
     for fudge in node.all("fudgeFactor"):
         fudge.mark()
-        ctx.tell("info", "<fudgeFactor> is not needed: limits here do not overshoot", fudge.origin)
+        message = "<fudgeFactor> is not needed: joint limits here do not overshoot"
+        ctx.tell("info", message, fudge.origin)
     child_tags = tags.links.setdefault(joint.child, LinkTags())
     for sensor in node.all("sensor"):
         read = replace(read_sensor(sensor, joint.child), joint=joint.name)
