@@ -7,7 +7,7 @@ MINUTES ?= 5
 WORKERS ?= 2
 export VENV
 
-.PHONY: run test campaign lint format bench corpus docs ros1 clean
+.PHONY: run test campaign lint format bench corpus docs ros1 dist clean
 
 run: ## the cart in the browser, with a post before its camera
 	@tools/setup.sh run
@@ -47,6 +47,10 @@ docs: ## the parts of docs/ that are made from the code
 ros1: ## ROS 1's names for Cartwheel: gazebo_ros, gazebo_msgs, xacro, teleop_twist_keyboard
 	@tools/setup.sh ros1
 	@tools/build_ros1.sh
+
+dist: ## wheel and sdist, each installed in an empty environment and tried; ARGS=vVERSION checks a tag
+	@tools/setup.sh lint
+	@tools/check_release.sh $(ARGS)
 
 clean:
 	rm -rf $(VENV) ros1/build ros1/devel build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis

@@ -6,11 +6,13 @@ import urllib.request
 import mujoco
 import pytest
 
+import cartwheel
 from cartwheel.description import load_robot
 
 
 def test_version(program):
-    assert program("version").stdout == program("--version").stdout == "cartwheel 0.1.0\n"
+    expected = f"cartwheel {cartwheel.__version__}\n"
+    assert program("version").stdout == program("--version").stdout == expected
 
 
 def test_help_names_every_command(program):

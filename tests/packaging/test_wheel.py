@@ -1,6 +1,7 @@
 """The wheel holds everything that a user needs, and works in a folder of its own."""
 
 import os
+import shutil
 import subprocess
 import sys
 import sysconfig
@@ -84,6 +85,18 @@ def test_everything_that_is_not_python_is_in_the_wheel(wheel: Path) -> None:
 def test_nothing_else_is_in_the_wheel(wheel: Path) -> None:
     tops = {name.split("/")[0] for name in zipfile.ZipFile(wheel).namelist()}
     assert tops == {"cartwheel", next(top for top in tops if top.endswith(".dist-info"))}
+
+
+def test_the_sdist_builds_the_same_wheel(wheel: Path, tmp_path: Path) -> None:
+    build = f"from hatchling.build import build_sdist; build_sdist({str(tmp_path)!r})"
+    run([sys.executable, "-c", build], ROOT)
+    (sdist,) = tmp_path.glob("cartwheel-*.tar.gz")
+    shutil.unpack_archive(sdist, tmp_path, filter="data")
+    (unpacked,) = (path for path in tmp_path.iterdir() if path.is_dir())
+    build = f"from hatchling.build import build_wheel; build_wheel({str(tmp_path)!r})"
+    run([sys.executable, "-c", build], unpacked)
+    (built,) = tmp_path.glob("cartwheel-*.whl")
+    assert zipfile.ZipFile(built).namelist() == zipfile.ZipFile(wheel).namelist()
 
 
 def test_the_licence_and_the_readme_are_in_the_wheel(wheel: Path) -> None:
