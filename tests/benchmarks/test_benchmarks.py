@@ -1,6 +1,7 @@
 """The benchmark runs and writes what its readers expect; how fast is not asked here."""
 
 import json
+import math
 import os
 import subprocess
 import sys
@@ -33,7 +34,9 @@ def test_figures_name_themselves_and_are_measured(tmp_path: Path, part: str):
     assert found["figures"]
     for figure in found["figures"]:
         assert set(figure) == FIELDS
-        assert figure["value"] > 0
+        # The CPU time of a wire is a difference of two, which noise may turn negative.
+        is_difference = part == "wires" and figure["name"] == "CPU"
+        assert math.isfinite(figure["value"]) and (figure["value"] > 0 or is_difference)
         assert figure["met"] in (None, True, False)
     assert {"processor", "cores", "load", "opengl"} <= set(found["machine"])
     assert {"cartwheel", "mujoco", "numpy", "rosbags", "python"} <= set(found["versions"])

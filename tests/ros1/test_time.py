@@ -39,6 +39,9 @@ def listen(name, kind, frames):
 listen("/odom", Odometry, ["base_link", "wheel_left_link"])
 listen("/imu/data", Imu, ["base_link"])
 listen("/rosbots/camera1/camera_info", CameraInfo, ["camera"])
+while len(heard) < len(hearers):
+    time.sleep(0.05)
+heard.update(dict.fromkeys(heard, 0))
 rospy.sleep(float(sys.argv[1]))
 for hearer in hearers:
     hearer.unregister()

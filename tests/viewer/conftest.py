@@ -38,7 +38,7 @@ CART = "rosbots"
 TWIST = "/part2_cmr/cmd_vel"
 
 
-def eventually(condition, *, seconds=120.0, what="it"):
+def eventually(condition, *, seconds=240.0, what="it"):
     """Waits for a condition, and gives what it returned."""
     deadline = time.monotonic() + seconds
     while time.monotonic() < deadline:
@@ -134,10 +134,26 @@ def arena():
     made.close()
 
 
+PATIENCE_MS = 240_000
+"""ms for a page that other programs leave hardly any time."""
+CALM = """
+window.requestAnimationFrame = (draw) => setTimeout(() => draw(performance.now()), 100);
+window.cancelAnimationFrame = clearTimeout;
+"""
+"""Draws at most 10 images a second: without a GPU, more would take all of a processor."""
+
+
+def new_page(browser, **options):
+    """A page that is patient, and draws seldom."""
+    page = browser.new_page(**options)
+    page.set_default_timeout(PATIENCE_MS)
+    page.add_init_script(CALM)
+    return page
+
+
 def open_page(browser, arena):
     """A page that shows the scene."""
-    page = browser.new_page(viewport=SIZE, device_scale_factor=0.5)
-    page.set_default_timeout(90_000)
+    page = new_page(browser, viewport=SIZE, device_scale_factor=0.5)
     page.faults = []
     page.on("pageerror", lambda error: page.faults.append(error.stack))
     page.goto(arena.url)

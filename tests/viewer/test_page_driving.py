@@ -77,7 +77,7 @@ def test_a_button_is_its_key(page, arena):
 def test_a_focused_control_does_not_take_the_keys(page, arena):
     page.get_by_role("button", name="Step").focus()
     assert press(page, arena, "l") == (0.0, -1.0)
-    page.get_by_label("Speed").click()
+    page.get_by_label("Speed", exact=True).click()
     page.get_by_role("option", name="2", exact=True).click()
     eventually(lambda: arena.ask(lambda: arena.simulation.speed) == 2.0, what="the speed")
     assert press(page, arena, "i") == (0.5, 0.0)

@@ -16,7 +16,7 @@ from cartwheel.gate.access import Access
 from cartwheel.session import Session
 from cartwheel.viewer import Viewer
 
-from .conftest import eventually
+from .conftest import eventually, new_page
 
 TRY = """url => new Promise(done => {
   const link = new WebSocket(url, ["viser-v%s"]);
@@ -82,8 +82,7 @@ def test_a_foreign_site_reaches_nothing(browser, shown: Shown, site: str, tmp_pa
     import viser
 
     attempt = TRY % viser.__version__
-    page = browser.new_page()
-    page.set_default_timeout(120_000)
+    page = new_page(browser)
     page.goto(site)
     port = urlsplit(shown.url).port
     for host in ("127.0.0.1", "localhost"):
@@ -110,8 +109,7 @@ def test_a_link_cannot_lead_the_page_to_a_foreign_server(browser, shown: Shown) 
     with socket.create_server(("127.0.0.1", 0)) as foreign:
         port = foreign.getsockname()[1]
         foreign.settimeout(0.0)
-        page = browser.new_page()
-        page.set_default_timeout(120_000)
+        page = new_page(browser)
         said: list[str] = []
         page.on("console", lambda message: said.append(message.text))
         tried = re.compile("Content Security Policy|websocket is not connected")
@@ -131,8 +129,7 @@ def test_a_link_cannot_lead_the_page_to_a_foreign_server(browser, shown: Shown) 
 def test_the_address_with_the_token_opens_the_page(browser) -> None:
     shown = Shown(Access.of("0.0.0.0"))
     plain = shown.url.partition("?")[0]
-    page = browser.new_page()
-    page.set_default_timeout(120_000)
+    page = new_page(browser)
     answer = page.goto(plain)
     assert answer is not None and answer.status == 403
     assert "token" in page.content()

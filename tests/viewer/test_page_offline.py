@@ -4,7 +4,7 @@ import signal
 
 import pytest
 
-from .conftest import eventually
+from .conftest import eventually, new_page
 from .running import running
 
 NOTICE = ".cw-offline-notice"
@@ -19,8 +19,7 @@ def simulation(tmp_path_factory):
 
 @pytest.fixture
 def page(browser, simulation):
-    page = browser.new_page()
-    page.set_default_timeout(90_000)
+    page = new_page(browser)
     page.goto(f"http://127.0.0.1:{simulation.port}")
     page.locator(".cw-running").wait_for()
     assert not page.locator(NOTICE).is_visible()

@@ -11,7 +11,7 @@ from cartwheel.simulation.snapshot import RunState
 from cartwheel.viewer import Viewer
 from cartwheel.viewer.play_desk import PlayDesk
 
-from .conftest import SIZE, eventually
+from .conftest import SIZE, eventually, new_page
 
 SECONDS = 4.0
 
@@ -55,8 +55,7 @@ def cinema(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def page(browser, cinema):
-    made = browser.new_page(viewport=SIZE, device_scale_factor=0.5)
-    made.set_default_timeout(90_000)
+    made = new_page(browser, viewport=SIZE, device_scale_factor=0.5)
     faults = []
     made.on("pageerror", lambda error: faults.append(error.stack))
     made.goto(cinema.viewer.url)

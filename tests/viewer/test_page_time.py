@@ -56,7 +56,7 @@ def test_reset_takes_time_and_models_back(page, arena):
 
 
 def test_the_speed_is_set_and_shown(page, arena):
-    page.get_by_label("Speed").click()
+    page.get_by_label("Speed", exact=True).click()
     page.get_by_role("option", name="0.1").click()
     eventually(lambda: arena.ask(lambda: arena.simulation.speed) == 0.1, what="the speed")
     factor = page.locator(".cw-factor")
@@ -65,4 +65,4 @@ def test_the_speed_is_set_and_shown(page, arena):
 
 def test_a_speed_set_elsewhere_shows_here(page, arena):
     arena.ask(lambda: arena.simulation.set_speed(5.0))
-    eventually(lambda: page.get_by_label("Speed").input_value() == "5", what="the speed")
+    eventually(lambda: page.get_by_label("Speed", exact=True).input_value() == "5", what="the speed")
