@@ -65,4 +65,6 @@ def test_the_speed_is_set_and_shown(page, arena):
 
 def test_a_speed_set_elsewhere_shows_here(page, arena):
     arena.ask(lambda: arena.simulation.set_speed(5.0))
-    eventually(lambda: page.get_by_label("Speed", exact=True).input_value() == "5", what="the speed")
+    eventually(
+        lambda: page.get_by_label("Speed", exact=True).input_value() == "5", what="the speed"
+    )
