@@ -40,9 +40,10 @@ corpus: ## a table of all robots below FOLDER: do they load, stand, publish, dri
 	@tools/setup.sh run
 	@$(BIN)/cartwheel corpus $(FOLDER) $(ARGS)
 
-docs: ## the parts of docs/ that are made from the code
-	@tools/setup.sh lint
+docs: ## the plugin reference in docs/, and the documentation's site in site/
+	@tools/setup.sh docs
 	@$(BIN)/python tools/make_plugin_reference.py
+	@$(BIN)/python tools/make_site.py $(ARGS)
 
 ros1: ## ROS 1's names for Cartwheel: gazebo_ros, gazebo_msgs, xacro, teleop_twist_keyboard
 	@tools/setup.sh ros1
@@ -53,4 +54,4 @@ dist: ## wheel and sdist, each installed in an empty environment and tried; ARGS
 	@tools/check_release.sh $(ARGS)
 
 clean:
-	rm -rf $(VENV) ros1/build ros1/devel build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	rm -rf $(VENV) ros1/build ros1/devel build dist site .pytest_cache .mypy_cache .ruff_cache .hypothesis

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Sets up what is missing: a virtual environment with Cartwheel in it, and Debian's packages
-# that pip cannot bring. Usage: tools/setup.sh run|test|lint|ros1
+# that pip cannot bring. Usage: tools/setup.sh run|test|lint|docs|ros1
 set -eu
 cd "$(dirname "$0")/.."
 purpose=${1:-run}
@@ -128,7 +128,10 @@ fi
 
 extras="[test,lint]"
 stamp="$venv/.ready-tools"
-if [ "$purpose" = run ] && [ ! -e "$stamp" ]; then
+if [ "$purpose" = docs ]; then
+    extras="[docs]"
+    stamp="$venv/.ready-docs"
+elif [ "$purpose" = run ] && [ ! -e "$stamp" ]; then
     extras=""
     stamp="$venv/.ready"
 fi

@@ -34,12 +34,12 @@ class Command(TyperCommand):
 
     def collect_usage_pieces(self, ctx: Any) -> list[str]:
         """The words of the usage line; the metavar of an argument states what is optional."""
-        return [str(self.options_metavar), *(a.metavar or a.name for a in _arguments(self, ctx))]
+        return [str(self.options_metavar), *(a.metavar or a.name for a in arguments(self, ctx))]
 
     def format_options(self, ctx: Any, formatter: Any) -> None:
         """Writes the sections."""
-        _write(formatter, {"Arguments": [_record(a) for a in _arguments(self, ctx)]})
-        _write(formatter, _option_sections(self, ctx))
+        _write(formatter, {"Arguments": [argument_record(a) for a in arguments(self, ctx)]})
+        _write(formatter, option_sections(self, ctx))
 
 
 class Group(TyperGroup):
@@ -53,7 +53,7 @@ class Group(TyperGroup):
             title = getattr(command, "rich_help_panel", None) or "Commands"
             sections.setdefault(title, []).append((name, command.get_short_help_str(width)))
         _write(formatter, sections)
-        _write(formatter, _option_sections(self, ctx))
+        _write(formatter, option_sections(self, ctx))
 
 
 def add(
@@ -63,15 +63,17 @@ def add(
     app.command(name, cls=Command, rich_help_panel=group)(function)
 
 
-def _arguments(command: Any, ctx: Any) -> list[Any]:
+def arguments(command: Any, ctx: Any) -> list[Any]:
+    """The arguments of a command, without its options."""
     return [p for p in command.get_params(ctx) if p.param_type_name == "argument"]
 
 
-def _record(argument: Any) -> tuple[str, str]:
+def argument_record(argument: Any) -> tuple[str, str]:
+    """The name of an argument, and its help."""
     return argument.metavar or argument.name, argument.help or ""
 
 
-def _option_sections(command: Any, ctx: Any) -> dict[str, list[tuple[str, str]]]:
+def option_sections(command: Any, ctx: Any) -> dict[str, list[tuple[str, str]]]:
     """The options by group, in the order of the parameters; those without a group come last."""
     sections: dict[str, list[tuple[str, str]]] = {}
     general: list[tuple[str, str]] = []
