@@ -16,7 +16,7 @@ PAGES = [
 ]
 
 _FENCE = re.compile(r"^```(\w*)\s*$")
-_NOTE = re.compile(r"^<!-- (not run|keys|fails): (.+) -->$")
+_NOTE = re.compile(r"^<!-- (not run|keys|fails|finds): (.+) -->$")
 
 
 @dataclass
@@ -28,8 +28,8 @@ class Block:
     language: str
     lines: list[str] = field(default_factory=list)
     notes: dict[str, str] = field(default_factory=dict)
-    """From the comment above it: ``not run`` with the reason, ``keys`` to type, ``fails`` with why
-    the last of its commands does."""
+    """From the comment above it: ``not run`` with the reason, ``keys`` to type, ``fails`` or
+    ``finds`` with the reason why the last command ends with status 2 or 1."""
 
     def __str__(self) -> str:
         return f"{self.page.relative_to(ROOT)}:{self.line}"
@@ -43,7 +43,8 @@ class Command:
     line: int
     text: str
     expected: str = ""
-    fails: bool = False
+    status: int = 0
+    """The exit status that the page expects."""
 
     def __str__(self) -> str:
         return f"{self.block.page.relative_to(ROOT)}:{self.line}: $ {self.text}"
@@ -89,5 +90,5 @@ def commands(page: Path) -> list[Command]:
                 found.append(Command(block=block, line=block.line + offset, text=line[2:]))
             else:
                 found[-1].expected += line + "\n"
-        found[-1].fails = "fails" in block.notes
+        found[-1].status = 2 if "fails" in block.notes else int("finds" in block.notes)
     return found

@@ -63,8 +63,8 @@ class Reader:
 
     def follow(self, command: Command) -> None:
         text = command.text
-        if command.fails:
-            self._ask(command, status=2)
+        if command.status:
+            self._ask(command)
         elif text.startswith("cd "):
             self._change_folder(text.removeprefix("cd "))
         elif text.startswith("cartwheel run") and "--for" not in text:
@@ -143,7 +143,7 @@ class Reader:
         os.close(master)
         assert driver.returncode in (0, 130), f"{command}: status {driver.returncode}"
 
-    def _ask(self, command: Command, *, status: int = 0) -> None:
+    def _ask(self, command: Command) -> None:
         deadline = time.monotonic() + PATIENCE
         while True:
             done = subprocess.run(
@@ -157,12 +157,12 @@ class Reader:
                 check=False,
             )
             output = done.stdout + done.stderr
-            fits = done.returncode == status and matches(command.expected, output)
+            fits = done.returncode == command.status and matches(command.expected, output)
             again = command.text.startswith(ASKS) and time.monotonic() < deadline
             if fits or not again:
                 break
             time.sleep(0.2)
-        assert done.returncode == status, f"{command}\nended with {done.returncode}:\n{output}"
+        assert done.returncode == command.status, f"{command}\nended with {done.returncode}:\n{output}"
         assert fits, f"{command}\nshown:\n{command.expected}\ngiven:\n{output}"
 
 

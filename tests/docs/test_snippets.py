@@ -8,7 +8,7 @@ import pytest
 
 from .pages import DOCS, PAGES, ROOT, STEPS, Block, blocks
 
-TUTORIAL = sorted((DOCS / "tutorial").glob("[0-9]*.md"))
+TUTORIAL = sorted(page for page in (DOCS / "tutorial").glob("*.md") if page.stem != "README")
 WITH_PYTHON = [page for page in PAGES if page.is_file() and blocks(page, "python")]
 EXAMPLES = sorted((ROOT / "examples").glob("[0-9]*.py"))
 
