@@ -162,7 +162,8 @@ class Reader:
             if fits or not again:
                 break
             time.sleep(0.2)
-        assert done.returncode == command.status, f"{command}\nended with {done.returncode}:\n{output}"
+        status = done.returncode
+        assert status == command.status, f"{command}\nended with {status}:\n{output}"
         assert fits, f"{command}\nshown:\n{command.expected}\ngiven:\n{output}"
 
 
