@@ -72,6 +72,8 @@ class Code:
         severity: Severity | None = None,
         mark: str = "",
         values: Mapping[str, Value] | None = None,
+        instead: str = "",
+        place: Place = "",
     ) -> Diagnostic:
         """A diagnostic of this kind.
 
@@ -82,6 +84,8 @@ class Code:
             severity: Where it differs from the code's.
             mark: The text in the source line that the caret points to; by default the whole tag.
             values: What the message names, for programs: tests, rules, JSON.
+            instead: The text to write.
+            place: Where `instead` goes.
         """
         return Diagnostic(
             code=self,
@@ -91,6 +95,8 @@ class Code:
             hint=hint,
             mark=mark,
             values=values or {},
+            instead=instead,
+            place=place,
         )
 
 
@@ -117,10 +123,20 @@ class Diagnostic:
     """The text to write."""
     place: Place = ""
     """Where `instead` goes."""
-    also: tuple[str, ...] = ()
-    """Messages of further diagnostics of this code at the same place."""
+    also: tuple[Diagnostic, ...] = ()
+    """Further diagnostics of this code at the same place, as a macro makes them."""
     details: str = field(default="", compare=False)
     """A Python traceback, for the author of the code that failed."""
+
+    @property
+    def kind(self) -> tuple[object, ...]:
+        """Equal for diagnostics that differ only in the names and numbers they are about.
+
+        A tag or an attribute is part of the kind. Without a code, so is the message.
+        """
+        fixed = (self.values.get("tag"), self.values.get("attribute"))
+        message = self.message if self.code is UNCLASSIFIED else ""
+        return (self.code, self.severity, *fixed, message)
 
     def __str__(self) -> str:
         place = f"{self.origin}: " if self.origin else ""
@@ -346,8 +362,14 @@ class Once:
 
 def likely(name: str, existing: Iterable[str], *, cutoff: float = 0.75) -> str:
     """A sentence that names the likely meant one of `existing`, or nothing."""
+    meant = meant_one(name, existing, cutoff=cutoff)
+    return f'Did you mean "{meant}"?' if meant else ""
+
+
+def meant_one(name: str, existing: Iterable[str], *, cutoff: float = 0.75) -> str:
+    """The likely meant one of `existing`, or nothing."""
     close = _close(name, list(existing), cutoff)
-    return f'Did you mean "{close[0]}"?' if close else ""
+    return close[0] if close else ""
 
 
 def suggestion(name: str, existing: Iterable[str]) -> str:

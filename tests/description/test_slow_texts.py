@@ -95,6 +95,6 @@ def test_a_rule_stops_after_many_findings(tmp_path):
         for i in range(300)
     )
     file.write_text(f'<robot name="r"><link name="l"/>{joints}</robot>')
-    found = [each for each in check(file).findings if each.rule == "joint-link-unknown"]
+    found = [each for each in check(file).findings if each.code.name == "joint-link-unknown"]
     assert len(found) <= 201
     assert "more than 200" in "".join(each.message for each in found)

@@ -59,7 +59,7 @@ def check(
     from cartwheel.cli.commands import check as work
 
     if rules:
-        work.list_rules()
+        work.list_codes()
         return
     file, values = arguments.split(words)
     status = work.check(

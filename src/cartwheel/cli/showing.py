@@ -15,6 +15,7 @@ STYLES = {"error": ("red", "bold"), "warning": ("yellow", "bold"), "info": ("cya
 """The colours of each severity."""
 _WORDS = {"info": "note"}
 _LINES_SHOWN = 10
+_NAMES_SHOWN = 6
 _LOOK_AHEAD = 8
 """Lines of an element that are searched for the caret's text."""
 
@@ -42,9 +43,13 @@ def shown(
     if diagnostic.hint:
         lines.append(f"  {diagnostic.hint}")
     if diagnostic.also:
-        names = [m[1] for each in diagnostic.also if (m := re.search(r'"([^"]*)"', each))]
-        more = ", ".join(dict.fromkeys(names[:6])) + (", …" if len(names) > 6 else "")
-        lines.append(f"  and {len(diagnostic.also)} more from this line: {more}")
+        names = list(
+            dict.fromkeys(filter(None, (difference(each, diagnostic) for each in diagnostic.also)))
+        )
+        more = ", ".join(names[:_NAMES_SHOWN]) + (", …" if len(names) > _NAMES_SHOWN else "")
+        lines.append(
+            f"  and {len(diagnostic.also)} more from this line{f': {more}' if more else ''}"
+        )
     if others:
         numbers = [str(one.origin.line) for one in others if one.origin is not None]
         more = ", …" if len(numbers) > _LINES_SHOWN else ""
@@ -60,6 +65,12 @@ def print_diagnostic(diagnostic: Diagnostic) -> None:
     note(shown(diagnostic, stream=sys.stderr))
 
 
+def difference(diagnostic: Diagnostic, other: Diagnostic) -> str:
+    """The first name in its values that another diagnostic of its kind does not share."""
+    pairs = ((value, other.values.get(key)) for key, value in diagnostic.values.items())
+    return next((one for one, its in pairs if isinstance(one, str) and one != its), "")
+
+
 def column_of(diagnostic: Diagnostic) -> int:
     """The column of what a diagnostic is about, from 1; 0 where it is not known."""
     origin = diagnostic.origin
@@ -70,9 +81,7 @@ def column_of(diagnostic: Diagnostic) -> int:
 
 
 def _code(diagnostic: Diagnostic) -> str:
-    if diagnostic.code is not UNCLASSIFIED:
-        return str(diagnostic.code)
-    return str(getattr(diagnostic, "rule", ""))
+    return "" if diagnostic.code is UNCLASSIFIED else str(diagnostic.code)
 
 
 def _excerpt(diagnostic: Diagnostic, styles: tuple[str, ...], out: TextIO) -> list[str]:

@@ -27,6 +27,39 @@ MODULES = {
     "recording": "Recording, playback and the page",
 }
 """The modules with codes, in the order of their numbers, and their titles."""
+FORMER = {
+    "name-twice": "duplicate-name",
+    "two-parents": "multiple-parents",
+    "links-in-a-ring": "kinematic-loop",
+    "several-roots": "multiple-roots",
+    "limit-degrees": "limit-in-degrees",
+    "axis-not-unit": "axis-not-normalized",
+    "inertia-unlike-geometry": "inertia-geometry-mismatch",
+    "mass-outside": "center-of-mass-outside",
+    "mass-grams": "mass-in-grams",
+    "mass-absurd": "mass-implausible",
+    "drive-joint-fixed": "drive-joint-not-continuous",
+    "wheel-axes": "wheel-axis-misaligned",
+    "wheel-separation": "wheel-separation-mismatch",
+    "wheel-base": "wheel-base-mismatch",
+    "wheel-diameter": "wheel-diameter-mismatch",
+    "wheel-no-collision": "wheel-without-collision",
+    "base-no-collision": "base-without-collision",
+    "collisions-overlap": "overlapping-collisions",
+    "shape-size": "shape-out-of-scale",
+    "angle-degrees": "angle-in-degrees",
+    "place-millimetres": "position-in-millimetres",
+    "sensor-range": "sensor-range-invalid",
+    "image-format": "image-format-unknown",
+    "topic-twice": "duplicate-topic",
+    "plugin-obsolete": "plugin-parameter-obsolete",
+    "controllers-file": "controllers-file-unreadable",
+    "controller-interface": "controller-interface-mismatch",
+    "controller-gains": "controller-gains-missing",
+    "plugin-parameter": "plugin-parameter-unknown",
+    "property-twice": "property-overwritten",
+}
+"""Names that codes had before, which settings and options still accept."""
 _HEADING = re.compile(r"^## (CW\d{3}) (\S+)\n", re.MULTILINE)
 
 
@@ -48,12 +81,13 @@ def all_codes() -> tuple[Code, ...]:
 
 
 def code_named(text: str) -> Code:
-    """The code with a number or a name, in any case.
+    """The code with a number, a name or a former name, in any case.
 
     Raises:
         UnknownNameError: There is none.
     """
     wanted = text.strip().lower()
+    wanted = FORMER.get(wanted, wanted)
     for code in all_codes():
         if wanted in (code.number.lower(), code.name, str(code).lower()):
             return code

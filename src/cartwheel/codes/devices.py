@@ -2,6 +2,108 @@
 
 from cartwheel.errors import Code
 
+VIEW_BLOCKED = Code(
+    "CW401", "view-blocked", "warning", "the robot itself blocks the view of a camera or lidar"
+)
+RATE_ABOVE_PHYSICS = Code(
+    "CW402", "rate-above-physics", "warning", "an update rate is higher than that of the physics"
+)
+SENSOR_TYPE_UNKNOWN = Code(
+    "CW403", "sensor-type-unknown", "error", "a sensor has a type that Gazebo does not support"
+)
+SENSOR_RANGE_INVALID = Code(
+    "CW404", "sensor-range-invalid", "error", "a sensor has an empty range, no rays or no pixels"
+)
+IMAGE_FORMAT_UNKNOWN = Code(
+    "CW405", "image-format-unknown", "warning", "a camera has an image format that does not exist"
+)
+CONTACT_COLLISION_UNKNOWN = Code(
+    "CW406",
+    "contact-collision-unknown",
+    "error",
+    "a contact sensor names a collision that does not exist",
+)
+CONTACT_NEVER_FIRES = Code(
+    "CW407",
+    "contact-never-fires",
+    "warning",
+    "Gazebo renames the collision that a contact sensor names",
+)
+LUMPED_JOINT = Code(
+    "CW408", "lumped-joint", "warning", "a plugin measures a fixed joint that Gazebo removes"
+)
+LUMPED_LINK = Code(
+    "CW409", "lumped-link", "info", "a plugin names a link that Gazebo merges into another"
+)
+BODY_UNKNOWN = Code(
+    "CW410", "body-unknown", "error", "the body of a plugin is not a link of the robot"
+)
+FRAME_UNKNOWN = Code(
+    "CW411",
+    "frame-unknown",
+    "warning",
+    "the frame of a plugin's messages is not a link of the robot",
+)
+DUPLICATE_TOPIC = Code(
+    "CW412", "duplicate-topic", "warning", "two plugins publish on the same topic"
+)
+TOPIC_INVALID = Code(
+    "CW413", "topic-invalid", "error", "a topic or namespace is not a valid ROS name"
+)
+PLUGIN_UNKNOWN = Code(
+    "CW414",
+    "plugin-unknown",
+    "info",
+    "a plugin is not simulated by Cartwheel, or its name is misspelt",
+)
+PLUGIN_PARAMETER_OBSOLETE = Code(
+    "CW416",
+    "plugin-parameter-obsolete",
+    "warning",
+    "Gazebo 11 ignores a parameter of older versions",
+)
+PLUGIN_JOINT_UNKNOWN = Code(
+    "CW417", "plugin-joint-unknown", "error", "a plugin names a joint that does not exist"
+)
+TRANSMISSION_JOINT_UNKNOWN = Code(
+    "CW418",
+    "transmission-joint-unknown",
+    "error",
+    "a transmission names a joint that does not exist",
+)
+ROS2_CONTROL_JOINT_UNKNOWN = Code(
+    "CW419",
+    "ros2-control-joint-unknown",
+    "warning",
+    "<ros2_control> names a joint that does not exist",
+)
+INTERFACE_UNKNOWN = Code(
+    "CW420", "interface-unknown", "warning", "the interface of a joint is misspelt"
+)
+CONTROLLERS_FILE_UNREADABLE = Code(
+    "CW421",
+    "controllers-file-unreadable",
+    "error",
+    "a controller file is missing or is not valid YAML",
+)
+CONTROLLER_JOINT_UNKNOWN = Code(
+    "CW422", "controller-joint-unknown", "error", "a controller names a joint that does not exist"
+)
+CONTROLLER_TYPE_UNKNOWN = Code(
+    "CW423", "controller-type-unknown", "error", "a controller type is misspelt or not simulated"
+)
+CONTROLLER_INTERFACE_MISMATCH = Code(
+    "CW424",
+    "controller-interface-mismatch",
+    "error",
+    "a controller commands an interface that its joint does not offer",
+)
+CONTROLLER_GAINS_MISSING = Code(
+    "CW425", "controller-gains-missing", "error", "the PID of a controller has no gains"
+)
+JOINT_CLAIMED_TWICE = Code(
+    "CW426", "joint-claimed-twice", "info", "two controllers in one file command the same joint"
+)
 PLUGIN_PARAMETER_UNKNOWN = Code(
     "CW451", "plugin-parameter-unknown", "warning", "a plugin does not read this parameter"
 )

@@ -152,3 +152,13 @@ SDF_VERSION = Code(
     "error",
     "a version of SDF that is missing, too old or newer than supported",
 )
+UNREADABLE = Code("CW152", "unreadable", "error", "an element cannot be read and is left out")
+ARGUMENT_UNUSED = Code("CW153", "argument-unused", "warning", "a xacro argument has no effect")
+PROPERTY_UNUSED = Code("CW154", "property-unused", "info", "a xacro property is never used")
+PROPERTY_OVERWRITTEN = Code(
+    "CW155", "property-overwritten", "info", "a xacro property is overwritten before it is used"
+)
+PARAMETER_UNUSED = Code(
+    "CW156", "parameter-unused", "info", "a parameter of a xacro macro has no effect"
+)
+MACRO_UNUSED = Code("CW157", "macro-unused", "info", "a xacro macro is never called")

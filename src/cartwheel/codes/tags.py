@@ -116,3 +116,6 @@ MODEL_EMPTY = Code(
     "error",
     "a robot or model without links",
 )
+GAZEBO_IGNORES = Code(
+    "CW350", "gazebo-ignores", "warning", "a tag that Cartwheel reads and Gazebo ignores"
+)

@@ -31,7 +31,7 @@ _LONGEST = 5.0
 _HIGH = 5.0
 """m."""
 _OF_WHEELS = frozenset(
-    each.name for each in RULES if each.name.startswith(("drive", "wheel", "caster"))
+    each.code for each in RULES if each.code.name.startswith(("drive", "wheel", "caster"))
 )
 """Rules of `check` that tell why a base does not drive as it is told."""
 _NO_MESH = re.compile(r"the mesh|; a (visual|collision) of link")
@@ -82,7 +82,7 @@ def try_robot(
                 verdict = replace(found, diagnostics=world.diagnostics)
         if not all(each.follows and each.turns for each in verdict.drives):
             report = check(file, arguments=arguments or {}, package_path=package_path)
-            said = [each for each in report.findings if each.rule in _OF_WHEELS]
+            said = [each for each in report.findings if each.code in _OF_WHEELS]
             verdict = replace(verdict, reasons=tuple(str(each) for each in said))
     except CartwheelError as error:
         return replace(verdict, error=str(error))

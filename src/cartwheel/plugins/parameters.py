@@ -8,9 +8,10 @@ import typing
 from collections.abc import Iterable
 from typing import Any, TypeVar, get_args, get_origin
 
+from cartwheel.codes import devices
 from cartwheel.description.model import Element
 from cartwheel.description.numbers import LARGEST
-from cartwheel.errors import Diagnostic, PluginError, likely
+from cartwheel.errors import Diagnostic, PluginError, meant_one
 
 C = TypeVar("C")
 
@@ -85,17 +86,18 @@ def read(
             raise PluginError(
                 f"<{element.tag}> needs <{names[0]}>: {item.metadata['doc']}", origin=element.origin
             )
-    diagnostics += [
-        Diagnostic(
-            severity="warning",
-            message=f"<{child.tag}> has no effect: this plugin does not know it. "
-            f"{likely(child.tag, sorted(known))}".rstrip(),
-            origin=child.origin,
-        )
-        for child in element.children
-        if child.tag not in known
-    ]
+    diagnostics += [_unknown(child, known) for child in element.children if child.tag not in known]
     return cls(**values), diagnostics
+
+
+def _unknown(element: Element, known: Iterable[str]) -> Diagnostic:
+    meant = meant_one(element.tag, sorted(known))
+    return devices.PLUGIN_PARAMETER_UNKNOWN.diagnostic(
+        f"<{element.tag}> has no effect: the plugin does not read it",
+        origin=element.origin,
+        hint=f"Did you mean <{meant}>?" if meant else "",
+        values={"parameter": element.tag, "meant": meant},
+    )
 
 
 def _first(element: Element) -> tuple[Element, Diagnostic]:

@@ -9,7 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from cartwheel.description.check import Finding, PluginKnowledge, Report, check
+from cartwheel.codes import code_named, devices
+from cartwheel.description.check import PluginKnowledge, Report, check
 from cartwheel.description.model import PluginTag, Sensor
 from cartwheel.errors import Diagnostic
 
@@ -228,11 +229,10 @@ def judge(tag: PluginTag, _sensor: Sensor | None) -> Iterable[Diagnostic] | None
     if known is None:
         return None
     return [
-        Diagnostic(
-            severity="warning",
-            message=f"<{child.tag}> has no effect: this plugin does not know it."
-            + (' Did you mean "wheelDiameter"?' if "iameter" in child.tag else ""),
+        devices.PLUGIN_PARAMETER_UNKNOWN.diagnostic(
+            f"<{child.tag}> has no effect",
             origin=child.origin,
+            values={"parameter": child.tag, "meant": "wheelDiameter" * ("iameter" in child.tag)},
         )
         for child in tag.element.children
         if child.tag not in known
@@ -267,9 +267,11 @@ class Bench:
 
     def find(
         self, text: str, rule: str, name: str = "robot.urdf", **options: object
-    ) -> list[Finding]:
+    ) -> list[Diagnostic]:
         """What a rule finds in a text."""
-        return [f for f in self.report(text, name, **options).findings if f.rule == rule]
+        return [
+            f for f in self.report(text, name, **options).findings if f.code is code_named(rule)
+        ]
 
 
 @pytest.fixture
@@ -303,12 +305,12 @@ def line_of() -> Callable[[str, str], int]:
 
 
 @pytest.fixture
-def take() -> Callable[[str, Finding], str]:
+def take() -> Callable[[str, Diagnostic], str]:
     """A text with a finding's advice written where it says."""
     return take_advice
 
 
-def take_advice(text: str, finding: Finding) -> str:
+def take_advice(text: str, finding: Diagnostic) -> str:
     assert finding.origin is not None
     assert finding.instead
     if finding.place == "line" or finding.origin.file.endswith(".yaml"):
@@ -334,7 +336,7 @@ def take_advice(text: str, finding: Finding) -> str:
     return text[: head.start()] + f"<{tag} {new}{attributes}{'/' * alone}>" + text[head.end() :]
 
 
-def _take_in_yaml(text: str, finding: Finding) -> str:
+def _take_in_yaml(text: str, finding: Diagnostic) -> str:
     assert finding.origin is not None
     lines = text.split("\n")
     number = finding.origin.line - 1

@@ -1,5 +1,7 @@
 """Files of controllers: what is wrong in them is told in their own line, and mended there."""
 
+# ruff: noqa: E501  (a case is a table row)
+
 from __future__ import annotations
 
 import pytest
@@ -33,9 +35,9 @@ WHEELS = """drive:
   wheel_radius: 0.08
 """
 RULES = {
-    "controllers-file", "controller-joint-unknown", "controller-type-unknown",
-    "controller-interface", "controller-gains", "joint-claimed-twice", "wheel-separation",
-    "wheel-base", "wheel-diameter",
+    "controllers-file-unreadable", "controller-joint-unknown", "controller-type-unknown",
+    "controller-interface-mismatch", "controller-gains-missing", "joint-claimed-twice", "wheel-separation-mismatch",
+    "wheel-base-mismatch", "wheel-diameter-mismatch",
 }  # fmt: skip
 
 
@@ -52,7 +54,7 @@ def told(bench, tmp_path):
     def tell(text, yaml, name="arm.yaml"):
         (tmp_path / name).write_text(yaml)
         found = bench.report(text, controller_files=[tmp_path / name]).findings
-        return [finding for finding in found if finding.rule in RULES]
+        return [finding for finding in found if finding.code.name in RULES]
 
     return tell
 
@@ -75,7 +77,7 @@ FAULTS = {
     "type of ROS 2": ("controller-type-unknown", ("pid: {p: 10.0, i: 0.1, d: 1.0}\n",
         "pid: {p: 10.0}\nstates:\n  type: joint_state_broadcaster/JointStateBroadcaster\n"), 6,
         "type: joint_state_controller/JointStateController"),
-    "no gains": ("controller-gains", ("  pid: {p: 10.0, i: 0.1, d: 1.0}\n", ""), 2, "pid: {p: "),
+    "no gains": ("controller-gains-missing", ("  pid: {p: 10.0, i: 0.1, d: 1.0}\n", ""), 2, "pid: {p: "),
 }  # fmt: skip
 
 
@@ -85,7 +87,7 @@ def test_a_fault_in_a_file_is_found_and_its_advice_mends_it(case, arm, told, tak
     assert old in ARM
     wrong = ARM.replace(old, new)
     (finding,) = told(arm, wrong)
-    assert finding.rule == rule
+    assert finding.code.name == rule
     assert finding.severity == ("warning" if "broadcaster" in new else "error")
     assert (finding.origin.line, finding.origin.file.endswith("arm.yaml")) == (line, True)
     assert advice in finding.instead
@@ -94,7 +96,7 @@ def test_a_fault_in_a_file_is_found_and_its_advice_mends_it(case, arm, told, tak
 
 def test_a_type_that_is_not_simulated_is_a_note(arm, told):
     (finding,) = told(arm, ARM.replace("effort_controllers/JointPosition", "my_own/Wobble"))
-    assert (finding.rule, finding.severity, finding.instead) == (
+    assert (finding.code.name, finding.severity, finding.instead) == (
         "controller-type-unknown",
         "info",
         "",
@@ -104,7 +106,7 @@ def test_a_type_that_is_not_simulated_is_a_note(arm, told):
 def test_a_joint_without_a_transmission_is_given_one(spoil, told):
     text = spoil(ROS1)
     (finding,) = told(text, ARM)
-    assert finding.rule == "controller-interface"
+    assert finding.code.name == "controller-interface-mismatch"
     assert finding.origin.line == 3
     assert told(text.replace("</robot>", finding.instead + "</robot>"), ARM) == []
 
@@ -112,7 +114,7 @@ def test_a_joint_without_a_transmission_is_given_one(spoil, told):
 def test_a_transmission_with_another_interface_is_told_at_its_line(spoil, told, take, line_of):
     text = spoil(ROS1, transmission("arm_joint", "hardware_interface/PositionJointInterface"))
     (finding,) = told(text, ARM)
-    assert finding.rule == "controller-interface"
+    assert finding.code.name == "controller-interface-mismatch"
     assert finding.origin.line == line_of(text, "<hardwareInterface>")
     assert told(take(text, finding), ARM) == []
     # Another controller of the file has what the transmission offers: it may be the one that runs.
@@ -127,12 +129,12 @@ def test_hardware_of_another_kind_may_offer_anything(spoil, told):
 
 def test_two_controllers_of_one_joint_are_a_note(arm, told):
     (finding,) = told(arm, ARM + ARM.replace("arm:", "other:"))
-    assert (finding.rule, finding.severity) == ("joint-claimed-twice", "info")
+    assert (finding.code.name, finding.severity) == ("joint-claimed-twice", "info")
     assert '"arm" and "other"' in finding.message
     assert finding.origin.line == 7
     # Of two types one is the other's alternative.
     other = "other:\n  type: effort_controllers/JointEffortController\n  joint: arm_joint\n"
-    assert "joint-claimed-twice" not in [each.rule for each in told(arm, ARM + other)]
+    assert "joint-claimed-twice" not in [each.code.name for each in told(arm, ARM + other)]
 
 
 def test_sizes_of_wheels_are_told_in_the_files_line(spoil, told, take):
@@ -143,9 +145,9 @@ def test_sizes_of_wheels_are_told_in_the_files_line(spoil, told, take):
     text = spoil(ROS1, *wheels)
     wrong = WHEELS.replace("0.4 ", "0.5 ").replace("0.08", "0.16")
     apart, radius = told(text, wrong)
-    assert (apart.rule, apart.origin.line) == ("wheel-separation", 5)
+    assert (apart.code.name, apart.origin.line) == ("wheel-separation-mismatch", 5)
     assert apart.instead == "wheel_separation: 0.4  # between the tyres"
-    assert (radius.rule, radius.origin.line) == ("wheel-diameter", 6)
+    assert (radius.code.name, radius.origin.line) == ("wheel-diameter-mismatch", 6)
     assert told(text, take(take(wrong, apart), radius)) == []
 
 
@@ -174,7 +176,7 @@ def test_a_command_that_ros2_control_does_not_offer_is_added(spoil, told, take):
     assert told(spoil(system("position")), ROS2) == []
     text = spoil(system("velocity"))
     (finding,) = told(text, ROS2)
-    assert finding.rule == "controller-interface"
+    assert finding.code.name == "controller-interface-mismatch"
     assert finding.instead == '<command_interface name="position"/>'
     assert told(take(text, finding), ROS2) == []
 
@@ -183,7 +185,7 @@ def test_a_trajectory_by_effort_needs_gains(spoil, told, take):
     text = spoil(system("effort"))
     yaml = ROS2.replace("command_interfaces: [position]", "command_interfaces: [effort]")
     (finding,) = told(text, yaml)
-    assert (finding.rule, finding.severity) == ("controller-gains", "warning")
+    assert (finding.code.name, finding.severity) == ("controller-gains-missing", "warning")
     where = "      type: joint_trajectory_controller/JointTrajectoryController\n"
     good = yaml + f"    {finding.instead}\n"
     assert where in good
@@ -194,7 +196,7 @@ def test_a_type_of_ros1_in_a_file_of_ros2(spoil, told, take):
     yaml = ROS2.replace("joint_trajectory_controller/", "position_controllers/")
     text = spoil(system("position"))
     (finding,) = told(text, yaml)
-    assert finding.rule == "controller-type-unknown"
+    assert finding.code.name == "controller-type-unknown"
     assert "ROS 2 has the type" in finding.message
     assert told(text, take(yaml, finding)) == []
 
@@ -203,21 +205,21 @@ def test_a_file_that_lies_nearby_is_checked_where_it_is_of_this_robot(bench, arm
     (tmp_path / "config").mkdir()
     near = tmp_path / "config" / "arm.yaml"
     near.write_text(ARM.replace("  pid: {p: 10.0, i: 0.1, d: 1.0}\n", ""))
-    (finding,) = bench.find(arm, "controller-gains")
+    (finding,) = bench.find(arm, "controller-gains-missing")
     assert finding.severity == "warning"
     near.write_text(ARM.replace("arm_joint", "elbow").replace("  pid:", "  pids:"))
-    assert not [f for f in bench.report(arm).findings if f.rule in RULES]
+    assert not [f for f in bench.report(arm).findings if f.code.name in RULES]
     # Without gazebo_ros_control nothing of it matters.
     near.write_text(ARM.replace("  pid:", "  pids:"))
     without = arm.replace("libgazebo_ros_control.so", "libother.so")
-    assert not [f for f in bench.report(without).findings if f.rule in RULES]
+    assert not [f for f in bench.report(without).findings if f.code.name in RULES]
 
 
 def test_a_file_that_is_missing_or_damaged_is_told(arm, told, bench, tmp_path):
     (finding,) = told(arm, "arm: [")
-    assert (finding.rule, finding.origin.line) == ("controllers-file", 1)
+    assert (finding.code.name, finding.origin.line) == ("controllers-file-unreadable", 1)
     missing = bench.report(arm, controller_files=[tmp_path / "no.yaml"]).findings
-    assert [finding.rule for finding in missing] == ["controllers-file"]
+    assert [finding.code.name for finding in missing] == ["controllers-file-unreadable"]
 
 
 def test_one_controller_may_be_a_file(arm, told):

@@ -35,8 +35,8 @@ def test_a_good_model_and_a_good_world_are_clean(bench):
     ("rule", "text", "line"),
     [
         ("inertia-impossible", model(izz="9"), 3),
-        ("inertia-unlike-geometry", model(i="100", izz="100"), 3),
-        ("angle-degrees", model(yaw="90"), 2),
+        ("inertia-geometry-mismatch", model(i="100", izz="100"), 3),
+        ("angle-in-degrees", model(yaw="90"), 2),
         ("file-missing", world("<include><uri>model://nothing_here</uri></include>\n"), 2),
         ("tag-ignored", model("<velocty_decay/>"), 8),
         ("unreadable", model('<joint name="j" type="fixed"/>'), 8),
@@ -49,7 +49,7 @@ def test_a_fault_is_found_at_its_line(bench, rule, text, line):
 
 
 def test_advice_is_written_as_sdf_has_it(bench):
-    found = bench.find(model(i="100", izz="100"), "inertia-unlike-geometry", "x.sdf")
+    found = bench.find(model(i="100", izz="100"), "inertia-geometry-mismatch", "x.sdf")
     assert found[0].instead == (
         "<inertia><ixx>1</ixx><ixy>0</ixy><ixz>0</ixz><iyy>1</iyy><iyz>0</iyz><izz>1</izz></inertia>"
     )
@@ -76,8 +76,8 @@ def test_sdf_in_a_urdf_is_clean_where_it_is_good(bench):
     ("rule", "text", "line", "instead"),
     [
         ("inertia-impossible", inserted(izz="9"), 5, "<ixx>1</ixx>"),
-        ("inertia-unlike-geometry", inserted(i="100", izz="100"), 6, "<ixx>1</ixx>"),
-        ("mass-grams", inserted(mass="60000", i="1e4", izz="1e4"), 5, "<mass>60</mass>"),
+        ("inertia-geometry-mismatch", inserted(i="100", izz="100"), 6, "<ixx>1</ixx>"),
+        ("mass-in-grams", inserted(mass="60000", i="1e4", izz="1e4"), 5, "<mass>60</mass>"),
         (
             "file-missing",
             inserted(
@@ -103,7 +103,7 @@ def test_sdf_in_a_urdf_has_its_findings_and_its_words(bench, rule, text, line, i
 
 def test_degrees_that_say_so_are_none(bench):
     text = model(yaw="90").replace("<pose>", '<pose degrees="true">')
-    assert not bench.find(text, "angle-degrees", "m.sdf")
+    assert not bench.find(text, "angle-in-degrees", "m.sdf")
 
 
 def test_the_worlds_own_step_bounds_the_rates(bench):
@@ -161,9 +161,9 @@ def wheel(name, y):
 def test_wheels_are_apart_as_their_joints_are(bench):
     wheels = wheel("left", 0.15) + wheel("right", -0.15)
     good = WHEELS.format(wheels=wheels, separation=0.3)
-    assert not bench.find(good, "wheel-separation", "x.sdf")
+    assert not bench.find(good, "wheel-separation-mismatch", "x.sdf")
     (finding,) = bench.find(
-        WHEELS.format(wheels=wheels, separation=0.6), "wheel-separation", "x.sdf"
+        WHEELS.format(wheels=wheels, separation=0.6), "wheel-separation-mismatch", "x.sdf"
     )
     assert finding.instead == "<wheel_separation>0.3</wheel_separation>"
 
@@ -191,12 +191,12 @@ def test_a_misspelt_end_of_a_joint_is_told_once_with_the_right_one(bench, take):
     wheels = wheel("left", 0.15) + wheel("right", -0.15)
     good = WHEELS.format(wheels=wheels, separation=0.3)
     text = good.replace("<child>left_wheel<", "\n<child>left_whele<")
-    (finding,) = (f for f in bench.report(text, "x.sdf").findings if f.rule in rules)
-    assert finding.rule == "unreadable"
+    (finding,) = (f for f in bench.report(text, "x.sdf").findings if f.code.name in rules)
+    assert finding.code.name == "unreadable"
     assert finding.instead == "<child>left_wheel</child>"
     assert finding.origin.line == text[: text.index("<child>left_whele")].count("\n") + 1
     mended = take(text, finding)
-    assert not [f for f in bench.report(mended, "x.sdf").findings if f.rule in rules]
+    assert not [f for f in bench.report(mended, "x.sdf").findings if f.code.name in rules]
 
 
 def test_what_a_missing_model_holds_nobody_knows(bench):
@@ -211,7 +211,7 @@ def test_a_model_of_a_world_that_cannot_be_read_is_told_as_such(bench):
     text = world(
         '<model name="a"><link name="b"><inertial><mass>-1</mass></inertial></link></model>\n'
     )
-    found = [finding.rule for finding in bench.report(text, "x.sdf").findings]
+    found = [finding.code.name for finding in bench.report(text, "x.sdf").findings]
     assert found == ["unreadable"]
 
 
@@ -226,11 +226,11 @@ def turning(lower, upper):
 def test_limits_of_joints(bench):
     (zero,) = bench.find(turning(0, 0), "limit-zero", "x.sdf")
     assert zero.severity == "info", "models from before fixed joints mean one by it"
-    (degrees,) = bench.find(turning(-90, 90), "limit-degrees", "x.sdf")
+    (degrees,) = bench.find(turning(-90, 90), "limit-in-degrees", "x.sdf")
     assert degrees.instead == "<limit><lower>-1.5708</lower><upper>1.5708</upper></limit>"
     assert zero.origin.line == degrees.origin.line
-    good = {one.rule for one in bench.report(turning(-1, 1), "x.sdf").findings}
-    assert not good & {"limit-zero", "limit-degrees"}
+    good = {one.code.name for one in bench.report(turning(-1, 1), "x.sdf").findings}
+    assert not good & {"limit-zero", "limit-in-degrees"}
 
 
 def test_a_misspelt_uri_is_told_with_the_one_that_was_meant(bench, tmp_path):

@@ -10,9 +10,9 @@ LINK = """<link name="base"><inertial><mass value="1"/>
 
 def rules(bench, text, name="robot.xacro"):
     return {
-        finding.rule: finding
+        finding.code.name: finding
         for finding in bench.report(text, name).findings
-        if finding.rule.endswith("-unused")
+        if finding.code.name.endswith("-unused")
     }
 
 
@@ -74,11 +74,11 @@ def test_findings_of_a_macro_are_told_once_with_the_calls(bench):
     )
     calls = "".join(f'<xacro:part side="{side}"/>\n' for side in ("a", "b", "c"))
     report = bench.report(HEAD + macro + LINK + calls + "</robot>", "robot.xacro")
-    found = [f for f in report.findings if f.rule == "inertia-impossible"]
+    found = [f for f in report.findings if f.code.name == "inertia-impossible"]
     assert len(found) == 1
     assert found[0].origin.line == 4
     assert found[0].origin.stack[0].endswith("xacro:part")
-    assert [each[:8] for each in found[0].also] == ['link "b"', 'link "c"']
+    assert [each.values["link"] for each in found[0].also] == ["b", "c"]
 
 
 def test_a_property_that_is_replaced_before_its_use_is_a_note(bench):
@@ -88,7 +88,11 @@ def test_a_property_that_is_replaced_before_its_use_is_a_note(bench):
         )
         link = '<link name="l${w}"/>'
         text = f"{HEAD}{twice}{link}</robot>"
-        return [f for f in bench.report(text, "x.xacro").findings if f.rule == "property-twice"]
+        return [
+            f
+            for f in bench.report(text, "x.xacro").findings
+            if f.code.name == "property-overwritten"
+        ]
 
     (finding,) = found("")
     assert (finding.severity, finding.origin.line) == ("info", 2)

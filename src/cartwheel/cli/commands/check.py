@@ -4,22 +4,24 @@ from __future__ import annotations
 
 import json as json_module
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from cartwheel.cli.console import paint, say, table
 from cartwheel.cli.showing import STYLES, column_of, shown
-from cartwheel.description.check import RULES, Finding, PluginKnowledge, Report
+from cartwheel.codes import files as files_codes
+from cartwheel.description.check import REPORTED, PluginKnowledge, Report
 from cartwheel.description.check import check as check_description
 from cartwheel.description.model import PluginTag, Sensor
-from cartwheel.errors import DescriptionError, Diagnostic, PluginError
+from cartwheel.errors import UNCLASSIFIED, DescriptionError, Diagnostic, PluginError
 
-SCHEMA = 1
+SCHEMA = 2
 
 
-def list_rules() -> None:
-    """Prints every rule with its severity and one line."""
-    say(table((rule.name, rule.severity, rule.summary) for rule in RULES))
+def list_codes() -> None:
+    """Prints the codes that a check can report, each with its severity and one line."""
+    say(table((code.number, code.name, code.severity, code.summary) for code in REPORTED))
 
 
 def check(
@@ -100,25 +102,22 @@ def as_mapping(report: Report) -> dict[str, Any]:
 
 def _unread(file: str, error: DescriptionError) -> Report:
     """What ends a check at once, as its one finding."""
-    finding = Finding(
-        rule="unreadable",
-        severity="error",
-        message=error.message,
-        origin=error.origin,
-        hint=error.hint or "",
-    )
+    finding = error.diagnostic()
+    if finding.code is UNCLASSIFIED:
+        finding = replace(finding, code=files_codes.UNREADABLE)
     return Report(file=file, name="", findings=(finding,), ignored=0, complete=False)
 
 
-def _alike(findings: Sequence[Finding]) -> list[tuple[Finding, list[Finding]]]:
+def _alike(findings: Sequence[Diagnostic]) -> list[tuple[Diagnostic, list[Diagnostic]]]:
     """Each with those that say the very same of other lines, which are shown with it.
 
     Only what has no text to write is gathered: a text belongs to its line.
     """
-    groups: dict[tuple[object, ...], tuple[Finding, list[Finding]]] = {}
+    groups: dict[tuple[object, ...], tuple[Diagnostic, list[Diagnostic]]] = {}
     for finding in findings:
         origin = finding.origin
-        same = (finding.rule, finding.message, finding.hint, origin and (origin.file, origin.stack))
+        values = tuple(sorted(finding.values.items(), key=lambda item: item[0]))
+        same = (*finding.kind, finding.message, values, origin and (origin.file, origin.stack))
         key = (id(finding),) if finding.instead or finding.also else same
         if key in groups:
             groups[key][1].append(finding)
@@ -143,10 +142,12 @@ def _summary(report: Report) -> str:
     return f"{report.file}: {paint(text, *styles)}"
 
 
-def _finding(finding: Finding) -> dict[str, Any]:
+def _finding(finding: Diagnostic) -> dict[str, Any]:
     origin = finding.origin
     return {
-        "rule": finding.rule,
+        "code": finding.code.number,
+        "name": finding.code.name,
+        "rule": finding.code.name,
         "severity": finding.severity,
         "message": finding.message,
         "file": origin.file if origin is not None else "",
@@ -156,7 +157,8 @@ def _finding(finding: Finding) -> dict[str, Any]:
         "instead": finding.instead,
         "place": finding.place,
         "hint": finding.hint,
-        "also": list(finding.also),
+        "values": dict(finding.values),
+        "also": [each.message for each in finding.also],
     }
 
 
@@ -177,5 +179,5 @@ def _judge(tag: PluginTag, _sensor: Sensor | None) -> Iterable[Diagnostic] | Non
     try:
         _, diagnostics = read(plugin.parameters, tag.element)
     except PluginError as error:
-        return [Diagnostic(severity="error", message=error.message, origin=error.origin)]
+        return [error.diagnostic()]
     return diagnostics

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from cartwheel.codes import code_named, codes_of
 from cartwheel.description.check import (
     control,
     controllers,
@@ -30,14 +31,13 @@ from cartwheel.description.check import (
     xacro_use,
 )
 from cartwheel.description.check.control_search import control_files
-from cartwheel.description.check.finding import Finding, Remark
 from cartwheel.description.check.mending import displaced, mend
 from cartwheel.description.check.rule import Rule
 from cartwheel.description.check.subject import PluginKnowledge, Robot, Subject
 from cartwheel.description.loading import Opened, open_description, understand
 from cartwheel.description.model import RobotDescription, WorldDescription
 from cartwheel.description.node import Node
-from cartwheel.errors import DescriptionError, UnknownNameError
+from cartwheel.errors import DescriptionError, Diagnostic
 
 RULES: tuple[Rule, ...] = (
     *structure.RULES,
@@ -59,8 +59,10 @@ RULES: tuple[Rule, ...] = (
     *xacro_use.RULES,
 )
 """All rules, by subject."""
-_PARTICULARS = re.compile(r'"[^"]*"|[-+]?\d[\d.e+-]*')
-"""Names and numbers, in which findings of one line may differ."""
+REPORTED = tuple(
+    code for module in ("files", "robot", "tags", "devices") for code in codes_of(module)
+)
+"""The codes that a check can report: those of its rules, and those of what reads descriptions."""
 _WITHOUT = re.compile(r"is left out|so it has no shape|SDF's default of")
 MAX_FAILURES = 30
 """After so many things that cannot be read the rest is hardly worth a look."""
@@ -73,10 +75,10 @@ class Report:
     file: str
     name: str
     """The robot's or world's; empty where it could not be read."""
-    findings: tuple[Finding, ...]
+    findings: tuple[Diagnostic, ...]
     """In the order of their places."""
     ignored: int
-    """Findings of rules that were not to be told."""
+    """Findings of ignored codes."""
     complete: bool
     """False where it could not be read in spite of all: rules that need it were left out."""
 
@@ -101,17 +103,14 @@ def check(
         arguments: The values of ``name:=value``.
         package_path: As for `load`.
         known: What is known of plugins; without it their parameters are not looked at.
-        ignore: Rules that are not to be told.
+        ignore: Codes to ignore, by number or name.
         controller_files: Files of controllers, in place of those that lie near the robot.
 
     Raises:
         DescriptionError: it is no description, or its XML or xacro cannot be read.
-        UnknownNameError: a rule to ignore that does not exist.
+        UnknownNameError: A code to ignore does not exist.
     """
-    names = [each.name for each in RULES]
-    for name in ignore:
-        if name not in names:
-            raise UnknownNameError("the rule", name, names)
+    ignored = {code_named(name) for name in ignore}
     opened = open_description(path, arguments or {}, package_path)
     if nodes.children(opened.root, "light") and _is_empty(opened.root):
         # A lamp, which worlds include: there is nothing to say of it.
@@ -123,7 +122,7 @@ def check(
     # Numbers near the largest overflow; no finding comes of what is not a number.
     with np.errstate(all="ignore"):
         found = _distinct(finding for each in RULES for finding in each.apply(subject))
-    told = [finding for finding in found if finding.rule not in ignore]
+    told = [finding for finding in found if finding.code not in ignored]
     order = {file: index for index, file in enumerate(subject.files)}
     told.sort(key=lambda finding: _place(finding, order))
     return Report(
@@ -169,7 +168,7 @@ def _subject(opened: Opened, known: PluginKnowledge | None, given: Sequence[Path
 
 def _read(
     opened: Opened, tree: Node, mended: set[str], cut: set[str]
-) -> tuple[RobotDescription | WorldDescription | None, list[Remark]]:
+) -> tuple[RobotDescription | WorldDescription | None, list[Diagnostic]]:
     """Reads a tree, without what keeps it from being read.
 
     Args:
@@ -178,7 +177,7 @@ def _read(
         mended: Links whose inertia is replaced, added to.
         cut: Links from which something is cut, added to.
     """
-    failures: list[Remark] = []
+    failures: list[Diagnostic] = []
     holed: set[int] = set()
     while True:
         attempt = replace(opened, root=nodes.copy(tree))
@@ -188,9 +187,7 @@ def _read(
             node = nodes.at(tree, error.origin) if error.origin is not None else None
             # What lacks a part that was cut out before has nothing new to say.
             if node is None or id(node) not in holed:
-                failures.append(
-                    Remark(message=error.message, origin=error.origin, hint=error.hint or "")
-                )
+                failures.append(error.diagnostic())
             parent = nodes.parent_of(tree, node) if node is not None else None
             if node is None or parent is None or len(holed) >= MAX_FAILURES:
                 return None, failures
@@ -226,21 +223,25 @@ def _is_empty(root: Node) -> bool:
     return not nodes.children(root, "model") and not nodes.children(root, "world")
 
 
-def _distinct(findings: Iterable[Finding]) -> list[Finding]:
-    """Each once, and those that one line of a macro makes again and again as one."""
-    found: dict[tuple[str, str, str], Finding] = {}
-    for finding in findings:
-        message = finding.message
-        if finding.origin is not None and finding.origin.stack:
-            message = _PARTICULARS.sub("", message)
-        key = (finding.rule, str(finding.origin), message)
-        first = found.setdefault(key, finding)
-        if first.message != finding.message and finding.message not in first.also:
-            found[key] = replace(first, also=(*first.also, finding.message))
-    return list(found.values())
+def _distinct(findings: Iterable[Diagnostic]) -> list[Diagnostic]:
+    """Each once; those of one kind that one line of a macro makes for several parts as one."""
+    distinct: dict[tuple[object, ...], Diagnostic] = {}
+    for each in findings:
+        key = _identity(each)
+        if each.origin is not None and each.origin.stack:
+            key = (*each.kind, str(each.origin))
+        first = distinct.setdefault(key, each)
+        if all(_identity(each) != _identity(other) for other in (first, *first.also)):
+            distinct[key] = replace(first, also=(*first.also, each))
+    return list(distinct.values())
 
 
-def _place(finding: Finding, order: Mapping[str, int]) -> tuple[int, str, int]:
+def _identity(finding: Diagnostic) -> tuple[object, ...]:
+    values = tuple(sorted(finding.values.items(), key=lambda item: item[0]))
+    return (finding.code, finding.message, str(finding.origin), values)
+
+
+def _place(finding: Diagnostic, order: Mapping[str, int]) -> tuple[int, str, int]:
     if finding.origin is None:
         return (-1, "", 0)
     file = finding.origin.file

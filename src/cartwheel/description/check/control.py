@@ -5,11 +5,12 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
+from cartwheel.codes import devices as devices_codes
 from cartwheel.description.check import nodes, spelling
-from cartwheel.description.check.finding import Remark
 from cartwheel.description.check.rule import rule
 from cartwheel.description.check.subject import DRIVE_JOINT_TAGS, Robot, Subject
 from cartwheel.description.model import Element, PluginTag, Sensor
+from cartwheel.errors import Code, Diagnostic
 
 _JOINT_TAG = re.compile(r"(.*[a-z_])?([jJ]oints?|_joints?)(_?[nN]ames?)?|joints?|joint[AB]")
 VALUES = re.compile(r"true|false|[-+\d.eE]+", re.IGNORECASE)
@@ -24,8 +25,8 @@ _INTERFACES = tuple(
 _COMMANDS = ("position", "velocity", "effort", "acceleration")
 
 
-@rule("plugin-joint-unknown", "error", "a plugin names a joint that does not exist")
-def plugin_joint_unknown(subject: Subject) -> Iterator[Remark]:
+@rule(devices_codes.PLUGIN_JOINT_UNKNOWN)
+def plugin_joint_unknown(subject: Subject) -> Iterator[Diagnostic]:
     for robot in subject.robots:
         drives = {id(drive.tag) for drive in robot.drives}
         for tag, sensor in robot.plugins():
@@ -40,7 +41,7 @@ def plugin_joint_unknown(subject: Subject) -> Iterator[Remark]:
                         continue
                     near = spelling.meant(name, robot.joint_names)
                     text = " ".join(element.text.split()).replace(name, near or name)
-                    yield Remark(
+                    yield devices_codes.PLUGIN_JOINT_UNKNOWN.diagnostic(
                         # What another plugin means by its tags is not certain.
                         severity=None if _is_simulated(subject, tag, sensor) else "warning",
                         message=f'<{element.tag}> names "{name}", which is no joint',
@@ -54,26 +55,26 @@ def plugin_joint_unknown(subject: Subject) -> Iterator[Remark]:
                     )
 
 
-@rule("transmission-joint-unknown", "error", "a transmission is of a joint that does not exist")
-def transmission_joint_unknown(subject: Subject) -> Iterator[Remark]:
+@rule(devices_codes.TRANSMISSION_JOINT_UNKNOWN)
+def transmission_joint_unknown(subject: Subject) -> Iterator[Diagnostic]:
     for robot, joint in _driven_by(subject, "transmission"):
-        yield from _joint_named(subject, robot, joint, "the transmission has no joint to move")
+        yield from _joint_named(devices_codes.TRANSMISSION_JOINT_UNKNOWN, subject, robot, joint)
 
 
-@rule("ros2-control-joint-unknown", "warning", "<ros2_control> has a joint that does not exist")
-def ros2_control_joint_unknown(subject: Subject) -> Iterator[Remark]:
+@rule(devices_codes.ROS2_CONTROL_JOINT_UNKNOWN)
+def ros2_control_joint_unknown(subject: Subject) -> Iterator[Diagnostic]:
     for robot, joint in _driven_by(subject, "ros2_control"):
-        yield from _joint_named(subject, robot, joint, "Gazebo passes over it")
+        yield from _joint_named(devices_codes.ROS2_CONTROL_JOINT_UNKNOWN, subject, robot, joint)
 
 
-@rule("interface-unknown", "warning", "a joint's interface is misspelt")
-def interface_unknown(subject: Subject) -> Iterator[Remark]:
+@rule(devices_codes.INTERFACE_UNKNOWN)
+def interface_unknown(subject: Subject) -> Iterator[Diagnostic]:
     for _, joint in _driven_by(subject, "transmission"):
         for element in joint.find_all("hardwareInterface"):
             name = element.text.strip()
             near = spelling.meant(name, _INTERFACES, parts=False)
             if name not in _INTERFACES and near:
-                yield Remark(
+                yield devices_codes.INTERFACE_UNKNOWN.diagnostic(
                     message=f'no controller knows the interface "{name}"',
                     origin=element.origin,
                     instead=nodes.written("hardwareInterface", {}, near),
@@ -86,7 +87,7 @@ def interface_unknown(subject: Subject) -> Iterator[Remark]:
             near = spelling.meant(name, _COMMANDS, parts=False)
             if element.tag not in ("command_interface", "state_interface") or not near:
                 continue
-            yield Remark(
+            yield devices_codes.INTERFACE_UNKNOWN.diagnostic(
                 message=f'no controller knows the {element.tag} "{name}"',
                 origin=element.origin,
                 instead=f'name="{near}"',
@@ -100,16 +101,18 @@ def _is_simulated(subject: Subject, tag: PluginTag, sensor: Sensor | None) -> bo
 
 
 def _joint_named(
-    subject: Subject, robot: Robot, joint: Element, consequence: str
-) -> Iterator[Remark]:
+    code: Code, subject: Subject, robot: Robot, joint: Element
+) -> Iterator[Diagnostic]:
     name = (joint.attribute("name") or "").strip()
     if not name or is_known(name, robot, subject):
         return
+    what = "transmission" if code is devices_codes.TRANSMISSION_JOINT_UNKNOWN else "ros2_control"
     yield spelling.misspelt(
+        code,
         name,
         robot.joint_names,
         attribute="name",
-        message=f'there is no joint "{name}": {consequence}',
+        message=f'<{what}> names the joint "{name}", which does not exist',
         origin=joint.origin,
         mark=f'name="{joint.attribute("name")}"',
     )

@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import Any
 
 from cartwheel import yaml_text
+from cartwheel.codes import devices as devices_codes
 from cartwheel.description.check import nodes
-from cartwheel.description.check.finding import Remark
 from cartwheel.description.model import Element
-from cartwheel.errors import Origin
+from cartwheel.errors import Diagnostic, Origin
 
 _MAX_BYTES = 1_000_000
 _ROS2 = "ros__parameters"
@@ -124,12 +124,12 @@ class ControlFile:
     @cached_property
     def root(self) -> Any:
         """The tree of nodes; None for an empty file, or one with a `problem`."""
-        return None if isinstance(self._composed, Remark) else self._composed
+        return None if isinstance(self._composed, Diagnostic) else self._composed
 
     @property
-    def problem(self) -> Remark | None:
+    def problem(self) -> Diagnostic | None:
         """Why it cannot be read."""
-        return self._composed if isinstance(self._composed, Remark) else None
+        return self._composed if isinstance(self._composed, Diagnostic) else None
 
     @property
     def is_ros2(self) -> bool:
@@ -159,7 +159,7 @@ class ControlFile:
         except (OSError, yaml.YAMLError) as error:
             mark = getattr(error, "problem_mark", None)
             problem = getattr(error, "problem", None) or getattr(error, "strerror", None) or error
-            return Remark(
+            return devices_codes.CONTROLLERS_FILE_UNREADABLE.diagnostic(
                 message=f"the file of controllers cannot be read: {problem}",
                 origin=Origin(file=str(self.path), line=mark.line + 1 if mark is not None else 0),
             )

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
+from cartwheel.codes import devices as devices_codes
 from cartwheel.description.check.control_files import ControlFile
-from cartwheel.description.check.finding import Remark
 from cartwheel.description.check.subject import Robot
 from cartwheel.description.model import Element
 from cartwheel.description.packages import Packages
-from cartwheel.errors import DescriptionError
+from cartwheel.errors import DescriptionError, Diagnostic
 
 
 def control_files(
@@ -54,12 +54,12 @@ def named_files(robot: Robot) -> Iterator[Element]:
                     yield element
 
 
-def resolved(packages: Packages, element: Element) -> Path | Remark:
+def resolved(packages: Packages, element: Element) -> Path | Diagnostic:
     """The file that a tag names, or why there is none."""
     try:
         return packages.resolve(element.text.strip(), element.origin, what="file")
     except DescriptionError as error:
-        return Remark(
+        return devices_codes.CONTROLLERS_FILE_UNREADABLE.diagnostic(
             message=f"{error.message}: no controller starts",
             origin=element.origin,
             hint=error.hint or "",

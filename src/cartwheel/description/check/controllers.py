@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterator
 from typing import Any
 
+from cartwheel.codes import devices as devices_codes
 from cartwheel.description.check import spelling
 from cartwheel.description.check.control import VALUES, is_known
 from cartwheel.description.check.control_claims import (
@@ -17,11 +18,10 @@ from cartwheel.description.check.control_claims import (
 )
 from cartwheel.description.check.control_files import ControlFile, Controller, Value, pairs
 from cartwheel.description.check.control_search import named_files, resolved
-from cartwheel.description.check.finding import Remark
 from cartwheel.description.check.rule import rule
 from cartwheel.description.check.subject import Subject
 from cartwheel.description.model import Element
-from cartwheel.errors import Severity
+from cartwheel.errors import Diagnostic, Severity
 
 _JOINT_KEY = re.compile(
     r"(.*_)?joints?(_names?)?|.*wheels?_names?|(left|right|rear)_wheel|.*_steer"
@@ -46,20 +46,20 @@ _GAINS = "{p: 100.0, i: 0.0, d: 1.0}"
 _TUNED = "Tune the gains: p in N m per rad, d in N m s per rad."
 
 
-@rule("controllers-file", "error", "a file of controllers is missing, or is no YAML")
-def controllers_file(subject: Subject) -> Iterator[Remark]:
+@rule(devices_codes.CONTROLLERS_FILE_UNREADABLE)
+def controllers_file(subject: Subject) -> Iterator[Diagnostic]:
     for robot in subject.robots:
         for element in named_files(robot):
             path = resolved(subject.packages, element)
-            if isinstance(path, Remark):
+            if isinstance(path, Diagnostic):
                 yield path
     for _, file in subject.control:
         if file.problem is not None:
             yield file.problem
 
 
-@rule("controller-joint-unknown", "error", "a controller is of a joint that does not exist")
-def controller_joint_unknown(subject: Subject) -> Iterator[Remark]:
+@rule(devices_codes.CONTROLLER_JOINT_UNKNOWN)
+def controller_joint_unknown(subject: Subject) -> Iterator[Diagnostic]:
     for robot, file in subject.control:
         named = [
             (key, value)
@@ -71,7 +71,7 @@ def controller_joint_unknown(subject: Subject) -> Iterator[Remark]:
             continue
         if len(missing) > 1 and len(missing) == len(named):
             first = named[0][1]
-            yield Remark(
+            yield devices_codes.CONTROLLER_JOINT_UNKNOWN.diagnostic(
                 severity="warning",
                 message=f"none of the {len(named)} joints of these controllers is one of the "
                 f'robot\'s: "{first.text}" and so on',
@@ -85,7 +85,7 @@ def controller_joint_unknown(subject: Subject) -> Iterator[Remark]:
             near = spelling.meant(name, robot.joint_names)
             if not near and not file.named:
                 continue  # of another variant of the robot
-            yield Remark(
+            yield devices_codes.CONTROLLER_JOINT_UNKNOWN.diagnostic(
                 severity=_severity(file),
                 message=f'the controllers\' "{key}" names "{name}", which is no joint',
                 origin=value.origin,
@@ -96,8 +96,8 @@ def controller_joint_unknown(subject: Subject) -> Iterator[Remark]:
             )
 
 
-@rule("controller-type-unknown", "error", "a controller's type is misspelt, or not simulated")
-def controller_type_unknown(subject: Subject) -> Iterator[Remark]:
+@rule(devices_codes.CONTROLLER_TYPE_UNKNOWN)
+def controller_type_unknown(subject: Subject) -> Iterator[Diagnostic]:
     known = subject.plugins.controller_types if subject.plugins is not None else ()
     for controller in _controllers(subject) if known else ():
         kind = controller.kind
@@ -115,7 +115,7 @@ def controller_type_unknown(subject: Subject) -> Iterator[Remark]:
         elif not near:
             message = f'the controller "{controller.name}" is of a type that Cartwheel does not '
             message += f'simulate: "{controller.type.text}"'
-        yield Remark(
+        yield devices_codes.CONTROLLER_TYPE_UNKNOWN.diagnostic(
             severity=_severity(controller.file, "warning" if other else "error")
             if near
             else "info",
@@ -127,8 +127,8 @@ def controller_type_unknown(subject: Subject) -> Iterator[Remark]:
         )
 
 
-@rule("controller-interface", "error", "a controller commands what its joint does not offer")
-def controller_interface(subject: Subject) -> Iterator[Remark]:
+@rule(devices_codes.CONTROLLER_INTERFACE_MISMATCH)
+def controller_interface(subject: Subject) -> Iterator[Diagnostic]:
     for robot in subject.robots:
         found = [
             claim
@@ -152,8 +152,8 @@ def controller_interface(subject: Subject) -> Iterator[Remark]:
                 yield from _unanswered(asked, held, ros2=ros2)
 
 
-@rule("controller-gains", "error", "a controller's PID has no gains")
-def controller_gains(subject: Subject) -> Iterator[Remark]:
+@rule(devices_codes.CONTROLLER_GAINS_MISSING)
+def controller_gains(subject: Subject) -> Iterator[Diagnostic]:
     for controller in _controllers(subject):
         missing = gains_missing(controller)
         if not missing:
@@ -170,7 +170,7 @@ def controller_gains(subject: Subject) -> Iterator[Remark]:
             text, under = f"gains: {{{inner}}}", f"gains/{names[0]}/p"
         whole = bool(text) and not controller.has(under.partition("/")[0])
         of = "" if names == [""] else f" for {', '.join(names)}"
-        yield Remark(
+        yield devices_codes.CONTROLLER_GAINS_MISSING.diagnostic(
             severity="warning" if ros2 else _severity(controller.file),
             message=f'the controller "{controller.name}" has no gains{of}, no {under}: '
             + ("nothing moves" if ros2 else "it does not start"),
@@ -182,8 +182,8 @@ def controller_gains(subject: Subject) -> Iterator[Remark]:
         )
 
 
-@rule("joint-claimed-twice", "info", "two controllers of a file command the same joint")
-def joint_claimed_twice(subject: Subject) -> Iterator[Remark]:
+@rule(devices_codes.JOINT_CLAIMED_TWICE)
+def joint_claimed_twice(subject: Subject) -> Iterator[Diagnostic]:
     for _, file in subject.control:
         holders: dict[tuple[str, str], Claim] = {}
         told: set[tuple[str, str]] = set()
@@ -196,7 +196,7 @@ def joint_claimed_twice(subject: Subject) -> Iterator[Remark]:
                 if first.controller is controller or not alike or both in told:
                     continue
                 told.add(both)
-                yield Remark(
+                yield devices_codes.JOINT_CLAIMED_TWICE.diagnostic(
                     message=f'"{both[0]}" and "{both[1]}" both command the {claim.interface} of '
                     f'"{claim.joint}": only one of them can run at a time',
                     origin=claim.value.origin,
@@ -207,7 +207,7 @@ def joint_claimed_twice(subject: Subject) -> Iterator[Remark]:
 
 def _unanswered(
     asked: list[Claim], held: dict[str, list[tuple[str, Element]]], *, ros2: bool
-) -> Iterator[Remark]:
+) -> Iterator[Diagnostic]:
     """Joints of which no controller gets what it wants; of several, others may be meant."""
     joints = dict.fromkeys(claim.joint for claim in asked)
     for joint in joints:
@@ -221,7 +221,7 @@ def _unanswered(
         )
         where = "<ros2_control>" if ros2 else "<transmission>"
         if joint not in held:
-            yield Remark(
+            yield devices_codes.CONTROLLER_INTERFACE_MISMATCH.diagnostic(
                 severity=_severity(claim.controller.file),
                 message=f"{who}, which no {where} has: it does not start",
                 origin=claim.value.origin,
@@ -236,7 +236,7 @@ def _unanswered(
         old = f"offers {', '.join(dict.fromkeys(offered))}" if offered else "offers no command"
         written = element.tag == "hardwareInterface"
         text = f"<hardwareInterface>{_interface(claim)}</hardwareInterface>"
-        yield Remark(
+        yield devices_codes.CONTROLLER_INTERFACE_MISMATCH.diagnostic(
             severity=_severity(claim.controller.file),
             message=f"{who}, whose {where} {old}: it does not start",
             origin=held[joint][-1][1].origin if ros2 else element.origin,

@@ -6,12 +6,13 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
+from cartwheel.codes import robot as robot_codes
 from cartwheel.description.check import nodes, spelling
-from cartwheel.description.check.finding import Remark
 from cartwheel.description.check.rule import rule
 from cartwheel.description.check.solids import Floats, Solid, bounds
 from cartwheel.description.check.subject import DRIVE_JOINT_TAGS, Drive, Robot, Subject
 from cartwheel.description.model import Cylinder, Element, Joint
+from cartwheel.errors import Diagnostic
 from cartwheel.geometry import Pose, matrix_from_quat, rotate
 
 _DIRECTIONS = 32
@@ -23,8 +24,8 @@ _UPRIGHT = {"x": 'rpy="0 1.5708 0"', "y": 'rpy="1.5708 0 0"', "z": 'rpy="0 0 0"'
 """By the joint's axis, how a cylinder has to be turned."""
 
 
-@rule("drive-joint-unknown", "error", "a drive plugin names a joint that does not exist")
-def drive_joint_unknown(subject: Subject) -> Iterator[Remark]:
+@rule(robot_codes.DRIVE_JOINT_UNKNOWN)
+def drive_joint_unknown(subject: Subject) -> Iterator[Diagnostic]:
     for robot, drive in _drives(subject):
         for element in drive.tag.element.children:
             name = element.text.strip()
@@ -33,7 +34,7 @@ def drive_joint_unknown(subject: Subject) -> Iterator[Remark]:
             if not subject.is_urdf and name in subject.joints_written:
                 continue  # it cannot be read, which is told there
             near = spelling.meant(name, robot.joints)
-            yield Remark(
+            yield robot_codes.DRIVE_JOINT_UNKNOWN.diagnostic(
                 message=f'<{element.tag}> names "{name}", which is no joint: '
                 "the plugin does not drive",
                 origin=element.origin,
@@ -44,8 +45,8 @@ def drive_joint_unknown(subject: Subject) -> Iterator[Remark]:
             )
 
 
-@rule("drive-joint-fixed", "warning", "a driven wheel's joint is not continuous")
-def drive_joint_fixed(subject: Subject) -> Iterator[Remark]:
+@rule(robot_codes.DRIVE_JOINT_NOT_CONTINUOUS)
+def drive_joint_fixed(subject: Subject) -> Iterator[Diagnostic]:
     for robot, drive in _drives(subject):
         for name in drive.joints:
             joint = robot.joints.get(name)
@@ -60,7 +61,7 @@ def drive_joint_fixed(subject: Subject) -> Iterator[Remark]:
                 if joint.type == "revolute" and axis.lower is not None and axis.upper is not None
                 else ""
             )
-            yield Remark(
+            yield robot_codes.DRIVE_JOINT_NOT_CONTINUOUS.diagnostic(
                 message=f'the joint "{name}" drives a wheel, but is of type {joint.type}{limits}',
                 origin=joint.origin,
                 instead='type="continuous"',
@@ -69,8 +70,8 @@ def drive_joint_fixed(subject: Subject) -> Iterator[Remark]:
             )
 
 
-@rule("wheels-swapped", "warning", "a drive's left wheel stands on the right")
-def wheels_swapped(subject: Subject) -> Iterator[Remark]:
+@rule(robot_codes.WHEELS_SWAPPED)
+def wheels_swapped(subject: Subject) -> Iterator[Diagnostic]:
     for robot, drive, left, right in _pairs(subject):
         poses = [wheel_place(robot, joint) for joint in (left, right)]
         element = _parameter(
@@ -82,7 +83,7 @@ def wheels_swapped(subject: Subject) -> Iterator[Remark]:
             continue
         if all(sense < -_CAMBER for sense in _senses(robot, left, right)):
             continue  # it faces the other way, and is right in all
-        yield Remark(
+        yield robot_codes.WHEELS_SWAPPED.diagnostic(
             message=f'the left wheel\'s joint "{left.name}" is at y = {poses[0].y:.3g} m, right of '
             f'"{right.name}" at {poses[1].y:.3g} m: the robot turns the wrong way',
             origin=element.origin,
@@ -93,8 +94,8 @@ def wheels_swapped(subject: Subject) -> Iterator[Remark]:
         )
 
 
-@rule("wheel-axes", "warning", "driven wheels turn backwards, or against each other")
-def wheel_axes(subject: Subject) -> Iterator[Remark]:
+@rule(robot_codes.WHEEL_AXIS_MISALIGNED)
+def wheel_axes(subject: Subject) -> Iterator[Diagnostic]:
     for robot, _, left, right in _pairs(subject):
         poses = [wheel_place(robot, joint) for joint in (left, right)]
         senses = _senses(robot, left, right)
@@ -113,7 +114,7 @@ def wheel_axes(subject: Subject) -> Iterator[Remark]:
             node = nodes.child(robot.joint_node(joint.name), "axis")
             xyz = " ".join(nodes.short(-value + 0.0) for value in joint.axis.xyz)
             both = all(each < -_CAMBER for each in senses)
-            yield Remark(
+            yield robot_codes.WHEEL_AXIS_MISALIGNED.diagnostic(
                 message=f'the wheel of joint "{joint.name}" turns backwards when the drive wants '
                 "to go forward: its axis points to the robot's right"
                 + ("" if both else ", while the other's points to its left"),
@@ -141,7 +142,7 @@ def _senses(robot: Robot, left: Joint, right: Joint) -> list[float]:
     ]
 
 
-def _not_across(robot: Robot, joint: Joint, pose: Pose, across: Floats) -> Remark:
+def _not_across(robot: Robot, joint: Joint, pose: Pose, across: Floats) -> Diagnostic:
     """A wheel whose axis is not that of the axle; without a tag it is x."""
     written = robot.joint_node(joint.name)
     node = nodes.child(written, "axis")
@@ -152,7 +153,7 @@ def _not_across(robot: Robot, joint: Joint, pose: Pose, across: Floats) -> Remar
         "" if node is not None or written is None else ", which counts where no <axis> is written,"
     )
     text = f'xyz="{xyz}"'
-    return Remark(
+    return robot_codes.WHEEL_AXIS_MISALIGNED.diagnostic(
         message=f'the wheel of joint "{joint.name}" cannot roll ahead: its axis '
         f'"{" ".join(nodes.short(value) for value in joint.axis.xyz)}"{stated} does not lie '
         "along the axle",
@@ -163,8 +164,8 @@ def _not_across(robot: Robot, joint: Joint, pose: Pose, across: Floats) -> Remar
     )
 
 
-@rule("wheel-not-round", "warning", "a driven wheel that is not round about its axis")
-def wheel_not_round(subject: Subject) -> Iterator[Remark]:
+@rule(robot_codes.WHEEL_NOT_ROUND)
+def wheel_not_round(subject: Subject) -> Iterator[Diagnostic]:
     for robot in subject.robots:
         for joint in wheel_joints(robot):
             link = robot.links[joint.child]
@@ -182,7 +183,7 @@ def wheel_not_round(subject: Subject) -> Iterator[Remark]:
                     max("xyz", key=lambda a: abs(joint.axis.xyz["xyz".index(a)])), ""
                 )
             alone = node is not None and bool(text) and len(link.collisions) == 1
-            yield Remark(
+            yield robot_codes.WHEEL_NOT_ROUND.diagnostic(
                 message=f'the collision of the driven wheel "{link.name}" is {widths.max():.3g} m '
                 f"one way and {widths.min():.3g} m the other across its axis: it cannot roll",
                 origin=origin.origin

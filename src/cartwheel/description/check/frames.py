@@ -5,11 +5,12 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
+from cartwheel.codes import devices as devices_codes
 from cartwheel.description.check import nodes, spelling
-from cartwheel.description.check.finding import Remark
 from cartwheel.description.check.rule import rule
 from cartwheel.description.check.subject import Robot, Subject
 from cartwheel.description.model import Element, PluginTag, Sensor
+from cartwheel.errors import Code, Diagnostic
 
 _BODIES = ("bodyName", "body_name")
 _FRAMES = ("robotBaseFrame", "robot_base_frame", "frameName", "frame_name")
@@ -39,19 +40,22 @@ _TOPICS: dict[str, tuple[tuple[str, ...], ...]] = {
 }
 
 
-@rule("body-unknown", "error", "a plugin's bodyName is no link")
-def body_unknown(subject: Subject) -> Iterator[Remark]:
+@rule(devices_codes.BODY_UNKNOWN)
+def body_unknown(subject: Subject) -> Iterator[Diagnostic]:
     for robot, tag, _ in _plugins(subject):
         for element in tag.element.children:
             name = element.text.strip().lstrip("/")
             if element.tag in _BODIES and name and name not in _known(robot):
                 yield _unknown(
-                    robot, element, "the plugin does not find what it shall measure or move"
+                    devices_codes.BODY_UNKNOWN,
+                    robot,
+                    element,
+                    "the plugin cannot find the link to measure or move",
                 )
 
 
-@rule("frame-unknown", "warning", "a plugin stamps its messages with a frame that is no link")
-def frame_unknown(subject: Subject) -> Iterator[Remark]:
+@rule(devices_codes.FRAME_UNKNOWN)
+def frame_unknown(subject: Subject) -> Iterator[Diagnostic]:
     if not subject.is_urdf:
         return
     for robot, tag, _ in _plugins(subject):
@@ -62,12 +66,15 @@ def frame_unknown(subject: Subject) -> Iterator[Remark]:
             if name.rpartition("/")[2] in _known(robot):
                 continue  # with a prefix of its own
             yield _unknown(
-                robot, element, "tf does not know that frame, so nobody can use the messages"
+                devices_codes.FRAME_UNKNOWN,
+                robot,
+                element,
+                "tf has no such frame, so subscribers cannot transform the messages",
             )
 
 
-@rule("topic-twice", "warning", "two plugins publish on one topic")
-def topic_twice(subject: Subject) -> Iterator[Remark]:
+@rule(devices_codes.DUPLICATE_TOPIC)
+def topic_twice(subject: Subject) -> Iterator[Diagnostic]:
     for robot in subject.robots:
         seen: dict[str, tuple[PluginTag, str]] = {}
         for tag, _ in robot.plugins():
@@ -82,7 +89,7 @@ def topic_twice(subject: Subject) -> Iterator[Remark]:
                     continue
                 other = seen[topic][0]
                 new = f"{element.text.strip()}_2"
-                yield Remark(
+                yield devices_codes.DUPLICATE_TOPIC.diagnostic(
                     message=f'the plugins "{other.name}" and "{tag.name}" both publish on '
                     f'"{topic}": who reads it gets both, mixed',
                     origin=element.origin,
@@ -93,8 +100,8 @@ def topic_twice(subject: Subject) -> Iterator[Remark]:
                 )
 
 
-@rule("topic-invalid", "error", "a topic or namespace that ROS refuses")
-def topic_invalid(subject: Subject) -> Iterator[Remark]:
+@rule(devices_codes.TOPIC_INVALID)
+def topic_invalid(subject: Subject) -> Iterator[Diagnostic]:
     for _, tag, _sensor in _plugins(subject):
         held = [*tag.element.children]
         if (ros := tag.element.find("ros")) is not None:
@@ -110,7 +117,7 @@ def topic_invalid(subject: Subject) -> Iterator[Remark]:
                 continue  # Gazebo's own transport takes nearly anything
             good = re.sub(r"[^\w/~]+", "_", target.strip())
             good = re.sub(r"(^|/)(?=\d)", r"\1_", good)
-            yield Remark(
+            yield devices_codes.TOPIC_INVALID.diagnostic(
                 message=f'<{element.tag}> "{name}" is no name of a topic: such a name has '
                 "letters, digits, _ and /, and no part of it begins with a digit",
                 origin=element.origin,
@@ -141,10 +148,10 @@ def _resolved(tag: PluginTag, element: Element, kind: str) -> str:
     return "/" + "/".join(part.strip("/") for part in (space, name) if part.strip("/"))
 
 
-def _unknown(robot: Robot, element: Element, consequence: str) -> Remark:
+def _unknown(code: Code, robot: Robot, element: Element, consequence: str) -> Diagnostic:
     name = element.text.strip()
     near = spelling.meant(name.lstrip("/"), robot.links)
-    return Remark(
+    return code.diagnostic(
         message=f'<{element.tag}> "{name}" is no link: {consequence}',
         origin=element.origin,
         instead=nodes.written(element.tag, {}, near) if near else "",

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from cartwheel.codes import devices as devices_codes
 from cartwheel.description.check import nodes, spelling
-from cartwheel.description.check.finding import Remark
 from cartwheel.description.check.rule import rule
 from cartwheel.description.check.subject import Robot, Subject
 from cartwheel.description.model import Element, Sensor
+from cartwheel.errors import Diagnostic
 
 _LUMP = "_fixed_joint_lump__"
 _LINK_TAGS = ("bodyName", "body_name", "linkName", "link_name")
@@ -16,8 +17,8 @@ _LINK_TAGS = ("bodyName", "body_name", "linkName", "link_name")
 _JOINT_TAGS = ("jointName", "joint_name")
 
 
-@rule("contact-collision-unknown", "error", "a contact sensor names a collision that is not there")
-def contact_collision_unknown(subject: Subject) -> Iterator[Remark]:
+@rule(devices_codes.CONTACT_COLLISION_UNKNOWN)
+def contact_collision_unknown(subject: Subject) -> Iterator[Diagnostic]:
     for robot, sensor, asked in _watched(subject):
         name = asked.text.strip()
         if robot.incomplete or sensor.link in robot.cut or not robot.is_placed:
@@ -27,7 +28,7 @@ def contact_collision_unknown(subject: Subject) -> Iterator[Remark]:
         known = {one for names in _gazebo_names(robot).values() for one in names}
         own = _gazebo_names(robot).get(sensor.link, [])
         near = spelling.meant(name, known) or (own[0] if own else "")
-        yield Remark(
+        yield devices_codes.CONTACT_COLLISION_UNKNOWN.diagnostic(
             message=f'the contact sensor "{sensor.name}" watches the collision "{name}", '
             "which does not exist: it never reports anything",
             origin=asked.origin,
@@ -38,8 +39,8 @@ def contact_collision_unknown(subject: Subject) -> Iterator[Remark]:
         )
 
 
-@rule("contact-never-fires", "warning", "a collision's spelling that fails silently in Gazebo 11")
-def contact_never_fires(subject: Subject) -> Iterator[Remark]:
+@rule(devices_codes.CONTACT_NEVER_FIRES)
+def contact_never_fires(subject: Subject) -> Iterator[Diagnostic]:
     if not subject.is_urdf:
         return
     for robot, sensor, asked in _watched(subject):
@@ -54,7 +55,7 @@ def contact_never_fires(subject: Subject) -> Iterator[Remark]:
         if root == link:
             continue  # its own name in some spelling: Gazebo's is not certain
         right = _gazebo_names(robot)[link][index]
-        yield Remark(
+        yield devices_codes.CONTACT_NEVER_FIRES.diagnostic(
             message=f'Gazebo 11 merges "{link}" into "{root}" and knows no collision "{name}" '
             f'any more: there the sensor "{sensor.name}" loads and never reports anything',
             origin=asked.origin,
@@ -64,15 +65,15 @@ def contact_never_fires(subject: Subject) -> Iterator[Remark]:
         )
 
 
-@rule("lumped-joint", "warning", "a plugin measures a fixed joint that Gazebo merges away")
-def lumped_joint(subject: Subject) -> Iterator[Remark]:
+@rule(devices_codes.LUMPED_JOINT)
+def lumped_joint(subject: Subject) -> Iterator[Diagnostic]:
     for robot, element in _named(subject, _JOINT_TAGS):
         joint = robot.joints.get(element.text.strip())
         if joint is None or joint.type != "fixed" or joint.preserve_fixed or not subject.is_urdf:
             continue
         if joint.parent not in robot.links:
             continue
-        yield Remark(
+        yield devices_codes.LUMPED_JOINT.diagnostic(
             message=f'<{element.tag}> names the fixed joint "{joint.name}", which Gazebo merges '
             "away together with its link: the plugin does not find it there",
             origin=element.origin,
@@ -83,8 +84,8 @@ def lumped_joint(subject: Subject) -> Iterator[Remark]:
         )
 
 
-@rule("lumped-link", "info", "a plugin names a link that Gazebo merges into another")
-def lumped_link(subject: Subject) -> Iterator[Remark]:
+@rule(devices_codes.LUMPED_LINK)
+def lumped_link(subject: Subject) -> Iterator[Diagnostic]:
     if not subject.is_urdf:
         return
     for robot, element in _named(subject, _LINK_TAGS):
@@ -98,7 +99,7 @@ def lumped_link(subject: Subject) -> Iterator[Remark]:
             "</preserveFixedJoint></gazebo>"
         )
         if element.tag in ("body_name", "link_name"):
-            yield Remark(
+            yield devices_codes.LUMPED_LINK.diagnostic(
                 severity="warning",
                 message=f'Gazebo merges the link "{name}" into "{root}", and replaces its name '
                 f"in <bodyName> only: with <{element.tag}> the plugin does not find it there",
@@ -108,7 +109,7 @@ def lumped_link(subject: Subject) -> Iterator[Remark]:
                 hint="Add it to the robot.",
             )
         elif not _same_frame(robot, name, root):
-            yield Remark(
+            yield devices_codes.LUMPED_LINK.diagnostic(
                 message=f'Gazebo merges the link "{name}" into "{root}" and writes that, '
                 "with the offset between the two, into the plugin: its messages name that link",
                 origin=element.origin,

@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
+from cartwheel.codes import robot as robot_codes
 from cartwheel.description.check import nodes
-from cartwheel.description.check.finding import Remark
 from cartwheel.description.check.rule import rule
 from cartwheel.description.check.solids import as_collision, bounds
 from cartwheel.description.check.structure import ends, inbound, link_names
@@ -18,7 +19,7 @@ from cartwheel.description.inertia import impossibility, principal_moments
 from cartwheel.description.model import Box, Collision, Inertial, Link, Visual
 from cartwheel.description.node import Node
 from cartwheel.description.sdf.inertia import inertial_of
-from cartwheel.errors import Origin
+from cartwheel.errors import Diagnostic, Origin
 from cartwheel.geometry import Pose, Vec3
 
 TOO_LARGE = 1.5
@@ -44,9 +45,11 @@ _WITHOUT = "Gazebo Classic divides by it nevertheless; here it has that of its g
 _KEYS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 
 
-@rule("inertia-impossible", "warning", "an inertia that no body can have")
-def inertia_impossible(subject: Subject) -> Iterator[Remark]:
-    yield from (each for each in subject.failures if IMPOSSIBLE.search(each.message))
+@rule(robot_codes.INERTIA_IMPOSSIBLE)
+def inertia_impossible(subject: Subject) -> Iterator[Diagnostic]:
+    for failure in subject.failures:
+        if IMPOSSIBLE.search(failure.message):
+            yield replace(failure, code=robot_codes.INERTIA_IMPOSSIBLE, severity="warning")
     yield from _impossible_in_sdf(subject)
     held = _held(subject)
     for link, inertial in _inertials(subject):
@@ -63,9 +66,10 @@ def inertia_impossible(subject: Subject) -> Iterator[Remark]:
         negative = min(moments) < -_ROUNDED * max(moments)
         # Of what is fixed to something heavier it is but a part of a sum.
         part = _is_part(subject, name, max(moments))
-        yield Remark(
+        yield robot_codes.INERTIA_IMPOSSIBLE.diagnostic(
             severity="info" if part else "error" if negative else None,
             message=f'link "{name}": {wrong[0]}',
+            values={"link": name},
             origin=place.origin,
             instead=_inertia_text(_sketch(subject, name), mass),
             place="element" if tensor is not None else "inside",
@@ -73,7 +77,7 @@ def inertia_impossible(subject: Subject) -> Iterator[Remark]:
         )
 
 
-def _impossible_in_sdf(subject: Subject) -> Iterator[Remark]:
+def _impossible_in_sdf(subject: Subject) -> Iterator[Diagnostic]:
     """What its reader told of inertias, with that of the geometry."""
     links = {link.name: (robot, link) for robot in subject.robots for link in robot.links.values()}
     for diagnostic in subject.read.diagnostics if subject.read is not None else ():
@@ -85,7 +89,7 @@ def _impossible_in_sdf(subject: Subject) -> Iterator[Remark]:
         robot, link = links.get(match[1], (None, None))
         like = _shape_inertia(robot, link) if robot is not None and link is not None else None
         mass = link.inertial.mass if link is not None and link.inertial is not None else 1.0
-        yield Remark(
+        yield robot_codes.INERTIA_IMPOSSIBLE.diagnostic(
             severity=diagnostic.severity,
             message=diagnostic.message.partition("; here ")[0],
             origin=diagnostic.origin,
@@ -94,8 +98,8 @@ def _impossible_in_sdf(subject: Subject) -> Iterator[Remark]:
         )
 
 
-@rule("mass-not-positive", "error", "a link that moves has no mass, or less than none")
-def mass_not_positive(subject: Subject) -> Iterator[Remark]:
+@rule(robot_codes.MASS_NOT_POSITIVE)
+def mass_not_positive(subject: Subject) -> Iterator[Diagnostic]:
     held = _held(subject)
     for link, inertial in _inertials(subject):
         place = nodes.child(inertial, "mass")
@@ -104,7 +108,7 @@ def mass_not_positive(subject: Subject) -> Iterator[Remark]:
             continue
         if mass == 0 and nodes.name_of(link) in held:
             continue  # a mere frame; Gazebo adds it to what it is fixed to
-        yield Remark(
+        yield robot_codes.MASS_NOT_POSITIVE.diagnostic(
             message=f'link "{nodes.name_of(link)}" has the mass {mass:g}: '
             "Gazebo drops such a link, and all that it carries",
             origin=place.origin,
@@ -115,8 +119,8 @@ def mass_not_positive(subject: Subject) -> Iterator[Remark]:
         )
 
 
-@rule("inertia-missing", "warning", "a link that moves has no <inertial>: Gazebo drops it")
-def inertia_missing(subject: Subject) -> Iterator[Remark]:
+@rule(robot_codes.INERTIA_MISSING)
+def inertia_missing(subject: Subject) -> Iterator[Diagnostic]:
     if not subject.is_urdf:
         return
     for robot in subject.robots:
@@ -144,7 +148,7 @@ def inertia_missing(subject: Subject) -> Iterator[Remark]:
                 if holder is not None
                 else "does not load such a robot"
             )
-            yield Remark(
+            yield robot_codes.INERTIA_MISSING.diagnostic(
                 message=f"{what} {'but ' if holder else ''}has no <inertial>: Gazebo {consequence}",
                 origin=link.origin,
                 instead=_inertial_text(_shape_inertia(robot, link), 1.0),
@@ -154,8 +158,8 @@ def inertia_missing(subject: Subject) -> Iterator[Remark]:
             )
 
 
-@rule("inertia-unlike-geometry", "warning", "an inertia far from that of the link's geometry")
-def inertia_unlike_geometry(subject: Subject) -> Iterator[Remark]:
+@rule(robot_codes.INERTIA_GEOMETRY_MISMATCH)
+def inertia_unlike_geometry(subject: Subject) -> Iterator[Diagnostic]:
     for robot, link, inertial in _judged(subject):
         solids = [solid.vertices for solid in robot.solids(link.name)]
         box = bounds(robot.rigid_cloud(link.name))
@@ -169,7 +173,7 @@ def inertia_unlike_geometry(subject: Subject) -> Iterator[Remark]:
         in_sdf = link.name in robot.in_sdf
         advice = _inertia_text(like, inertial.mass, sdf=in_sdf)
         if stated > TOO_LARGE * largest:
-            yield Remark(
+            yield robot_codes.INERTIA_GEOMETRY_MISMATCH.diagnostic(
                 severity=None if _matters(robot, link, stated) else "info",
                 message=f'link "{link.name}" resists turning {stated / largest:.3g} times as much '
                 f"as {inertial.mass:g} kg could that all lay in the farthest corner of its "
@@ -184,7 +188,7 @@ def inertia_unlike_geometry(subject: Subject) -> Iterator[Remark]:
         solid = sum(like.diagonal) / 2 * inertial.mass / like.mass
         if 0 < stated < solid / TOO_SMALL:
             light = inertial.mass < _LIGHT * robot.description.mass
-            yield Remark(
+            yield robot_codes.INERTIA_GEOMETRY_MISMATCH.diagnostic(
                 severity="info" if light else None,
                 message=f'link "{link.name}" resists turning {solid / stated:.3g} times less than '
                 f"a solid of its geometry and its {inertial.mass:g} kg: such a mass would lie "
@@ -195,8 +199,8 @@ def inertia_unlike_geometry(subject: Subject) -> Iterator[Remark]:
             )
 
 
-@rule("mass-outside", "warning", "a centre of mass outside the link's geometry")
-def mass_outside(subject: Subject) -> Iterator[Remark]:
+@rule(robot_codes.CENTER_OF_MASS_OUTSIDE)
+def mass_outside(subject: Subject) -> Iterator[Diagnostic]:
     for robot, link, inertial in _judged(subject):
         box = bounds(robot.rigid_cloud(link.name))
         if box is None or not robot.whole(link.name):
@@ -212,7 +216,7 @@ def mass_outside(subject: Subject) -> Iterator[Remark]:
             in_sdf = link.name in robot.in_sdf
             node = robot.node_at(inertial.origin)
             origin = nodes.child(node, "origin")
-            yield Remark(
+            yield robot_codes.CENTER_OF_MASS_OUTSIDE.diagnostic(
                 message=f'the centre of mass of link "{link.name}" lies {away:.3g} m outside its '
                 f"geometry, which is {across:.3g} m across",
                 origin=origin.origin if origin is not None else inertial.origin,
@@ -223,8 +227,8 @@ def mass_outside(subject: Subject) -> Iterator[Remark]:
             )
 
 
-@rule("mass-grams", "warning", "a link denser than any metal: grams for kilograms?")
-def mass_grams(subject: Subject) -> Iterator[Remark]:
+@rule(robot_codes.MASS_IN_GRAMS)
+def mass_grams(subject: Subject) -> Iterator[Diagnostic]:
     for robot, link, inertial in _judged(subject):
         box = bounds([solid.vertices for solid in robot.solids(link.name)])
         if box is None or inertial.mass < 1.0:
@@ -235,7 +239,7 @@ def mass_grams(subject: Subject) -> Iterator[Remark]:
             continue
         in_grams = density / 1000 > _FOAM
         node = _urdf_mass(robot, link, inertial)
-        yield Remark(
+        yield robot_codes.MASS_IN_GRAMS.diagnostic(
             message=f'link "{link.name}" weighs {inertial.mass:g} kg in a box of '
             f"{' x '.join(f'{1000 * value:.3g}' for value in box[1] - box[0])} mm: "
             f"{density / 1000:.3g} kg to the litre, and no metal has more than 22.6",
@@ -249,12 +253,12 @@ def mass_grams(subject: Subject) -> Iterator[Remark]:
         )
 
 
-@rule("mass-absurd", "warning", "a robot of more than 100 t")
-def mass_absurd(subject: Subject) -> Iterator[Remark]:
+@rule(robot_codes.MASS_IMPLAUSIBLE)
+def mass_absurd(subject: Subject) -> Iterator[Diagnostic]:
     for robot, link, inertial in _judged(subject):
         if inertial.mass > 100_000:
             node = _urdf_mass(robot, link, inertial)
-            yield Remark(
+            yield robot_codes.MASS_IMPLAUSIBLE.diagnostic(
                 message=f'link "{link.name}" weighs {inertial.mass:g} kg',
                 origin=node.origin if node is not None else inertial.origin,
                 instead=_mass_text(inertial.mass / 1000, sdf=node is None),

@@ -7,11 +7,12 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from cartwheel.codes import robot as robot_codes
 from cartwheel.description.check import nodes
-from cartwheel.description.check.finding import Remark
 from cartwheel.description.check.rule import rule
 from cartwheel.description.check.subject import Robot, Subject
 from cartwheel.description.node import Node
+from cartwheel.errors import Diagnostic
 
 _LIMITED = ("revolute", "prismatic")
 _GRAVITY = 9.8
@@ -23,14 +24,14 @@ _ENDLESS = frozenset({50.0, 100.0, 200.0, 300.0})
 """rad, by which a joint that turns without end is given limits all the same."""
 
 
-@rule("limit-missing", "error", "a revolute or prismatic joint has no <limit>: ROS refuses it")
-def limit_missing(subject: Subject) -> Iterator[Remark]:
+@rule(robot_codes.LIMIT_MISSING)
+def limit_missing(subject: Subject) -> Iterator[Diagnostic]:
     wheels = {name for robot in subject.robots for drive in robot.drives for name in drive.joints}
     for joint, kind in _joints(subject):
         if kind in _LIMITED and nodes.child(joint, "limit") is None:
             span = "1.5708" if kind == "revolute" else "0.1"
             rolls = kind == "revolute" and nodes.name_of(joint) in wheels
-            yield Remark(
+            yield robot_codes.LIMIT_MISSING.diagnostic(
                 message=f'the {kind} joint "{nodes.name_of(joint)}" has no <limit>: '
                 "ROS refuses the whole robot",
                 origin=joint.origin,
@@ -46,11 +47,11 @@ def limit_missing(subject: Subject) -> Iterator[Remark]:
             )
 
 
-@rule("limit-reversed", "error", "a joint's lower limit is above its upper one")
-def limit_reversed(subject: Subject) -> Iterator[Remark]:
+@rule(robot_codes.LIMIT_REVERSED)
+def limit_reversed(subject: Subject) -> Iterator[Diagnostic]:
     for joint, limit, lower, upper in _ranges(subject):
         if lower > upper:
-            yield Remark(
+            yield robot_codes.LIMIT_REVERSED.diagnostic(
                 message=f'the lower limit {lower:g} of the joint "{nodes.name_of(joint)}" '
                 f"is above the upper one, {upper:g}",
                 origin=limit.origin,
@@ -60,8 +61,8 @@ def limit_reversed(subject: Subject) -> Iterator[Remark]:
             )
 
 
-@rule("limit-zero", "warning", "a joint's range is zero: it cannot move")
-def limit_zero(subject: Subject) -> Iterator[Remark]:
+@rule(robot_codes.LIMIT_ZERO)
+def limit_zero(subject: Subject) -> Iterator[Diagnostic]:
     drives = [drive for robot in subject.robots for drive in robot.drives]
     wheels = {name for drive in drives for name in drive.joints}
     yield from _zero_in_sdf(subject, wheels)
@@ -69,7 +70,7 @@ def limit_zero(subject: Subject) -> Iterator[Remark]:
         # Of a driven wheel it is said that its joint must be continuous.
         if lower == upper and nodes.name_of(joint) not in wheels:
             stated = "lower" in limit.attributes or "upper" in limit.attributes
-            yield Remark(
+            yield robot_codes.LIMIT_ZERO.diagnostic(
                 message=f'the joint "{nodes.name_of(joint)}" cannot move: both limits are '
                 f"{lower:g}" + ("" if stated else ", which is what counts where none is stated"),
                 origin=limit.origin,
@@ -81,8 +82,8 @@ def limit_zero(subject: Subject) -> Iterator[Remark]:
             )
 
 
-@rule("effort-zero", "warning", "a driven joint's effort or velocity limit is zero")
-def effort_zero(subject: Subject) -> Iterator[Remark]:
+@rule(robot_codes.EFFORT_ZERO)
+def effort_zero(subject: Subject) -> Iterator[Diagnostic]:
     yield from _torque_zero(subject)
     movers = {name: robot for robot in subject.robots for name in robot.driven}
     for joint, kind in _joints(subject):
@@ -93,7 +94,7 @@ def effort_zero(subject: Subject) -> Iterator[Remark]:
         slides = kind == "prismatic"
         if nodes.number(limit.attributes.get("effort")) == 0.0:
             usual = _holding(movers[name], name, slides=slides)
-            yield Remark(
+            yield robot_codes.EFFORT_ZERO.diagnostic(
                 message=f'the joint "{name}" is driven, but its effort limit is 0 '
                 f"{'N' if slides else 'N m'}: in Gazebo no force can move it",
                 origin=limit.origin,
@@ -104,7 +105,7 @@ def effort_zero(subject: Subject) -> Iterator[Remark]:
                 "write what its motor can do.",
             )
         if nodes.number(limit.attributes.get("velocity")) == 0.0:
-            yield Remark(
+            yield robot_codes.EFFORT_ZERO.diagnostic(
                 message=f'the joint "{name}" is driven, but its velocity limit is 0 '
                 f"{'m/s' if slides else 'rad/s'}: in Gazebo it may not move",
                 origin=limit.origin,
@@ -115,14 +116,14 @@ def effort_zero(subject: Subject) -> Iterator[Remark]:
             )
 
 
-def _torque_zero(subject: Subject) -> Iterator[Remark]:
+def _torque_zero(subject: Subject) -> Iterator[Diagnostic]:
     for robot in subject.robots:
         for drive in robot.drives:
             for element in drive.tag.element.children:
                 differential = "gazebo_ros_diff_drive" in drive.tag.filename
                 read = _TORQUES if differential else ("torque",)
                 if element.tag in read and nodes.number(element.text) == 0.0:
-                    yield Remark(
+                    yield robot_codes.EFFORT_ZERO.diagnostic(
                         message=f"<{element.tag}> is 0 N m: the wheels do not move",
                         origin=element.origin,
                         instead=nodes.written(element.tag, {}, "5"),
@@ -153,15 +154,15 @@ def _holding(robot: Robot, name: str, *, slides: bool) -> float:
     return max(_LEAST_EFFORT, float(f"{2 * _GRAVITY * load:.1g}"))
 
 
-@rule("limit-incomplete", "error", "a <limit> lacks effort or velocity: ROS refuses the robot")
-def limit_incomplete(subject: Subject) -> Iterator[Remark]:
+@rule(robot_codes.LIMIT_INCOMPLETE)
+def limit_incomplete(subject: Subject) -> Iterator[Diagnostic]:
     for joint, _ in _joints(subject):
         limit = nodes.child(joint, "limit")
         if limit is None:
             continue
         for what in ("effort", "velocity"):
             if what not in limit.attributes:
-                yield Remark(
+                yield robot_codes.LIMIT_INCOMPLETE.diagnostic(
                     message=f'the <limit> of the joint "{nodes.name_of(joint)}" has no {what}: '
                     "ROS refuses the whole robot",
                     origin=limit.origin,
@@ -170,12 +171,12 @@ def limit_incomplete(subject: Subject) -> Iterator[Remark]:
                 )
 
 
-@rule("axis-zero", "error", "a joint's axis has length 0")
-def axis_zero(subject: Subject) -> Iterator[Remark]:
+@rule(robot_codes.AXIS_ZERO)
+def axis_zero(subject: Subject) -> Iterator[Diagnostic]:
     wheels = {name for robot in subject.robots for drive in robot.drives for name in drive.joints}
     for joint, axis, xyz in _axes(subject):
         if math.hypot(*xyz) < 1e-6:
-            yield Remark(
+            yield robot_codes.AXIS_ZERO.diagnostic(
                 message=f'the axis of the joint "{nodes.name_of(joint)}" has length 0',
                 origin=axis.origin,
                 instead='xyz="0 1 0"' if nodes.name_of(joint) in wheels else 'xyz="0 0 1"',
@@ -184,14 +185,14 @@ def axis_zero(subject: Subject) -> Iterator[Remark]:
             )
 
 
-@rule("axis-not-unit", "warning", "a joint's axis is no unit vector")
-def axis_not_unit(subject: Subject) -> Iterator[Remark]:
+@rule(robot_codes.AXIS_NOT_NORMALIZED)
+def axis_not_unit(subject: Subject) -> Iterator[Diagnostic]:
     for joint, axis, xyz in _axes(subject):
         length = math.hypot(*xyz)
         # Three digits, as in 0.577, are as good as a unit vector.
         if length >= 1e-6 and abs(length - 1) > 0.01:
             unit = " ".join(nodes.short(value / length) for value in xyz)
-            yield Remark(
+            yield robot_codes.AXIS_NOT_NORMALIZED.diagnostic(
                 message=f'the axis of the joint "{nodes.name_of(joint)}" has length {length:.3g}: '
                 "URDF asks for length 1, and not every reader scales it",
                 origin=axis.origin,
@@ -201,8 +202,8 @@ def axis_not_unit(subject: Subject) -> Iterator[Remark]:
             )
 
 
-@rule("limit-degrees", "warning", "a joint's limit seems to be in degrees")
-def limit_degrees(subject: Subject) -> Iterator[Remark]:
+@rule(robot_codes.LIMIT_IN_DEGREES)
+def limit_degrees(subject: Subject) -> Iterator[Diagnostic]:
     yield from _degrees_in_sdf(subject)
     for joint, kind in _joints(subject):
         limit = nodes.child(joint, "limit")
@@ -214,7 +215,7 @@ def limit_degrees(subject: Subject) -> Iterator[Remark]:
             radians = {
                 what: nodes.short(math.radians(value)) for what, value in values.items() if value
             }
-            yield Remark(
+            yield robot_codes.LIMIT_IN_DEGREES.diagnostic(
                 message=f'the limits of the joint "{nodes.name_of(joint)}" are radians, '
                 f"and {max(stated):g} rad are {max(stated) / 2 / math.pi:.3g} turns: "
                 "degrees were meant?",
@@ -234,10 +235,10 @@ def _are_degrees(stated: list[float]) -> bool:
     )
 
 
-def _zero_in_sdf(subject: Subject, wheels: set[str]) -> Iterator[Remark]:
+def _zero_in_sdf(subject: Subject, wheels: set[str]) -> Iterator[Diagnostic]:
     for joint, axis, lower, upper in _ranges_in_sdf(subject):
         if lower == upper and joint not in wheels:
-            yield Remark(
+            yield robot_codes.LIMIT_ZERO.diagnostic(
                 # Models from before SDF 1.5, which had no fixed joints, mean one by it.
                 severity="info",
                 message=f'the joint "{joint}" cannot move: both limits are {lower:g}',
@@ -246,13 +247,13 @@ def _zero_in_sdf(subject: Subject, wheels: set[str]) -> Iterator[Remark]:
             )
 
 
-def _degrees_in_sdf(subject: Subject) -> Iterator[Remark]:
+def _degrees_in_sdf(subject: Subject) -> Iterator[Diagnostic]:
     for joint, axis, lower, upper in _ranges_in_sdf(subject):
         stated = [abs(value) for value in (lower, upper) if value]
         if _are_degrees(stated):
             limit = {"lower": math.radians(lower), "upper": math.radians(upper)}
             inner = "".join(f"<{tag}>{nodes.short(value)}</{tag}>" for tag, value in limit.items())
-            yield Remark(
+            yield robot_codes.LIMIT_IN_DEGREES.diagnostic(
                 message=f'the limits of the joint "{joint}" are radians, and {max(stated):g} rad '
                 f"are {max(stated) / 2 / math.pi:.3g} turns: degrees were meant?",
                 origin=axis.origin,

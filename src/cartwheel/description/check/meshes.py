@@ -10,14 +10,15 @@ from statistics import median
 
 import numpy as np
 
+from cartwheel.codes import files as files_codes
+from cartwheel.codes import robot as robot_codes
 from cartwheel.description.check import nodes, spelling
-from cartwheel.description.check.finding import Remark
 from cartwheel.description.check.rule import rule
 from cartwheel.description.check.solids import Solid
 from cartwheel.description.check.subject import MISSING, Robot, Subject
 from cartwheel.description.model import Mesh
 from cartwheel.description.node import Node
-from cartwheel.errors import DescriptionError, Severity
+from cartwheel.errors import Code, DescriptionError, Diagnostic, Severity
 
 GIANT = 30.0
 """Times the size of all the rest of the robot."""
@@ -44,12 +45,12 @@ class _Absence:
 
     cause: str
     """Such as ``the package "arm_description" was not found``."""
-    first: Remark
+    first: Diagnostic
     places: list[str] = field(default_factory=list)
 
 
-@rule("file-missing", "error", "a mesh, texture, model or package is not there")
-def file_missing(subject: Subject) -> Iterator[Remark]:
+@rule(files_codes.FILE_MISSING)
+def file_missing(subject: Subject) -> Iterator[Diagnostic]:
     found: dict[str, _Absence] = {}
     for remark in _absent(subject):
         cause = _cause(remark.message)
@@ -69,9 +70,11 @@ def file_missing(subject: Subject) -> Iterator[Remark]:
         )
 
 
-def _absent(subject: Subject) -> Iterator[Remark]:
-    yield from (each for each in subject.failures if MISSING.search(each.message))
-    for remark in left_out(subject, missing=True):
+def _absent(subject: Subject) -> Iterator[Diagnostic]:
+    for each in subject.failures:
+        if MISSING.search(each.message):
+            yield replace(each, code=files_codes.FILE_MISSING)
+    for remark in left_out(subject, files_codes.FILE_MISSING, missing=True):
         if subject.in_sdf(remark.origin):
             yield remark
     if not subject.is_urdf:
@@ -84,7 +87,7 @@ def _absent(subject: Subject) -> Iterator[Remark]:
             subject.packages.resolve(uri, node.origin, what=node.tag)
         except DescriptionError as error:
             meant = _meant(subject, uri, node, error.hint or "")
-            yield Remark(
+            yield files_codes.FILE_MISSING.diagnostic(
                 severity="error" if node.tag == "mesh" else "warning",
                 message=error.message,
                 origin=node.origin,
@@ -118,18 +121,26 @@ def _cause(message: str) -> str:
     return match[0] if match is not None else message
 
 
-@rule("mesh-unreadable", "error", "a mesh file is damaged, empty, or of an unknown format")
-def mesh_unreadable(subject: Subject) -> Iterator[Remark]:
-    yield from (each for each in left_out(subject) if _OF_A_FILE.search(each.message))
+@rule(files_codes.MESH_UNREADABLE)
+def mesh_unreadable(subject: Subject) -> Iterator[Diagnostic]:
+    yield from (
+        each
+        for each in left_out(subject, files_codes.MESH_UNREADABLE)
+        if _OF_A_FILE.search(each.message)
+    )
 
 
-def left_out_otherwise(subject: Subject) -> Iterator[Remark]:
+def left_out_otherwise(subject: Subject) -> Iterator[Diagnostic]:
     """What is left out, though all its files are there: something in it cannot be read."""
-    yield from (each for each in left_out(subject) if not _OF_A_FILE.search(each.message))
+    yield from (
+        each
+        for each in left_out(subject, files_codes.UNREADABLE)
+        if not _OF_A_FILE.search(each.message)
+    )
 
 
-@rule("shape-size", "warning", "a shape is a giant or a dwarf beside the rest of the robot")
-def shape_size(subject: Subject) -> Iterator[Remark]:
+@rule(robot_codes.SHAPE_OUT_OF_SCALE)
+def shape_size(subject: Subject) -> Iterator[Diagnostic]:
     for robot in subject.robots:
         if robot.description.static:
             continue
@@ -153,7 +164,7 @@ def shape_size(subject: Subject) -> Iterator[Remark]:
                 yield _remark(robot, solid, factor, usual)
 
 
-def left_out(subject: Subject, *, missing: bool = False) -> Iterator[Remark]:
+def left_out(subject: Subject, code: Code, *, missing: bool = False) -> Iterator[Diagnostic]:
     """What the readers left out for want of its file, or because the file cannot be used."""
     for diagnostic in subject.read.diagnostics if subject.read is not None else ():
         match = _LEFT_OUT.fullmatch(diagnostic.message)
@@ -168,7 +179,7 @@ def left_out(subject: Subject, *, missing: bool = False) -> Iterator[Remark]:
             hint = match[2].strip()
             meant = _meant(subject, uri.text.strip(), uri, hint) if uri is not None else ""
             if (end := _end_meant(node, diagnostic.message, hint)) is not None:
-                yield Remark(
+                yield code.diagnostic(
                     severity="error",
                     message=match[1],
                     origin=end.origin,
@@ -177,7 +188,7 @@ def left_out(subject: Subject, *, missing: bool = False) -> Iterator[Remark]:
                     mark=end.text.strip(),
                 )
                 continue
-            yield Remark(
+            yield code.diagnostic(
                 severity=_severity(diagnostic.message),
                 message=match[1],
                 origin=uri.origin if uri is not None and meant else diagnostic.origin,
@@ -244,7 +255,7 @@ def _reach(robot: Robot) -> float:
     return float(max(points, default=0.0))
 
 
-def _remark(robot: Robot, solid: Solid, factor: float, usual: float) -> Remark:
+def _remark(robot: Robot, solid: Solid, factor: float, usual: float) -> Diagnostic:
     part = solid.part
     what = "visual" if part in robot.links[solid.link].visuals else "collision"
     node = robot.node_at(part.origin)
@@ -260,7 +271,7 @@ def _remark(robot: Robot, solid: Solid, factor: float, usual: float) -> Remark:
             shape, **{name: _scaled(text, factor) for name, text in shape.attributes.items()}
         )
         place = "element"
-    return Remark(
+    return robot_codes.SHAPE_OUT_OF_SCALE.diagnostic(
         message=f'a {what} of link "{solid.link}" is {solid.extent:.4g} m long, while the other '
         f"shapes of the robot are of some {usual:.3g} m: "
         + ("millimetres for metres?" if factor < 1 else "scaled twice?"),

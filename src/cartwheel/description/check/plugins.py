@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from dataclasses import replace
 
+from cartwheel.codes import devices as devices_codes
 from cartwheel.description.check import frames, nodes
-from cartwheel.description.check.finding import Remark
 from cartwheel.description.check.rule import rule
 from cartwheel.description.check.subject import Subject
 from cartwheel.description.model import Element, PluginTag
-from cartwheel.errors import Diagnostic, likely
+from cartwheel.errors import Diagnostic, meant_one
 
 _GAZEBO = frozenset({
     "diff_drive", "skid_steer_drive", "tricycle_drive", "planar_move", "ackermann_drive",
@@ -24,15 +25,15 @@ _GAZEBO = frozenset({
 _CLASSIC = re.compile(r"(?:lib)?(gazebo_ros_\w+)(?:\.so)?")
 
 
-@rule("plugin-unknown", "info", "a plugin that is not simulated here, or a misspelt one")
-def plugin_unknown(subject: Subject) -> Iterator[Remark]:
+@rule(devices_codes.PLUGIN_UNKNOWN)
+def plugin_unknown(subject: Subject) -> Iterator[Diagnostic]:
     knowledge = subject.plugins
     if knowledge is None:
         return
     for robot in subject.robots:
         for tag, sensor in robot.plugins():
             if (own := _plain_file(tag.filename)) != tag.filename:
-                yield Remark(
+                yield devices_codes.PLUGIN_UNKNOWN.diagnostic(
                     severity="warning",
                     message=f'Gazebo looks for a file "{tag.filename}", and the plugin\'s is '
                     f'"{own}": there it does not load',
@@ -45,11 +46,10 @@ def plugin_unknown(subject: Subject) -> Iterator[Remark]:
             if knowledge.judge(tag, sensor) is not None:
                 continue
             # Only a spelling error has a likely meant name: other plugins share most of theirs.
-            sentence = likely(tag.filename, knowledge.filenames, cutoff=0.92)
-            near = sentence.partition('"')[2].rpartition('"')[0]
+            near = meant_one(tag.filename, knowledge.filenames, cutoff=0.92)
             if frames.short_name(tag) in _GAZEBO:
                 near = ""
-            yield Remark(
+            yield devices_codes.PLUGIN_UNKNOWN.diagnostic(
                 severity="warning" if near else "info",
                 message=f'the plugin "{tag.filename}" is not known: what it does is missing'
                 if near
@@ -61,18 +61,18 @@ def plugin_unknown(subject: Subject) -> Iterator[Remark]:
             )
 
 
-@rule("plugin-parameter", "warning", "a plugin's parameter that it does not know, or cannot read")
-def plugin_parameter(subject: Subject) -> Iterator[Remark]:
+@rule(devices_codes.PLUGIN_PARAMETER_UNKNOWN)
+def plugin_parameter(subject: Subject) -> Iterator[Diagnostic]:
     if subject.plugins is None:
         return
     for robot in subject.robots:
         for tag, sensor in robot.plugins():
             for diagnostic in subject.plugins.judge(tag, sensor) or ():
-                yield _remark(tag, diagnostic)
+                yield _advised(tag, diagnostic)
 
 
-@rule("plugin-obsolete", "warning", "a parameter that Gazebo 11's plugin does not read")
-def plugin_obsolete(subject: Subject) -> Iterator[Remark]:
+@rule(devices_codes.PLUGIN_PARAMETER_OBSOLETE)
+def plugin_obsolete(subject: Subject) -> Iterator[Diagnostic]:
     for robot in subject.robots:
         for drive in robot.drives:
             element = drive.tag.element
@@ -81,7 +81,7 @@ def plugin_obsolete(subject: Subject) -> Iterator[Remark]:
             torque, legacy = element.find("torque"), element.find("legacyMode")
             known = any(element.find(name) for name in ("wheelTorque", "max_wheel_torque"))
             if torque is not None and not known:
-                yield Remark(
+                yield devices_codes.PLUGIN_PARAMETER_OBSOLETE.diagnostic(
                     message="Gazebo 11 does not read <torque>: its wheels get 5 N m, not "
                     f"{torque.text.strip()}",
                     origin=torque.origin,
@@ -89,7 +89,7 @@ def plugin_obsolete(subject: Subject) -> Iterator[Remark]:
                     place="element",
                 )
             if legacy is not None and legacy.text.strip().lower() in ("true", "1"):
-                yield Remark(
+                yield devices_codes.PLUGIN_PARAMETER_OBSOLETE.diagnostic(
                     message="Gazebo 11 does not read <legacyMode>, which older ones swapped the "
                     "wheels for: there the robot turns the other way",
                     origin=legacy.origin,
@@ -105,21 +105,23 @@ def _plain_file(name: str) -> str:
     return name if match is None else f"lib{match[1]}.so"
 
 
-def _remark(tag: PluginTag, diagnostic: Diagnostic) -> Remark:
-    message, _, meant = diagnostic.message.partition(' Did you mean "')
-    near = meant.partition('"')[0]
-    if near and tag.element.find(near) is not None:
-        near = ""  # it is written already, so it cannot be what was meant here
+def _advised(tag: PluginTag, diagnostic: Diagnostic) -> Diagnostic:
+    """What a plugin reports of its parameters, with the text to write for a misspelt one."""
+    near = str(diagnostic.values.get("meant") or "")
+    # What is written already cannot be what was meant here.
+    written = bool(near) and tag.element.find(near) is not None
+    if written:
+        near = ""
     element = next((e for e in _all(tag.element) if e.origin is diagnostic.origin), None)
     instead, place = f"<{near}>" if near else "", False
     if near and element is not None and not element.children:
         instead = nodes.written(near, dict(element.attributes), element.text.strip())
         place = True
-    return Remark(
+    return replace(
+        diagnostic,
         # Gazebo's own plugin may know a tag that ours has no use for; a misspelt one is a fault.
         severity=diagnostic.severity if near or diagnostic.severity == "error" else "info",
-        message=message.strip(),
-        origin=diagnostic.origin,
+        hint="" if near or written else diagnostic.hint,
         instead=instead,
         place="element" if place else "",
         mark=element.tag if element is not None and element is not tag.element else "",

@@ -4,55 +4,44 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from cartwheel.description.check.finding import Finding, Remark
 from cartwheel.description.check.subject import Subject
-from cartwheel.errors import Severity
+from cartwheel.errors import UNCLASSIFIED, Code, Diagnostic
 
 MOST_FINDINGS = 200
 """Of one rule. Each may search all names for the one that was meant."""
 
-Finder = Callable[[Subject], Iterable[Remark]]
+Finder = Callable[[Subject], Iterable[Diagnostic]]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Rule:
-    """One thing that is looked for."""
+    """Looks for one kind of fault."""
 
-    name: str
-    severity: Severity
-    summary: str
+    code: Code
     find: Finder
 
-    def apply(self, subject: Subject) -> list[Finding]:
-        """What it finds, up to `MOST_FINDINGS` and one that says that there are more."""
-        remarks = list(itertools.islice(self.find(subject), MOST_FINDINGS + 1))
-        if len(remarks) > MOST_FINDINGS:
-            remarks[-1] = Remark(
-                message=f"there are more than {MOST_FINDINGS} findings of this rule",
-                origin=remarks[-1].origin,
-                hint="Mend these and check again.",
+    def apply(self, subject: Subject) -> list[Diagnostic]:
+        """Its findings: at most `MOST_FINDINGS`, and one that reports that there are more."""
+        findings = list(itertools.islice(self.find(subject), MOST_FINDINGS + 1))
+        if len(findings) > MOST_FINDINGS:
+            findings[-1] = self.code.diagnostic(
+                f"there are more than {MOST_FINDINGS} findings of this kind",
+                origin=findings[-1].origin,
+                hint="Fix these and check again.",
+                values={"most": MOST_FINDINGS},
             )
         return [
-            Finding(
-                rule=self.name,
-                severity=remark.severity or self.severity,
-                message=remark.message,
-                origin=remark.origin,
-                instead=remark.instead,
-                place=remark.place,
-                mark=remark.mark,
-                hint=remark.hint,
-            )
-            for remark in remarks
+            replace(each, code=self.code) if each.code.number == UNCLASSIFIED.number else each
+            for each in findings
         ]
 
 
-def rule(name: str, severity: Severity, summary: str) -> Callable[[Finder], Rule]:
-    """Makes a rule of the function that finds it."""
+def rule(code: Code) -> Callable[[Finder], Rule]:
+    """Makes a rule of the function that finds faults of a kind."""
 
     def make(find: Finder) -> Rule:
-        return Rule(name=name, severity=severity, summary=summary, find=find)
+        return Rule(code=code, find=find)
 
     return make

@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
+from cartwheel.codes import devices as devices_codes
 from cartwheel.description.check import nodes, spelling
-from cartwheel.description.check.finding import Remark
 from cartwheel.description.check.rule import rule
 from cartwheel.description.check.subject import Robot, Subject
 from cartwheel.description.model import Element, Sensor
+from cartwheel.errors import Diagnostic
 
 TYPES = (
     "air_pressure", "air_speed", "altimeter", "boundingbox", "boundingbox_camera", "camera",
@@ -31,12 +32,13 @@ _LISTED = 9
 _TURN = 2 * math.pi + 0.01
 
 
-@rule("sensor-type-unknown", "error", "a sensor of a type that Gazebo does not have")
-def sensor_type_unknown(subject: Subject) -> Iterator[Remark]:
+@rule(devices_codes.SENSOR_TYPE_UNKNOWN)
+def sensor_type_unknown(subject: Subject) -> Iterator[Diagnostic]:
     for _, sensor in _sensors(subject):
         if sensor.type in TYPES:
             continue
         yield spelling.misspelt(
+            devices_codes.SENSOR_TYPE_UNKNOWN,
             sensor.type,
             TYPES,
             attribute="type",
@@ -47,8 +49,8 @@ def sensor_type_unknown(subject: Subject) -> Iterator[Remark]:
         )
 
 
-@rule("sensor-range", "error", "a sensor's range or picture in which there is nothing to see")
-def sensor_range(subject: Subject) -> Iterator[Remark]:
+@rule(devices_codes.SENSOR_RANGE_INVALID)
+def sensor_range(subject: Subject) -> Iterator[Diagnostic]:
     for _, sensor in _sensors(subject):
         for element in _below(sensor.element):
             if element.tag in ("horizontal", "vertical"):
@@ -59,8 +61,8 @@ def sensor_range(subject: Subject) -> Iterator[Remark]:
                 yield from _counts(element, ("width", "height"), "a picture without pixels")
 
 
-@rule("image-format", "warning", "a format of images that does not exist")
-def image_format(subject: Subject) -> Iterator[Remark]:
+@rule(devices_codes.IMAGE_FORMAT_UNKNOWN)
+def image_format(subject: Subject) -> Iterator[Diagnostic]:
     for _, sensor in _sensors(subject):
         for element in _below(sensor.element):
             image = element.find("format") if element.tag == "image" else None
@@ -68,7 +70,7 @@ def image_format(subject: Subject) -> Iterator[Remark]:
             if image is None or not name or name.upper() in FORMATS:
                 continue
             near = spelling.meant(name, FORMATS, parts=False) or "R8G8B8"
-            yield Remark(
+            yield devices_codes.IMAGE_FORMAT_UNKNOWN.diagnostic(
                 message=f'there is no image format "{name}": the pictures are R8G8B8',
                 origin=image.origin,
                 instead=nodes.written("format", {}, near),
@@ -78,14 +80,14 @@ def image_format(subject: Subject) -> Iterator[Remark]:
             )
 
 
-def _arc(element: Element) -> Iterator[Remark]:
+def _arc(element: Element) -> Iterator[Diagnostic]:
     yield from _counts(element, ("samples",), "no ray is cast")
     low, high = _value(element, "min_angle"), _value(element, "max_angle")
     first = element.find("min_angle")
     for tag, angle in (("min_angle", low), ("max_angle", high)):
         found = element.find(tag)
         if found is not None and angle is not None and abs(angle) > _TURN:
-            yield Remark(
+            yield devices_codes.SENSOR_RANGE_INVALID.diagnostic(
                 severity="warning",
                 message=f"<{tag}> is {angle:g} rad, more than a turn: degrees for radians?",
                 origin=found.origin,
@@ -95,7 +97,7 @@ def _arc(element: Element) -> Iterator[Remark]:
             )
             return
     if first is not None and low is not None and high is not None and low > high:
-        yield Remark(
+        yield devices_codes.SENSOR_RANGE_INVALID.diagnostic(
             severity="info",
             message=f"<min_angle> is {low:g} rad, above the <max_angle>, {high:g}: the scan runs "
             "clockwise, which few programs expect",
@@ -107,13 +109,13 @@ def _arc(element: Element) -> Iterator[Remark]:
         )
 
 
-def _span(element: Element) -> Iterator[Remark]:
+def _span(element: Element) -> Iterator[Diagnostic]:
     near, far = ("min", "max") if element.tag == "range" else ("near", "far")
     low, high = _value(element, near), _value(element, far)
     first = element.find(near)
     if first is None or low is None or high is None or low < high:
         return
-    yield Remark(
+    yield devices_codes.SENSOR_RANGE_INVALID.diagnostic(
         message=f"<{near}> is {low:g} m, and <{far}> {high:g} m: nothing lies between",
         origin=first.origin,
         instead=nodes.written(near, {}, nodes.short(high if 0 <= high < low else 0.1)),
@@ -123,11 +125,11 @@ def _span(element: Element) -> Iterator[Remark]:
     )
 
 
-def _counts(element: Element, tags: tuple[str, ...], consequence: str) -> Iterator[Remark]:
+def _counts(element: Element, tags: tuple[str, ...], consequence: str) -> Iterator[Diagnostic]:
     for tag in tags:
         value, found = _value(element, tag), element.find(tag)
         if found is not None and value is not None and value < 1:
-            yield Remark(
+            yield devices_codes.SENSOR_RANGE_INVALID.diagnostic(
                 message=f"<{tag}> is {value:g}: {consequence}",
                 origin=found.origin,
                 instead=nodes.written(tag, {}, "640" if tag != "height" else "480"),

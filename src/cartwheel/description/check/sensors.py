@@ -9,12 +9,13 @@ from typing import Literal
 
 import numpy as np
 
+from cartwheel.codes import devices as devices_codes
 from cartwheel.description.check import nodes
-from cartwheel.description.check.finding import Remark
 from cartwheel.description.check.rule import rule
 from cartwheel.description.check.solids import Floats, Solid, first_hits, moved
 from cartwheel.description.check.subject import Robot, Subject
 from cartwheel.description.model import CameraIntrinsics, Element, Sensor
+from cartwheel.errors import Diagnostic
 from cartwheel.geometry import Pose, matrix_from_quat
 
 CAMERAS = ("camera", "depth", "depth_camera", "rgbd_camera", "multicamera", "wideanglecamera")
@@ -24,8 +25,8 @@ BLOCKED = 0.6
 _GRID = 9
 
 
-@rule("view-blocked", "warning", "a camera or lidar looks into the robot's own housing")
-def view_blocked(subject: Subject) -> Iterator[Remark]:
+@rule(devices_codes.VIEW_BLOCKED)
+def view_blocked(subject: Subject) -> Iterator[Diagnostic]:
     for robot in subject.robots:
         if not robot.is_placed:
             continue
@@ -35,7 +36,7 @@ def view_blocked(subject: Subject) -> Iterator[Remark]:
                 if block.share < BLOCKED:
                     continue
                 part = "visual" if view.drawn else "collision"
-                yield Remark(
+                yield devices_codes.VIEW_BLOCKED.diagnostic(
                     message=f'the {view.kind} "{sensor.name}" is inside the {part} of link '
                     f'"{block.link}": in Gazebo {block.share:.0%} of its rays end there, '
                     f"{block.distance:.3g} m before it"
@@ -60,14 +61,14 @@ def _way_out(view: _View, block: _Block) -> str:
     return f"Move the sensor out of it, or write <min>{farther}</min> in its <range>.{past}"
 
 
-@rule("rate-above-physics", "warning", "an update rate higher than the physics makes steps")
-def rate_above_physics(subject: Subject) -> Iterator[Remark]:
+@rule(devices_codes.RATE_ABOVE_PHYSICS)
+def rate_above_physics(subject: Subject) -> Iterator[Diagnostic]:
     highest = 1.0 / subject.step
     for robot in subject.robots:
         for element in _rates(robot):
             rate = nodes.number(element.text)
             if rate is not None and rate > highest * 1.001:
-                yield Remark(
+                yield devices_codes.RATE_ABOVE_PHYSICS.diagnostic(
                     message=f"{rate:g} Hz are more than the {highest:g} steps that the physics "
                     "makes in a second",
                     origin=element.origin,

@@ -6,8 +6,7 @@ import difflib
 import re
 from collections.abc import Collection, Iterable
 
-from cartwheel.description.check.finding import Remark
-from cartwheel.errors import Origin
+from cartwheel.errors import Code, Diagnostic, Origin
 
 _LETTERS_AN_ERROR = 6
 """So many letters may hold one slip of the keyboard."""
@@ -78,6 +77,7 @@ def _comparable(name: str, known: Iterable[str]) -> list[str]:
 
 
 def misspelt(
+    code: Code,
     name: str,
     known: Collection[str],
     *,
@@ -85,10 +85,11 @@ def misspelt(
     message: str,
     origin: Origin | None,
     mark: str,
-) -> Remark:
-    """What to say of an attribute that names nothing: the name that was meant, or the nearest.
+) -> Diagnostic:
+    """The diagnostic for an attribute whose name does not exist, with the name that was meant.
 
     Args:
+        code: Its kind.
         name: As it is written.
         known: Those that exist.
         attribute: In which it stands.
@@ -97,7 +98,7 @@ def misspelt(
         mark: What of the line it is about.
     """
     near = meant(name, known)
-    return Remark(
+    return code.diagnostic(
         message=message,
         origin=origin,
         instead=f'{attribute}="{near}"' if near else "",

@@ -7,22 +7,23 @@ from itertools import combinations
 
 import numpy as np
 
+from cartwheel.codes import robot as robot_codes
 from cartwheel.description.check import nodes
 from cartwheel.description.check.drive import lowest, wheel_joints, wheel_links, wheel_radius
-from cartwheel.description.check.finding import Remark
 from cartwheel.description.check.rule import rule
 from cartwheel.description.check.solids import Floats, hull, overlap
 from cartwheel.description.check.subject import Robot, Subject
 from cartwheel.description.model import Link, Mesh
 from cartwheel.description.node import Node
+from cartwheel.errors import Diagnostic
 
 SLIPPERY = 0.01
 PENETRATION = 0.002
 """m that collisions must reach into each other to count."""
 
 
-@rule("wheel-frictionless", "warning", "a driven wheel without friction")
-def wheel_frictionless(subject: Subject) -> Iterator[Remark]:
+@rule(robot_codes.WHEEL_FRICTIONLESS)
+def wheel_frictionless(subject: Subject) -> Iterator[Diagnostic]:
     for robot in subject.robots:
         for joint in wheel_joints(robot):
             link = robot.links[joint.child]
@@ -31,7 +32,7 @@ def wheel_frictionless(subject: Subject) -> Iterator[Remark]:
                 if not mu or max(mu) >= SLIPPERY:
                     continue
                 node = _surface_node(robot, link.name, "mu1")
-                yield Remark(
+                yield robot_codes.WHEEL_FRICTIONLESS.diagnostic(
                     message=f'the driven wheel "{link.name}" has the friction {max(mu):g}: '
                     "it slips wherever it stands",
                     origin=node.origin if node is not None else collision.origin,
@@ -41,8 +42,8 @@ def wheel_frictionless(subject: Subject) -> Iterator[Remark]:
                 )
 
 
-@rule("caster-friction", "info", "a caster that is a fixed ball, and yet grips")
-def caster_friction(subject: Subject) -> Iterator[Remark]:
+@rule(robot_codes.CASTER_FRICTION)
+def caster_friction(subject: Subject) -> Iterator[Diagnostic]:
     for robot in subject.robots:
         wheels = {name for joint in wheel_joints(robot) for name in wheel_links(robot, joint)}
         if not wheels or not subject.is_urdf:
@@ -58,7 +59,7 @@ def caster_friction(subject: Subject) -> Iterator[Remark]:
             if (mu is not None and mu <= 0.3) or _names_nothing(subject):
                 continue
             text = f'<gazebo reference="{link.name}"><mu1>0.0</mu1><mu2>0.0</mu2></gazebo>'
-            yield Remark(
+            yield robot_codes.CASTER_FRICTION.diagnostic(
                 message=f'the caster "{link.name}" does not roll, and its friction is '
                 f"{'1, the default' if mu is None else f'{mu:g}'}: it is dragged along and holds "
                 "back every turn",
@@ -68,8 +69,8 @@ def caster_friction(subject: Subject) -> Iterator[Remark]:
             )
 
 
-@rule("wheel-no-collision", "error", "a driven wheel without a collision: it drives nothing")
-def wheel_no_collision(subject: Subject) -> Iterator[Remark]:
+@rule(robot_codes.WHEEL_WITHOUT_COLLISION)
+def wheel_no_collision(subject: Subject) -> Iterator[Diagnostic]:
     for robot in subject.robots:
         for joint in wheel_joints(robot):
             link = robot.links[joint.child]
@@ -78,7 +79,7 @@ def wheel_no_collision(subject: Subject) -> Iterator[Remark]:
             if not robot.whole(link.name) or link.name in robot.cut:
                 continue
             radius = wheel_radius(robot, joint) or 0.1
-            yield Remark(
+            yield robot_codes.WHEEL_WITHOUT_COLLISION.diagnostic(
                 message=f'the driven wheel "{link.name}" has no <collision>: '
                 "it falls through the ground, and drives nothing",
                 origin=link.origin,
@@ -92,8 +93,8 @@ def wheel_no_collision(subject: Subject) -> Iterator[Remark]:
             )
 
 
-@rule("base-no-collision", "warning", "a body that is seen, and that nothing can touch")
-def base_no_collision(subject: Subject) -> Iterator[Remark]:
+@rule(robot_codes.BASE_WITHOUT_COLLISION)
+def base_no_collision(subject: Subject) -> Iterator[Diagnostic]:
     for robot in subject.robots:
         if robot.description.static:
             continue
@@ -109,7 +110,7 @@ def base_no_collision(subject: Subject) -> Iterator[Remark]:
                 (n for n in nodes.children(robot.root, "link") if nodes.name_of(n) == seen.name),
                 None,
             )
-            yield Remark(
+            yield robot_codes.BASE_WITHOUT_COLLISION.diagnostic(
                 message="none of the robot's links has a <collision>: it falls through the ground"
                 if nowhere
                 else f'the body "{seen.name}" has visuals but no <collision>: '
@@ -121,8 +122,8 @@ def base_no_collision(subject: Subject) -> Iterator[Remark]:
             )
 
 
-@rule("wheels-off-ground", "warning", "driven wheels higher than the body's lowest point")
-def wheels_off_ground(subject: Subject) -> Iterator[Remark]:
+@rule(robot_codes.WHEELS_OFF_GROUND)
+def wheels_off_ground(subject: Subject) -> Iterator[Diagnostic]:
     for robot in subject.robots:
         joints = wheel_joints(robot)
         parts = {name for joint in joints for name in wheel_links(robot, joint)}
@@ -138,7 +139,7 @@ def wheels_off_ground(subject: Subject) -> Iterator[Remark]:
             height = lowest(robot, link.name)
             if height is None or bottom - height <= max(0.1 * radius, 0.005):
                 continue
-            yield Remark(
+            yield robot_codes.WHEELS_OFF_GROUND.diagnostic(
                 message=f'the collision of link "{link.name}" reaches '
                 f"{1000 * (bottom - height):.3g} mm lower than the driven wheels: "
                 "they turn in the air",
@@ -147,8 +148,8 @@ def wheels_off_ground(subject: Subject) -> Iterator[Remark]:
             )
 
 
-@rule("collisions-overlap", "warning", "links that may collide overlap at zero position")
-def collisions_overlap(subject: Subject) -> Iterator[Remark]:
+@rule(robot_codes.OVERLAPPING_COLLISIONS)
+def collisions_overlap(subject: Subject) -> Iterator[Diagnostic]:
     for robot in subject.robots:
         able = [
             link
@@ -171,7 +172,7 @@ def collisions_overlap(subject: Subject) -> Iterator[Remark]:
                 for other in clouds[b.name]
             ):
                 meshes = any(isinstance(c.shape, Mesh) for c in (*a.collisions, *b.collisions))
-                yield Remark(
+                yield robot_codes.OVERLAPPING_COLLISIONS.diagnostic(
                     # Gazebo takes a mesh as it is, not its hull.
                     severity="info" if meshes else None,
                     message=f'the collisions of "{a.name}" and "{b.name}" overlap while all joints '

@@ -4,18 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
+from cartwheel.codes import robot as robot_codes
 from cartwheel.description.check import nodes, spelling
-from cartwheel.description.check.finding import Remark
 from cartwheel.description.check.rule import rule
 from cartwheel.description.check.subject import Subject
 from cartwheel.description.node import Node
+from cartwheel.errors import Diagnostic
 
 WORLD = "world"
 JOINT_TYPES = ("revolute", "continuous", "prismatic", "fixed", "floating", "planar")
 
 
-@rule("name-twice", "error", "two links, or two joints, have one name")
-def name_twice(subject: Subject) -> Iterator[Remark]:
+@rule(robot_codes.DUPLICATE_NAME)
+def name_twice(subject: Subject) -> Iterator[Diagnostic]:
     for tag in ("link", "joint"):
         seen: dict[str, Node] = {}
         taken = {nodes.name_of(node) for node in _parts(subject, tag)}
@@ -26,7 +27,7 @@ def name_twice(subject: Subject) -> Iterator[Remark]:
                 continue
             new = next(f"{name}_{i}" for i in range(2, 99) if f"{name}_{i}" not in taken)
             taken.add(new)
-            yield Remark(
+            yield robot_codes.DUPLICATE_NAME.diagnostic(
                 message=f'the {tag} "{name}" exists twice: the first is at {seen[name].origin}',
                 origin=node.origin,
                 instead=f'name="{new}"',
@@ -35,14 +36,14 @@ def name_twice(subject: Subject) -> Iterator[Remark]:
             )
 
 
-@rule("name-missing", "error", "a link, joint or sensor without a name")
-def name_missing(subject: Subject) -> Iterator[Remark]:
+@rule(robot_codes.NAME_MISSING)
+def name_missing(subject: Subject) -> Iterator[Diagnostic]:
     parts = [*_parts(subject, "link"), *_parts(subject, "joint")]
     sensors = [node for node in nodes.walk(subject.root) if node.tag == "sensor"]
     for node in (*parts, *(each for each in sensors if each.children)):
         if not nodes.name_of(node):
             new = f"{nodes.text_of(node, 'type') or 'new'}_{node.tag}"
-            yield Remark(
+            yield robot_codes.NAME_MISSING.diagnostic(
                 message=f"this <{node.tag}> has no name: Gazebo and ROS refuse it",
                 origin=node.origin,
                 instead=f'name="{new}"',
@@ -50,15 +51,15 @@ def name_missing(subject: Subject) -> Iterator[Remark]:
             )
 
 
-@rule("joint-link-unknown", "error", "a joint's parent or child is no link")
-def joint_link_unknown(subject: Subject) -> Iterator[Remark]:
+@rule(robot_codes.JOINT_LINK_UNKNOWN)
+def joint_link_unknown(subject: Subject) -> Iterator[Diagnostic]:
     known = link_names(subject)
     for joint in _parts(subject, "joint"):
         name = nodes.name_of(joint)
         for which in ("parent", "child"):
             end = nodes.child(joint, which)
             if end is None:
-                yield Remark(
+                yield robot_codes.JOINT_LINK_UNKNOWN.diagnostic(
                     message=f'the joint "{name}" has no <{which}>',
                     origin=joint.origin,
                     hint=f'Write <{which} link="…"/> in it.',
@@ -68,7 +69,7 @@ def joint_link_unknown(subject: Subject) -> Iterator[Remark]:
             if link in known:
                 continue
             if link == WORLD and which == "parent":
-                yield Remark(
+                yield robot_codes.JOINT_LINK_UNKNOWN.diagnostic(
                     message=f'the joint "{name}" hangs on the link "world", which is not there',
                     origin=end.origin,
                     instead='<link name="world"/>',
@@ -77,6 +78,7 @@ def joint_link_unknown(subject: Subject) -> Iterator[Remark]:
                 )
                 continue
             yield spelling.misspelt(
+                robot_codes.JOINT_LINK_UNKNOWN,
                 link,
                 known,
                 attribute="link",
@@ -86,13 +88,14 @@ def joint_link_unknown(subject: Subject) -> Iterator[Remark]:
             )
 
 
-@rule("joint-type-unknown", "error", "a joint of a type that URDF does not have")
-def joint_type_unknown(subject: Subject) -> Iterator[Remark]:
+@rule(robot_codes.JOINT_TYPE_UNKNOWN)
+def joint_type_unknown(subject: Subject) -> Iterator[Diagnostic]:
     for joint in _parts(subject, "joint"):
         kind = joint.attributes.get("type")
         if kind is None or kind.strip() in JOINT_TYPES:
             continue
         yield spelling.misspelt(
+            robot_codes.JOINT_TYPE_UNKNOWN,
             kind,
             JOINT_TYPES,
             attribute="type",
@@ -103,8 +106,8 @@ def joint_type_unknown(subject: Subject) -> Iterator[Remark]:
         )
 
 
-@rule("two-parents", "error", "a link is the child of two joints")
-def two_parents(subject: Subject) -> Iterator[Remark]:
+@rule(robot_codes.MULTIPLE_PARENTS)
+def two_parents(subject: Subject) -> Iterator[Diagnostic]:
     holders: dict[str, Node] = {}
     known = link_names(subject)
     for joint in _parts(subject, "joint"):
@@ -113,7 +116,7 @@ def two_parents(subject: Subject) -> Iterator[Remark]:
             continue
         if child in holders:
             first = holders[child]
-            yield Remark(
+            yield robot_codes.MULTIPLE_PARENTS.diagnostic(
                 message=f'the link "{child}" is the child of two joints, '
                 f'"{nodes.name_of(first)}" and "{nodes.name_of(joint)}": a URDF is a tree',
                 origin=joint.origin,
@@ -124,19 +127,19 @@ def two_parents(subject: Subject) -> Iterator[Remark]:
         holders.setdefault(child, joint)
 
 
-@rule("links-in-a-ring", "error", "joints make a ring of links")
-def links_in_a_ring(subject: Subject) -> Iterator[Remark]:
+@rule(robot_codes.KINEMATIC_LOOP)
+def links_in_a_ring(subject: Subject) -> Iterator[Diagnostic]:
     holders = inbound(_parts(subject, "joint"), link_names(subject))
     for ring in rings(holders):
-        yield Remark(
+        yield robot_codes.KINEMATIC_LOOP.diagnostic(
             message="the joints make a ring of links: " + " -> ".join(reversed([*ring, ring[0]])),
             origin=holders[ring[0]].origin,
             hint="Turn round or remove one of its joints: a URDF is a tree.",
         )
 
 
-@rule("several-roots", "error", "a link is not joined to the others")
-def several_roots(subject: Subject) -> Iterator[Remark]:
+@rule(robot_codes.MULTIPLE_ROOTS)
+def several_roots(subject: Subject) -> Iterator[Diagnostic]:
     links = _parts(subject, "link")
     holders = inbound(_parts(subject, "joint"), link_names(subject), all_of_them=True)
     roots = [node for node in links if nodes.name_of(node) not in holders]
@@ -151,7 +154,7 @@ def several_roots(subject: Subject) -> Iterator[Remark]:
         if name in misspelt:
             continue
         root = nodes.name_of(first)
-        yield Remark(
+        yield robot_codes.MULTIPLE_ROOTS.diagnostic(
             message=f'no joint joins the link "{name}" to the others: "{root}" is a root already',
             origin=node.origin,
             instead=f'<joint name="{name}_joint" type="fixed"><parent link="{root}"/>'
@@ -161,8 +164,8 @@ def several_roots(subject: Subject) -> Iterator[Remark]:
         )
 
 
-@rule("mimic-unknown", "error", "a joint mimics one that does not exist, or itself")
-def mimic_unknown(subject: Subject) -> Iterator[Remark]:
+@rule(robot_codes.MIMIC_UNKNOWN)
+def mimic_unknown(subject: Subject) -> Iterator[Diagnostic]:
     joints = {nodes.name_of(node): node for node in _parts(subject, "joint")}
     for name, joint in joints.items():
         mimic = nodes.child(joint, "mimic")
@@ -171,6 +174,7 @@ def mimic_unknown(subject: Subject) -> Iterator[Remark]:
         leader = nodes.text_of(mimic, "joint")
         if leader not in joints:
             yield spelling.misspelt(
+                robot_codes.MIMIC_UNKNOWN,
                 leader,
                 set(joints) - {name},
                 attribute="joint",
@@ -179,7 +183,7 @@ def mimic_unknown(subject: Subject) -> Iterator[Remark]:
                 mark=f'joint="{mimic.attributes.get("joint", "")}"',
             )
         elif name in mimic_chain(joints, leader):
-            yield Remark(
+            yield robot_codes.MIMIC_UNKNOWN.diagnostic(
                 message=f'the joint "{name}" mimics itself, by way of "{leader}"',
                 origin=mimic.origin,
                 mark=f'joint="{leader}"',
@@ -187,14 +191,15 @@ def mimic_unknown(subject: Subject) -> Iterator[Remark]:
             )
 
 
-@rule("reference-unknown", "warning", "a <gazebo reference> names neither a link nor a joint")
-def reference_unknown(subject: Subject) -> Iterator[Remark]:
+@rule(robot_codes.REFERENCE_UNKNOWN)
+def reference_unknown(subject: Subject) -> Iterator[Diagnostic]:
     known = link_names(subject) | {nodes.name_of(node) for node in _parts(subject, "joint")}
     for node in _parts(subject, "gazebo"):
         reference = nodes.text_of(node, "reference")
         if not reference or reference in known:
             continue
         yield spelling.misspelt(
+            robot_codes.REFERENCE_UNKNOWN,
             reference,
             known,
             attribute="reference",

@@ -10,7 +10,6 @@ from pathlib import Path
 
 from cartwheel.description.check import nodes
 from cartwheel.description.check.control_files import ControlFile
-from cartwheel.description.check.finding import Remark
 from cartwheel.description.check.solids import Floats, Solid, bounds, solid_of
 from cartwheel.description.model import (
     Collision,
@@ -303,7 +302,7 @@ class Subject:
     read: RobotDescription | WorldDescription | None = None
     """None where it could not be read."""
     robots: tuple[Robot, ...] = ()
-    failures: tuple[Remark, ...] = ()
+    failures: tuple[Diagnostic, ...] = ()
     """What ended its reading, apart from what has a rule of its own."""
     plugins: PluginKnowledge | None = None
     control: Sequence[tuple[Robot, ControlFile]] = ()

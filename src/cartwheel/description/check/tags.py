@@ -8,13 +8,16 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 
+from cartwheel.codes import code_named
+from cartwheel.codes import files as files_codes
+from cartwheel.codes import tags as tags_codes
 from cartwheel.description.check import meshes, nodes, spelling, xacro_use
-from cartwheel.description.check.finding import Remark
 from cartwheel.description.check.rule import Finder, Rule, rule
 from cartwheel.description.check.subject import IMPOSSIBLE, MISSING, Subject
 from cartwheel.description.node import Node
-from cartwheel.errors import Diagnostic
+from cartwheel.errors import Code, Diagnostic
 
 _ELSEWHERE = re.compile(
     r"has no <limit>|has no <inertial>|have no <inertial>|watches the collision"
@@ -66,12 +69,13 @@ _MISPLACED = re.compile(
 )
 _MEANT = re.compile(r"\.? Did you mean (?:<([^>]+)>|\"([^\"]+)\")\?")
 _REST = "reader"
+_ANY = Code("CW000", "unclassified", "warning", "what takes the code of its rule")
 _MOMENTS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 _NAMESPACE = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
 
 
-@rule("gazebo-ignores", "warning", "a tag that is read here, and that Gazebo ignores")
-def gazebo_ignores(subject: Subject) -> Iterator[Remark]:
+@rule(tags_codes.GAZEBO_IGNORES)
+def gazebo_ignores(subject: Subject) -> Iterator[Diagnostic]:
     if not subject.is_urdf:
         return
     for node in nodes.children(subject.root, "gazebo"):
@@ -79,14 +83,14 @@ def gazebo_ignores(subject: Subject) -> Iterator[Remark]:
         for child in node.children:
             value = child.text or child.attributes.get("value", "")
             if on_link and child.tag == "mu":
-                yield Remark(
+                yield _ANY.diagnostic(
                     message="Gazebo does not know <mu> here: the friction stays 1",
                     origin=child.origin,
                     instead=f"<mu1>{value}</mu1><mu2>{value}</mu2>",
                     place="element",
                 )
             elif not on_link and child.tag == "selfCollide":
-                yield Remark(
+                yield _ANY.diagnostic(
                     message="Gazebo knows <selfCollide> of links only; of the whole robot it is "
                     "<self_collide>",
                     origin=child.origin,
@@ -95,8 +99,8 @@ def gazebo_ignores(subject: Subject) -> Iterator[Remark]:
                 )
 
 
-@rule("tag-misplaced", "warning", "a tag where it has no effect")
-def tag_misplaced(subject: Subject) -> Iterator[Remark]:
+@rule(tags_codes.TAG_MISPLACED)
+def tag_misplaced(subject: Subject) -> Iterator[Diagnostic]:
     yield from told(subject, "tag-misplaced")
     blocks: dict[tuple[int, str], list[tuple[Node, Diagnostic]]] = {}
     for diagnostic in _diagnostics(subject):
@@ -116,7 +120,7 @@ def tag_misplaced(subject: Subject) -> Iterator[Remark]:
         else:
             said = why.replace("it has no effect", "they have no effect").replace(": it needs", "")
             said = f"{names} {said.replace('acts on', 'act on').replace('has no', 'have no')}"
-        yield Remark(
+        yield _ANY.diagnostic(
             message=said.strip(),
             origin=block.origin if meant and alone else first.origin,
             instead=f'reference="{meant}"' if meant else "",
@@ -138,7 +142,7 @@ def _meant_by(subject: Subject, reference: str, why: str) -> str:
     return ""
 
 
-def told(subject: Subject, name: str) -> Iterator[Remark]:
+def told(subject: Subject, name: str) -> Iterator[Diagnostic]:
     """What the readers told that belongs to a rule."""
     holed = {f'link "{link}" has no ' for robot in subject.robots for link in robot.cut}
     for diagnostic in _diagnostics(subject):
@@ -161,19 +165,19 @@ def _diagnostics(subject: Subject) -> Iterable[Diagnostic]:
     return () if subject.read is None else subject.read.diagnostics
 
 
-def _remark(subject: Subject, diagnostic: Diagnostic) -> Remark:
+def _remark(subject: Subject, diagnostic: Diagnostic) -> Diagnostic:
     match = _MEANT.search(diagnostic.message)
     message = diagnostic.message
     found = nodes.at(subject.root, diagnostic.origin) if diagnostic.origin is not None else None
     if found is not None and (written := _from_urdf(subject, found, message)):
-        return Remark(
+        return _ANY.diagnostic(
             message=f"{message}: SDF writes elements where URDF has attributes",
             origin=diagnostic.origin,
             instead=written,
             place="element",
         )
     if _NAMESPACE in message:
-        return Remark(
+        return _ANY.diagnostic(
             message=message, origin=diagnostic.origin, instead=_NAMESPACE, place="attribute"
         )
     node = nodes.at(subject.root, diagnostic.origin) if diagnostic.origin is not None else None
@@ -190,7 +194,7 @@ def _remark(subject: Subject, diagnostic: Diagnostic) -> Remark:
         and node.tag in xacro_use.macro_names(subject)
     ):
         call = nodes.changed(node).replace(f"<{node.tag}", f"<xacro:{node.tag}", 1)
-        return Remark(
+        return _ANY.diagnostic(
             message=f"<{node.tag}> is not expanded, and does nothing: a macro is called by "
             f"<xacro:{node.tag}>",
             origin=node.origin,
@@ -218,7 +222,7 @@ def _remark(subject: Subject, diagnostic: Diagnostic) -> Remark:
             instead, place = f'name="{near}"', "attribute"
         elif node.tag in ("material", "name"):
             instead, place = nodes.written(node.tag, node.attributes, near), "element"
-    return Remark(
+    return _ANY.diagnostic(
         severity="info" if idle else diagnostic.severity,
         message=message.strip(),
         origin=diagnostic.origin,
@@ -251,19 +255,19 @@ def _finder(name: str) -> Finder:
 
 
 def _rules() -> Iterator[Rule]:
-    for name, _, summary in _KINDS:
+    for name, _, _ in _KINDS:
         if name == "tag-misplaced":
             yield tag_misplaced
             continue
-        yield rule(name, "info" if name == "not-simulated" else "warning", summary)(_finder(name))
-    yield rule(_REST, "warning", "whatever else the readers told")(_finder(_REST))
+        yield rule(code_named(name))(_finder(name))
+    yield rule(Code("CW000", _REST, "warning", "whatever else the readers told"))(_finder(_REST))
 
 
-@rule("unreadable", "error", "something that cannot be read; the rest is checked without it")
-def unreadable(subject: Subject) -> Iterable[Remark]:
+@rule(files_codes.UNREADABLE)
+def unreadable(subject: Subject) -> Iterable[Diagnostic]:
     for failure in subject.failures:
         if not MISSING.search(failure.message) and not IMPOSSIBLE.search(failure.message):
-            yield failure
+            yield replace(failure, code=files_codes.UNREADABLE)
     yield from meshes.left_out_otherwise(subject)
 
 

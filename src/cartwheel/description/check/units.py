@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
+from cartwheel.codes import robot as robot_codes
 from cartwheel.description.check import nodes
-from cartwheel.description.check.finding import Remark
 from cartwheel.description.check.rule import rule
 from cartwheel.description.check.subject import Subject
 from cartwheel.description.node import Node
+from cartwheel.errors import Diagnostic
 
 _ADDED = 4 * math.pi
 """rad: so far editors let angles run, past a turn."""
@@ -17,8 +18,8 @@ FARTHEST = 100.0
 """m between a link and its parent."""
 
 
-@rule("angle-degrees", "warning", "an rpy of more than a turn: degrees for radians?")
-def angle_degrees(subject: Subject) -> Iterator[Remark]:
+@rule(robot_codes.ANGLE_IN_DEGREES)
+def angle_degrees(subject: Subject) -> Iterator[Diagnostic]:
     for node in nodes.walk(subject.root):
         text, attribute = _angles(subject, node)
         values = nodes.numbers(text, 3)
@@ -32,7 +33,7 @@ def angle_degrees(subject: Subject) -> Iterator[Remark]:
         if not attribute:
             xyz = " ".join(node.text.split()[:3])
             instead = nodes.written("pose", dict(node.attributes), f"{xyz} {radians}")
-        yield Remark(
+        yield robot_codes.ANGLE_IN_DEGREES.diagnostic(
             message=f"the angles {text} are radians: {max(values, key=abs):g} rad are "
             f"{max(map(abs, values)) / 2 / math.pi:.3g} turns. Degrees were meant?",
             origin=node.origin,
@@ -42,8 +43,8 @@ def angle_degrees(subject: Subject) -> Iterator[Remark]:
         )
 
 
-@rule("place-millimetres", "warning", "a joint far off: millimetres for metres?")
-def place_millimetres(subject: Subject) -> Iterator[Remark]:
+@rule(robot_codes.POSITION_IN_MILLIMETRES)
+def place_millimetres(subject: Subject) -> Iterator[Diagnostic]:
     if not subject.is_urdf:
         return
     for holder in nodes.walk(subject.root):
@@ -54,7 +55,7 @@ def place_millimetres(subject: Subject) -> Iterator[Remark]:
         if origin is None or xyz is None or math.hypot(*xyz) <= FARTHEST:
             continue
         metres = " ".join(nodes.short(value / 1000) for value in xyz)
-        yield Remark(
+        yield robot_codes.POSITION_IN_MILLIMETRES.diagnostic(
             message=f"this <{holder.tag}> is {math.hypot(*xyz):.4g} m away: "
             "millimetres for metres?",
             origin=origin.origin,

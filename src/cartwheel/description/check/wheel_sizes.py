@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from cartwheel.codes import robot as robot_codes
 from cartwheel.description.check import nodes
 from cartwheel.description.check.drive import is_across, wheel_middle, wheel_place, wheel_radius
-from cartwheel.description.check.finding import Remark
 from cartwheel.description.check.rule import rule
 from cartwheel.description.check.subject import Robot, Subject
 from cartwheel.description.check.units import FARTHEST
 from cartwheel.description.check.wheel_stated import Stated, stated
+from cartwheel.errors import Code, Diagnostic
 
 TOLERANCE = 0.02
 """Relative: what a tyre's flattening or a rounded number explains."""
@@ -23,8 +24,8 @@ Of a robot not longer than wide; see `_widest`.
 """
 
 
-@rule("wheel-separation", "warning", "a stated wheel separation is not that of the joints")
-def wheel_separation(subject: Subject) -> Iterator[Remark]:
+@rule(robot_codes.WHEEL_SEPARATION_MISMATCH)
+def wheel_separation(subject: Subject) -> Iterator[Diagnostic]:
     for one in stated(subject):
         if one.measure not in ("apart", "reach"):
             continue
@@ -37,7 +38,8 @@ def wheel_separation(subject: Subject) -> Iterator[Remark]:
         if _differs(one.value, apart, _LEAST) and _differs(one.value, joints, _LEAST):
             far = "far" if one.value > apart else "little"
             said = "the wheels are" if one.measure == "apart" else "half of base and track is"
-            yield _remark(
+            yield _differing(
+                robot_codes.WHEEL_SEPARATION_MISMATCH,
                 one,
                 apart,
                 f"{said} {apart:.4g} m{' apart' * (one.measure == 'apart')}: the robot turns "
@@ -45,14 +47,15 @@ def wheel_separation(subject: Subject) -> Iterator[Remark]:
             )
 
 
-@rule("wheel-base", "warning", "a stated wheel base is not that of the axles")
-def wheel_base(subject: Subject) -> Iterator[Remark]:
+@rule(robot_codes.WHEEL_BASE_MISMATCH)
+def wheel_base(subject: Subject) -> Iterator[Diagnostic]:
     for one in stated(subject):
         if one.measure == "base":
             apart = _mean_between(one, 0)
             if _differs(one.value, apart, _LEAST):
                 far = "far" if one.value > apart else "little"
-                yield _remark(
+                yield _differing(
+                    robot_codes.WHEEL_BASE_MISMATCH,
                     one,
                     apart,
                     f"the axles are {apart:.4g} m apart: the robot turns "
@@ -60,8 +63,8 @@ def wheel_base(subject: Subject) -> Iterator[Remark]:
                 )
 
 
-@rule("wheel-diameter", "warning", "a stated wheel diameter or radius is not that of the wheels")
-def wheel_diameter(subject: Subject) -> Iterator[Remark]:
+@rule(robot_codes.WHEEL_DIAMETER_MISMATCH)
+def wheel_diameter(subject: Subject) -> Iterator[Diagnostic]:
     for one in stated(subject):
         if one.measure not in ("radius", "diameter"):
             continue
@@ -75,7 +78,8 @@ def wheel_diameter(subject: Subject) -> Iterator[Remark]:
         if _differs(one.value, real, _LEAST / 2):
             slow = "slowly" if one.value > real else "fast"
             far = abs(real / one.value - 1) if one.value else 1.0
-            yield _remark(
+            yield _differing(
+                robot_codes.WHEEL_DIAMETER_MISMATCH,
                 one,
                 real,
                 f'that of the wheel "{wheel.child}" is {real:.4g} m: the robot drives {far:.0%} '
@@ -83,11 +87,11 @@ def wheel_diameter(subject: Subject) -> Iterator[Remark]:
             )
 
 
-def _remark(one: Stated, real: float, why: str) -> Remark:
+def _differing(code: Code, one: Stated, real: float, why: str) -> Diagnostic:
     stated = f"{one.label} is {one.value:g} m"
     if not one.written:
         stated = f"{one.label} is not written, so that {one.value:g} m counts"
-    return Remark(
+    return code.diagnostic(
         message=f"{stated}, but {why}",
         origin=one.origin,
         instead=one.write(nodes.short(round(real, 4))),

@@ -6,14 +6,14 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
+from cartwheel.codes import files as files_codes
 from cartwheel.description import xml
 from cartwheel.description.check import nodes
-from cartwheel.description.check.finding import Remark
 from cartwheel.description.check.rule import rule
 from cartwheel.description.check.subject import Subject
 from cartwheel.description.node import Node
 from cartwheel.description.xacro_unprefixed import PREFIX
-from cartwheel.errors import DescriptionError
+from cartwheel.errors import DescriptionError, Diagnostic
 
 _WORD = re.compile(r"[A-Za-z_]\w*")
 _EXPRESSION = re.compile(r"\$\{([^}]*)\}|\$\(([^)]*)\)")
@@ -22,14 +22,14 @@ _SUFFIXES = (".xacro", ".urdf")
 MAX_FILES = 200
 
 
-@rule("argument-unused", "warning", "a xacro argument that changes nothing")
-def argument_unused(subject: Subject) -> Iterator[Remark]:
+@rule(files_codes.ARGUMENT_UNUSED)
+def argument_unused(subject: Subject) -> Iterator[Diagnostic]:
     used = _words(subject)
     for tree in _trees(subject):
         for node in nodes.walk(tree):
             name = nodes.name_of(node)
             if node.tag == "xacro:arg" and _is_plain(name) and name not in used:
-                yield Remark(
+                yield files_codes.ARGUMENT_UNUSED.diagnostic(
                     message=f'the argument "{name}" is declared, but nothing uses it: '
                     f"{name}:=… changes nothing",
                     origin=node.origin,
@@ -38,14 +38,14 @@ def argument_unused(subject: Subject) -> Iterator[Remark]:
                 )
 
 
-@rule("property-unused", "info", "a xacro property that nothing uses")
-def property_unused(subject: Subject) -> Iterator[Remark]:
+@rule(files_codes.PROPERTY_UNUSED)
+def property_unused(subject: Subject) -> Iterator[Diagnostic]:
     used = _words(subject)
     for tree in _own_trees(subject):
         for node in nodes.walk(tree):
             name = nodes.name_of(node)
             if node.tag == "xacro:property" and _is_plain(name) and name not in used:
-                yield Remark(
+                yield files_codes.PROPERTY_UNUSED.diagnostic(
                     message=f'the property "{name}" is not used',
                     origin=node.origin,
                     mark=f'name="{name}"',
@@ -53,8 +53,8 @@ def property_unused(subject: Subject) -> Iterator[Remark]:
                 )
 
 
-@rule("property-twice", "info", "a xacro property that the next ones replace before its use")
-def property_twice(subject: Subject) -> Iterator[Remark]:
+@rule(files_codes.PROPERTY_OVERWRITTEN)
+def property_twice(subject: Subject) -> Iterator[Diagnostic]:
     for tree in _trees(subject):
         for holder in nodes.walk(tree):
             waiting: dict[str, Node] = {}
@@ -67,7 +67,7 @@ def property_twice(subject: Subject) -> Iterator[Remark]:
                     waiting.pop(used, None)
                 if name in waiting and value is not None:
                     first = waiting[name]
-                    yield Remark(
+                    yield files_codes.PROPERTY_OVERWRITTEN.diagnostic(
                         message=f'the property "{name}" is set again before anything uses it: '
                         f'"{first.attributes["value"]}" counts nowhere',
                         origin=first.origin,
@@ -78,8 +78,8 @@ def property_twice(subject: Subject) -> Iterator[Remark]:
                     waiting[name] = node
 
 
-@rule("parameter-unused", "info", "a macro's parameter that changes nothing")
-def parameter_unused(subject: Subject) -> Iterator[Remark]:
+@rule(files_codes.PARAMETER_UNUSED)
+def parameter_unused(subject: Subject) -> Iterator[Diagnostic]:
     used, called = _words(subject), _calls(subject)
     for tree in _own_trees(subject):
         for node in nodes.walk(tree):
@@ -92,7 +92,7 @@ def parameter_unused(subject: Subject) -> Iterator[Remark]:
                 name = _PARAMETER.match(word)
                 # What a macro calls sees its parameters too: any use anywhere counts.
                 if name is not None and name[1] not in used:
-                    yield Remark(
+                    yield files_codes.PARAMETER_UNUSED.diagnostic(
                         message=f'the parameter "{name[1]}" of the macro "{nodes.name_of(node)}" '
                         "is not used: what calls give it changes nothing",
                         origin=node.origin,
@@ -101,15 +101,15 @@ def parameter_unused(subject: Subject) -> Iterator[Remark]:
                     )
 
 
-@rule("macro-unused", "info", "a xacro macro that is never called")
-def macro_unused(subject: Subject) -> Iterator[Remark]:
+@rule(files_codes.MACRO_UNUSED)
+def macro_unused(subject: Subject) -> Iterator[Diagnostic]:
     called = _calls(subject)
     for tree in _own_trees(subject):
         for node in nodes.walk(tree):
             name = nodes.name_of(node).removeprefix("xacro:")
             if node.tag == "xacro:macro" and name and name not in called:
                 params = node.attributes.get("params", "").split()
-                yield Remark(
+                yield files_codes.MACRO_UNUSED.diagnostic(
                     message=f'the macro "{name}" is never called: nothing of it is in the robot',
                     origin=node.origin,
                     mark=f'name="{nodes.name_of(node)}"',
