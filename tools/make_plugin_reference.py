@@ -52,27 +52,30 @@ INTRODUCTION = f"""\
 
 {_MADE}
 
-What Cartwheel reads inside `<plugin filename="…">`, plugin by plugin. A tag may be written in any
-of its spellings; the first that is present counts. A tag that a plugin does not know is reported
-with its file and line. `<robotNamespace>` (or `<ros><namespace>`) goes before every topic and
-service that does not begin with `/`, and `<ros><remapping>` renames them. `<alwaysOn>` is accepted
-everywhere and changes nothing: a plugin works whenever somebody reads what it publishes.
+The plugins that Cartwheel supports, by the `filename` of their `<plugin>`, and the sensors that
+work without a plugin. Each has a page with its tags, topics and services.
 
-Sensors of new Gazebo need no `<plugin>`: they publish where the world or the model names their
-system, such as `gz-sim-sensors-system`, and, whatever the world names, where they have a `<topic>`
-or a `<gz_frame_id>` or are of a type that only new Gazebo knows.
+- A tag can have several spellings. If a plugin has more than one of them, the first one in the
+  table is used. Unsupported tags are reported with file and line.
+- `<robotNamespace>` (or `<ros><namespace>`) is put before every topic and service name that does
+  not begin with `/`. `<ros><remapping>` renames topics and services.
+- `<alwaysOn>` is accepted and has no effect: a plugin works whenever its topics have subscribers.
+- The path before a file name is ignored. `lib` and `.so` are optional. `ignition-gazebo-` is read
+  as `gz-sim-`.
+- A plugin that is not listed here is reported when the robot is loaded, with what is missing
+  without it.
 
-A file name counts without its path, with or without `lib` and `.so`; `ignition-gazebo-` is read as
-`gz-sim-`. A plugin that is not in this list is reported when the robot is loaded, with what it
-would have done left out.
+Sensors written for new Gazebo need no `<plugin>`. They publish if the world or the model names
+their system, such as `gz-sim-sensors-system`. Without a system they publish if they have a
+`<topic>` or a `<gz_frame_id>`, or if only new Gazebo has their type.
 
-A package of your own adds plugins through the entry point group `cartwheel.plugins`; each entry
+Your own package can add plugins through the entry point group `cartwheel.plugins`. Each entry
 names a subclass of `cartwheel.plugins.base.Plugin`. If a package cannot be loaded, robots that do
-not name its plugins are not affected; the warning about an unsupported plugin gives the reason.
+not use its plugins are not affected. The warning about an unsupported plugin gives the reason.
 
-If a plugin raises an error while it runs, it is disabled: its topics and services end, its motors
-brake and its forces stop. An error message names the plugin, its model and the place of its tag;
-`--verbose` adds the traceback. The run goes on; with `--strict` it ends.
+A plugin that raises an error while it runs is disabled: its topics and services end, its motors
+brake and its forces stop. The error message names the plugin, its model and the place of its tag;
+`--verbose` adds the traceback. The simulation continues, or ends if `--strict` is set.
 """
 
 
@@ -124,7 +127,7 @@ def _index(heading: str, plugins: list[type[Plugin[Any]]]) -> str:
         first, *others = plugin.filenames or plugin.serves
         names = [f"[`{first}`]({FOLDER}/{_slug(plugin)}.md)", *(f"`{name}`" for name in others)]
         summary = " ".join(_prose(plugin)[0].split()).split(". ")[0].rstrip(".")
-        rows.append(f"| {', '.join(names)} | {summary}. |".replace("..", "."))
+        rows.append(f"| {'<br>'.join(names)} | {summary}. |".replace("..", "."))
     column = "File name" if plugins[0].filenames else "Sensor type"
     return "\n".join([f"## {heading}", "", f"| {column} | Purpose |", "|---|---|", *rows, ""])
 

@@ -38,6 +38,7 @@ ELSEWHERE = {
     "CONTRIBUTING.md": "contributing.md",
     "SECURITY.md": "security-policy.md",
     "benchmarks/README.md": "benchmarks.md",
+    "docs/plugins.md": "plugins/index.md",
 }
 """Pages whose place on the site is not that below docs/."""
 
@@ -73,9 +74,9 @@ NAVIGATION: list[tuple[str, list[Entry]]] = [
     (
         "Reference",
         [
-            ("Plugins and sensors", ["plugins.md", "plugins/*.md"]),
-            ("Commands", ["commands.md", "commands/*.md"]),
-            ("Diagnostic codes", ["codes.md", "codes/*.md"]),
+            ("Plugins and sensors", ["plugins/index.md", "plugins/*.md"]),
+            ("Commands", ["commands/index.md", "commands/*.md"]),
+            ("Diagnostic codes", ["codes/index.md", "codes/*.md"]),
             "api.md",
             "gazebo-tags.md",
             "controllers.md",
@@ -153,10 +154,12 @@ def publish(version: str, *, latest: bool) -> None:
     site = {"site_dir": str(SITE), "use_directory_urls": True}
     aliases = ["latest"] if latest else []
     message = f"Documentation of {version}"
-    with commands.deploy(site, version, aliases=aliases, update_aliases=True, message=message):
+    with commands.deploy(
+        site, version, aliases=aliases, update_aliases=True, message=message, allow_empty=True
+    ):
         build()
     if latest:
-        commands.set_default("latest")
+        commands.set_default("latest", allow_empty=True)
 
 
 def generate(*words: str) -> None:

@@ -18,7 +18,7 @@ from cartwheel.cli.app import app
 from cartwheel.codes import MODULES, all_codes, codes_of, explanation
 from cartwheel.errors import Code
 
-COMMANDS, CODES, API = "commands.md", "codes.md", "api.md"
+COMMANDS, CODES, API = "commands/index.md", "codes/index.md", "api.md"
 SEVERITIES = {"error": "Error", "warning": "Warning", "info": "Informational message"}
 
 _CODES_INTRODUCTION = """\
@@ -65,12 +65,12 @@ def _command_pages() -> dict[str, str]:
             place = child.context_class(child, info_name=other, parent=inner)
             lines += [f"## cartwheel {name} {other}", "", *_command(child, place, "###")]
         made[command_page(name)] = "\n".join(lines)
-        row = f"| [`cartwheel {name}`]({command_page(name)}) | {_cell(_summary(command))} |"
+        row = f"| [`cartwheel {name}`]({name}.md) | {_cell(_summary(command))} |"
         groups.setdefault(command.rich_help_panel or "Commands", []).append(row)
     index = ["# Commands", "", _markdown(program.help), ""]
     for title, rows in groups.items():
         index += [f"## {title}", "", "| Command | Purpose |", "|---|---|", *rows, ""]
-    index += ["## Options of the program", "", *_options(program, context, "###"), ""]
+    index += [*_options(program, context, "##"), ""]
     return {COMMANDS: "\n".join(index), **made}
 
 
@@ -115,7 +115,7 @@ def _code_pages() -> dict[str, str]:
     for module, title in MODULES.items():
         index += [f"## {title}", "", "| Code | Name | Severity | Summary |", "|---|---|---|---|"]
         for code in codes_of(module):
-            link = f"[{code.number}]({code_page(code)})"
+            link = f"[{code.number}]({code.number}.md)"
             summary = _cell(code.summary)
             index.append(f"| {link} | `{code.name}` | {code.severity} | {summary} |")
         index.append("")
@@ -134,7 +134,7 @@ def _code(code: Code) -> str:
         "",
         _raised(explanation(code)),
         "",
-        f"[All diagnostic codes](../{CODES})",
+        "[All diagnostic codes](index.md)",
         "",
     ]
     return "\n".join(lines)
