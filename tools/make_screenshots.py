@@ -1,4 +1,4 @@
-"""Makes docs/images/browser.png: the page as a user sees it, with the cart on its way to a box.
+"""Makes docs/images/browser.png: the page, with the cart driving towards a box.
 
 Run: python tools/make_screenshots.py
 """
@@ -22,12 +22,12 @@ from cartwheel.viewer import Viewer
 ROOT = Path(__file__).resolve().parent.parent
 TARGET = ROOT / "docs" / "images" / "browser.png"
 LARGEST = 400_000
-"""Bytes."""
+"""Size limit of the image, bytes."""
 FLAGS = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
 
 
 def make_session() -> Session:
-    """The cart, a post ahead, and a few things around it."""
+    """A world with the cart, a post in front of it, and some objects around it."""
     session = Session(load_world(share() / "worlds" / "post.world"))
     cart = load_robot(share() / "robots" / "rosbots_description" / "urdf" / "rosbots.xacro")
     session.spawn(cart, pose=Pose((0.0, 0.0, 0.1)))
@@ -42,13 +42,13 @@ def make_session() -> Session:
 
 
 def take(page: Any, session: Session) -> bytes:
-    """Lets the cart drive a bend, then takes the picture."""
+    """Drives the cart along a curve, then takes the screenshot."""
     simulation = session.simulation
     page.locator("[data-key='i']").wait_for()
     notes = page.locator(".mantine-Notification-root button")
     notes.first.wait_for()
     notes.first.evaluate("button => button.click()")
-    # The browser draws without shadows where it has no GPU; a picture can take its time.
+    # The page disables shadows without a GPU; a screenshot has time for them.
     page.wait_for_timeout(4000)
     page.keyboard.press("F9")
     page.get_by_text("View", exact=True).click()
@@ -66,7 +66,7 @@ def take(page: Any, session: Session) -> bytes:
 
 
 def write(png: bytes) -> None:
-    """Writes the picture, in as many colours as its size allows."""
+    """Writes the image, with the number of colours that the size limit allows."""
     from PIL import Image
 
     image = Image.open(io.BytesIO(png)).convert("RGB")
@@ -83,7 +83,7 @@ def write(png: bytes) -> None:
 
 
 def main() -> None:
-    """Runs it."""
+    """Entry point."""
     from playwright.sync_api import sync_playwright
 
     chromium = shutil.which("chromium")
