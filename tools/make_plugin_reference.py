@@ -183,8 +183,8 @@ def _page(plugin: type[Plugin[Any]], interface: Interface) -> str:
         lines += ["Place it directly inside a `<gazebo>` of a URDF or a `<model>` of an SDF.", ""]
     fields = [_row(item, kind) for item, kind in _fields(plugin)]
     if fields:
-        lines += ["## Tags", "", "| Tag | Other spellings | Value | Default | Meaning |"]
-        lines += ["|---|---|---|---|---|", *fields, ""]
+        lines += ["## Tags", "", "| Tag | Value | Default | Meaning |"]
+        lines += ["|---|---|---|---|", *fields, ""]
     if interface:
         lines += ["## Topics and services", ""]
         lines += ["With each boolean tag `true` and the other tags at their defaults.", ""]
@@ -220,12 +220,11 @@ def _fields(plugin: type[Plugin[Any]]) -> Iterator[tuple[dataclasses.Field[Any],
 
 
 def _row(item: dataclasses.Field[Any], kind: Any) -> str:
-    first, *others = item.metadata["tags"]
-    spellings = ", ".join(f"`{name}`" for name in others)
+    names = "<br>".join(f"`{name}`" for name in item.metadata["tags"])
     value = _kind(kind)
     if item.metadata["unit"]:
         value = f"{value}, {item.metadata['unit']}"
-    cells = [f"`{first}`", spellings, value, _default(item), _markdown(item.metadata["doc"])]
+    cells = [names, value, _default(item), _markdown(item.metadata["doc"])]
     return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"
 
 

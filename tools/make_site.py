@@ -139,6 +139,8 @@ def main() -> int:
         return 1
     except subprocess.CalledProcessError as error:
         return error.returncode
+    except KeyboardInterrupt:  # which ends --serve
+        return 130
     return 0
 
 
