@@ -1,4 +1,4 @@
-"""Runs the benchmarks, prints a table and writes ``benchmarks/results/<date>.json``."""
+"""Measures, prints a table, writes ``benchmarks/results/<date>.json``."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import os
 from datetime import UTC, datetime
 from pathlib import Path
 
-# MuJoCo reads this on import. By default its renderer needs a display.
+# Read when MuJoCo is imported, for its own renderer: without it that looks for a display.
 os.environ.setdefault("MUJOCO_GL", "egl")
 
 from rich.console import Console
@@ -26,29 +26,28 @@ _PARTS = {
 
 
 def main() -> None:
-    """Entry point of ``python -m benchmarks``."""
+    """The command."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
-    parser.add_argument("parts", nargs="*", help=f"any of {', '.join(_PARTS)}; default: all")
-    parser.add_argument("--quick", action="store_true", help="run everything briefly, as a test")
-    parser.add_argument("--output", type=Path, help="path of the JSON file")
+    parser.add_argument("parts", nargs="*", help=f"some of {', '.join(_PARTS)}; all when none")
+    parser.add_argument("--quick", action="store_true", help="try everything once, measure nothing")
+    parser.add_argument("--output", type=Path, help="of the JSON file")
     options = parser.parse_args()
     unknown = set(options.parts) - set(_PARTS)
     if unknown:
-        names = ", ".join(sorted(unknown))
-        parser.error(f"unknown part {names}; expected any of {', '.join(_PARTS)}")
+        parser.error(f"no part {', '.join(sorted(unknown))}; there are {', '.join(_PARTS)}")
     console = Console(width=max(Console().width, 120))
-    figures = []
+    found = []
     for name in options.parts or _PARTS:
         with console.status(f"measuring {name}"):
-            figures += list(_PARTS[name].figures(QUICK if options.quick else FULL))
+            found += list(_PARTS[name].figures(QUICK if options.quick else FULL))
     about = machine()
     console.print(
         f"{about['processor']}, {about['cores']} cores, load {about['load']}, {about['opengl']}"
     )
-    show(figures, console)
+    show(found, console)
     name = datetime.now(UTC).strftime("%Y-%m-%d-%H%M%S.json")
     path = options.output or Path(__file__).parent / "results" / name
-    write(figures, path)
+    write(found, path)
     console.print(f"written to {path}")
 
 

@@ -28,9 +28,7 @@ def name_twice(subject: Subject) -> Iterator[Diagnostic]:
             new = next(f"{name}_{i}" for i in range(2, 99) if f"{name}_{i}" not in taken)
             taken.add(new)
             yield robot_codes.DUPLICATE_NAME.diagnostic(
-                message=f'two {tag}s have the name "{name}"',
-                values={"tag": tag, "name": name},
-                hint=f"The first one is at {seen[name].origin}.",
+                message=f'the {tag} "{name}" exists twice: the first is at {seen[name].origin}',
                 origin=node.origin,
                 instead=f'name="{new}"',
                 place="attribute",
@@ -46,8 +44,7 @@ def name_missing(subject: Subject) -> Iterator[Diagnostic]:
         if not nodes.name_of(node):
             new = f"{nodes.text_of(node, 'type') or 'new'}_{node.tag}"
             yield robot_codes.NAME_MISSING.diagnostic(
-                message=f"this <{node.tag}> has no name",
-                values={"tag": node.tag},
+                message=f"this <{node.tag}> has no name: Gazebo and ROS refuse it",
                 origin=node.origin,
                 instead=f'name="{new}"',
                 place="attribute",
@@ -63,8 +60,7 @@ def joint_link_unknown(subject: Subject) -> Iterator[Diagnostic]:
             end = nodes.child(joint, which)
             if end is None:
                 yield robot_codes.JOINT_LINK_UNKNOWN.diagnostic(
-                    message=f'joint "{name}" has no <{which}>',
-                    values={"joint": name, "tag": which},
+                    message=f'the joint "{name}" has no <{which}>',
                     origin=joint.origin,
                     hint=f'Write <{which} link="…"/> in it.',
                 )
@@ -74,13 +70,11 @@ def joint_link_unknown(subject: Subject) -> Iterator[Diagnostic]:
                 continue
             if link == WORLD and which == "parent":
                 yield robot_codes.JOINT_LINK_UNKNOWN.diagnostic(
-                    message=f'the parent of joint "{name}" is "world", but the robot has no '
-                    "such link",
-                    values={"joint": name, "link": link, "tag": which},
+                    message=f'the joint "{name}" hangs on the link "world", which is not there',
                     origin=end.origin,
                     instead='<link name="world"/>',
                     mark=link,
-                    hint="Add it to fix the robot to the world.",
+                    hint="Add it to the robot to fix it to the world.",
                 )
                 continue
             yield spelling.misspelt(
@@ -88,8 +82,7 @@ def joint_link_unknown(subject: Subject) -> Iterator[Diagnostic]:
                 link,
                 known,
                 attribute="link",
-                message=f'the {which} of joint "{name}" is "{link}", which is not a link',
-                values={"link": link, "joint": name, "tag": which},
+                message=f'the {which} of the joint "{name}", "{link}", is no link',
                 origin=end.origin,
                 mark=f'link="{end.attributes.get("link", "")}"',
             )
@@ -106,9 +99,8 @@ def joint_type_unknown(subject: Subject) -> Iterator[Diagnostic]:
             kind,
             JOINT_TYPES,
             attribute="type",
-            message=f'joint "{nodes.name_of(joint)}" has the type "{kind}", which URDF does '
-            "not define",
-            values={"joint": nodes.name_of(joint), "type": kind},
+            message=f'the joint "{nodes.name_of(joint)}" has the type "{kind}", which is none: '
+            "ROS refuses the whole robot",
             origin=joint.origin,
             mark="type",
         )
@@ -125,16 +117,11 @@ def two_parents(subject: Subject) -> Iterator[Diagnostic]:
         if child in holders:
             first = holders[child]
             yield robot_codes.MULTIPLE_PARENTS.diagnostic(
-                message=f'link "{child}" is the child of two joints, "{nodes.name_of(first)}" '
-                f'and "{nodes.name_of(joint)}"',
-                values={
-                    "link": child,
-                    "joint": nodes.name_of(joint),
-                    "other": nodes.name_of(first),
-                },
+                message=f'the link "{child}" is the child of two joints, '
+                f'"{nodes.name_of(first)}" and "{nodes.name_of(joint)}": a URDF is a tree',
                 origin=joint.origin,
                 mark=f'name="{nodes.name_of(joint)}"',
-                hint="Remove one of them, or give each a child link of its own. Joint "
+                hint=f"Remove one of them, or make a link of its own for each. The joint "
                 f'"{nodes.name_of(first)}" is at {first.origin}.',
             )
         holders.setdefault(child, joint)
@@ -145,10 +132,9 @@ def links_in_a_ring(subject: Subject) -> Iterator[Diagnostic]:
     holders = inbound(_parts(subject, "joint"), link_names(subject))
     for ring in rings(holders):
         yield robot_codes.KINEMATIC_LOOP.diagnostic(
-            message=f"joints connect links in a loop: {' -> '.join(reversed([*ring, ring[0]]))}",
-            values={"links": tuple(reversed(ring))},
+            message="the joints make a ring of links: " + " -> ".join(reversed([*ring, ring[0]])),
             origin=holders[ring[0]].origin,
-            hint="Reverse or remove one of these joints.",
+            hint="Turn round or remove one of its joints: a URDF is a tree.",
         )
 
 
@@ -169,8 +155,7 @@ def several_roots(subject: Subject) -> Iterator[Diagnostic]:
             continue
         root = nodes.name_of(first)
         yield robot_codes.MULTIPLE_ROOTS.diagnostic(
-            message=f'no joint connects link "{name}" to "{root}", the root of the robot',
-            values={"link": name, "root": root},
+            message=f'no joint joins the link "{name}" to the others: "{root}" is a root already',
             origin=node.origin,
             instead=f'<joint name="{name}_joint" type="fixed"><parent link="{root}"/>'
             f'<child link="{name}"/></joint>',
@@ -193,18 +178,16 @@ def mimic_unknown(subject: Subject) -> Iterator[Diagnostic]:
                 leader,
                 set(joints) - {name},
                 attribute="joint",
-                message=f'joint "{name}" mimics "{leader}", which is not a joint',
-                values={"joint": name, "leader": leader},
+                message=f'the joint "{name}" mimics "{leader}", which is no joint',
                 origin=mimic.origin,
                 mark=f'joint="{mimic.attributes.get("joint", "")}"',
             )
         elif name in mimic_chain(joints, leader):
             yield robot_codes.MIMIC_UNKNOWN.diagnostic(
-                message=f'joint "{name}" mimics itself through "{leader}"',
-                values={"joint": name, "leader": leader},
+                message=f'the joint "{name}" mimics itself, by way of "{leader}"',
                 origin=mimic.origin,
                 mark=f'joint="{leader}"',
-                hint="One joint of the loop must be free to move.",
+                hint="One joint of the chain must be free to move.",
             )
 
 
@@ -220,9 +203,8 @@ def reference_unknown(subject: Subject) -> Iterator[Diagnostic]:
             reference,
             known,
             attribute="reference",
-            message=f'<gazebo> refers to "{reference}", which is neither a link nor a joint, '
-            "so Gazebo ignores it",
-            values={"reference": reference},
+            message=f'<gazebo> refers to "{reference}", which is neither a link nor a joint: '
+            "Gazebo drops all that is in it without a word",
             origin=node.origin,
             mark=f'reference="{node.attributes["reference"]}"',
         )
