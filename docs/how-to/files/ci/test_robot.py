@@ -1,5 +1,6 @@
-import cartwheel as cw
 import pytest
+
+import cartwheel as cw
 
 
 def test_the_robot_drives_as_commanded():
