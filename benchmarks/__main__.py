@@ -1,4 +1,4 @@
-"""Measures, prints a table, writes ``benchmarks/results/<date>.json``."""
+"""Runs the benchmarks, prints a table and writes ``benchmarks/results/<date>.json``."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import os
 from datetime import UTC, datetime
 from pathlib import Path
 
-# Read when MuJoCo is imported, for its own renderer: without it that looks for a display.
+# MuJoCo reads this on import. By default its renderer needs a display.
 os.environ.setdefault("MUJOCO_GL", "egl")
 
 from rich.console import Console
@@ -26,28 +26,29 @@ _PARTS = {
 
 
 def main() -> None:
-    """The command."""
+    """Entry point of ``python -m benchmarks``."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
-    parser.add_argument("parts", nargs="*", help=f"some of {', '.join(_PARTS)}; all when none")
-    parser.add_argument("--quick", action="store_true", help="try everything once, measure nothing")
-    parser.add_argument("--output", type=Path, help="of the JSON file")
+    parser.add_argument("parts", nargs="*", help=f"any of {', '.join(_PARTS)}; default: all")
+    parser.add_argument("--quick", action="store_true", help="run everything briefly, as a test")
+    parser.add_argument("--output", type=Path, help="path of the JSON file")
     options = parser.parse_args()
     unknown = set(options.parts) - set(_PARTS)
     if unknown:
-        parser.error(f"no part {', '.join(sorted(unknown))}; there are {', '.join(_PARTS)}")
+        names = ", ".join(sorted(unknown))
+        parser.error(f"unknown part {names}; expected any of {', '.join(_PARTS)}")
     console = Console(width=max(Console().width, 120))
-    found = []
+    figures = []
     for name in options.parts or _PARTS:
         with console.status(f"measuring {name}"):
-            found += list(_PARTS[name].figures(QUICK if options.quick else FULL))
+            figures += list(_PARTS[name].figures(QUICK if options.quick else FULL))
     about = machine()
     console.print(
         f"{about['processor']}, {about['cores']} cores, load {about['load']}, {about['opengl']}"
     )
-    show(found, console)
+    show(figures, console)
     name = datetime.now(UTC).strftime("%Y-%m-%d-%H%M%S.json")
     path = options.output or Path(__file__).parent / "results" / name
-    write(found, path)
+    write(figures, path)
     console.print(f"written to {path}")
 
 

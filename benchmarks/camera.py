@@ -1,4 +1,4 @@
-"""The cart's camera: every frame delivered, the CPU time of real time, and one image."""
+"""The cart's camera: speed with every frame delivered, CPU time at real time, time of one image."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from cartwheel.simulation import CameraHandle
 _SIZES = ((320, 240), (640, 480))
 _RATE = 30
 _REAL = 4.0
-"""s of wall time that the paced run is measured for."""
+"""Wall time of the run at real time, s."""
 
 
 def figures(effort: Effort) -> Iterator[Figure]:
-    """Lockstep, paced, and images by size against MuJoCo's own renderer."""
+    """Full speed, real time, and images of several sizes compared with MuJoCo's renderer."""
     yield from _lockstep(effort)
     yield _paced(effort)
     for size in _SIZES:
@@ -49,10 +49,10 @@ def _lockstep(effort: Effort) -> Iterator[Figure]:
         group=group,
         name="frames delivered",
         value=frames,
-        unit="a simulated second",
+        unit="per simulated s",
         goal=_RATE * 0.95,
         better="more",
-        note="all, but for the ends of short runs",
+        note="all, except at the ends of short runs",
     )
 
 
@@ -71,7 +71,7 @@ def _paced(effort: Effort) -> Figure:
         group="1 cart, camera 320x240 at 30 Hz",
         name="CPU at real time",
         value=used / wall,
-        unit="CPU s a second",
+        unit="CPU s per s",
         goal=0.4,
         note=f"{frames} frames in {wall:.1f} s, all threads; Gazebo 11: 1.8",
     )
@@ -130,7 +130,7 @@ def _ours(world: cw.World, size: tuple[int, int]) -> Callable[[], object]:
 
 
 class _Theirs:
-    """MuJoCo's renderer on the same scene, with its defaults or with all turned off."""
+    """MuJoCo's renderer with the same scene, with its default options or without any."""
 
     def __init__(self, world: cw.World, size: tuple[int, int], *, defaults: bool) -> None:
         simulation = world.session.simulation
@@ -145,7 +145,7 @@ class _Theirs:
         self._renderer: Any = mujoco.Renderer(model, height=size[1], width=size[0])
 
     def render(self) -> object:
-        """As its documentation shows."""
+        """Renders one image, as in MuJoCo's documentation."""
         self._renderer.update_scene(self._data, camera=0)
         return self._renderer.render()
 

@@ -1,4 +1,4 @@
-"""Driving carts, with and without Cartwheel around the physics."""
+"""Driving carts, simulated with Cartwheel or with MuJoCo alone."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ IMAGE = "/cart_0/camera1/image_raw"
 
 
 class Listener:
-    """Gets every message of some topics, and holds the last of each as a reader would."""
+    """Subscribes to topics and keeps the last message of each, as a typical subscriber does."""
 
     def __init__(self, world: cw.World, topics: tuple[str, ...]) -> None:
         self.count = 0
@@ -29,17 +29,17 @@ class Listener:
 
 
 def driving(count: int = 1, world: str = "empty") -> cw.World:
-    """Carts in a row that drive in circles, past the ramp of their wheels."""
-    made = cw.World(world)
+    """Returns a world with a row of carts that drive in circles at constant speed."""
+    carts = cw.World(world)
     for index in range(count):
-        made.spawn("rosbots.xacro", name=f"cart_{index}", y=8.0 * index)
-    made.publish("/part2_cmr/cmd_vel", linear_x=0.5, angular_z=0.3)
-    made.run(3)
-    return made
+        carts.spawn("rosbots.xacro", name=f"cart_{index}", y=8.0 * index)
+    carts.publish("/part2_cmr/cmd_vel", linear_x=0.5, angular_z=0.3)
+    carts.run(3)
+    return carts
 
 
 class Bare:
-    """The same compiled model in the same state with the same controls, and MuJoCo alone."""
+    """MuJoCo alone, with the same compiled model, state and controls."""
 
     def __init__(self, world: cw.World) -> None:
         simulation = world.session.simulation
@@ -51,11 +51,11 @@ class Bare:
         mujoco.mj_setState(self.model, self.data, state, kind)
 
     def step(self, seconds: float) -> None:
-        """One call for each step, as anybody would write it."""
+        """Steps with one call per step, as in a typical program."""
         model, data = self.model, self.data
         for _ in range(round(seconds / model.opt.timestep)):
             mujoco.mj_step(model, data)
 
     def steps(self, seconds: float) -> None:
-        """One call for all steps."""
+        """Makes all steps in one call."""
         mujoco.mj_step(self.model, self.data, round(seconds / self.model.opt.timestep))

@@ -1,4 +1,4 @@
-"""What a benchmark finds, and how two ways of doing one thing are compared."""
+"""Results of benchmarks, and the comparison of several variants."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from typing import Literal
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Figure:
-    """One number."""
+    """One result, with its unit and goal."""
 
     group: str
     name: str
@@ -32,13 +32,13 @@ class Figure:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Effort:
-    """How long to measure."""
+    """How long to measure: rounds, simulated time, images, starts and numbers of carts."""
 
     rounds: int
     seconds: float
-    """Of simulated time in each round."""
+    """Simulated time per round, s."""
     images: int
-    """In each round."""
+    """Images per round."""
     starts: int
     carts: tuple[int, ...]
 
@@ -48,10 +48,10 @@ QUICK = Effort(rounds=2, seconds=0.2, images=1, starts=1, carts=(1, 2))
 
 
 def medians(rounds: int, ways: Mapping[str, Callable[[], object]]) -> dict[str, float]:
-    """Median wall time in s of each way, all of them in turn in each round.
+    """Median wall time of each variant in s. All variants take turns in each round.
 
-    Other programs on the machine slow all ways of a round alike, so ratios of one run hold on a
-    busy machine too. Times themselves are worth quoting from an idle one.
+    Other programs on the machine slow all variants of a round equally, so ratios are valid on a
+    busy machine too. Quote absolute times only from an idle machine.
     """
     times: dict[str, list[float]] = {name: [] for name in ways}
     for way in ways.values():
@@ -62,4 +62,4 @@ def medians(rounds: int, ways: Mapping[str, Callable[[], object]]) -> dict[str, 
             start = time.perf_counter()
             way()
             times[name].append(time.perf_counter() - start)
-    return {name: statistics.median(found) for name, found in times.items()}
+    return {name: statistics.median(samples) for name, samples in times.items()}

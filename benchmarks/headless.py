@@ -1,4 +1,4 @@
-"""As fast as it can, without a camera: one cart read by a listener, and many."""
+"""Full speed without a camera: one cart with a subscriber, and many carts."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from benchmarks.carts import READ, Bare, Listener, driving
 from benchmarks.figure import Effort, Figure, medians
 
 _GAZEBO = {1: 10.0, 5: 3.3, 10: 1.9, 20: 0.94}
-"""Times real time of Gazebo 11 with so many carts."""
+"""Speed of Gazebo 11 by the number of carts, in multiples of real time."""
 _TIMES_GAZEBO = 20.0
 
 
 def figures(effort: Effort) -> Iterator[Figure]:
-    """Each number of carts against its bare loop, and one cart by what is read."""
+    """Several carts compared with MuJoCo alone, and one cart by subscribed topic."""
     for count in effort.carts:
         yield from _carts(count, effort)
     yield from _reading(effort)
@@ -34,8 +34,8 @@ def _carts(count: int, effort: Effort) -> Iterator[Figure]:
         )
         simulated = seconds * (effort.rounds + 1)
         expected = (100 * 3 + 30) * count * simulated
-        assert listener.count >= 0.95 * expected, "messages were lost"
-    group = f"{count} cart{'s' if count > 1 else ''}, odometry, tf, joint states and IMU read"
+        assert listener.count >= 0.95 * expected, "messages were dropped"
+    group = f"{count} cart{'s' if count > 1 else ''}, odometry, tf, joint states and IMU subscribed"
     yield Figure(
         group=group,
         name="speed",
@@ -51,7 +51,7 @@ def _carts(count: int, effort: Effort) -> Iterator[Figure]:
         value=seconds / found["bare"],
         unit="x real time",
         better="more",
-        note=f"{found['bare'] / seconds * bare.model.opt.timestep * 1e6:.1f} us a step",
+        note=f"{found['bare'] / seconds * bare.model.opt.timestep * 1e6:.1f} us per step",
     )
     yield Figure(
         group=group,
@@ -71,7 +71,7 @@ def _carts(count: int, effort: Effort) -> Iterator[Figure]:
 
 
 def _reading(effort: Effort) -> Iterator[Figure]:
-    """What each topic adds, and what the simulation costs that nobody reads."""
+    """The cost of each topic, and of a simulation without subscribers."""
     sets = {"nothing": (), **{topic: (topic,) for topic in READ}}
     worlds = {name: driving() for name in sets}
     listeners = [Listener(worlds[name], topics) for name, topics in sets.items()]
@@ -83,9 +83,9 @@ def _reading(effort: Effort) -> Iterator[Figure]:
         note = ""
         if listener.count:
             added = (found[name] - found["nothing"]) * (effort.rounds + 1) / listener.count
-            note = f"{added * 1e6:.1f} us a message"
+            note = f"{added * 1e6:.1f} us per message"
         yield Figure(
-            group="1 cart, by what is read",
+            group="1 cart, by subscribed topic",
             name=name,
             value=found[name] / found["bare"],
             unit="ratio",

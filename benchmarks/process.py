@@ -1,7 +1,7 @@
-"""The command as a process of its own: from its start to the first clock and image, memory.
+"""The ``cartwheel run`` process: time to the first clock and the first image, and memory.
 
-The watcher is this process: it waits for the socket of the new one, subscribes over it as
-``cartwheel topic echo`` does, and takes the time when the first message is in its hands.
+The benchmark waits for the control socket of the new process, subscribes through it as
+``cartwheel topic echo`` does, and takes the time when it receives the first message.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ _PATIENCE = 60.0
 
 
 def figures(effort: Effort) -> Iterator[Figure]:
-    """Start to clock, start to image, and memory after some seconds of each."""
+    """Time from the start to the first clock and image, and memory after some seconds."""
     goals = {"/clock": 1.0, IMAGE: 1.5}
     for topic, goal in goals.items():
         times, used = zip(*(_until(topic) for _ in range(effort.starts)), strict=True)
@@ -45,7 +45,7 @@ def figures(effort: Effort) -> Iterator[Figure]:
         )
         yield Figure(
             group="cartwheel run --headless",
-            name=f"{name}, computing",
+            name=f"{name}, CPU time",
             value=statistics.median(used),
             unit="CPU s",
             note="all threads",
@@ -63,7 +63,7 @@ def figures(effort: Effort) -> Iterator[Figure]:
 
 @contextlib.contextmanager
 def _command(*arguments: str) -> Iterator[subprocess.Popen[bytes]]:
-    """A simulation of its own, in a folder of sockets of its own."""
+    """Starts a simulation with a private folder for its control socket."""
     script = shutil.which("cartwheel", path=str(Path(sys.executable).parent))
     command = [script] if script else [sys.executable, "-m", "cartwheel.cli.main"]
     with tempfile.TemporaryDirectory() as folder, contextlib.ExitStack() as stack:
@@ -90,13 +90,13 @@ def _restore(folder: str | None) -> None:
 
 
 def _client(process: subprocess.Popen[bytes], topic: str) -> Subscription:
-    """A subscription, as soon as the process takes one."""
+    """Subscribes as soon as the process accepts connections."""
     deadline = time.monotonic() + _PATIENCE
     while time.monotonic() < deadline:
         if process.poll() is not None:
             text = process.stderr.read().decode() if process.stderr else ""
             raise RuntimeError(f"cartwheel run ended early: {text}")
-        # Nothing but a look at a folder until there is somebody to ask.
+        # Look only at the folder until the process has registered.
         if any(Path(os.environ["XDG_RUNTIME_DIR"]).glob("cartwheel/*.json")):
             with contextlib.suppress(ControlError):
                 return ControlClient(find(process.pid)).subscribe(topic)
@@ -105,12 +105,12 @@ def _client(process: subprocess.Popen[bytes], topic: str) -> Subscription:
 
 
 def _until(topic: str) -> tuple[float, float]:
-    """Time until a message is there, s: by the clock, and of the processor in the new process."""
+    """Time until the first message, s: wall time, and CPU time of the new process."""
     start = time.perf_counter()
     with _command() as process, _client(process, topic) as subscription:
         subscription.get(_PATIENCE)
         wall = time.perf_counter() - start
-        # Behind the name in brackets, which may hold anything.
+        # The fields after the name in parentheses, which may contain any character.
         fields = Path(f"/proc/{process.pid}/stat").read_text().rpartition(")")[2].split()
         return wall, (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 

@@ -1,4 +1,4 @@
-"""A table for people and a file for programs."""
+"""The output of the benchmarks: a table and a JSON file."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _PACKAGES = ("cartwheel", "mujoco", "numpy", "rosbags")
 
 
 def show(figures: Iterable[Figure], console: Console) -> None:
-    """Prints the figures by group."""
+    """Prints a table for each group of figures."""
     for group, members in itertools.groupby(figures, key=lambda figure: figure.group):
         table = Table(box=None, pad_edge=False, show_header=False)
         for width in (28, 8, 18, 8, 4):
@@ -41,7 +41,7 @@ def show(figures: Iterable[Figure], console: Console) -> None:
 
 
 def write(figures: Sequence[Figure], path: Path) -> None:
-    """Writes the figures with what they were measured on."""
+    """Writes the figures as JSON, with the machine and the versions of packages."""
     path.parent.mkdir(parents=True, exist_ok=True)
     content = {
         "when": datetime.now(UTC).isoformat(timespec="seconds"),
@@ -54,7 +54,7 @@ def write(figures: Sequence[Figure], path: Path) -> None:
 
 
 def machine() -> dict[str, Any]:
-    """What the figures depend on."""
+    """Describes the machine: processor, cores, system, load and OpenGL renderer."""
     return {
         "processor": _processor(),
         "cores": len(os.sched_getaffinity(0)),
@@ -72,7 +72,7 @@ def _processor() -> str:
 
 
 def _opengl() -> str:
-    """Which driver draws: with a GPU the images say nothing about machines without."""
+    """The OpenGL renderer. Image times of a GPU do not apply to machines without one."""
     try:
         from mujoco.egl import GLContext
 
@@ -82,6 +82,6 @@ def _opengl() -> str:
 
         name = GL.glGetString(GL.GL_RENDERER)
         context.free()
-    except Exception as error:  # noqa: BLE001 - a missing library shows in many ways
+    except Exception as error:  # noqa: BLE001 - a missing library raises various errors
         return f"none: {error}"
     return name.decode() if isinstance(name, bytes) else str(name)

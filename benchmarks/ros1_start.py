@@ -1,10 +1,9 @@
-"""How long it takes from a command to the first message that a waiting ROS 1 node receives.
+"""The time from a command to the first message that a waiting ROS 1 node receives.
 
-``--launch`` measures what a user types: ``roslaunch gazebo_ros empty_world.launch`` to the
-first /clock, and ``rosrun gazebo_ros spawn_model`` to the cart's first image (goals: 1.0 s
-each; Gazebo 11: 1.35 and 1.8 s). Without it, ``cartwheel run --ros1`` alone. The master is up
-already. The listener speaks the protocol by itself, so nothing of the measured code measures
-itself.
+With ``--launch``, the commands are ``roslaunch gazebo_ros empty_world.launch``, to the first
+/clock, and ``rosrun gazebo_ros spawn_model``, to the cart's first image (goals: 1.0 s each;
+Gazebo 11: 1.35 and 1.8 s). Without it, the command is ``cartwheel run --ros1``. The master is
+running already. The listener implements the protocol itself and does not use Cartwheel's code.
 """
 
 from __future__ import annotations
@@ -78,7 +77,7 @@ class Listener:
 
 
 def first(listener: Listener) -> float:
-    """When its first message came."""
+    """The time at which the listener received its first message."""
     if not listener.came.wait(30) or listener.received is None:
         sys.exit("no message within 30 s")
     listener.close()
@@ -86,7 +85,7 @@ def first(listener: Listener) -> float:
 
 
 def measure(command: list[str], master: str) -> float:
-    """s from starting a command to the first /clock."""
+    """The time from starting a command to the first /clock, s."""
     listener = Listener(master, CLOCK)
     began = time.perf_counter()
     child = subprocess.Popen(
@@ -115,7 +114,7 @@ def sourced(master: str) -> dict[str, str]:
 
 
 def measure_launch(master: str) -> tuple[float, float]:
-    """s from roslaunch to the first /clock, and from spawn_model to the first image."""
+    """The times from roslaunch to the first /clock and from spawn_model to the first image, s."""
     environment = sourced(master)
     listener = Listener(master, CLOCK)
     began = time.perf_counter()
@@ -149,8 +148,8 @@ def measure_launch(master: str) -> tuple[float, float]:
         launched.wait(20)
 
 
-def told(what: str, times: list[float]) -> str:
-    """The median and the extremes in words."""
+def summary(what: str, times: list[float]) -> str:
+    """The median, minimum and maximum as text."""
     return (
         f"{what} after {statistics.median(times):.3f} s"
         f" ({min(times):.3f} to {max(times):.3f} s, {len(times)} runs)"
@@ -159,9 +158,9 @@ def told(what: str, times: list[float]) -> str:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--port", type=int, default=11731, help="Of the master it starts.")
+    parser.add_argument("--port", type=int, default=11731, help="Port of the master to start.")
     parser.add_argument("--runs", type=int, default=7)
-    parser.add_argument("--launch", action="store_true", help="Through roslaunch and rosrun.")
+    parser.add_argument("--launch", action="store_true", help="Measure roslaunch and rosrun.")
     parser.add_argument("words", nargs="*", default=["empty.world"])
     arguments = parser.parse_args()
     uri = f"http://127.0.0.1:{arguments.port}"
@@ -175,12 +174,12 @@ def main() -> None:
                 time.sleep(0.05)
         if arguments.launch:
             pairs = [measure_launch(uri) for _ in range(arguments.runs)]
-            print(told("roslaunch: first /clock", [clock for clock, _ in pairs]))
-            print(told("spawn_model: first image", [image for _, image in pairs]))
+            print(summary("roslaunch: first /clock", [clock for clock, _ in pairs]))
+            print(summary("spawn_model: first image", [image for _, image in pairs]))
         else:
             cartwheel = str(Path(sys.executable).with_name("cartwheel"))
             command = [cartwheel, "run", *arguments.words, "--headless", "--ros1"]
-            print(told("first /clock", [measure(command, uri) for _ in range(arguments.runs)]))
+            print(summary("first /clock", [measure(command, uri) for _ in range(arguments.runs)]))
     finally:
         master.terminate()
 

@@ -1,4 +1,4 @@
-"""Sensors on a driving cart among walls: every message read, and what that costs."""
+"""Sensors on a driving cart among walls: speed with subscribers, and the cost of the sensor."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ class _Sensor:
     element: str
     """``<sensor>``."""
     topics: tuple[str, ...]
-    """All of which are read."""
+    """The subscribed topics."""
     goal: float
-    """Times real time."""
+    """Speed, in multiples of real time."""
     each: str
-    """What is published at once."""
+    """The messages of one measurement, in words."""
     note: str = ""
 
 
@@ -101,7 +101,7 @@ _SENSORS = (
 
 
 def figures(effort: Effort) -> Iterator[Figure]:
-    """The speed with all of it read, and what the sensor alone costs."""
+    """The speed with all topics subscribed, and the cost of the sensor alone."""
     for sensor in _SENSORS:
         yield from _measure(sensor, effort)
 
@@ -115,7 +115,7 @@ def _measure(sensor: _Sensor, effort: Effort) -> Iterator[Figure]:
             {"read": lambda: read.run(seconds), "unread": lambda: unread.run(seconds)},
         )
         times = math.floor(sensor.rate * seconds * (effort.rounds + 1))
-        assert listener.count >= len(sensor.topics) * times, "messages were lost"
+        assert listener.count >= len(sensor.topics) * times, "messages were dropped"
     cost = max(found["read"] - found["unread"], 1e-9)
     group = f"1 cart among walls, {sensor.title}"
     yield Figure(
@@ -131,7 +131,7 @@ def _measure(sensor: _Sensor, effort: Effort) -> Iterator[Figure]:
         group=group,
         name="cost of the sensor",
         value=cost / seconds,
-        unit="s a simulated s",
+        unit="s per simulated s",
         note=f"{cost / (sensor.rate * seconds) * 1e3:.2f} ms for {sensor.each}",
     )
 
@@ -145,7 +145,7 @@ def _driving(sensor: _Sensor) -> cw.World:
 
 
 def _cart(sensor: _Sensor) -> RobotDescription:
-    """The shipped cart with a sensor a little above it."""
+    """The shipped cart with a sensor mounted on it."""
     described = load_text(
         f"""<sdf version="1.7"><model name="carrier"><link name="link">{sensor.element}</link>
         </model></sdf>""",

@@ -1,4 +1,4 @@
-"""One simulation with some of the wires, and readers at their other ends.
+"""One simulation with some of the bridges, and a subscriber of each.
 
 python -m benchmarks.wire_load WIRE... [--pairs N]
 """
@@ -30,22 +30,22 @@ from cartwheel.simulation import RunState
 
 WIRES = ("ros1", "ros2", "foxglove", "record", "zenoh")
 _RATES = {topic: 30.0 if topic == IMAGE else 100.0 for topic in TYPES}
-"""Hz of wall time."""
+"""Publish rates in wall time, Hz."""
 _PATIENCE = 30.0
 _TRANSFORMS = 10
 _TURN, _TURNS = 0.25, 4
-"""s at full speed, and how many such turns for a pair of seconds: the machine's own changes of
-speed are to fall on both of a pair."""
+"""Seconds at full speed per turn, and turns per pair. Short turns let changes of the machine's
+speed affect both sides of a pair."""
 
 
 class Load:
-    """Publishes what robots publish, at rates of wall time, on the simulation's thread.
+    """Publishes typical messages of a robot at fixed wall-time rates, on the simulation's thread.
 
-    The images are made beforehand: what is measured is the way out, and not the renderer.
+    Images are made in advance: the benchmark measures the transport, not the renderer.
 
     Attributes:
-        loud: Whether it does so on the topics that the wires have, or on others like them that
-            are read in process alone.
+        loud: Whether it publishes on the topics of the bridges, or on similar topics with
+            subscribers in the same process only.
     """
 
     def __init__(self, world: Any) -> None:
@@ -70,7 +70,7 @@ class Load:
         threading.Thread(target=self._tick, daemon=True).start()
 
     def close(self) -> None:
-        """Ends it."""
+        """Stops publishing."""
         self._ended.set()
 
     def _tick(self) -> None:
@@ -101,17 +101,17 @@ class Load:
 
 
 def _waited() -> float:
-    """s that this thread was ready to run and others had the cores."""
+    """Time that this thread was ready to run but had no core, s."""
     return int(Path("/proc/thread-self/schedstat").read_text().split()[1]) / 1e9
 
 
 def _used(processes: Iterable[int]) -> float:
-    """CPU seconds of some processes, by the clocks that Linux has of each: clock_getcpuclockid."""
+    """CPU seconds of some processes, from their Linux clocks (clock_getcpuclockid)."""
     return sum(time.clock_gettime((~pid << 3) | 2) for pid in processes)
 
 
 def _picture() -> Any:
-    """Boxes before a sky: it packs as well as what a simulation draws."""
+    """Boxes in front of a sky: it compresses as well as a rendered image."""
     generator = np.random.default_rng(0)
     picture = np.empty((480, 640, 3), np.uint8)
     picture[:] = np.linspace(250, 120, 480).astype(np.uint8)[:, None, None]
@@ -123,19 +123,19 @@ def _picture() -> Any:
 
 
 def run(wires: list[str], pairs: int) -> dict[str, Any]:
-    """In turns with the same topics in process alone, and on the wires.
+    """Publishes within the process and to the bridges, in turns.
 
     Returns:
-        For `real` time and `full` speed, for each pair of turns, of the first and the second:
-        CPU seconds in a second, the bridges' processes included; simulated seconds in one that the
-        simulation's thread did not wait for a core, as others use the machine as well; and in one
-        of any. And how late messages were.
+        Under `real` (real time) and `full` (full speed), three numbers for both turns of each
+        pair: CPU seconds per second, including the bridges' processes; simulated seconds per
+        second, not counting time that the simulation's thread waited for a core; and simulated
+        seconds per second of wall time. Under `ages`, the latency of messages.
     """
     with contextlib.ExitStack() as stack:
         world = driving()
         stack.callback(world.close)
         session, simulation = world.session, world.session.simulation
-        # What a simulation's thread usually does beside.
+        # The usual work of a simulation's thread.
         Listener(world, READ)
         load = Load(world)
         stack.callback(load.close)
@@ -144,7 +144,7 @@ def run(wires: list[str], pairs: int) -> dict[str, Any]:
         gc.freeze()
 
         def go(speed: float | None, seconds: float = 1.0, *, loud: bool = True) -> list[float]:
-            """Runs for some seconds of wall time."""
+            """Runs for a wall time; returns the three numbers of one turn."""
             load.loud = loud
             simulation.set_speed(speed)
             simulation.run_state = RunState.RUNNING
@@ -164,7 +164,7 @@ def run(wires: list[str], pairs: int) -> dict[str, Any]:
             deadline = time.monotonic() + _PATIENCE
             while not condition():
                 if time.monotonic() > deadline:
-                    sys.exit("the readers do not come")
+                    sys.exit("the subscribers did not connect")
                 go(1.0, 0.2)
 
         readers = _attach(world, wires, stack, processes)
@@ -185,14 +185,14 @@ def run(wires: list[str], pairs: int) -> dict[str, Any]:
 
 @contextlib.contextmanager
 def _master(uri: str) -> Iterator[None]:
-    """A ROS master alone: a ``rosout`` beside it reads ``/clock``, or not, by when it starts."""
+    """A ROS master without ``rosout``, which may or may not subscribe to ``/clock``."""
     program = ["rosmaster", "--core", "-p", str(urlsplit(uri).port)]
     process = subprocess.Popen(program, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     deadline = time.monotonic() + _PATIENCE
     try:
         while not _answers(uri):
             if process.poll() is not None or time.monotonic() > deadline:
-                sys.exit(f"no ROS master can be started at {uri}")
+                sys.exit(f"cannot start a ROS master at {uri}")
             time.sleep(0.05)
         yield
     finally:
@@ -209,7 +209,7 @@ def _answers(uri: str) -> bool:
 def _attach(
     world: Any, wires: list[str], stack: contextlib.ExitStack, processes: list[int]
 ) -> dict[str, Reader]:
-    """Bridges in processes of their own, which it adds, and a reader of each."""
+    """Starts each bridge with a subscriber, and adds the bridges' processes to `processes`."""
     from cartwheel.bridges.apart.process import BridgeProcess
     from cartwheel.bridges.ros1.address import master_uri
     from cartwheel.cli.commands.foxglove import SimulationControls
@@ -217,8 +217,8 @@ def _attach(
     graph, simulation = world.session.graph, world.session.simulation
     readers: dict[str, Reader] = {}
 
-    def tell(found: Any) -> None:
-        print(found.message, file=sys.stderr)
+    def tell(diagnostic: Any) -> None:
+        print(diagnostic.message, file=sys.stderr)
 
     for wire in wires:
         options: dict[str, Any] = {}
@@ -234,10 +234,10 @@ def _attach(
         else:
             options = {"rmw": "zenoh" if wire == "zenoh" else "dds", "parameters": []}
         kind = {"record": "recording", "zenoh": "ros2"}.get(wire, wire)
-        made = BridgeProcess(kind, wire, patient=wire == "record")
-        stack.callback(made.close)
-        processes.append(made.pid)
-        opened = made.open(
+        bridge = BridgeProcess(kind, wire, patient=wire == "record")
+        stack.callback(bridge.close)
+        processes.append(bridge.pid)
+        opened = bridge.open(
             graph,
             options,
             time_ns=lambda: simulation.time_ns,
@@ -245,7 +245,7 @@ def _attach(
             report=tell,
             handlers=handlers,
         )
-        started = made.call("start")
+        started = bridge.call("start")
         if wire != "record":
             address = {"foxglove": started, "ros1": opened and opened[-1]}.get(wire, "")
             readers[wire] = Reader(wire, address)

@@ -1,7 +1,7 @@
-"""Readers of each wire, as processes of their own: how many messages came, and how late.
+"""Subscribers of each bridge, in separate processes: they count messages and measure latency.
 
-Messages bear the wall time at which they were published as their stamp. A reader looks at
-nothing else, so that what is measured is the way there.
+The stamp of each message is the wall time at which it was published. Subscribers read only the
+stamp, so the transport alone is measured.
 
     python -m benchmarks.wire_readers WIRE ADDRESS
 """
@@ -29,24 +29,24 @@ TYPES = {
 }
 SENSORS: tuple[str, ...] = (IMAGE, IMU)
 _STAMP_AT = {TF: 8}
-"""Where a stamp's seconds are: behind CDR's head or ROS 1's count of messages, which both have 4
-bytes, and behind the number of transforms."""
+"""Byte offset of the stamp: after the CDR header or ROS 1's sequence number, both of 4 bytes, and
+after the number of transforms."""
 
 
 class Ages:
-    """How late messages came, in ms."""
+    """The latencies of messages, in ms."""
 
     def __init__(self) -> None:
         self._found: dict[str, list[float]] = {topic: [] for topic in TYPES}
 
     def take(self, topic: str, data: bytes | bytearray | memoryview) -> None:
-        """A message has come."""
+        """Adds the latency of a message that has just arrived."""
         now = time.time_ns()
         seconds, nanoseconds = struct.unpack_from("<II", data, _STAMP_AT.get(topic, 4))
         self._found[topic].append((now - seconds * 10**9 - nanoseconds) / 1e6)
 
     def answer(self) -> None:
-        """At each line on standard input prints what has come since the last, until it ends."""
+        """For each line on standard input, prints the latencies since the previous line."""
         for _ in sys.stdin:
             print(json.dumps(self._found), flush=True)
             self._found = {topic: [] for topic in TYPES}
@@ -152,11 +152,11 @@ READERS: dict[str, Callable[[str, Any], None]] = {
 
 
 class Reader:
-    """A reader's process.
+    """The process of a subscriber.
 
     Args:
-        wire: Which one it reads.
-        address: Of the bridge, where the wire needs one.
+        wire: The bridge that it subscribes to.
+        address: Address of the bridge, if it needs one.
     """
 
     def __init__(self, wire: str, address: str) -> None:
@@ -168,7 +168,7 @@ class Reader:
         )
 
     def ages(self) -> dict[str, list[float]]:
-        """How late each message of each topic was since the last call, in ms."""
+        """The latency of each message since the last call, in ms, by topic."""
         assert self._process.stdin is not None and self._process.stdout is not None
         self._process.stdin.write("\n")
         self._process.stdin.flush()
@@ -176,7 +176,7 @@ class Reader:
         return found
 
     def close(self) -> None:
-        """Ends it."""
+        """Ends the process."""
         self._process.kill()
         self._process.communicate()
 

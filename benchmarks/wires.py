@@ -1,7 +1,7 @@
-"""Each wire alone, and all at once: what they cost, and how late messages come.
+"""The bridges, one by one and all at once: their cost, and the latency of messages.
 
-Images of 640x480 at 30 Hz, and odometry, transforms and IMU at 100 Hz, from a simulation of the
-cart to one reader of each wire, which is another process.
+A simulation of the cart publishes images of 640x480 at 30 Hz, and odometry, transforms and IMU at
+100 Hz. Each bridge has one subscriber, in another process.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from benchmarks.figure import Effort, Figure
 from benchmarks.wire_readers import IMAGE
 
 _SLOWER = 10.0
-"""% that a simulation at full speed may lose to all wires."""
+"""Goal: the largest loss of speed with all bridges, for a simulation at full speed, %."""
 _TITLES = {
     "ros1": "ROS 1",
     "ros2": "ROS 2 over DDS",
@@ -29,11 +29,11 @@ _TITLES = {
     "record": "recording",
 }
 _PORT = 11732
-"""Of the ROS 1 master that is started for this."""
+"""Port of the ROS 1 master that the benchmark starts."""
 
 
 def figures(effort: Effort) -> Iterator[Figure]:
-    """Those that are installed, one by one, and all that may run together."""
+    """Each installed bridge alone, and all that can run together."""
     wires = ["ros2", "record"]
     if shutil.which("rosmaster"):
         wires.insert(0, "ros1")
@@ -44,7 +44,7 @@ def figures(effort: Effort) -> Iterator[Figure]:
         yield from _of(_TITLES[wire], [wire], pairs)
     if importlib.util.find_spec("zenoh"):
         yield from _of(_TITLES["zenoh"], ["zenoh"], pairs)
-    # Over DDS and Zenoh at once no simulation can be.
+    # A simulation cannot use DDS and Zenoh at the same time.
     yield from _of(
         f"at once: {', '.join(_TITLES[wire] for wire in wires)}", wires, pairs, all_=True
     )
@@ -58,7 +58,7 @@ def _of(group: str, wires: Sequence[str], pairs: int, *, all_: bool = False) -> 
         name="CPU",
         value=100 * statistics.median(loud[0] - quiet[0] for quiet, loud in found["real"]),
         unit="% of a core",
-        note="of the simulation and the bridges, beyond that of messages that stay in it",
+        note="of the simulation and the bridges, minus that of messages within the process",
     )
     for wire, ages in found["ages"].items():
         title = f", {_TITLES[wire]}" if all_ else ""
@@ -66,14 +66,14 @@ def _of(group: str, wires: Sequence[str], pairs: int, *, all_: bool = False) -> 
             ("image", ages[IMAGE]),
             ("others", [age for topic, some in ages.items() if topic != IMAGE for age in some]),
         ):
-            if not part:  # a reader of a short run on a busy machine may have had no time for it
+            if not part:  # on a busy machine, a short run may receive none
                 continue
             part.sort()
             yield Figure(
                 group=group,
                 name=f"{name}{title}",
                 value=part[len(part) // 2],
-                unit="ms late",
+                unit="ms latency",
                 note=f"99 % within {part[int(len(part) * 0.99)]:.1f} ms; {len(part)} messages",
             )
     ratio = statistics.median(loud[1] / quiet[1] for quiet, loud in found["full"])
@@ -83,10 +83,10 @@ def _of(group: str, wires: Sequence[str], pairs: int, *, all_: bool = False) -> 
         group=group,
         name="full speed",
         value=100 * ratio,
-        unit="% of that without",
+        unit="% of the speed without",
         goal=100 - _SLOWER if all_ else None,
         better="more",
-        note=f"which is {alone:.0f} times real time; {100 * whole:.0f} with the waits for a core",
+        note=f"without: {alone:.0f} x real time; {100 * whole:.0f} % including waits for a core",
     )
 
 

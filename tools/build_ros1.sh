@@ -1,5 +1,5 @@
 #!/bin/sh
-# Builds the catkin workspace ros1: into ros1/devel, or where CARTWHEEL_ROS1 says.
+# Builds the catkin workspace ros1 in ros1/devel, or in the folder CARTWHEEL_ROS1.
 set -eu
 cd "$(dirname "$0")/.."
 here=$(pwd -P)
@@ -10,18 +10,18 @@ case $venv in /*) ;; *) venv=$here/$venv ;; esac
 say() { printf '%s\n' "$*" >&2; }
 
 command -v catkin_make >/dev/null 2>&1 || {
-    say "ROS 1 is not here: the program catkin_make is missing."
-    say "Debian 12 has it (tools/setup.sh ros1 installs it); docs/ros1.md says what else there is."
+    say "ROS 1 is not installed: the program catkin_make is missing."
+    say "Debian 12 has a package (tools/setup.sh ros1 installs it); docs/ros1.md lists the alternatives."
     exit 1
 }
 
-# A build that was made elsewhere, or by another catkin, cannot be gone on with.
+# A build from another folder or of another catkin cannot be continued.
 cache=$build/build/CMakeCache.txt
 if [ -e "$cache" ] && ! grep -qx "CMAKE_HOME_DIRECTORY:INTERNAL=$here/ros1/src" "$cache"; then
     rm -rf "$build/build" "$build/devel"
 fi
 
-# catkin's programs must be those of the Python that rospy is installed for, whatever is first in PATH.
+# catkin must use the Python that rospy is installed for, whatever is first in PATH.
 python=/usr/bin/python3
 [ -x "$python" ] || python=$(command -v python3)
 mkdir -p "$build/build"
@@ -30,7 +30,7 @@ if ! ROS_VERSION=1 catkin_make -C "$build" --source "$here/ros1/src" \
     -DPYTHON_EXECUTABLE="$python" -DCARTWHEEL="$venv/bin/cartwheel" -DCATKIN_ENABLE_TESTING=OFF \
     >"$log" 2>&1; then
     tail -n 40 "$log" >&2
-    say "The workspace ros1 could not be built; all that was said is in $log"
+    say "The workspace ros1 could not be built; the output is in $log"
     exit 1
 fi
 

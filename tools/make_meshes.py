@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Write every mesh of the repository: the rosbots cart's and those of the models.
+"""Writes all meshes of the repository: those of the rosbots cart and of the models.
 
 The shapes are built here from numbers, so a mesh is changed by changing this file and running it:
 
@@ -51,7 +51,7 @@ GLASS = Material("glass", (0.05, 0.09, 0.22), 0.9, 100)
 ORANGE = Material("orange", (0.95, 0.35, 0.04), 0.1)
 CONCRETE = Material("concrete", (0.58, 0.58, 0.56), 0.03)
 
-# The cart. These repeat numbers of rosbots.xacro; tests compare the meshes with it.
+# The cart. These numbers are also in rosbots.xacro; tests compare the meshes with it.
 
 WHEEL_RADIUS = 0.26
 WHEEL_WIDTH = 0.10
@@ -71,7 +71,7 @@ def wheel() -> Mesh:
     segments = 36
 
     def upright(solid: Solid) -> Solid:
-        return solid.turned("x", -math.pi / 2)  # z, the lathe's axis, becomes y
+        return solid.turned("x", -math.pi / 2)  # the axis of rotation, z, becomes y
 
     tyre = [
         (0.196, -half + 0.012), (0.222, -half), (tread - 0.012, -half + 0.003),
@@ -125,13 +125,13 @@ def wheel() -> Mesh:
             mesh.add(RIM, upright(spoke.turned("z", 2 * math.pi * k / 5)))
         bolt = rod(0.006, 0.008, 6).moved(0.042, 0.0, half - 0.018)
         mesh.add(STEEL, upright(bolt.turned("z", 2 * math.pi * (k + 0.5) / 5)))
-    # One red valve, so that one turn can be told from another.
+    # One red valve makes the rotation visible.
     mesh.add(RED, upright(rod(0.007, 0.03, 8).moved(0.168, 0.0, 0.030).turned("z", math.pi / 5)))
     return mesh
 
 
 def chassis() -> Mesh:
-    """What Gazebo paints blue: tub, platform rim and stakes."""
+    """The parts that are blue in Gazebo: tub, platform rim and stakes."""
     mesh = Mesh(f"{CART_MESHES}/chassis.dae")
     height = CHASSIS_TOP - CHASSIS_BOTTOM
     tub = slab(
@@ -153,12 +153,12 @@ def chassis() -> Mesh:
 
 
 def stakes() -> list[tuple[float, float]]:
-    """Where the posts that hold the side boards stand, in base_link."""
+    """The positions of the posts that hold the side boards, in base_link."""
     return [(x, side * 0.415) for side in (-1, 1) for x in (-0.30, 0.10, 0.50)]
 
 
 def frame() -> Mesh:
-    """In frame_link, on the platform: planks, boards, handle, mast; below it bumper and lamps."""
+    """The parts in frame_link: planks, boards, handle and mast; below these, bumper and lamps."""
     mesh = Mesh(f"{CART_MESHES}/frame.dae")
 
     planks, gap, run = 6, 0.006, 0.76
@@ -235,7 +235,7 @@ def caster() -> Mesh:
 
 
 def camera() -> Mesh:
-    """Looks along +x from the origin; drawn at a quarter of its size, as the tutorials have it."""
+    """A camera that looks along +x; modelled at a quarter of its size, as in the tutorials."""
     mesh = Mesh(f"{CART_MESHES}/camera.dae")
 
     def add(material: Material, solid: Solid) -> None:
@@ -261,7 +261,7 @@ def camera() -> Mesh:
 
 
 def traffic_cone() -> Mesh:
-    """0.5 m high, standing on z = 0."""
+    """An object 0.5 m high, with its lower face at z = 0."""
     mesh = Mesh("models/traffic_cone/meshes/traffic_cone.dae")
     mesh.add(RUBBER, slab(0.30, 0.30, 0.03, 0.04, 0.006, segments=3).moved(z=0.015))
 
@@ -289,7 +289,7 @@ def ramp() -> Mesh:
     ends = [np.array([(x, y, z) for x, z in side]) for y in (-RAMP_WIDTH / 2, RAMP_WIDTH / 2)]
     mesh.add(CONCRETE, outward(loft(ends)))
 
-    # Paint, 3 mm proud lest it flicker: strips along the edges, cleats across the slopes.
+    # Paint, raised by 3 mm to prevent flicker: strips along the edges, cleats on the slopes.
     slope = math.hypot(run, RAMP_HEIGHT)
     for edge in (-1, 1):
         y = edge * (RAMP_WIDTH / 2 - 0.05)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Write the plugin reference from the plugins: docs/plugins.md and a page each in docs/plugins/.
+"""Write the plugin reference from the plugins: an index, a page each, and message types.
 
     python tools/make_plugin_reference.py            # writes the pages
     python tools/make_plugin_reference.py --check    # exits with 1 if a page is out of date
@@ -40,7 +40,7 @@ from cartwheel.plugins.catalogue import all_plugins
 from cartwheel.session import Session
 
 DOCS = Path(__file__).resolve().parent.parent / "docs"
-INDEX, FOLDER = "plugins.md", "plugins"
+INDEX, TOPICS, FOLDER = "plugins.md", "topics.md", "plugins"
 HERE = Origin(file="<reference>")
 MODEL, SENSOR = "my_robot", "my_sensor"
 _NEEDED = {("joint", ""), ("body", "")}
@@ -79,13 +79,28 @@ brake and its forces stop. The error message names the plugin, its model and the
 """
 
 
+_TOPICS_INTRODUCTION = f"""\
+# Topics and services by type
+
+{_MADE}
+
+The plugins and sensors that publish, subscribe to or serve each type. Their pages give the default
+names. `cartwheel topic list -v` and `cartwheel service list` show the names in a running
+simulation. Every simulation publishes `/clock`. [ROS 1](ros1.md) and [ROS 2](ros2.md) list the
+services of the node.
+"""
+
+Interface = list[tuple[str, str, str]]
+"""Role, name and type of topics and services."""
+
+
 def main() -> int:
     """Writes or checks the pages; returns the exit status."""
     parser = argparse.ArgumentParser(description="Write the plugin reference from the plugins.")
     parser.add_argument("--check", action="store_true", help="write nothing; report stale pages")
     arguments = parser.parse_args()
     pages = reference()
-    present = {INDEX, *(f"{FOLDER}/{path.name}" for path in (DOCS / FOLDER).glob("*.md"))}
+    present = {INDEX, TOPICS, *(f"{FOLDER}/{path.name}" for path in (DOCS / FOLDER).glob("*.md"))}
     stale = sorted(present - pages.keys())
     for name, text in pages.items():
         path = DOCS / name
@@ -108,7 +123,8 @@ def reference() -> dict[str, str]:
     """All pages: the text by the path below docs."""
     # Without those of packages that happen to be installed here.
     ours = [plugin for plugin in all_plugins() if plugin.__module__.startswith("cartwheel.")]
-    pages = {f"{FOLDER}/{_slug(plugin)}.md": _page(plugin) for plugin in ours}
+    interfaces = {plugin: _interface(plugin) for plugin in ours}
+    pages = {f"{FOLDER}/{_slug(p)}.md": _page(p, interfaces[p]) for p in ours}
     assert len(pages) == len(ours), "two plugins have the same page"
     tables = [
         _index(
@@ -118,7 +134,26 @@ def reference() -> dict[str, str]:
         _index("In a world", [p for p in ours if p.filenames and p.for_world]),
         _index("Sensors without a plugin", [p for p in ours if not p.filenames]),
     ]
-    return {INDEX: "\n".join([INTRODUCTION, *tables]), **pages}
+    return {INDEX: "\n".join([INTRODUCTION, *tables]), TOPICS: _topics(interfaces), **pages}
+
+
+def _topics(interfaces: dict[type[Plugin[Any]], Interface]) -> str:
+    lines = [_TOPICS_INTRODUCTION]
+    sections = {
+        "publishes": ("Published topics", "Plugins and sensors that publish it"),
+        "subscribes": ("Subscribed topics", "Plugins that subscribe to it"),
+        "serves": ("Services", "Plugins that serve it"),
+    }
+    for role, (heading, users) in sections.items():
+        lines += [f"## {heading}", "", f"| Type | {users} |", "|---|---|"]
+        links: dict[str, list[str]] = {}
+        for plugin, rows in interfaces.items():
+            link = f"[{_title(plugin)}]({FOLDER}/{_slug(plugin)}.md)"
+            for kind in dict.fromkeys(kind for each, _, kind in rows if each == role):
+                links.setdefault(kind, []).append(link)
+        lines += [f"| `{kind}` | {', '.join(found)} |" for kind, found in sorted(links.items())]
+        lines.append("")
+    return "\n".join(lines)
 
 
 def _index(heading: str, plugins: list[type[Plugin[Any]]]) -> str:
@@ -132,7 +167,7 @@ def _index(heading: str, plugins: list[type[Plugin[Any]]]) -> str:
     return "\n".join([f"## {heading}", "", f"| {column} | Purpose |", "|---|---|", *rows, ""])
 
 
-def _page(plugin: type[Plugin[Any]]) -> str:
+def _page(plugin: type[Plugin[Any]], interface: Interface) -> str:
     lines = [f"# {_title(plugin)}", "", _MADE, "", *_prose(plugin), ""]
     if len(plugin.filenames) > 1:
         others = ", ".join(f"`{name}`" for name in plugin.filenames[1:])
@@ -148,13 +183,13 @@ def _page(plugin: type[Plugin[Any]]) -> str:
         lines += ["Place it directly inside a `<gazebo>` of a URDF or a `<model>` of an SDF.", ""]
     fields = [_row(item, kind) for item, kind in _fields(plugin)]
     if fields:
-        lines += ["## Tags", "", "| Tag | Other spellings | Value | Default | Meaning |"]
-        lines += ["|---|---|---|---|---|", *fields, ""]
-    interface = _interface(plugin)
+        lines += ["## Tags", "", "| Tag | Value | Default | Meaning |"]
+        lines += ["|---|---|---|---|", *fields, ""]
     if interface:
         lines += ["## Topics and services", ""]
         lines += ["With each boolean tag `true` and the other tags at their defaults.", ""]
-        lines += ["| Name | Type | Role |", "|---|---|---|", *interface, ""]
+        lines += ["| Name | Type | Role |", "|---|---|---|"]
+        lines += [*(f"| `{name}` | `{kind}` | {role} |" for role, name, kind in interface), ""]
     return "\n".join([*lines, f"[All plugins and sensors](../{INDEX})", ""])
 
 
@@ -185,12 +220,11 @@ def _fields(plugin: type[Plugin[Any]]) -> Iterator[tuple[dataclasses.Field[Any],
 
 
 def _row(item: dataclasses.Field[Any], kind: Any) -> str:
-    first, *others = item.metadata["tags"]
-    spellings = ", ".join(f"`{name}`" for name in others)
+    names = "<br>".join(f"`{name}`" for name in item.metadata["tags"])
     value = _kind(kind)
     if item.metadata["unit"]:
         value = f"{value}, {item.metadata['unit']}"
-    cells = [f"`{first}`", spellings, value, _default(item), _markdown(item.metadata["doc"])]
+    cells = [names, value, _default(item), _markdown(item.metadata["doc"])]
     return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"
 
 
@@ -221,8 +255,8 @@ def _default(item: dataclasses.Field[Any]) -> str:
     return f"`{value:g}`" if isinstance(value, float) else f"`{value}`"
 
 
-def _interface(plugin: type[Plugin[Any]]) -> list[str]:
-    """What a plugin puts on the graph, as rows; asked of one that runs."""
+def _interface(plugin: type[Plugin[Any]]) -> Interface:
+    """The topics and services of a plugin that runs."""
     session = Session(WorldDescription(name="reference"))
     before = {topic.name for topic in session.graph.topics()}
     if plugin.for_world:
@@ -232,12 +266,19 @@ def _interface(plugin: type[Plugin[Any]]) -> list[str]:
         session.spawn(_robot(plugin))
     rows = []
     for topic in session.graph.topics():
-        for role, nodes in (("publishes", topic.publishers), ("reads", topic.subscribers)):
+        for role, nodes in (("publishes", topic.publishers), ("subscribes", topic.subscribers)):
             if nodes and topic.name not in before:
-                rows.append((role, topic.name, topic.type))
-    rows += [("offers", service.name, service.type) for service in session.graph.services()]
+                rows.append((role, topic.name, _wire_type(topic.type)))
+    rows += [
+        ("serves", service.name, _wire_type(service.type)) for service in session.graph.services()
+    ]
     session.close()
-    return [f"| `{name}` | `{kind}` | {role} |" for role, name, kind in rows]
+    return rows
+
+
+def _wire_type(kind: str) -> str:
+    """A type as ROS names it; here ROS 2's version of a package of ROS 1 has a suffix."""
+    return kind.replace("_ros2/", "/")
 
 
 def _tag(plugin: type[Plugin[Any]]) -> PluginTag:

@@ -55,7 +55,7 @@ NAVIGATION: list[tuple[str, list[Entry]]] = [
             "security-policy.md",
         ],
     ),
-    ("Tutorials", ["quickstart.md", "tutorial/README.md", "tutorial/[0-9]*.md", "tutorial/*.md"]),
+    ("Tutorials", ["tutorial/README.md", "tutorial/[0-9]*.md", "tutorial/*.md"]),
     (
         "How-to",
         [
@@ -77,7 +77,9 @@ NAVIGATION: list[tuple[str, list[Entry]]] = [
             ("Plugins and sensors", ["plugins/index.md", "plugins/*.md"]),
             ("Commands", ["commands/index.md", "commands/*.md"]),
             ("Diagnostic codes", ["codes/index.md", "codes/*.md"]),
+            "topics.md",
             "api.md",
+            "plugin-api.md",
             "gazebo-tags.md",
             "controllers.md",
             "worlds.md",
@@ -137,6 +139,8 @@ def main() -> int:
         return 1
     except subprocess.CalledProcessError as error:
         return error.returncode
+    except KeyboardInterrupt:  # which ends --serve
+        return 130
     return 0
 
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Writes the worlds that are named as gazebo_ros names its own, and the range sensors' models.
+"""Writes the worlds with the same names as those of gazebo_ros, and the range sensors' models.
 
-    python tools/make_worlds.py                # all
+    python tools/make_worlds.py                # all worlds
     python tools/make_worlds.py mud rubble     # some
 
 The rubble falls in a simulation until it lies, and is written as it lies there.
@@ -25,13 +25,13 @@ RED, GREEN, BLUE = (0.8, 0.15, 0.1), (0.15, 0.6, 0.2), (0.15, 0.3, 0.75)
 CLAY, STONE, RUST = (0.62, 0.30, 0.20), (0.55, 0.54, 0.50), (0.45, 0.27, 0.16)
 BROWN, METAL = (0.28, 0.19, 0.11), (0.62, 0.65, 0.68)
 FLOOR = 3.0
-"""m from floor to floor of the elevator."""
+"""Distance between the elevator's floors, m."""
 SILL = 0.1
-"""m from the ground to the elevator's lowest floor."""
+"""Height of the elevator's lowest floor above the ground, m."""
 
 
 def shapes() -> str:
-    """A box, a sphere and a cylinder of a metre, ahead of a robot at the origin."""
+    """A box, a sphere and a cylinder of 1 m, in front of a robot at the origin."""
     return world(
         "A box, a sphere and a cylinder to drive around and to push.",
         thing(_ball("sphere", 0.5, BLUE), pose=(3, 1.8, 0.5, 0, 0, 0), mass=1),
@@ -42,7 +42,7 @@ def shapes() -> str:
 
 
 def ranges() -> str:
-    """Three sensors, each with something to see at a distance that is known."""
+    """Three sensors, each with an object at a known distance."""
     parts = []
     for sensor, y, distance in (
         ("sonar", 2, 1.0),
@@ -62,7 +62,7 @@ def ranges() -> str:
 
 
 def mud() -> str:
-    """A soft, slippery patch ahead of a robot at the origin, with dry islands."""
+    """A soft, slippery area in front of a robot at the origin, with dry islands."""
     patch = Solid(
         name="mud",
         kind="box",
@@ -84,7 +84,7 @@ def mud() -> str:
 
 
 def elevator() -> str:
-    """A shaft with three floors, a car with a door, and a box that wants to go up."""
+    """A shaft with three floors, a car with a door, and a box to transport."""
     side, tall, thick = 2.6, 2.3, 0.08
     half, inside = side / 2, side / 2 - thick
     car = [
@@ -92,7 +92,7 @@ def elevator() -> str:
         _box("back", (thick, side, tall), METAL, pose=(-half + thick / 2, 0, tall / 2)),
         _box("left", (side, thick, tall), METAL, pose=(0, half - thick / 2, tall / 2)),
         _box("right", (side, thick, tall), METAL, pose=(0, -half + thick / 2, tall / 2)),
-        # Beside the opening, and what the open door goes behind.
+        # Beside the opening; the open door is behind these.
         _box("jamb", (0.04, inside, tall), METAL, pose=(half - 0.02, inside / 2, tall / 2)),
     ]
     door = _box("door", (0.04, inside - 0.02, tall - 0.02), RUST)
@@ -141,7 +141,7 @@ def elevator() -> str:
         "ramp",
         (math.hypot(SILL, 1.0), 2.4, 0.02),
         STONE,
-        # Its upper face goes from the sill to the ground.
+        # Its upper face is a slope from the sill to the ground.
         pose=(half + 0.52 - 0.01 * math.sin(slope), 0, SILL / 2 - 0.01, 0, slope, 0),
     )
     return world(
@@ -170,7 +170,7 @@ def willowgarage() -> str:
 
 
 def rubble() -> str:
-    """What is left of a wall: slabs and pipes that are stuck, and bricks as they fell."""
+    """The ruins of a wall: static slabs and pipes, and fallen bricks."""
     generator = np.random.default_rng(5)
 
     def somewhere(height: float) -> tuple[float, float, float]:
@@ -208,7 +208,7 @@ def _brick(name: str, pose: tuple[float, ...]) -> list[str]:
 def _settled(
     stuck: list[list[str]], bricks: dict[str, tuple[float, ...]]
 ) -> dict[str, tuple[float, ...]]:
-    """Lets bricks fall, and tells how those lie that come to rest."""
+    """Drops bricks and returns the poses of those that come to rest."""
     from cartwheel.description import load_text
     from cartwheel.description.model import WorldDescription
     from cartwheel.simulation import Simulation
@@ -224,7 +224,7 @@ def _settled(
         before = {name: simulation.pose(name) for name in bricks}
         asleep = simulation.data.tree_asleep
         model = simulation.model
-        # Neither those that rattle nor those that are buried.
+        # Exclude bricks that still move or are buried.
         restless = buried | {
             name for name in bricks if asleep[model.body_treeid[model.body(f"{name}::link").id]] < 0
         }

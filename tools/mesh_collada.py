@@ -1,4 +1,4 @@
-"""Solids with a material each, as a Collada file that Gazebo, rviz and Cartwheel read alike.
+"""Writes solids with one material each to a COLLADA file for Gazebo, RViz and Cartwheel.
 
 Units are metres, z is up. The same solids give the same bytes.
 """
@@ -14,13 +14,13 @@ import numpy as np
 
 from mesh_solids import Solid, joined
 
-# Corners between faces that meet at more than this are drawn sharp.
+# Edges with a larger angle between their faces have sharp shading.
 SMOOTH_ANGLE = math.radians(40)
 
 
 @dataclass(frozen=True)
 class Material:
-    """A colour with a name, in Collada's lambert-with-highlight model."""
+    """A named colour, in COLLADA's Lambert model with a highlight."""
 
     name: str
     diffuse: tuple[float, float, float]
@@ -30,7 +30,7 @@ class Material:
 
 @dataclass
 class Mesh:
-    """Solids with a material each, written as one Collada file."""
+    """Solids with one material each, written to one COLLADA file."""
 
     path: str
     parts: list[tuple[Material, Solid]] = field(default_factory=list)
@@ -76,7 +76,7 @@ def corner_normals(solid: Solid) -> np.ndarray:
 
 
 def numbers(values: np.ndarray, digits: int) -> str:
-    """Numbers as short text; rounding also removes what differs between processors."""
+    """Numbers as short text. Rounding also removes differences between processors."""
     rounded = np.round(values, digits) + 0.0
     return " ".join(f"{value:.{digits}f}".rstrip("0").rstrip(".") for value in rounded.ravel())
 
@@ -159,7 +159,7 @@ def node(material: Material) -> str:
 
 
 def collada(parts: Sequence[tuple[Material, Solid]]) -> str:
-    # The format demands a date; a fixed one keeps two runs identical.
+    # The format requires a date; with a fixed one, two runs give identical files.
     materials = [material for material, _ in parts]
     library = "".join(
         f'    <material id="{m.name}-material" name="{m.name}">'

@@ -1,4 +1,4 @@
-"""Closed triangle solids from numbers: what the cart's and the models' meshes are put together of.
+"""Closed triangle solids from dimensions: the parts of the cart's and the models' meshes.
 
 Units are metres, z is up.
 """
@@ -182,7 +182,7 @@ def tube(path: Sequence[tuple[float, float, float]], radius: float, segments: in
 
 
 def outward(solid: Solid) -> Solid:
-    """The closed solid with its faces turned to the outside."""
+    """The closed solid with its faces oriented outwards."""
     a, b, c = (solid.vertices[solid.faces[:, k]] for k in range(3))
     volume = np.einsum("ij,ij->", a, np.cross(b, c))
     return solid if volume > 0 else Solid(solid.vertices, solid.faces[:, ::-1])

@@ -7,21 +7,21 @@ from collections.abc import Iterator, Sequence
 from world_text import Solid, link, model
 
 HEIGHT, THICK = 2.5, 0.15
-"""m, of the walls."""
+"""Height and thickness of the walls, m."""
 DOOR, GATE = 1.5, 2.2
-"""m, width of an opening: of a room, of a hall."""
+"""Width of an opening of a room and of a hall, m."""
 LINTEL = 2.1
-"""m above the ground."""
+"""Height of the lintels above the ground, m."""
 HALF_X, HALF_Y = 27.0, 18.0
 BLOCKS = ((-27.0, -10.5), (-8.0, 8.0), (10.5, 27.0))
-"""Along x, with cross corridors between them."""
+"""Range of each block along x, with cross corridors between them, m."""
 HALL, NEAR, FAR = 1.5, 6.5, 8.5
-"""|y| of the main corridor's wall, of the offices' back wall, of the large rooms' wall."""
+"""|y| of the main corridor's wall, the offices' back wall and the large rooms' wall, m."""
 OFFICES = 4
-"""In a row of each block."""
+"""Number of offices in a row of each block."""
 WHITE, DARK, WOOD = (0.82, 0.81, 0.77), (0.35, 0.37, 0.40), (0.62, 0.45, 0.28)
 Gap = tuple[float, float]
-"""Middle and width of an opening."""
+"""Centre and width of an opening."""
 
 
 def office_floor() -> list[list[str]]:
@@ -79,7 +79,7 @@ def _along_y(name: str, x: float, start: float, end: float, gaps: Sequence[Gap])
     start, end = min(start, end), max(start, end)
     for part, (low, high, bottom) in enumerate(_parts(start, end, gaps)):
         tall = HEIGHT - bottom
-        # Walls along x run through; those across end at their faces.
+        # Walls along x are continuous; those across end at their faces.
         yield Solid(
             name=f"{name}_{part}",
             kind="box",
@@ -120,7 +120,7 @@ def _furniture() -> Iterator[Solid]:
 
 
 def _table(name: str, x: float, y: float, length: float, depth: float) -> Iterator[Solid]:
-    """A top on two boards."""
+    """A desk: a top on two boards."""
     top = (length, depth, 0.04)
     yield Solid(name=name, kind="box", size=top, pose=(x, y, 0.73, 0, 0, 0), colour=WOOD)
     for leg, side in (("a", -1), ("b", 1)):
@@ -134,7 +134,7 @@ def _table(name: str, x: float, y: float, length: float, depth: float) -> Iterat
 
 
 def _doors() -> Iterator[list[str]]:
-    """Doors of the middle block's offices, ajar: a push opens them."""
+    """Doors of the offices in the middle block. They are ajar and open when pushed."""
     left, right = BLOCKS[1]
     width = (right - left) / OFFICES
     for i in range(OFFICES):

@@ -35,13 +35,25 @@ $ cartwheel explain CW204
 _API_INTRODUCTION = """\
 # Python API
 
-The public names of the package `cartwheel`. [From Python](python.md) shows them at work.
+The public names of the package `cartwheel`, and the diagnostics that they report.
+[From Python](python.md) shows how to use them.
+"""
+
+_PLUGIN_API = """\
+# Plugin API
+
+The base class of plugins, and the fields of their parameters. A package adds plugins through the
+entry point group `cartwheel.plugins`.
+
+::: cartwheel.plugins.base.Plugin
+
+::: cartwheel.plugins.parameters.tag
 """
 
 
 def pages() -> dict[str, str]:
     """The text of each page, by its path on the site."""
-    return {**_command_pages(), **_code_pages(), API: _api_page()}
+    return {**_command_pages(), **_code_pages(), API: _api_page(), "plugin-api.md": _PLUGIN_API}
 
 
 def command_page(name: str) -> str:
@@ -153,6 +165,7 @@ def _raised(text: str) -> str:
 
 def _api_page() -> str:
     names = sorted(cartwheel.__all__, key=_importance)
+    names += ["errors.Diagnostic", "errors.Code", "errors.Origin"]
     return "\n".join([_API_INTRODUCTION, *(f"::: cartwheel.{name}\n" for name in names)])
 
 

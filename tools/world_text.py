@@ -9,19 +9,19 @@ Numbers = Sequence[float]
 
 
 def words(values: Iterable[float]) -> str:
-    """Numbers as SDF has them, to a tenth of a millimetre."""
+    """Numbers as SDF text, rounded to 0.1 mm."""
     return " ".join(f"{round(value, 4) + 0.0:g}" for value in values)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Solid:
-    """A box, cylinder or sphere with its place in a link."""
+    """A box, cylinder or sphere with its pose in a link."""
 
     name: str
     kind: str
     """box, cylinder or sphere."""
     size: Numbers
-    """Edges; radius and length; or radius, m."""
+    """Edge lengths; radius and length; or radius; m."""
     pose: Numbers = (0, 0, 0, 0, 0, 0)
     colour: Numbers = (0.7, 0.7, 0.7)
     mu: float | None = None
@@ -71,7 +71,7 @@ class Solid:
 
 
 def link(name: str, solids: Sequence[Solid], *, pose: Numbers = (), mass: float = 0.0) -> list[str]:
-    """A link; its mass is that of its first solid, uniform."""
+    """A link. Its mass and inertia are those of its first solid, with uniform density."""
     found = [f'<link name="{name}">']
     if pose:
         found.append(f"  <pose>{words(pose)}</pose>")
@@ -88,7 +88,7 @@ def link(name: str, solids: Sequence[Solid], *, pose: Numbers = (), mass: float 
 
 
 def model(name: str, *parts: Sequence[str], pose: Numbers = (), static: bool = False) -> list[str]:
-    """A model of links, joints and whatever else."""
+    """A model with links, joints and other elements."""
     found = [f'<model name="{name}">']
     if static:
         found.append("  <static>true</static>")
@@ -100,12 +100,12 @@ def model(name: str, *parts: Sequence[str], pose: Numbers = (), static: bool = F
 
 
 def thing(solid: Solid, *, pose: Numbers, mass: float = 0.0) -> list[str]:
-    """A model of one solid; without a mass it stays where it is."""
+    """A model with one solid; static without a mass."""
     return model(solid.name, link("link", [solid], mass=mass), pose=pose, static=not mass)
 
 
 def include(uri: str, *, name: str = "", pose: Numbers = ()) -> list[str]:
-    """A shipped model."""
+    """An include of a shipped model."""
     found = ["<include>"]
     if name:
         found.append(f"  <name>{name}</name>")
@@ -116,7 +116,7 @@ def include(uri: str, *, name: str = "", pose: Numbers = ()) -> list[str]:
 
 
 def world(comment: str, *parts: Sequence[str], eye: Numbers) -> str:
-    """A world's file: sun, ground, and the parts."""
+    """The text of a world file: sun, ground and the parts."""
     head = ["<gravity>0 0 -9.8</gravity>", *include("sun"), *include("ground_plane")]
     tail = [
         "<scene><ambient>0.4 0.4 0.4 1</ambient><background>0.7 0.7 0.7 1</background></scene>",
@@ -131,5 +131,5 @@ def world(comment: str, *parts: Sequence[str], eye: Numbers) -> str:
 
 
 def indented(lines: Sequence[str]) -> list[str]:
-    """The lines, one level deeper."""
+    """The lines, indented by one level."""
     return [f"  {line}" for line in lines]

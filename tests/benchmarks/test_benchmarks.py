@@ -56,5 +56,5 @@ def test_every_frame_is_delivered(tmp_path: Path):
 
 
 def test_an_unknown_part_is_refused(tmp_path: Path):
-    with pytest.raises(AssertionError, match="no part gazebo"):
+    with pytest.raises(AssertionError, match="unknown part gazebo"):
         measure(tmp_path, "gazebo")

@@ -83,7 +83,7 @@ def test_each_master_has_its_own(masters: list[Master], client: Client) -> None:
         late = client(masters[1].environment)
         assert late.stderr is not None
         assert masters[1].uri in late.stderr.readline()
-        assert "others run" in late.stderr.readline()
+        assert "other simulations are running" in late.stderr.readline()
         assert masters[0].uri in late.stderr.readline()
         early = client(masters[0].environment)
         one = shown(early)

@@ -729,7 +729,7 @@ def test_the_command_records_and_says_so(tmp_path: Path) -> None:
         *("--record", "a.mcap", "--record-topics", "/clock", "--record-topics", "/odom"),
         folder=tmp_path,
     )
-    assert "recorded 400 messages of 2 topics" in said
+    assert "recorded 400 messages on 2 topics" in said
     assert {t: len(m) for t, m in read_with_mcap(tmp_path / "a.mcap").items()} == {
         "/clock": 200,
         "/odom": 200,

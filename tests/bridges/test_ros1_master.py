@@ -257,7 +257,7 @@ def test_who_can_reach_it(
         assert listening(parent(master)) == {(address, port) for port in ports}
         process.send_signal(signal.SIGINT)
         output, _ = process.communicate(timeout=PATIENCE)
-    told = re.search(r"open to other computers, without a password: ports (.*)", output)
+    told = re.search(r"open to other computers without a password: ports (.*)", output)
     if address == "127.0.0.1":
         assert told is None
     else:

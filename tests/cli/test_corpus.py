@@ -21,7 +21,7 @@ def test_a_folder_gives_a_line_for_each_robot(program, tmp_path):
     text = "\n".join(rest)
     assert "bad.urdf: error:" in text
     assert "missing plugin unheard_of: 1 robot\n" in text
-    assert text.endswith("1 of 2 robots load and do all they should")
+    assert text.endswith("1 of 2 robots pass all tests")
 
 
 def test_json_has_the_same(program, tmp_path):
@@ -37,5 +37,5 @@ def test_json_has_the_same(program, tmp_path):
 
 
 def test_a_folder_without_robots_is_an_error(program, tmp_path):
-    assert "holds no robot" in program("corpus", tmp_path, status=2).stderr
+    assert "contains no robots" in program("corpus", tmp_path, status=2).stderr
     assert "does not exist" in program("corpus", tmp_path / "no", status=2).stderr

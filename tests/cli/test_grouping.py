@@ -1,49 +1,74 @@
 """Many warnings of one kind as one line."""
 
+import pytest
+
 from cartwheel.cli.commands.grouping import grouped
-from cartwheel.errors import Diagnostic, Origin
+from cartwheel.errors import Code, Diagnostic, Origin
+
+MASS = Code("CW998", "odd-mass", "warning", "an odd mass")
+NAME = Code("CW999", "odd-name", "warning", "an odd name")
 
 
-def told(message, line=0, *, file="/ws/a.urdf", severity="warning"):
+def odd(link="a", line=0, *, code=MASS, file="/ws/a.urdf", severity=None, **values):
     origin = Origin(file=file, line=line) if line else None
-    return Diagnostic(severity=severity, message=message, origin=origin)
+    values = {"link": link, **values}
+    message = f"link {link} is odd"
+    return code.diagnostic(message, origin=origin, severity=severity, values=values)
 
 
 def lines(*diagnostics):
     return [each.message for each in grouped(diagnostics)]
 
 
-def test_equal_messages_are_one_with_their_places():
-    found = grouped([told("x is odd", line) for line in (3, 5, 8, 9, 12)])
-    assert [str(each) for each in found] == [
-        "/ws/a.urdf:3: warning: x is odd. 4 more like it: :5, :8, :9, …"
+@pytest.mark.wording
+def test_equal_ones_are_one_with_their_places():
+    together = grouped([odd(line=line) for line in (3, 5, 8, 9, 12)])
+    assert [str(each) for each in together] == [
+        "/ws/a.urdf:3: warning: link a is odd (and 4 more: line 5, line 8, line 9, …)"
+        " [CW998 odd-mass]"
     ]
 
 
-def test_places_in_other_files_bear_their_names():
-    found = lines(told("x is odd", 3), told("x is odd", 5, file="/ws/b.xacro"))
-    assert found == ["x is odd. 1 more like it: b.xacro:5"]
+@pytest.mark.wording
+def test_places_in_other_files_have_their_names():
+    together = lines(odd(line=3), odd(line=5, file="/ws/b.xacro"))
+    assert together == ["link a is odd (and 1 more: b.xacro:5)"]
 
 
-def test_messages_that_differ_in_names_and_numbers_are_one_from_three_on():
-    odd = [told(f'link "{name}" has the mass {n}', n) for n, name in enumerate("abc", 1)]
-    assert lines(*odd[:2]) == ['link "a" has the mass 1', 'link "b" has the mass 2']
-    assert lines(*odd) == ['link "a" has the mass 1. 2 more like it: "b" :2, "c" :3']
+@pytest.mark.wording
+def test_those_that_differ_in_names_and_numbers_are_one_from_three_on():
+    many = [odd(name, n, mass=float(n)) for n, name in enumerate("abc", 1)]
+    assert lines(*many[:2]) == ["link a is odd", "link b is odd"]
+    assert lines(*many) == ['link a is odd (and 2 more: "b" line 2, "c" line 3)']
 
 
-def test_where_something_was_searched_makes_no_difference():
-    searched = [told(f'no "{n}". Searched: /{n}/x, /y', i) for i, n in enumerate("abc", 1)]
-    assert lines(*searched) == ['no "a". Searched: /a/x, /y. 2 more like it: "b" :2, "c" :3']
+@pytest.mark.wording
+def test_those_without_a_place_are_counted():
+    assert lines(odd(), odd(), odd()) == ["link a is odd (and 2 more)"]
 
 
-def test_what_has_no_place_is_counted():
-    assert lines(told("x"), told("x"), told("x")) == ["x. 2 more like it"]
+def test_errors_come_first_then_the_order_of_files_and_lines():
+    mixed = [
+        odd("c", 9),
+        odd("n", 1, severity="info"),
+        odd("b", 2, code=NAME, file="/ws/b.urdf"),
+        odd("a", 4, code=NAME),
+        odd("e", 7, severity="error"),
+    ]
+    assert [each.values["link"] for each in grouped(mixed)] == ["e", "a", "c", "b", "n"]
 
 
-def test_the_gravest_comes_first_and_all_else_keeps_its_order():
-    mixed = [told("b", 1), told("n", severity="info"), told("a", 2), told("e", severity="error")]
-    assert lines(*mixed) == ["e", "b", "a", "n"]
+def test_codes_severities_and_attributes_are_not_mixed():
+    apart = [
+        odd(),
+        odd(code=NAME),
+        odd(severity="error"),
+        odd(attribute="effort"),
+        odd(attribute="velocity"),
+    ]
+    assert len(grouped(apart)) == 5
 
 
-def test_severities_are_not_mixed():
-    assert lines(told("x"), told("x", severity="error")) == ["x", "x"]
+def test_without_a_code_the_message_decides():
+    made = [Diagnostic(severity="warning", message=text) for text in "xxyx"]
+    assert len(grouped(made)) == 2

@@ -195,7 +195,7 @@ def test_two_simulations_are_told_apart(program, ends):
     assert "/odom" in program("topic", "list").stdout
     for process in (first, second):
         ends(process, signal.SIGTERM)
-    assert "another simulation runs already" in second.stderr.read()
+    assert "another simulation is running" in second.stderr.read()
 
 
 def test_a_terminal_gets_colours_and_something_to_try(program):

@@ -233,7 +233,7 @@ def test_clients_reach_it(drives: Callable[[str], Drive], tmp_path: Path) -> Non
 
     try:
         assert process.stdout is not None
-        assert "plays" in process.stdout.readline()
+        assert "playing" in process.stdout.readline()
         assert "frame_id" in command("topic", "echo", "-n", "1", "/imu/data")
         assert "rosbots" in command("models")
         assert "cannot be deleted" in command("delete", "rosbots")

@@ -43,7 +43,7 @@ class Keyboard:
         )  # fmt: skip
         os.close(slave)
         self.said = ""
-        self.until("Ctrl-C ends")
+        self.until("Ctrl-C quits")
 
     def until(self, text):
         """Reads what the terminal shows, until that."""

@@ -98,7 +98,7 @@ def test_on_all_addresses_the_page_wants_its_token(
         port = started.port
         assert started.process.stdout is not None
         told = started.process.stdout.readline()
-        assert f"open to other computers, with the token: http://{socket.gethostname()}:" in told
+        assert f"open to other computers with the token: http://{socket.gethostname()}:" in told
         monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path))
         (entry,) = registered()
         assert entry.port == port and entry.url is not None

@@ -45,7 +45,7 @@ HELP = """\
    m  ,  .      backward                            M < >
 
    q z  both speeds up, down      w x  linear      e c  angular      t b  up, down
-   any other key stops            Ctrl-C ends"""
+   any other key stops            Ctrl-C quits"""
 
 
 @dataclass

@@ -130,7 +130,7 @@ def test_hardware_of_another_kind_may_offer_anything(spoil, told):
 def test_two_controllers_of_one_joint_are_a_note(arm, told):
     (finding,) = told(arm, ARM + ARM.replace("arm:", "other:"))
     assert (finding.code.name, finding.severity) == ("joint-claimed-twice", "info")
-    assert '"arm" and "other"' in finding.message
+    assert (finding.values["other"], finding.values["controller"]) == ("arm", "other")
     assert finding.origin.line == 7
     # Of two types one is the other's alternative.
     other = "other:\n  type: effort_controllers/JointEffortController\n  joint: arm_joint\n"
@@ -197,7 +197,7 @@ def test_a_type_of_ros1_in_a_file_of_ros2(spoil, told, take):
     text = spoil(system("position"))
     (finding,) = told(text, yaml)
     assert finding.code.name == "controller-type-unknown"
-    assert "ROS 2 has the type" in finding.message
+    assert finding.values["meant"] == "joint_trajectory_controller/JointTrajectoryController"
     assert told(text, take(yaml, finding)) == []
 
 

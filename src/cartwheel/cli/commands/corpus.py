@@ -23,16 +23,16 @@ _HEAD = (
 def corpus(
     folders: Sequence[Path], package_path: Sequence[Path], *, json: bool, standing: float
 ) -> int:
-    """Tries all robots; returns the status: 0 where all are good, else 1.
+    """Tests all robots. Returns the exit status: 0 if all pass, else 1.
 
     Args:
-        folders: With robots at any depth, or single files.
-        package_path: Where packages are looked for first.
-        json: Whether a program reads it.
-        standing: s that each is left alone.
+        folders: Folders with robots at any depth, or single files.
+        package_path: Folders that are searched first for packages.
+        json: Print JSON instead of a table.
+        standing: Simulated time without commands before the tests, in s.
 
     Raises:
-        CartwheelError: There is no robot.
+        CartwheelError: No robot was found.
     """
     files = [file for folder in folders for file in _robots(folder, package_path)]
     verdicts = []
@@ -47,7 +47,7 @@ def corpus(
 
 
 def as_mapping(verdict: Verdict) -> dict[str, Any]:
-    """A verdict in the form that docs/corpus.md promises."""
+    """A verdict in the format that docs/corpus.md documents."""
     stand = verdict.stand
     return {
         "schema": SCHEMA,
@@ -103,7 +103,8 @@ def _robots(folder: Path, package_path: Sequence[Path]) -> list[Path]:
     found = robots_in(folder, package_path=package_path)
     if not found:
         raise CartwheelError(
-            f"{folder} holds no robot", hint="Expected are .xacro, .urdf or .sdf files below it."
+            f"{folder} contains no robots",
+            hint="Expected .xacro, .urdf or .sdf files in it or its subfolders.",
         )
     return found
 
@@ -111,8 +112,8 @@ def _robots(folder: Path, package_path: Sequence[Path]) -> list[Path]:
 def _tried(file: Path, package_path: Sequence[Path], standing: float) -> Verdict:
     try:
         return try_robot(file, package_path=package_path, standing=standing)
-    except Exception as error:  # noqa: BLE001 - the others are tried all the same
-        return replace(Verdict(file=file), error=f"a fault of Cartwheel: {error!r}")
+    except Exception as error:  # noqa: BLE001 - the other robots are tested anyway
+        return replace(Verdict(file=file), error=f"internal error: {error!r}")
 
 
 def _show(verdicts: Sequence[Verdict], folders: Sequence[Path]) -> None:
@@ -129,7 +130,7 @@ def _show(verdicts: Sequence[Verdict], folders: Sequence[Path]) -> None:
         say(f"  {verdict.error}")
     for verdict in verdicts:
         if verdict.reasons:
-            say(f"\n{paint(shown_path(verdict.file), 'bold')} does not drive as it is told:")
+            say(f"\n{paint(shown_path(verdict.file), 'bold')} does not drive as commanded:")
             for reason in verdict.reasons:
                 say(f"  {reason}")
     missing = sorted({name for verdict in verdicts for name in verdict.missing})
@@ -139,11 +140,11 @@ def _show(verdicts: Sequence[Verdict], folders: Sequence[Path]) -> None:
             users = sum(name in verdict.missing for verdict in verdicts)
             say(f"missing plugin {name}: {users} robot{'s' if users != 1 else ''}")
     good = sum(verdict.good for verdict in verdicts)
-    say(f"\n{good} of {len(verdicts)} robots load and do all they should")
+    say(f"\n{good} of {len(verdicts)} robots pass all tests")
 
 
 def _name(file: Path, folders: Sequence[Path]) -> str:
-    """As short as it is clear: within the one folder that was asked for, or as elsewhere."""
+    """The file relative to the folder, if there is only one; else as in other messages."""
     if len(folders) == 1 and folders[0] in file.parents:
         return str(file.relative_to(folders[0]))
     return shown_path(file)
@@ -159,7 +160,7 @@ def _row(verdict: Verdict) -> tuple[str, ...]:
     if verdict.loaded and verdict.error and stand is None:
         state = "diverges"
     worst = max(verdict.reaches, key=lambda each: abs(each.error), default=None)
-    plugins = f"{len(verdict.plugins)} act"
+    plugins = f"{len(verdict.plugins)} loaded"
     if verdict.missing:
         plugins += f", missing {', '.join(verdict.missing)}"
     return (

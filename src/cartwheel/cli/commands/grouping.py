@@ -1,62 +1,70 @@
-"""Diagnostics that say the same of many places, as one line each."""
+"""Diagnostics of one kind as one, which lists the other places."""
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import PurePath
 
+from cartwheel.cli.showing import difference
 from cartwheel.errors import Diagnostic, Origin
 
 _SHOWN = 3
 """Places, or names, beside the first."""
 _ORDER = ("error", "warning", "info")
-_NAMES = re.compile(r'"([^"]*)"')
-_VARYING = re.compile(r'"[^"]*"|[-+]?\d[\d.eE+-]*|(?:Searched|Looked for)[: ].*')
 
 
 def grouped(diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
-    """One for all that differ in names and numbers alone, the gravest first.
+    """One for all of a kind, which may differ in names and numbers alone.
 
-    The first of a group is told whole, with the places of some more; of what differs in
-    nothing but names, a group begins with the third.
+    Errors come first; diagnostics of the same severity are in the order of their files and lines,
+    files in the order in which they come. The first of a group is whole, and the places of some
+    others follow. Two that differ in their values stay two.
     """
-    groups: dict[tuple[str, str], list[Diagnostic]] = {}
+    groups: dict[tuple[object, ...], list[Diagnostic]] = {}
+    files: dict[str, int] = {"": -1}
     for each in diagnostics:
-        groups.setdefault((each.severity, _VARYING.sub("…", each.message)), []).append(each)
-    found = []
+        groups.setdefault(each.kind, []).append(each)
+        files.setdefault(_file(each), len(files))
+    result: list[Diagnostic] = []
     for members in groups.values():
-        alike = len({each.message for each in members}) == 1
+        alike = all(dict(each.values) == dict(members[0].values) for each in members)
         if len(members) == 1 or (len(members) == 2 and not alike):
-            found.extend(members)
+            result.extend(members)
         else:
-            found.append(_one(members, alike=alike))
-    return sorted(found, key=lambda each: _ORDER.index(each.severity))
+            result.append(_one(members, alike=alike))
+
+    def order(each: Diagnostic) -> tuple[int, int, int]:
+        line = each.origin.line if each.origin is not None else 0
+        return (_ORDER.index(each.severity), files[_file(each)], line)
+
+    return sorted(result, key=order)
+
+
+def _file(diagnostic: Diagnostic) -> str:
+    return diagnostic.origin.file if diagnostic.origin is not None else ""
 
 
 def _one(members: list[Diagnostic], *, alike: bool) -> Diagnostic:
     first, others = members[0], members[1:]
-    places = list(dict.fromkeys(_place(each, first.origin) for each in others))
+    places = [_place(each, first.origin) for each in others]
     if not alike:
-        places = [f"{_difference(each, first)}{_place(each, first.origin)}" for each in others]
+        names = (difference(each, first) for each in others)
+        places = [
+            f'"{name}" {place}'.strip() if name else place
+            for name, place in zip(names, places, strict=True)
+        ]
+    places = [place for place in dict.fromkeys(places) if place]
     more = ", …" if len(places) > _SHOWN else ""
-    end = "" if first.message.endswith(("?", ".")) else "."
-    text = f"{first.message}{end} {len(others)} more like it"
-    if any(places):
+    text = f"{first.message} (and {len(others)} more"
+    if places:
         text += f": {', '.join(places[:_SHOWN])}{more}"
-    return replace(first, message=text)
+    return replace(first, message=f"{text})")
 
 
 def _place(each: Diagnostic, beside: Origin | None) -> str:
     if each.origin is None:
         return ""
     if beside is not None and each.origin.file == beside.file:
-        return f":{each.origin.line}"
+        return f"line {each.origin.line}"
     return f"{PurePath(each.origin.file).name}:{each.origin.line}"
-
-
-def _difference(each: Diagnostic, first: Diagnostic) -> str:
-    """The first name that the two do not share."""
-    pairs = zip(_NAMES.findall(each.message), _NAMES.findall(first.message), strict=False)
-    return next((f'"{name}" ' for name, other in pairs if name != other), "")

@@ -68,7 +68,8 @@ def wait_for_simulation(master: str | None) -> Running:
             told = True
             note(f"waiting for a simulation of the ROS master {master or MASTER_URI}")
             if known:
-                note(f"others run: {VARIABLE}=PID shows one of them\n{_listing(known)}")
+                hint = f"set {VARIABLE}=PID to show one of them"
+                note(f"other simulations are running; {hint}\n{_listing(known)}")
         time.sleep(_LOOKS)
 
 
@@ -137,4 +138,4 @@ def _look_for_browser(client: ControlClient, before: int) -> None:
             say("shown in the browser")
             return
         time.sleep(_LOOKS)
-    note("no browser has loaded the page")
+    note("no browser has opened the page")

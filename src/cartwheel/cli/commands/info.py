@@ -1,4 +1,4 @@
-"""What a recording holds."""
+"""The contents of a recording."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from cartwheel.cli.commands.report import size_text
 from cartwheel.cli.console import paint, print_warning, say, say_table
 
 _SINCE_1970 = 10**17
-"""ns: recordings that begin later were stamped by a wall clock."""
+"""ns; recordings that begin later have stamps of a wall clock."""
 
 
 def info(path: Path, *, as_json: bool) -> None:
-    """Lists a recording of any form.
+    """Prints the contents of a recording in any format.
 
     Raises:
         RecordingError: It cannot be read.
@@ -58,7 +58,7 @@ def _described(path: Path, recording: Recording) -> dict[str, Any]:
 
 
 def _print(path: Path, recording: Recording) -> None:
-    encodings = {"cdr": "ROS 2's messages", "ros1": "ROS 1's messages"}
+    encodings = {"cdr": "ROS 2 messages", "ros1": "ROS 1 messages"}
     kinds = sorted({encodings.get(t.encoding, t.encoding) for t in recording.topics})
     _line("file", f"{path}, {recording.form}{', ' + ', '.join(kinds) if kinds else ''}")
     _line("size", size_text(recording.size))
@@ -69,11 +69,11 @@ def _print(path: Path, recording: Recording) -> None:
         _line(
             "time", f"{(last - first) / 1e9:.3f} s, {first / 1e9:.3f} to {last / 1e9:.3f} s{began}"
         )
-    _line("holds", f"{sum(topic.count for topic in recording.topics)} messages")
+    _line("messages", str(sum(topic.count for topic in recording.topics)))
     for name, size in recording.attachments.items():
-        _line("with", f"{name}, {size_text(size)}")
+        _line("attached", f"{name}, {size_text(size)}")
     if recording.notes:
-        _line("of", ", ".join(f"{key} {value}" for key, value in recording.notes.items()))
+        _line("metadata", ", ".join(f"{key} {value}" for key, value in recording.notes.items()))
     rows = [["topic", "type", "messages", "rate"]]
     for topic in _sorted(recording):
         rate = "latched" if topic.latched else f"{topic.rate:.4g} Hz" if topic.rate else ""
@@ -82,7 +82,8 @@ def _print(path: Path, recording: Recording) -> None:
     say_table(rows)
     if not recording.complete:
         print_warning(
-            "its end is missing: whoever wrote it was interrupted. What is listed is there"
+            "the recording is incomplete: its writer was interrupted."
+            " The listed messages are readable"
         )
 
 
@@ -97,4 +98,4 @@ def _date(time_ns: int) -> str:
 
 
 def _line(title: str, text: str) -> None:
-    say(f"{paint(title.ljust(6), 'dim')} {text}")
+    say(f"{paint(title.ljust(8), 'dim')} {text}")

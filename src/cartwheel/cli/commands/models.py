@@ -1,4 +1,4 @@
-"""Models into and out of a running simulation."""
+"""Spawning, deleting and listing models."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ def spawn(
     model: str | None,
     package_path: Sequence[Path],
 ) -> None:
-    """Spawns a file; its description is read by the simulation's process."""
+    """Spawns a file. The simulation's process reads the description."""
     with connect(sim) as client:
-        # What a name means depends on the folder that the user is in, not the simulation.
+        # Names are relative to the user's folder, not the simulation's.
         from cartwheel.description.shipped import find_description
 
         path = find_description(file, package_path).absolute()
@@ -57,13 +57,13 @@ def delete(sim: int | None, model: str) -> None:
 
 
 def print_list(sim: int | None) -> None:
-    """A table of all models, as the world and the user put them there."""
+    """Prints a table of all models."""
     with connect(sim) as client:
         found = client.request("models")["models"]
     if not found:
         note("the world is empty")
         return
-    rows = [["model", "x", "y", "z", "yaw", "mass", "from"]]
+    rows = [["model", "x", "y", "z", "yaw", "mass", "file"]]
     for one in found:
         x, y, z = one["position"]
         yaw = math.degrees(one["rpy"][2])

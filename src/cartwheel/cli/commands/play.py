@@ -80,7 +80,7 @@ def play(options: Options) -> None:
         server = ControlServer(session, title=f"{options.file.name}, played", load=_refuse)
         with interrupts.finally_do(server.close):
             length = (player.end_ns - player.start_ns) / 1e9
-            say(f"plays   {options.file}, {length:.3f} s, {len(recording.topics)} topics")
+            say(f"playing {options.file}, {length:.3f} s, {len(recording.topics)} topics")
             for diagnostic in played.diagnostics:
                 report.diagnostic(diagnostic)
             page = None

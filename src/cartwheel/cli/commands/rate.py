@@ -1,4 +1,4 @@
-"""How often a topic is published."""
+"""The publish rate of a topic."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ _INTERVAL = 1.0
 def measure(sim: int | None, topic: str, *, count: int | None, window: int) -> None:
     """Reports the rate once a second, in the layout of ``rostopic hz``.
 
-    The times are those of the simulation, so that the rate is the publisher's own, whatever
-    the speed; the rate in wall time follows.
+    The rate is measured in simulation time, so it does not depend on the speed of the simulation.
+    The rate in wall time is printed after it.
     """
     stamps: deque[int] = deque(maxlen=window)
     walls: deque[float] = deque(maxlen=window)
@@ -28,7 +28,7 @@ def measure(sim: int | None, topic: str, *, count: int | None, window: int) -> N
         client.subscribe(topic, data=False, queue=10_000) as subscription,
         ends_quietly(count),
     ):
-        note(f"subscribed to {subscription.topic}; Ctrl-C ends")
+        note(f"subscribed to {subscription.topic}; press Ctrl-C to stop")
         due = time.monotonic() + _INTERVAL
         while count is None or reports < count:
             try:
@@ -40,7 +40,7 @@ def measure(sim: int | None, topic: str, *, count: int | None, window: int) -> N
                     note("the simulation has ended")
                     return
                 if stamps and sample.time_ns < stamps[-1]:
-                    note("time went back: the simulation was reset")
+                    note("time jumped back: the simulation was reset")
                     stamps.clear()
                     walls.clear()
                 stamps.append(sample.time_ns)
@@ -52,11 +52,11 @@ def measure(sim: int | None, topic: str, *, count: int | None, window: int) -> N
 
 
 def report(stamps: list[int], walls: list[float]) -> str:
-    """Two lines of figures.
+    """The report as two lines.
 
     Args:
         stamps: Simulation times of the messages, in ns.
-        walls: When they came, in s.
+        walls: Wall times at which they arrived, in s.
     """
     if len(stamps) < 2:
         return "no new messages"
@@ -64,7 +64,8 @@ def report(stamps: list[int], walls: list[float]) -> str:
     mean = sum(gaps) / len(gaps)
     deviation = (sum((gap - mean) ** 2 for gap in gaps) / len(gaps)) ** 0.5
     wall = (walls[-1] - walls[0]) / (len(walls) - 1)
-    lines = f"average rate: {1 / mean:.3f}" if mean > 0 else "average rate: all at one time"
+    rate = f"{1 / mean:.3f}" if mean > 0 else "infinite, all messages have the same time"
+    lines = f"average rate: {rate}"
     if wall > 0:
         lines += f" (wall time: {1 / wall:.3f})"
     return (

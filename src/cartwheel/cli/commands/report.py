@@ -1,4 +1,4 @@
-"""What a run tells its user: what was loaded, where to look, what to try, how it went."""
+"""The terminal output of a run: what was loaded, addresses, suggestions and results."""
 
 from __future__ import annotations
 
@@ -28,18 +28,18 @@ if TYPE_CHECKING:
     from cartwheel.session import Session
 
 _TOPICS = 12
-"""Lines of topics; the rest is counted."""
+"""The maximum number of topics that are listed."""
 
 
 def world_title(world: WorldDescription) -> str:
-    """A world's name, or its file's: half of all worlds are named default."""
+    """A world's name, or that of its file: half of all worlds are named default."""
     if world.name not in ("default", "world", ""):
         return world.name
     return PurePath(world.origin.file).stem.strip("<>")
 
 
 def size_text(size: int) -> str:
-    """Bytes as people read them."""
+    """A number of bytes with a readable unit."""
     if size < 1000:
         return f"{size} B"
     if size < 1_000_000:
@@ -48,10 +48,10 @@ def size_text(size: int) -> str:
 
 
 class Report:
-    """Lines for a user; short, and without decoration where nobody looks.
+    """Prints the lines of a run; without colours and suggestions if there is no terminal.
 
     Args:
-        verbose: Also what is merely worth knowing.
+        verbose: Print informational messages too.
     """
 
     def __init__(self, *, verbose: bool) -> None:
@@ -59,19 +59,19 @@ class Report:
         self._decorated = is_terminal(sys.stdout) and sys.stdin.isatty()
 
     def others(self, others: Sequence[Running]) -> None:
-        """Says that this is not the only simulation."""
+        """Warns that other simulations are running."""
         print_warning(
-            "another simulation runs already, so commands need --sim PID:\n"
+            "another simulation is running; commands need --sim PID:\n"
             + "\n".join(f"    {entry}" for entry in others)
         )
 
     def loaded(self, session: Session, name: str | None, *, ros: bool = False) -> None:
-        """What stands in the world, what is to be known about it, and what to try.
+        """Prints the models of the world, the diagnostics and suggestions.
 
         Args:
-            session: What was loaded.
-            name: Of the robot.
-            ros: Whether ROS is there to do what the launch files do.
+            session: The loaded session.
+            name: Name of the robot.
+            ros: Whether ROS is available to start the controllers.
         """
         simulation = session.simulation
         self._line("world", f"{world_title(simulation.world)}{self._inhabitants(session, name)}")
@@ -92,63 +92,63 @@ class Report:
         self._topics(session)
 
     def address(self, url: str, access: Access) -> None:
-        """Where the viewer is, and who may see it."""
+        """Prints the address of the viewer, and who can connect."""
         self._line("viewer", paint(url, "bold", "cyan"))
         self._open(access, url)
         if self._decorated:
-            say(paint("\nCtrl-C ends.", "dim"))
+            say(paint("\nPress Ctrl-C to stop.", "dim"))
 
     def joined(self, node: str, master: str, *, own: bool, open_ports: Sequence[int]) -> None:
-        """Which node of ROS 1 this is, of which master, and what other computers reach."""
-        self._line("ros 1", f"{node} at {master}{', a master of our own' if own else ''}")
+        """Prints the ROS 1 node, its master, and the ports that are open to other computers."""
+        self._line("ros 1", f"{node} at {master}{', started by Cartwheel' if own else ''}")
         if open_ports:
             ports = ", ".join(map(str, open_ports))
-            self._line("", f"open to other computers, without a password: ports {ports}")
-            self._line("", "ROS_HOSTNAME=localhost keeps them to this computer")
+            self._line("", f"open to other computers without a password: ports {ports}")
+            self._line("", "set ROS_HOSTNAME=localhost to allow only this computer")
 
     def _open(self, access: Access, url: str) -> None:
         if access.is_open:
             parts = urlsplit(url)
             url = access.url(parts.scheme, parts.port or 0, elsewhere=True)
-            self._line("", f"open to other computers, with the token: {url}")
+            self._line("", f"open to other computers with the token: {url}")
 
     def refused(self, origin: str) -> None:
-        """Which web page was refused."""
+        """Reports the origin of a refused web page."""
         self.diagnostic(refused_page("the viewer", origin))
 
     def foxglove(self, url: str, access: Access) -> None:
-        """Where Foxglove's protocol is spoken, and with whom."""
+        """Prints the address of the Foxglove server, and who can connect."""
         self._line("foxglove", paint(url, "bold", "cyan"))
         self._open(access, url)
 
     def recording(self, path: PurePath) -> None:
-        """Where a recording goes."""
+        """Prints the file of a recording."""
         self._line("record", str(path))
 
     def recorded(self, files: Sequence[PurePath], messages: int, topics: int, size: int) -> None:
-        """What a recording holds."""
+        """Prints the contents of a finished recording."""
         names = ", ".join(map(str, files))
-        say(f"recorded {messages} messages of {topics} topics, {size_text(size)}, in {names}")
+        say(f"recorded {messages} messages on {topics} topics, {size_text(size)}, to {names}")
 
     def joined_ros2(self, node: str, where: str) -> None:
-        """Which node of ROS 2 this is, and where."""
+        """Prints the ROS 2 node, and its domain or router."""
         self._line("ros 2", f"{node} on {where}")
 
     def diagnostic(self, diagnostic: Diagnostic) -> None:
-        """Something about a file."""
+        """Prints a diagnostic."""
         if diagnostic.severity != "info" or self._verbose:
             print_diagnostic(diagnostic)
         if diagnostic.details and self._verbose:
             note(diagnostic.details)
 
     def ended(self, session: Session, wall: float) -> None:
-        """How it went."""
+        """Prints the simulated time and the speed."""
         seconds = session.simulation.time_ns / 1e9
         factor = f", {seconds / wall:.1f} times real time" if wall > 0 else ""
         say(f"simulated {seconds:.3f} s in {wall:.3f} s{factor}")
 
     def _controllers(self, session: Session, name: str) -> None:
-        """How to start a robot's controllers, which in ROS a launch file does."""
+        """Prints how to start a robot's controllers, which a launch file does in ROS."""
         description = next(
             each.description for each in session.simulation.scene.models if each.name == name
         )
@@ -160,18 +160,18 @@ class Report:
         from cartwheel.plugins.control.suggestion import suggested
 
         files = suggested(description)
-        self._line("control", "no controller runs: in ROS, launch files start them")
+        self._line("control", "no controllers are running; in ROS, launch files start them")
         words = " ".join(f"--controllers {file}" for file in files) or "--controllers FILE.yaml"
         self._line("try", words)
 
     def _no_manager(self, description: RobotDescription) -> None:
-        """What a robot lacks whose joints wait for controllers, and that has no plugin at all."""
+        """Prints the plugin that is missing in a robot with controllers but without plugins."""
         tag, plugin = "<ros2_control>", "gz_ros2_control-system"
         if not description.ros2_control:
             tag, plugin = "<transmission>", "libgazebo_ros_control.so"
             if not description.transmissions:
                 return
-        self._line("control", f"no plugin reads its {tag} tags, so nothing drives the joints")
+        self._line("control", f"no plugin reads the {tag} tags, so no joint is driven")
         self._line("try", f'<gazebo><plugin filename="{plugin}" name="control">…')
 
     def _inhabitants(self, session: Session, name: str | None) -> str:
@@ -186,7 +186,7 @@ class Report:
         rows = []
         for topic in topics[:_TOPICS]:
             rate = f"{topic.rate:g} Hz" if topic.rate else ""
-            sense = "" if topic.publishers else "is read"
+            sense = "" if topic.publishers else "subscribed"
             rows.append([topic.name, topic.type.replace("/msg/", "/"), rate or sense])
         if rows:
             for line in table(rows).splitlines():

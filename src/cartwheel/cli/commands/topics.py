@@ -17,14 +17,14 @@ from cartwheel.errors import CartwheelError, GraphError, suggestion
 
 
 def print_list(sim: int | None, *, verbose: bool) -> None:
-    """The names, or a table of types, rates and ends."""
+    """Prints the names, or a table of types, rates, publishers and subscribers."""
     with connect(sim) as client:
         found = client.request("topics")["topics"]
     if not verbose:
         for one in found:
             say(one["name"])
         return
-    rows = [["topic", "type", "rate", "published by", "read by"]]
+    rows = [["topic", "type", "rate", "publishers", "subscribers"]]
     for one in found:
         rate = f"{one['rate']:g} Hz" if one["rate"] else ""
         publishers = ", ".join(one["publishers"]) or "-"
@@ -33,7 +33,7 @@ def print_list(sim: int | None, *, verbose: bool) -> None:
 
 
 def print_info(sim: int | None, topic: str) -> None:
-    """One topic, in the layout of ``rostopic info``."""
+    """Prints one topic, in the layout of ``rostopic info``."""
     with connect(sim) as client:
         one = client.request("topic", topic=topic)
     say(f"Type: {one['type']}")
@@ -55,7 +55,7 @@ def echo(
     full: bool,
     field: str | None,
 ) -> None:
-    """Prints messages until there were enough, the user ends it, or the simulation ends."""
+    """Prints messages until `count` is reached, the user interrupts, or the simulation ends."""
     from cartwheel.messages import decode_cdr, to_yaml
 
     shown = dropped = 0
@@ -76,7 +76,8 @@ def echo(
 def _tell_dropped(sample: Sample, before: int) -> int:
     if sample.dropped > before:
         print_warning(
-            f"{sample.dropped - before} messages were lost: they come faster than they are printed"
+            f"{sample.dropped - before} messages were dropped:"
+            " they arrive faster than they are printed"
         )
     return sample.dropped
 
@@ -88,7 +89,7 @@ def _ended(shown: int, count: int | None) -> None:
 
 
 def ends_quietly(count: int | None) -> Any:
-    """An endless command is ended by Ctrl-C as it is meant to be: with status 0."""
+    """Lets Ctrl-C end a command without a count with status 0, as it is the normal way."""
     if count is not None:
         return contextlib.nullcontext()
     return contextlib.suppress(interrupts.Interrupted)
@@ -98,7 +99,7 @@ def pick(message: Any, path: str) -> Any:
     """A field of a message, by a path such as ``transforms[0].transform.translation.x``.
 
     Raises:
-        GraphError: There is no such field.
+        GraphError: The message has no such field.
     """
     value = message
     done = ""
@@ -138,7 +139,7 @@ def publish(
         if rate is None:
             note(f"published to {topic}: {_many(readers, 'subscriber')}")
             return
-        note(f"publishing to {topic} at {rate:g} Hz; Ctrl-C ends")
+        note(f"publishing to {topic} at {rate:g} Hz; press Ctrl-C to stop")
         sent = 1
         due = time.monotonic()
         with ends_quietly(count):
@@ -153,7 +154,7 @@ def _publish_once(client: ControlClient, topic: str, type_name: str, message: An
     answer = client.request("publish", topic=topic, type=type_name, message=message)
     if not answer["subscribers"]:
         hint = suggestion(topic, answer["topics"]) if answer["topics"] else ""
-        print_warning(f"nobody reads {topic}. {hint}".rstrip())
+        print_warning(f"{topic} has no subscribers. {hint}".rstrip())
     return int(answer["subscribers"])
 
 

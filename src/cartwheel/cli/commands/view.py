@@ -44,7 +44,7 @@ def view(
         viewer.start()
         say(f"{description.name}  {paint(viewer.url, 'bold', 'cyan')}")
         if access.is_open:
-            say("open to other computers, with the token in the address")
-        say(paint("Ctrl-C ends.", "dim"))
+            say("open to other computers with the token in the address")
+        say(paint("Press Ctrl-C to stop.", "dim"))
         stopped.wait()
     viewer.close()

@@ -44,7 +44,8 @@ def plugin_joint_unknown(subject: Subject) -> Iterator[Diagnostic]:
                     yield devices_codes.PLUGIN_JOINT_UNKNOWN.diagnostic(
                         # What another plugin means by its tags is not certain.
                         severity=None if _is_simulated(subject, tag, sensor) else "warning",
-                        message=f'<{element.tag}> names "{name}", which is no joint',
+                        message=f'<{element.tag}> names the joint "{name}", which does not exist',
+                        values={"tag": element.tag, "joint": name},
                         origin=element.origin,
                         instead=nodes.written(element.tag, dict(element.attributes), text)
                         if near
@@ -75,7 +76,8 @@ def interface_unknown(subject: Subject) -> Iterator[Diagnostic]:
             near = spelling.meant(name, _INTERFACES, parts=False)
             if name not in _INTERFACES and near:
                 yield devices_codes.INTERFACE_UNKNOWN.diagnostic(
-                    message=f'no controller knows the interface "{name}"',
+                    message=f'the interface "{name}" does not exist',
+                    values={"tag": "hardwareInterface", "interface": name, "meant": near},
                     origin=element.origin,
                     instead=nodes.written("hardwareInterface", {}, near),
                     place="element",
@@ -88,7 +90,8 @@ def interface_unknown(subject: Subject) -> Iterator[Diagnostic]:
             if element.tag not in ("command_interface", "state_interface") or not near:
                 continue
             yield devices_codes.INTERFACE_UNKNOWN.diagnostic(
-                message=f'no controller knows the {element.tag} "{name}"',
+                message=f'the {element.tag} "{name}" does not exist',
+                values={"tag": element.tag, "interface": name, "meant": near},
                 origin=element.origin,
                 instead=f'name="{near}"',
                 place="attribute",
@@ -113,6 +116,7 @@ def _joint_named(
         robot.joint_names,
         attribute="name",
         message=f'<{what}> names the joint "{name}", which does not exist',
+        values={"tag": what, "joint": name},
         origin=joint.origin,
         mark=f'name="{joint.attribute("name")}"',
     )

@@ -160,7 +160,8 @@ class ControlFile:
             mark = getattr(error, "problem_mark", None)
             problem = getattr(error, "problem", None) or getattr(error, "strerror", None) or error
             return devices_codes.CONTROLLERS_FILE_UNREADABLE.diagnostic(
-                message=f"the file of controllers cannot be read: {problem}",
+                message=f"the controller file cannot be read: {problem}",
+                values={"problem": str(problem)},
                 origin=Origin(file=str(self.path), line=mark.line + 1 if mark is not None else 0),
             )
 

@@ -60,7 +60,8 @@ def resolved(packages: Packages, element: Element) -> Path | Diagnostic:
         return packages.resolve(element.text.strip(), element.origin, what="file")
     except DescriptionError as error:
         return devices_codes.CONTROLLERS_FILE_UNREADABLE.diagnostic(
-            message=f"{error.message}: no controller starts",
+            message=f"{error.message}, so no controller starts",
+            values={"file": element.text.strip()},
             origin=element.origin,
             hint=error.hint or "",
             mark=element.text.strip(),

@@ -73,8 +73,9 @@ def controller_joint_unknown(subject: Subject) -> Iterator[Diagnostic]:
             first = named[0][1]
             yield devices_codes.CONTROLLER_JOINT_UNKNOWN.diagnostic(
                 severity="warning",
-                message=f"none of the {len(named)} joints of these controllers is one of the "
-                f'robot\'s: "{first.text}" and so on',
+                message=f"none of the {len(named)} joints of these controllers exists in the "
+                f'robot: "{first.text}", …',
+                values={"joint": first.text, "count": len(named)},
                 origin=file.element.origin if file.element is not None else first.origin,
                 mark=file.element.text.strip() if file.element is not None else first.text,
                 hint=spelling.nearest(first.text, robot.joint_names),
@@ -87,7 +88,8 @@ def controller_joint_unknown(subject: Subject) -> Iterator[Diagnostic]:
                 continue  # of another variant of the robot
             yield devices_codes.CONTROLLER_JOINT_UNKNOWN.diagnostic(
                 severity=_severity(file),
-                message=f'the controllers\' "{key}" names "{name}", which is no joint',
+                message=f'"{key}" names the joint "{name}", which does not exist',
+                values={"tag": key, "joint": name},
                 origin=value.origin,
                 instead=value.replaced(near) if near else "",
                 place="line" if near else "",
@@ -107,19 +109,19 @@ def controller_type_unknown(subject: Subject) -> Iterator[Diagnostic]:
             continue
         if not near and not controller.file.named:
             continue
-        message = f'no controller has the type "{controller.type.text}"'
+        message = f'the controller type "{controller.type.text}" does not exist'
         if other and controller.file.is_ros2:
-            message = f'ROS 2 has the type "{controller.type.text}" no more'
+            message = f'ROS 2 has no controller type "{controller.type.text}"'
         elif other:
-            message = f'ROS 1 does not have the type "{controller.type.text}"'
+            message = f'ROS 1 has no controller type "{controller.type.text}"'
         elif not near:
-            message = f'the controller "{controller.name}" is of a type that Cartwheel does not '
-            message += f'simulate: "{controller.type.text}"'
+            message = f'Cartwheel does not simulate the controller type "{controller.type.text}"'
         yield devices_codes.CONTROLLER_TYPE_UNKNOWN.diagnostic(
             severity=_severity(controller.file, "warning" if other else "error")
             if near
             else "info",
-            message=message + f': the controller "{controller.name}" does not start' * bool(near),
+            message=message + f', so "{controller.name}" does not start' * bool(near),
+            values={"type": controller.type.text, "controller": controller.name, "meant": near},
             origin=controller.type.origin,
             instead=controller.type.replaced(near) if near else "",
             place="line" if near else "",
@@ -172,8 +174,9 @@ def controller_gains(subject: Subject) -> Iterator[Diagnostic]:
         of = "" if names == [""] else f" for {', '.join(names)}"
         yield devices_codes.CONTROLLER_GAINS_MISSING.diagnostic(
             severity="warning" if ros2 else _severity(controller.file),
-            message=f'the controller "{controller.name}" has no gains{of}, no {under}: '
+            message=f'controller "{controller.name}" has no gains{of} ({under} is missing), so '
             + ("nothing moves" if ros2 else "it does not start"),
+            values={"controller": controller.name, "joints": tuple(names), "missing": under},
             origin=controller.type.origin if whole else missing[0][1].origin,
             instead=text if whole else f"{under.rpartition('/')[2]}: 100.0",
             place="after" if whole and _has_own_line(controller.type) else "",
@@ -197,11 +200,18 @@ def joint_claimed_twice(subject: Subject) -> Iterator[Diagnostic]:
                     continue
                 told.add(both)
                 yield devices_codes.JOINT_CLAIMED_TWICE.diagnostic(
-                    message=f'"{both[0]}" and "{both[1]}" both command the {claim.interface} of '
-                    f'"{claim.joint}": only one of them can run at a time',
+                    message=f'the controllers "{both[0]}" and "{both[1]}" both command the '
+                    f'{claim.interface} of joint "{claim.joint}"',
+                    values={
+                        "controller": both[1],
+                        "other": both[0],
+                        "joint": claim.joint,
+                        "interface": claim.interface,
+                    },
                     origin=claim.value.origin,
                     mark=claim.value.text,
-                    hint=f"The other is at {first.value.origin}.",
+                    hint="Only one of them can run at a time. The other one is at "
+                    f"{first.value.origin}.",
                 )
 
 
@@ -217,13 +227,19 @@ def _unanswered(
             continue
         claim = wanted[0]
         who = (
-            f'the controller "{claim.controller.name}" commands the {claim.interface} of "{joint}"'
+            f'controller "{claim.controller.name}" commands the {claim.interface} of joint '
+            f'"{joint}"'
         )
         where = "<ros2_control>" if ros2 else "<transmission>"
         if joint not in held:
             yield devices_codes.CONTROLLER_INTERFACE_MISMATCH.diagnostic(
                 severity=_severity(claim.controller.file),
-                message=f"{who}, which no {where} has: it does not start",
+                message=f"{who}, which no {where} contains, so it does not start",
+                values={
+                    "controller": claim.controller.name,
+                    "joint": joint,
+                    "interface": claim.interface,
+                },
                 origin=claim.value.origin,
                 instead=_ros2_joint(claim) if ros2 else _transmission(claim),
                 mark=claim.value.text,
@@ -233,12 +249,18 @@ def _unanswered(
         element = held[joint][0][1]
         if claim.interface not in ("position", "velocity", "effort"):
             continue
-        old = f"offers {', '.join(dict.fromkeys(offered))}" if offered else "offers no command"
+        old = f"offers {', '.join(dict.fromkeys(offered))}" if offered else "offers no commands"
         written = element.tag == "hardwareInterface"
         text = f"<hardwareInterface>{_interface(claim)}</hardwareInterface>"
         yield devices_codes.CONTROLLER_INTERFACE_MISMATCH.diagnostic(
             severity=_severity(claim.controller.file),
-            message=f"{who}, whose {where} {old}: it does not start",
+            message=f"{who}, whose {where} {old}, so it does not start",
+            values={
+                "controller": claim.controller.name,
+                "joint": joint,
+                "interface": claim.interface,
+                "offered": tuple(offered),
+            },
             origin=held[joint][-1][1].origin if ros2 else element.origin,
             instead=f'<command_interface name="{claim.interface}"/>' if ros2 else text,
             place="element" if written else "inside",

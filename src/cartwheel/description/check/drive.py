@@ -35,8 +35,8 @@ def drive_joint_unknown(subject: Subject) -> Iterator[Diagnostic]:
                 continue  # it cannot be read, which is told there
             near = spelling.meant(name, robot.joints)
             yield robot_codes.DRIVE_JOINT_UNKNOWN.diagnostic(
-                message=f'<{element.tag}> names "{name}", which is no joint: '
-                "the plugin does not drive",
+                message=f'<{element.tag}> names the joint "{name}", which does not exist',
+                values={"tag": element.tag, "joint": name},
                 origin=element.origin,
                 instead=nodes.written(element.tag, dict(element.attributes), near) if near else "",
                 place="element" if near else "",
@@ -57,12 +57,13 @@ def drive_joint_fixed(subject: Subject) -> Iterator[Diagnostic]:
                 continue
             node = robot.joint_node(name)
             limits = (
-                f" and stops at {axis.lower:g} and {axis.upper:g} rad"
+                f" with limits of {axis.lower:g} and {axis.upper:g} rad"
                 if joint.type == "revolute" and axis.lower is not None and axis.upper is not None
                 else ""
             )
             yield robot_codes.DRIVE_JOINT_NOT_CONTINUOUS.diagnostic(
-                message=f'the joint "{name}" drives a wheel, but is of type {joint.type}{limits}',
+                message=f'the driven wheel joint "{name}" has the type {joint.type}{limits}',
+                values={"joint": name, "type": joint.type},
                 origin=joint.origin,
                 instead='type="continuous"',
                 place="attribute" if node is not None else "",
@@ -84,13 +85,14 @@ def wheels_swapped(subject: Subject) -> Iterator[Diagnostic]:
         if all(sense < -_CAMBER for sense in _senses(robot, left, right)):
             continue  # it faces the other way, and is right in all
         yield robot_codes.WHEELS_SWAPPED.diagnostic(
-            message=f'the left wheel\'s joint "{left.name}" is at y = {poses[0].y:.3g} m, right of '
-            f'"{right.name}" at {poses[1].y:.3g} m: the robot turns the wrong way',
+            message=f'the left wheel joint "{left.name}" is at y = {poses[0].y:.3g} m, to the '
+            f'right of "{right.name}" at y = {poses[1].y:.3g} m',
+            values={"left": left.name, "right": right.name},
             origin=element.origin,
             instead=nodes.written(element.tag, {}, right.name),
             place="element",
             mark=left.name,
-            hint="Swap the two names.",
+            hint="Swap the two names, or the robot turns the wrong way.",
         )
 
 
@@ -115,9 +117,9 @@ def wheel_axes(subject: Subject) -> Iterator[Diagnostic]:
             xyz = " ".join(nodes.short(-value + 0.0) for value in joint.axis.xyz)
             both = all(each < -_CAMBER for each in senses)
             yield robot_codes.WHEEL_AXIS_MISALIGNED.diagnostic(
-                message=f'the wheel of joint "{joint.name}" turns backwards when the drive wants '
-                "to go forward: its axis points to the robot's right"
-                + ("" if both else ", while the other's points to its left"),
+                message=f'the wheel of joint "{joint.name}" turns backwards: its axis points '
+                "to the right of the robot" + ("" if both else ", the other one to the left"),
+                values={"joint": joint.name, "attribute": "backwards"},
                 origin=node.origin if node is not None else joint.origin,
                 instead=f'xyz="{xyz}"' if node is not None else "",
                 place="attribute" if node is not None else "",
@@ -149,14 +151,13 @@ def _not_across(robot: Robot, joint: Joint, pose: Pose, across: Floats) -> Diagn
     left = across if across[1] >= 0 else -across
     own = matrix_from_quat(pose.orientation).T @ left
     xyz = " ".join(nodes.short(round(float(value), 3) + 0.0) for value in own)
-    stated = (
-        "" if node is not None or written is None else ", which counts where no <axis> is written,"
-    )
+    stated = "" if node is not None or written is None else " (the default)"
     text = f'xyz="{xyz}"'
     return robot_codes.WHEEL_AXIS_MISALIGNED.diagnostic(
-        message=f'the wheel of joint "{joint.name}" cannot roll ahead: its axis '
+        message=f'the wheel of joint "{joint.name}" cannot roll forward: its axis '
         f'"{" ".join(nodes.short(value) for value in joint.axis.xyz)}"{stated} does not lie '
         "along the axle",
+        values={"joint": joint.name, "axis": joint.axis.xyz, "attribute": "askew"},
         origin=node.origin if node is not None else joint.origin,
         instead="" if written is None else text if node is not None else f"<axis {text}/>",
         place="" if written is None else "attribute" if node is not None else "inside",
@@ -184,15 +185,23 @@ def wheel_not_round(subject: Subject) -> Iterator[Diagnostic]:
                 )
             alone = node is not None and bool(text) and len(link.collisions) == 1
             yield robot_codes.WHEEL_NOT_ROUND.diagnostic(
-                message=f'the collision of the driven wheel "{link.name}" is {widths.max():.3g} m '
-                f"one way and {widths.min():.3g} m the other across its axis: it cannot roll",
+                message=f'the collision of the driven wheel "{link.name}" is not round: across '
+                f"its axis it measures {widths.max():.3g} m in one direction and "
+                f"{widths.min():.3g} m in another",
+                values={
+                    "link": link.name,
+                    "widest": float(widths.max()),
+                    "narrowest": float(widths.min()),
+                },
                 origin=origin.origin
                 if origin is not None
                 else (collision.origin if collision is not None else link.origin),
                 instead="" if not alone else text if origin is not None else f"<origin {text}/>",
                 place="" if not alone else "attribute" if origin is not None else "inside",
                 mark="rpy" if origin is not None else "",
-                hint="A cylinder's own axis is z: turn it to that of the joint." if text else "",
+                hint="The axis of a cylinder is z: turn it to the axis of the joint."
+                if text
+                else "",
             )
 
 

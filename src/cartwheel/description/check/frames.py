@@ -46,12 +46,7 @@ def body_unknown(subject: Subject) -> Iterator[Diagnostic]:
         for element in tag.element.children:
             name = element.text.strip().lstrip("/")
             if element.tag in _BODIES and name and name not in _known(robot):
-                yield _unknown(
-                    devices_codes.BODY_UNKNOWN,
-                    robot,
-                    element,
-                    "the plugin cannot find the link to measure or move",
-                )
+                yield _unknown(devices_codes.BODY_UNKNOWN, robot, element)
 
 
 @rule(devices_codes.FRAME_UNKNOWN)
@@ -65,12 +60,7 @@ def frame_unknown(subject: Subject) -> Iterator[Diagnostic]:
                 continue
             if name.rpartition("/")[2] in _known(robot):
                 continue  # with a prefix of its own
-            yield _unknown(
-                devices_codes.FRAME_UNKNOWN,
-                robot,
-                element,
-                "tf has no such frame, so subscribers cannot transform the messages",
-            )
+            yield _unknown(devices_codes.FRAME_UNKNOWN, robot, element)
 
 
 @rule(devices_codes.DUPLICATE_TOPIC)
@@ -91,12 +81,13 @@ def topic_twice(subject: Subject) -> Iterator[Diagnostic]:
                 new = f"{element.text.strip()}_2"
                 yield devices_codes.DUPLICATE_TOPIC.diagnostic(
                     message=f'the plugins "{other.name}" and "{tag.name}" both publish on '
-                    f'"{topic}": who reads it gets both, mixed',
+                    f'"{topic}"',
+                    values={"plugin": tag.name, "other": other.name, "topic": topic},
                     origin=element.origin,
                     instead=nodes.written(element.tag, {}, new),
                     place="element",
                     mark=element.text.strip(),
-                    hint=f"The other is at {other.origin}.",
+                    hint=f"The other one is at {other.origin}.",
                 )
 
 
@@ -118,8 +109,9 @@ def topic_invalid(subject: Subject) -> Iterator[Diagnostic]:
             good = re.sub(r"[^\w/~]+", "_", target.strip())
             good = re.sub(r"(^|/)(?=\d)", r"\1_", good)
             yield devices_codes.TOPIC_INVALID.diagnostic(
-                message=f'<{element.tag}> "{name}" is no name of a topic: such a name has '
-                "letters, digits, _ and /, and no part of it begins with a digit",
+                message=f'<{element.tag}> "{name}" is not a valid ROS name',
+                values={"tag": element.tag, "name": name},
+                hint="Names consist of letters, digits, _ and /, and no part begins with a digit.",
                 origin=element.origin,
                 instead=nodes.written(element.tag, {}, f"{source}{arrow}{good}"),
                 place="element",
@@ -148,11 +140,12 @@ def _resolved(tag: PluginTag, element: Element, kind: str) -> str:
     return "/" + "/".join(part.strip("/") for part in (space, name) if part.strip("/"))
 
 
-def _unknown(code: Code, robot: Robot, element: Element, consequence: str) -> Diagnostic:
+def _unknown(code: Code, robot: Robot, element: Element) -> Diagnostic:
     name = element.text.strip()
     near = spelling.meant(name.lstrip("/"), robot.links)
     return code.diagnostic(
-        message=f'<{element.tag}> "{name}" is no link: {consequence}',
+        message=f'<{element.tag}> names the link "{name}", which does not exist',
+        values={"tag": element.tag, "link": name},
         origin=element.origin,
         instead=nodes.written(element.tag, {}, near) if near else "",
         place="element" if near else "",

@@ -29,8 +29,9 @@ def contact_collision_unknown(subject: Subject) -> Iterator[Diagnostic]:
         own = _gazebo_names(robot).get(sensor.link, [])
         near = spelling.meant(name, known) or (own[0] if own else "")
         yield devices_codes.CONTACT_COLLISION_UNKNOWN.diagnostic(
-            message=f'the contact sensor "{sensor.name}" watches the collision "{name}", '
-            "which does not exist: it never reports anything",
+            message=f'contact sensor "{sensor.name}" names the collision "{name}", which does '
+            "not exist, so it never reports a contact",
+            values={"sensor": sensor.name, "collision": name},
             origin=asked.origin,
             instead=nodes.written("collision", {}, near) if near else "",
             place="element" if near else "",
@@ -56,8 +57,9 @@ def contact_never_fires(subject: Subject) -> Iterator[Diagnostic]:
             continue  # its own name in some spelling: Gazebo's is not certain
         right = _gazebo_names(robot)[link][index]
         yield devices_codes.CONTACT_NEVER_FIRES.diagnostic(
-            message=f'Gazebo 11 merges "{link}" into "{root}" and knows no collision "{name}" '
-            f'any more: there the sensor "{sensor.name}" loads and never reports anything',
+            message=f'Gazebo 11 merges "{link}" into "{root}" and renames the collision '
+            f'"{name}", so sensor "{sensor.name}" never reports a contact',
+            values={"sensor": sensor.name, "collision": name, "link": link, "root": root},
             origin=asked.origin,
             instead=nodes.written("collision", {}, right),
             place="element",
@@ -74,13 +76,14 @@ def lumped_joint(subject: Subject) -> Iterator[Diagnostic]:
         if joint.parent not in robot.links:
             continue
         yield devices_codes.LUMPED_JOINT.diagnostic(
-            message=f'<{element.tag}> names the fixed joint "{joint.name}", which Gazebo merges '
-            "away together with its link: the plugin does not find it there",
+            message=f'<{element.tag}> names the fixed joint "{joint.name}", which Gazebo '
+            "removes when it merges links",
+            values={"tag": element.tag, "joint": joint.name},
             origin=element.origin,
             instead=f'<gazebo reference="{joint.name}"><preserveFixedJoint>true'
             "</preserveFixedJoint></gazebo>",
             mark=joint.name,
-            hint="Add it to the robot.",
+            hint="Add it to the robot to keep the joint.",
         )
 
 
@@ -101,17 +104,20 @@ def lumped_link(subject: Subject) -> Iterator[Diagnostic]:
         if element.tag in ("body_name", "link_name"):
             yield devices_codes.LUMPED_LINK.diagnostic(
                 severity="warning",
-                message=f'Gazebo merges the link "{name}" into "{root}", and replaces its name '
-                f"in <bodyName> only: with <{element.tag}> the plugin does not find it there",
+                message=f'Gazebo merges link "{name}" into "{root}", so a plugin with '
+                f"<{element.tag}> does not find it",
+                values={"tag": element.tag, "link": name, "root": root},
                 origin=element.origin,
                 instead=keep,
                 mark=name,
-                hint="Add it to the robot.",
+                hint="Add it to the robot to keep the link. Only in <bodyName> does Gazebo "
+                "replace the name.",
             )
         elif not _same_frame(robot, name, root):
             yield devices_codes.LUMPED_LINK.diagnostic(
-                message=f'Gazebo merges the link "{name}" into "{root}" and writes that, '
-                "with the offset between the two, into the plugin: its messages name that link",
+                message=f'Gazebo merges link "{name}" into "{root}", so the messages are in '
+                f'the frame of "{root}"',
+                values={"tag": element.tag, "link": name, "root": root},
                 origin=element.origin,
                 instead=keep,
                 mark=name,
@@ -199,8 +205,8 @@ def _all_spellings(robot: Robot, link: str) -> str:
         return f'The link "{link}" has no collision.'
     right = _gazebo_names(robot).get(link, [])
     others = [name for c in found for name in (c.name, *c.aliases) if name not in right][:4]
-    text = f'In Gazebo 11 that of "{link}" is {", ".join(right[:4])}'
-    return text + (f"; also accepted here: {', '.join(others)}." if others else ".")
+    text = f'In Gazebo 11 the collision of "{link}" is named {", ".join(right[:4])}.'
+    return text + (f" Cartwheel also accepts {', '.join(others)}." if others else "")
 
 
 def _same_frame(robot: Robot, a: str, b: str) -> bool:

@@ -34,14 +34,15 @@ DENSEST = 30_000.0
 """kg/m³; osmium has 22 600."""
 _FOAM = 50.0
 """kg/m³: what is lighter was not stated in grams."""
+_LIGHTEST_IN_KG = 0.1
 _ROUNDED = 1e-9
 """Relative: what is left of a 0 by rounding."""
 _OF_LINK = re.compile(r'link "([^"]*)"')
 _NEVERTHELESS = (
-    "Gazebo Classic computes with it nevertheless, new Gazebo refuses it; here the smaller "
-    "moments are raised."
+    "Gazebo Classic simulates it anyway, and gz-sim refuses it. Cartwheel raises "
+    "the smaller moments."
 )
-_WITHOUT = "Gazebo Classic divides by it nevertheless; here it has that of its geometry."
+_WITHOUT = "Gazebo Classic divides by zero. Cartwheel uses the inertia of the geometry."
 _KEYS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 
 
@@ -69,7 +70,7 @@ def inertia_impossible(subject: Subject) -> Iterator[Diagnostic]:
         yield robot_codes.INERTIA_IMPOSSIBLE.diagnostic(
             severity="info" if part else "error" if negative else None,
             message=f'link "{name}": {wrong[0]}',
-            values={"link": name},
+            values={"link": name, "moments": moments},
             origin=place.origin,
             instead=_inertia_text(_sketch(subject, name), mass),
             place="element" if tensor is not None else "inside",
@@ -92,6 +93,7 @@ def _impossible_in_sdf(subject: Subject) -> Iterator[Diagnostic]:
         yield robot_codes.INERTIA_IMPOSSIBLE.diagnostic(
             severity=diagnostic.severity,
             message=diagnostic.message.partition("; here ")[0],
+            values={**diagnostic.values, "link": match[1]},
             origin=diagnostic.origin,
             instead=_inertia_text(like, mass, sdf=True),
             hint=_NEVERTHELESS,
@@ -109,13 +111,14 @@ def mass_not_positive(subject: Subject) -> Iterator[Diagnostic]:
         if mass == 0 and nodes.name_of(link) in held:
             continue  # a mere frame; Gazebo adds it to what it is fixed to
         yield robot_codes.MASS_NOT_POSITIVE.diagnostic(
-            message=f'link "{nodes.name_of(link)}" has the mass {mass:g}: '
-            "Gazebo drops such a link, and all that it carries",
+            message=f'link "{nodes.name_of(link)}" has a mass of {mass:g} kg, so Gazebo drops '
+            "it and everything attached to it",
+            values={"link": nodes.name_of(link), "mass": mass},
             origin=place.origin,
             instead=f'value="{nodes.short(-mass) if mass < 0 else _mass_of(subject, link)}"',
             place="attribute",
             mark="value",
-            hint="" if mass < 0 else "Write the mass that it has, in kg.",
+            hint="" if mass < 0 else "Write its mass in kg.",
         )
 
 
@@ -138,23 +141,18 @@ def inertia_missing(subject: Subject) -> Iterator[Diagnostic]:
                 continue  # it is fixed to the world
             shaped = next((name for name in group if robot.solids(name)), None)
             link = robot.links[shaped or root]
-            what = (
-                f'link "{root}" moves on the joint "{holder.name}"'
-                if holder is not None
-                else f'the root link "{root}", with all that is fixed to it,'
-            )
-            consequence = (
-                "drops it, its joint and all that it carries"
-                if holder is not None
-                else "does not load such a robot"
-            )
+            what, consequence = f'the root link "{root}"', "does not load the robot"
+            if holder is not None:
+                what = f'the moving link "{root}"'
+                consequence = "drops it and everything attached to it"
             yield robot_codes.INERTIA_MISSING.diagnostic(
-                message=f"{what} {'but ' if holder else ''}has no <inertial>: Gazebo {consequence}",
+                message=f"{what} has no <inertial>, so Gazebo {consequence}",
+                values={"link": root},
                 origin=link.origin,
                 instead=_inertial_text(_shape_inertia(robot, link), 1.0),
                 place="inside",
                 mark=f'name="{link.name}"',
-                hint="This is for 1 kg: scale mass and inertia together.",
+                hint="The suggestion is for 1 kg: scale mass and inertia together.",
             )
 
 
@@ -175,9 +173,15 @@ def inertia_unlike_geometry(subject: Subject) -> Iterator[Diagnostic]:
         if stated > TOO_LARGE * largest:
             yield robot_codes.INERTIA_GEOMETRY_MISMATCH.diagnostic(
                 severity=None if _matters(robot, link, stated) else "info",
-                message=f'link "{link.name}" resists turning {stated / largest:.3g} times as much '
-                f"as {inertial.mass:g} kg could that all lay in the farthest corner of its "
-                f"geometry ({_gyration(stated, inertial.mass)} away on average)",
+                message=f'the inertia of link "{link.name}" is {stated / largest:.3g} times '
+                f"larger than physically possible for {_weight(inertial.mass)} within this "
+                "geometry",
+                values={
+                    "link": link.name,
+                    "ratio": stated / largest,
+                    "mass": inertial.mass,
+                    "attribute": "large",
+                },
                 origin=_inertia_origin(robot, inertial),
                 instead=advice,
                 place="" if in_sdf else "element",
@@ -190,9 +194,14 @@ def inertia_unlike_geometry(subject: Subject) -> Iterator[Diagnostic]:
             light = inertial.mass < _LIGHT * robot.description.mass
             yield robot_codes.INERTIA_GEOMETRY_MISMATCH.diagnostic(
                 severity="info" if light else None,
-                message=f'link "{link.name}" resists turning {solid / stated:.3g} times less than '
-                f"a solid of its geometry and its {inertial.mass:g} kg: such a mass would lie "
-                f"within {_gyration(stated, inertial.mass)} of its centre",
+                message=f'the inertia of link "{link.name}" is {solid / stated:.3g} times '
+                f"smaller than that of a solid with this geometry and {_weight(inertial.mass)}",
+                values={
+                    "link": link.name,
+                    "ratio": stated / solid,
+                    "mass": inertial.mass,
+                    "attribute": "small",
+                },
                 origin=_inertia_origin(robot, inertial),
                 instead=advice,
                 place="" if in_sdf else "element",
@@ -217,12 +226,13 @@ def mass_outside(subject: Subject) -> Iterator[Diagnostic]:
             node = robot.node_at(inertial.origin)
             origin = nodes.child(node, "origin")
             yield robot_codes.CENTER_OF_MASS_OUTSIDE.diagnostic(
-                message=f'the centre of mass of link "{link.name}" lies {away:.3g} m outside its '
+                message=f'the center of mass of link "{link.name}" is {away:.3g} m outside its '
                 f"geometry, which is {across:.3g} m across",
+                values={"link": link.name, "distance": away, "size": across},
                 origin=origin.origin if origin is not None else inertial.origin,
                 instead=f"<pose>{xyz} 0 0 0</pose>" if in_sdf else f'<origin xyz="{xyz}"/>',
                 place="" if in_sdf else "element" if origin is not None else "inside",
-                hint="That is the middle of its geometry.",
+                hint="The suggestion is the middle of the geometry.",
                 mark="xyz",
             )
 
@@ -241,15 +251,16 @@ def mass_grams(subject: Subject) -> Iterator[Diagnostic]:
         node = _urdf_mass(robot, link, inertial)
         yield robot_codes.MASS_IN_GRAMS.diagnostic(
             message=f'link "{link.name}" weighs {inertial.mass:g} kg in a box of '
-            f"{' x '.join(f'{1000 * value:.3g}' for value in box[1] - box[0])} mm: "
-            f"{density / 1000:.3g} kg to the litre, and no metal has more than 22.6",
+            f"{' x '.join(f'{1000 * value:.3g}' for value in box[1] - box[0])} mm, which makes "
+            f"it denser than any metal ({density / 1000:.3g} kg per litre)",
+            values={"link": link.name, "mass": inertial.mass, "density": density},
             origin=node.origin if node is not None else inertial.origin,
             instead=_mass_text(inertial.mass / 1000, sdf=node is None) if in_grams else "",
             place="attribute" if node is not None and in_grams else "",
             mark="value",
-            hint="Is it stated in grams?"
+            hint="Is the mass in grams?"
             if in_grams
-            else f"Of water it would weigh {1000 * volume:.3g} kg.",
+            else f"Filled with water it would weigh {1000 * volume:.3g} kg.",
         )
 
 
@@ -260,10 +271,11 @@ def mass_absurd(subject: Subject) -> Iterator[Diagnostic]:
             node = _urdf_mass(robot, link, inertial)
             yield robot_codes.MASS_IMPLAUSIBLE.diagnostic(
                 message=f'link "{link.name}" weighs {inertial.mass:g} kg',
+                values={"link": link.name, "mass": inertial.mass},
                 origin=node.origin if node is not None else inertial.origin,
                 instead=_mass_text(inertial.mass / 1000, sdf=node is None),
                 place="attribute" if node is not None else "",
-                hint="Is it stated in grams?",
+                hint="Is the mass in grams?",
                 mark="value",
             )
 
@@ -436,8 +448,8 @@ def _matters(robot: Robot, link: Link, moment: float) -> bool:
     return moment > 0.05 * (own + float(weights @ ((places - centre) ** 2).sum(axis=1)))
 
 
-def _gyration(moment: float, mass: float) -> str:
-    return f"{math.sqrt(moment / mass):.3g} m"
+def _weight(mass: float) -> str:
+    return f"{1000 * mass:.3g} g" if mass < _LIGHTEST_IN_KG else f"{mass:.3g} kg"
 
 
 RULES = (

@@ -18,6 +18,7 @@ _LIMITED = ("revolute", "prismatic")
 _GRAVITY = 9.8
 """m/s²."""
 _LEAST_EFFORT = 10.0
+_DEGREES = "Are they in degrees? URDF and SDF use radians."
 _TORQUES = ("wheelTorque", "max_wheel_torque")
 _LEAST_DEGREES, _MOST_DEGREES = 30.0, 360.0
 _ENDLESS = frozenset({50.0, 100.0, 200.0, 300.0})
@@ -32,18 +33,18 @@ def limit_missing(subject: Subject) -> Iterator[Diagnostic]:
             span = "1.5708" if kind == "revolute" else "0.1"
             rolls = kind == "revolute" and nodes.name_of(joint) in wheels
             yield robot_codes.LIMIT_MISSING.diagnostic(
-                message=f'the {kind} joint "{nodes.name_of(joint)}" has no <limit>: '
-                "ROS refuses the whole robot",
+                message=f'the {kind} joint "{nodes.name_of(joint)}" has no <limit>',
+                values={"joint": nodes.name_of(joint), "type": kind},
                 origin=joint.origin,
                 instead='type="continuous"'
                 if rolls
                 else f'<limit lower="-{span}" upper="{span}" effort="10" velocity="3"/>',
                 place="attribute" if rolls else "inside",
-                hint="It is a wheel that turns without end."
+                hint='A wheel that turns without end is type="continuous".'
                 if rolls
-                else 'Write its own range, or, where it turns without end, type="continuous".'
+                else 'Write its range, or type="continuous" if it turns without end.'
                 if kind == "revolute"
-                else "Write its own range.",
+                else "Write its range.",
             )
 
 
@@ -52,8 +53,9 @@ def limit_reversed(subject: Subject) -> Iterator[Diagnostic]:
     for joint, limit, lower, upper in _ranges(subject):
         if lower > upper:
             yield robot_codes.LIMIT_REVERSED.diagnostic(
-                message=f'the lower limit {lower:g} of the joint "{nodes.name_of(joint)}" '
-                f"is above the upper one, {upper:g}",
+                message=f'the lower limit of joint "{nodes.name_of(joint)}" is {lower:g}, '
+                f"above the upper limit {upper:g}",
+                values={"joint": nodes.name_of(joint), "lower": lower, "upper": upper},
                 origin=limit.origin,
                 instead=nodes.changed(limit, lower=nodes.short(upper), upper=nodes.short(lower)),
                 place="element",
@@ -71,13 +73,14 @@ def limit_zero(subject: Subject) -> Iterator[Diagnostic]:
         if lower == upper and nodes.name_of(joint) not in wheels:
             stated = "lower" in limit.attributes or "upper" in limit.attributes
             yield robot_codes.LIMIT_ZERO.diagnostic(
-                message=f'the joint "{nodes.name_of(joint)}" cannot move: both limits are '
-                f"{lower:g}" + ("" if stated else ", which is what counts where none is stated"),
+                message=f'joint "{nodes.name_of(joint)}" cannot move: both limits are {lower:g}'
+                + ("" if stated else ", the default"),
+                values={"joint": nodes.name_of(joint), "lower": lower, "upper": upper},
                 origin=limit.origin,
                 instead='type="continuous"' if not stated and _turns(joint) else "",
-                hint='Where it shall not move, write type="fixed" in its <joint>.'
+                hint='If it should not move, write type="fixed" in its <joint>.'
                 if stated
-                else "State lower and upper.",
+                else "Write lower and upper.",
                 mark="lower" if stated else "",
             )
 
@@ -95,24 +98,26 @@ def effort_zero(subject: Subject) -> Iterator[Diagnostic]:
         if nodes.number(limit.attributes.get("effort")) == 0.0:
             usual = _holding(movers[name], name, slides=slides)
             yield robot_codes.EFFORT_ZERO.diagnostic(
-                message=f'the joint "{name}" is driven, but its effort limit is 0 '
-                f"{'N' if slides else 'N m'}: in Gazebo no force can move it",
+                message=f'the effort limit of the driven joint "{name}" is 0, so Gazebo cannot '
+                "move it",
+                values={"joint": name, "attribute": "effort"},
                 origin=limit.origin,
                 instead=f'effort="{nodes.short(usual)}"',
                 place="attribute",
                 mark="effort",
-                hint="Here 0 counts as no limit. The text bears twice the weight of what it moves; "
-                "write what its motor can do.",
+                hint="Cartwheel treats 0 as no limit. The suggestion is twice what holds the "
+                "load; write what the motor can do.",
             )
         if nodes.number(limit.attributes.get("velocity")) == 0.0:
             yield robot_codes.EFFORT_ZERO.diagnostic(
-                message=f'the joint "{name}" is driven, but its velocity limit is 0 '
-                f"{'m/s' if slides else 'rad/s'}: in Gazebo it may not move",
+                message=f'the velocity limit of the driven joint "{name}" is 0, so Gazebo '
+                "cannot move it",
+                values={"joint": name, "attribute": "velocity"},
                 origin=limit.origin,
                 instead=f'velocity="{"1" if slides else "10"}"',
                 place="attribute",
                 mark="velocity",
-                hint="Write how fast its motor can be.",
+                hint="Write the highest speed of the motor.",
             )
 
 
@@ -124,12 +129,13 @@ def _torque_zero(subject: Subject) -> Iterator[Diagnostic]:
                 read = _TORQUES if differential else ("torque",)
                 if element.tag in read and nodes.number(element.text) == 0.0:
                     yield robot_codes.EFFORT_ZERO.diagnostic(
-                        message=f"<{element.tag}> is 0 N m: the wheels do not move",
+                        message=f"<{element.tag}> is 0 N m, so the wheels do not move",
+                        values={"tag": element.tag, "plugin": drive.tag.name},
                         origin=element.origin,
                         instead=nodes.written(element.tag, {}, "5"),
                         place="element",
                         mark=element.text.strip(),
-                        hint="Write what its motors can do.",
+                        hint="Write the torque of the motors.",
                     )
 
 
@@ -163,8 +169,8 @@ def limit_incomplete(subject: Subject) -> Iterator[Diagnostic]:
         for what in ("effort", "velocity"):
             if what not in limit.attributes:
                 yield robot_codes.LIMIT_INCOMPLETE.diagnostic(
-                    message=f'the <limit> of the joint "{nodes.name_of(joint)}" has no {what}: '
-                    "ROS refuses the whole robot",
+                    message=f'the <limit> of joint "{nodes.name_of(joint)}" has no {what}',
+                    values={"joint": nodes.name_of(joint), "attribute": what},
                     origin=limit.origin,
                     instead=f'{what}="10"',
                     place="attribute",
@@ -177,7 +183,8 @@ def axis_zero(subject: Subject) -> Iterator[Diagnostic]:
     for joint, axis, xyz in _axes(subject):
         if math.hypot(*xyz) < 1e-6:
             yield robot_codes.AXIS_ZERO.diagnostic(
-                message=f'the axis of the joint "{nodes.name_of(joint)}" has length 0',
+                message=f'the axis of joint "{nodes.name_of(joint)}" has length 0',
+                values={"joint": nodes.name_of(joint)},
                 origin=axis.origin,
                 instead='xyz="0 1 0"' if nodes.name_of(joint) in wheels else 'xyz="0 0 1"',
                 place="attribute",
@@ -193,8 +200,9 @@ def axis_not_unit(subject: Subject) -> Iterator[Diagnostic]:
         if length >= 1e-6 and abs(length - 1) > 0.01:
             unit = " ".join(nodes.short(value / length) for value in xyz)
             yield robot_codes.AXIS_NOT_NORMALIZED.diagnostic(
-                message=f'the axis of the joint "{nodes.name_of(joint)}" has length {length:.3g}: '
-                "URDF asks for length 1, and not every reader scales it",
+                message=f'the axis of joint "{nodes.name_of(joint)}" has length {length:.3g} '
+                "instead of 1",
+                values={"joint": nodes.name_of(joint), "length": length},
                 origin=axis.origin,
                 instead=f'xyz="{unit}"',
                 place="attribute",
@@ -216,9 +224,10 @@ def limit_degrees(subject: Subject) -> Iterator[Diagnostic]:
                 what: nodes.short(math.radians(value)) for what, value in values.items() if value
             }
             yield robot_codes.LIMIT_IN_DEGREES.diagnostic(
-                message=f'the limits of the joint "{nodes.name_of(joint)}" are radians, '
-                f"and {max(stated):g} rad are {max(stated) / 2 / math.pi:.3g} turns: "
-                "degrees were meant?",
+                message=f'the limits of joint "{nodes.name_of(joint)}" reach {max(stated):g} '
+                f"rad, which is {max(stated) / 2 / math.pi:.3g} turns",
+                values={"joint": nodes.name_of(joint), "largest": max(stated)},
+                hint=_DEGREES,
                 origin=limit.origin,
                 instead=nodes.changed(limit, **radians),
                 place="element",
@@ -241,9 +250,10 @@ def _zero_in_sdf(subject: Subject, wheels: set[str]) -> Iterator[Diagnostic]:
             yield robot_codes.LIMIT_ZERO.diagnostic(
                 # Models from before SDF 1.5, which had no fixed joints, mean one by it.
                 severity="info",
-                message=f'the joint "{joint}" cannot move: both limits are {lower:g}',
+                message=f'joint "{joint}" cannot move: both limits are {lower:g}',
+                values={"joint": joint, "lower": lower, "upper": upper},
                 origin=axis.origin,
-                hint='Where it shall not move, write type="fixed" in its <joint>.',
+                hint='If it should not move, write type="fixed" in its <joint>.',
             )
 
 
@@ -254,8 +264,10 @@ def _degrees_in_sdf(subject: Subject) -> Iterator[Diagnostic]:
             limit = {"lower": math.radians(lower), "upper": math.radians(upper)}
             inner = "".join(f"<{tag}>{nodes.short(value)}</{tag}>" for tag, value in limit.items())
             yield robot_codes.LIMIT_IN_DEGREES.diagnostic(
-                message=f'the limits of the joint "{joint}" are radians, and {max(stated):g} rad '
-                f"are {max(stated) / 2 / math.pi:.3g} turns: degrees were meant?",
+                message=f'the limits of joint "{joint}" reach {max(stated):g} rad, which is '
+                f"{max(stated) / 2 / math.pi:.3g} turns",
+                values={"joint": joint, "largest": max(stated)},
+                hint=_DEGREES,
                 origin=axis.origin,
                 instead=nodes.written("limit", {}, inner),
             )

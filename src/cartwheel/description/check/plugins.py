@@ -35,8 +35,8 @@ def plugin_unknown(subject: Subject) -> Iterator[Diagnostic]:
             if (own := _plain_file(tag.filename)) != tag.filename:
                 yield devices_codes.PLUGIN_UNKNOWN.diagnostic(
                     severity="warning",
-                    message=f'Gazebo looks for a file "{tag.filename}", and the plugin\'s is '
-                    f'"{own}": there it does not load',
+                    message=f'Gazebo loads the file "{tag.filename}", but the plugin is in "{own}"',
+                    values={"plugin": tag.filename, "meant": own},
                     origin=tag.origin,
                     instead=f'filename="{own}"',
                     place="attribute",
@@ -51,9 +51,10 @@ def plugin_unknown(subject: Subject) -> Iterator[Diagnostic]:
                 near = ""
             yield devices_codes.PLUGIN_UNKNOWN.diagnostic(
                 severity="warning" if near else "info",
-                message=f'the plugin "{tag.filename}" is not known: what it does is missing'
+                message=f'the plugin "{tag.filename}" does not exist'
                 if near
-                else f'the plugin "{tag.filename}" is not simulated by Cartwheel',
+                else f'Cartwheel does not simulate the plugin "{tag.filename}"',
+                values={"plugin": tag.filename, "meant": near},
                 origin=tag.origin,
                 instead=f'filename="{near}"' if near else "",
                 place="attribute" if near else "",
@@ -82,16 +83,17 @@ def plugin_obsolete(subject: Subject) -> Iterator[Diagnostic]:
             known = any(element.find(name) for name in ("wheelTorque", "max_wheel_torque"))
             if torque is not None and not known:
                 yield devices_codes.PLUGIN_PARAMETER_OBSOLETE.diagnostic(
-                    message="Gazebo 11 does not read <torque>: its wheels get 5 N m, not "
+                    message="Gazebo 11 ignores <torque>: the wheels get 5 N m instead of "
                     f"{torque.text.strip()}",
+                    values={"tag": "torque", "plugin": drive.tag.name},
                     origin=torque.origin,
                     instead=nodes.written("wheelTorque", {}, torque.text.strip()),
                     place="element",
                 )
             if legacy is not None and legacy.text.strip().lower() in ("true", "1"):
                 yield devices_codes.PLUGIN_PARAMETER_OBSOLETE.diagnostic(
-                    message="Gazebo 11 does not read <legacyMode>, which older ones swapped the "
-                    "wheels for: there the robot turns the other way",
+                    message="Gazebo 11 ignores <legacyMode>, so the robot turns the other way",
+                    values={"tag": "legacyMode", "plugin": drive.tag.name},
                     origin=legacy.origin,
                     instead="<legacyMode>false</legacyMode>",
                     place="element",

@@ -42,8 +42,9 @@ def sensor_type_unknown(subject: Subject) -> Iterator[Diagnostic]:
             sensor.type,
             TYPES,
             attribute="type",
-            message=f'the sensor "{sensor.name}" has the type "{sensor.type}", which Gazebo does '
-            "not have: it measures nothing",
+            message=f'sensor "{sensor.name}" has the type "{sensor.type}", which Gazebo does '
+            "not support",
+            values={"sensor": sensor.name, "type": sensor.type},
             origin=sensor.origin,
             mark="type",
         )
@@ -58,7 +59,7 @@ def sensor_range(subject: Subject) -> Iterator[Diagnostic]:
             elif element.tag in ("range", "clip"):
                 yield from _span(element)
             elif element.tag == "image":
-                yield from _counts(element, ("width", "height"), "a picture without pixels")
+                yield from _counts(element, ("width", "height"))
 
 
 @rule(devices_codes.IMAGE_FORMAT_UNKNOWN)
@@ -71,17 +72,18 @@ def image_format(subject: Subject) -> Iterator[Diagnostic]:
                 continue
             near = spelling.meant(name, FORMATS, parts=False) or "R8G8B8"
             yield devices_codes.IMAGE_FORMAT_UNKNOWN.diagnostic(
-                message=f'there is no image format "{name}": the pictures are R8G8B8',
+                message=f'the image format "{name}" does not exist, so R8G8B8 is used',
+                values={"format": name},
                 origin=image.origin,
                 instead=nodes.written("format", {}, near),
                 place="element",
                 mark=name,
-                hint=f"There are: {', '.join(FORMATS[:_LISTED])}, ….",
+                hint=f"Supported are {', '.join(FORMATS[:_LISTED])}, ….",
             )
 
 
 def _arc(element: Element) -> Iterator[Diagnostic]:
-    yield from _counts(element, ("samples",), "no ray is cast")
+    yield from _counts(element, ("samples",))
     low, high = _value(element, "min_angle"), _value(element, "max_angle")
     first = element.find("min_angle")
     for tag, angle in (("min_angle", low), ("max_angle", high)):
@@ -89,7 +91,9 @@ def _arc(element: Element) -> Iterator[Diagnostic]:
         if found is not None and angle is not None and abs(angle) > _TURN:
             yield devices_codes.SENSOR_RANGE_INVALID.diagnostic(
                 severity="warning",
-                message=f"<{tag}> is {angle:g} rad, more than a turn: degrees for radians?",
+                message=f"<{tag}> is {angle:g} rad, more than a whole turn",
+                values={"tag": tag, "angle": angle},
+                hint="Is it in degrees?",
                 origin=found.origin,
                 instead=nodes.written(tag, {}, nodes.short(math.radians(angle))),
                 place="element",
@@ -99,13 +103,15 @@ def _arc(element: Element) -> Iterator[Diagnostic]:
     if first is not None and low is not None and high is not None and low > high:
         yield devices_codes.SENSOR_RANGE_INVALID.diagnostic(
             severity="info",
-            message=f"<min_angle> is {low:g} rad, above the <max_angle>, {high:g}: the scan runs "
-            "clockwise, which few programs expect",
+            message=f"<min_angle> is {low:g} rad, above <max_angle> {high:g} rad, so the scan "
+            "runs clockwise",
+            values={"tag": "min_angle", "lower": low, "upper": high},
             origin=first.origin,
             instead=nodes.written("min_angle", {}, nodes.short(high)),
             place="element",
             mark=first.text.strip(),
-            hint=f"And write <max_angle>{nodes.short(low)}</max_angle>.",
+            hint="Most programs expect counterclockwise scans. Also write "
+            f"<max_angle>{nodes.short(low)}</max_angle>.",
         )
 
 
@@ -116,21 +122,23 @@ def _span(element: Element) -> Iterator[Diagnostic]:
     if first is None or low is None or high is None or low < high:
         return
     yield devices_codes.SENSOR_RANGE_INVALID.diagnostic(
-        message=f"<{near}> is {low:g} m, and <{far}> {high:g} m: nothing lies between",
+        message=f"<{near}> is {low:g} m, not below <{far}> {high:g} m",
+        values={"tag": near, "lower": low, "upper": high},
         origin=first.origin,
         instead=nodes.written(near, {}, nodes.short(high if 0 <= high < low else 0.1)),
         place="element",
         mark=first.text.strip(),
-        hint=f"And write <{far}>{nodes.short(low)}</{far}>." if 0 <= high < low else "",
+        hint=f"Also write <{far}>{nodes.short(low)}</{far}>." if 0 <= high < low else "",
     )
 
 
-def _counts(element: Element, tags: tuple[str, ...], consequence: str) -> Iterator[Diagnostic]:
+def _counts(element: Element, tags: tuple[str, ...]) -> Iterator[Diagnostic]:
     for tag in tags:
         value, found = _value(element, tag), element.find(tag)
         if found is not None and value is not None and value < 1:
             yield devices_codes.SENSOR_RANGE_INVALID.diagnostic(
-                message=f"<{tag}> is {value:g}: {consequence}",
+                message=f"<{tag}> is {value:g}, but must be at least 1",
+                values={"tag": tag, "value": value},
                 origin=found.origin,
                 instead=nodes.written(tag, {}, "640" if tag != "height" else "480"),
                 place="element",

@@ -38,12 +38,18 @@ def view_blocked(subject: Subject) -> Iterator[Diagnostic]:
                 part = "visual" if view.drawn else "collision"
                 yield devices_codes.VIEW_BLOCKED.diagnostic(
                     message=f'the {view.kind} "{sensor.name}" is inside the {part} of link '
-                    f'"{block.link}": in Gazebo {block.share:.0%} of its rays end there, '
-                    f"{block.distance:.3g} m before it"
+                    f'"{block.link}": in Gazebo {block.share:.0%} of its rays end there, after '
+                    f"{block.distance:.3g} m"
                     if block.within
-                    else f'{block.share:.0%} of what the {view.kind} "{sensor.name}" looks at is '
-                    f'the {part} of link "{block.link}", {block.distance:.3g} m before it: it sees '
-                    "its own housing",
+                    else f'{block.share:.0%} of the rays of the {view.kind} "{sensor.name}" '
+                    f'end at the {part} of link "{block.link}", {block.distance:.3g} m in '
+                    "front of it",
+                    values={
+                        "sensor": sensor.name,
+                        "link": block.link,
+                        "share": block.share,
+                        "distance": block.distance,
+                    },
                     origin=sensor.origin,
                     hint=_way_out(view, block),
                     mark=f'name="{sensor.name}"',
@@ -54,10 +60,10 @@ def _way_out(view: _View, block: _Block) -> str:
     farther = f"{math.ceil(1000 * block.farthest + 1) / 1000:g}"
     if view.kind == "camera":
         return (
-            "Move the sensor out of it, by <pose> or the link's joint, or make the near distance "
-            f"larger than {farther} m."
+            "Move the sensor with its <pose> or its link's joint, or make the near distance larger "
+            f"than {farther} m."
         )
-    past = " Cartwheel looks past what encloses a sensor." if block.within else ""
+    past = " Cartwheel ignores geometry that encloses a sensor." if block.within else ""
     return f"Move the sensor out of it, or write <min>{farther}</min> in its <range>.{past}"
 
 
@@ -69,8 +75,8 @@ def rate_above_physics(subject: Subject) -> Iterator[Diagnostic]:
             rate = nodes.number(element.text)
             if rate is not None and rate > highest * 1.001:
                 yield devices_codes.RATE_ABOVE_PHYSICS.diagnostic(
-                    message=f"{rate:g} Hz are more than the {highest:g} steps that the physics "
-                    "makes in a second",
+                    message=f"{rate:g} Hz is more than the {highest:g} physics steps per second",
+                    values={"tag": element.tag, "rate": rate, "highest": highest},
                     origin=element.origin,
                     instead=nodes.written(element.tag, {}, nodes.short(highest)),
                     place="element",

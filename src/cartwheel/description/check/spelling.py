@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import difflib
 import re
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Mapping
 
-from cartwheel.errors import Code, Diagnostic, Origin
+from cartwheel.errors import Code, Diagnostic, Origin, Value
 
 _LETTERS_AN_ERROR = 6
 """So many letters may hold one slip of the keyboard."""
@@ -62,10 +62,10 @@ def nearest(name: str, known: Iterable[str]) -> str:
     close = difflib.get_close_matches(name, _comparable(name, known), n=_SHOWN, cutoff=0.5)
     shown = ", ".join(close or names[:_LISTED])
     if not names:
-        return "There are none."
+        return "None exist."
     if close:
-        return f"The nearest {'are' if len(close) > 1 else 'is'} {shown}."
-    return f"There are: {shown}{', …' if len(names) > _LISTED else ''}."
+        return f"Similar names: {shown}."
+    return f"Known names: {shown}{', …' if len(names) > _LISTED else ''}."
 
 
 def _comparable(name: str, known: Iterable[str]) -> list[str]:
@@ -85,6 +85,7 @@ def misspelt(
     message: str,
     origin: Origin | None,
     mark: str,
+    values: Mapping[str, Value],
 ) -> Diagnostic:
     """The diagnostic for an attribute whose name does not exist, with the name that was meant.
 
@@ -96,11 +97,13 @@ def misspelt(
         message: What is wrong.
         origin: Where.
         mark: What of the line it is about.
+        values: What the message names; ``meant`` is added.
     """
     near = meant(name, known)
     return code.diagnostic(
         message=message,
         origin=origin,
+        values={**values, "meant": near},
         instead=f'{attribute}="{near}"' if near else "",
         place="attribute" if near else "",
         mark=mark,

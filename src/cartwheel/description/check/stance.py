@@ -33,8 +33,9 @@ def wheel_frictionless(subject: Subject) -> Iterator[Diagnostic]:
                     continue
                 node = _surface_node(robot, link.name, "mu1")
                 yield robot_codes.WHEEL_FRICTIONLESS.diagnostic(
-                    message=f'the driven wheel "{link.name}" has the friction {max(mu):g}: '
-                    "it slips wherever it stands",
+                    message=f'the friction of the driven wheel "{link.name}" is {max(mu):g}, '
+                    "so it slips",
+                    values={"link": link.name, "friction": max(mu)},
                     origin=node.origin if node is not None else collision.origin,
                     instead="<mu1>1.0</mu1>" if node is not None else "",
                     place="element" if node is not None else "",
@@ -60,12 +61,12 @@ def caster_friction(subject: Subject) -> Iterator[Diagnostic]:
                 continue
             text = f'<gazebo reference="{link.name}"><mu1>0.0</mu1><mu2>0.0</mu2></gazebo>'
             yield robot_codes.CASTER_FRICTION.diagnostic(
-                message=f'the caster "{link.name}" does not roll, and its friction is '
-                f"{'1, the default' if mu is None else f'{mu:g}'}: it is dragged along and holds "
-                "back every turn",
+                message=f'the caster "{link.name}" cannot roll and has a friction of '
+                f"{'1, the default' if mu is None else f'{mu:g}'}",
+                values={"link": link.name, "friction": mu},
                 origin=collision.origin,
                 instead=text,
-                hint="Add it to the robot, or change the values that are there.",
+                hint="Add it to the robot, or change the existing values.",
             )
 
 
@@ -80,8 +81,9 @@ def wheel_no_collision(subject: Subject) -> Iterator[Diagnostic]:
                 continue
             radius = wheel_radius(robot, joint) or 0.1
             yield robot_codes.WHEEL_WITHOUT_COLLISION.diagnostic(
-                message=f'the driven wheel "{link.name}" has no <collision>: '
-                "it falls through the ground, and drives nothing",
+                message=f'the driven wheel "{link.name}" has no <collision>, so it does not '
+                "touch the ground",
+                values={"link": link.name},
                 origin=link.origin,
                 instead='<collision><origin rpy="1.5708 0 0"/><geometry>'
                 f'<cylinder radius="{radius:.4g}" length="{radius / 2:.4g}"/>'
@@ -111,10 +113,11 @@ def base_no_collision(subject: Subject) -> Iterator[Diagnostic]:
                 None,
             )
             yield robot_codes.BASE_WITHOUT_COLLISION.diagnostic(
-                message="none of the robot's links has a <collision>: it falls through the ground"
+                message="no link of the robot has a <collision>, so it falls through the ground"
                 if nowhere
-                else f'the body "{seen.name}" has visuals but no <collision>: '
-                "it goes through all things",
+                else f'the body "{seen.name}" has visuals but no <collision>, so it passes '
+                "through everything",
+                values={"link": seen.name},
                 origin=seen.origin,
                 instead=_collision_of(robot, seen) if node is not None else "",
                 place="inside" if node is not None else "",
@@ -141,8 +144,8 @@ def wheels_off_ground(subject: Subject) -> Iterator[Diagnostic]:
                 continue
             yield robot_codes.WHEELS_OFF_GROUND.diagnostic(
                 message=f'the collision of link "{link.name}" reaches '
-                f"{1000 * (bottom - height):.3g} mm lower than the driven wheels: "
-                "they turn in the air",
+                f"{1000 * (bottom - height):.3g} mm below the driven wheels, which turn in the air",
+                values={"link": link.name, "depth": bottom - height},
                 origin=link.collisions[0].origin,
                 hint=f'Raise it, or lower the joint of "{joints[0].child}".',
             )
@@ -175,10 +178,11 @@ def collisions_overlap(subject: Subject) -> Iterator[Diagnostic]:
                 yield robot_codes.OVERLAPPING_COLLISIONS.diagnostic(
                     # Gazebo takes a mesh as it is, not its hull.
                     severity="info" if meshes else None,
-                    message=f'the collisions of "{a.name}" and "{b.name}" overlap while all joints '
-                    "are at 0, and the two may collide: they push each other apart",
+                    message=f'the collisions of "{a.name}" and "{b.name}" overlap while all '
+                    "joints are at 0, so they push each other apart",
+                    values={"link": a.name, "other": b.name},
                     origin=b.collisions[0].origin,
-                    hint="Make one of them smaller, or leave out its <selfCollide>.",
+                    hint="Make one of them smaller, or disable <selfCollide> for one of them.",
                 )
 
 

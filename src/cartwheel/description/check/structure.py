@@ -28,7 +28,9 @@ def name_twice(subject: Subject) -> Iterator[Diagnostic]:
             new = next(f"{name}_{i}" for i in range(2, 99) if f"{name}_{i}" not in taken)
             taken.add(new)
             yield robot_codes.DUPLICATE_NAME.diagnostic(
-                message=f'the {tag} "{name}" exists twice: the first is at {seen[name].origin}',
+                message=f'two {tag}s have the name "{name}"',
+                values={"tag": tag, "name": name},
+                hint=f"The first one is at {seen[name].origin}.",
                 origin=node.origin,
                 instead=f'name="{new}"',
                 place="attribute",
@@ -44,7 +46,8 @@ def name_missing(subject: Subject) -> Iterator[Diagnostic]:
         if not nodes.name_of(node):
             new = f"{nodes.text_of(node, 'type') or 'new'}_{node.tag}"
             yield robot_codes.NAME_MISSING.diagnostic(
-                message=f"this <{node.tag}> has no name: Gazebo and ROS refuse it",
+                message=f"this <{node.tag}> has no name",
+                values={"tag": node.tag},
                 origin=node.origin,
                 instead=f'name="{new}"',
                 place="attribute",
@@ -60,7 +63,8 @@ def joint_link_unknown(subject: Subject) -> Iterator[Diagnostic]:
             end = nodes.child(joint, which)
             if end is None:
                 yield robot_codes.JOINT_LINK_UNKNOWN.diagnostic(
-                    message=f'the joint "{name}" has no <{which}>',
+                    message=f'joint "{name}" has no <{which}>',
+                    values={"joint": name, "tag": which},
                     origin=joint.origin,
                     hint=f'Write <{which} link="…"/> in it.',
                 )
@@ -70,11 +74,13 @@ def joint_link_unknown(subject: Subject) -> Iterator[Diagnostic]:
                 continue
             if link == WORLD and which == "parent":
                 yield robot_codes.JOINT_LINK_UNKNOWN.diagnostic(
-                    message=f'the joint "{name}" hangs on the link "world", which is not there',
+                    message=f'the parent of joint "{name}" is "world", but the robot has no '
+                    "such link",
+                    values={"joint": name, "link": link, "tag": which},
                     origin=end.origin,
                     instead='<link name="world"/>',
                     mark=link,
-                    hint="Add it to the robot to fix it to the world.",
+                    hint="Add it to fix the robot to the world.",
                 )
                 continue
             yield spelling.misspelt(
@@ -82,7 +88,8 @@ def joint_link_unknown(subject: Subject) -> Iterator[Diagnostic]:
                 link,
                 known,
                 attribute="link",
-                message=f'the {which} of the joint "{name}", "{link}", is no link',
+                message=f'the {which} of joint "{name}" is "{link}", which is not a link',
+                values={"link": link, "joint": name, "tag": which},
                 origin=end.origin,
                 mark=f'link="{end.attributes.get("link", "")}"',
             )
@@ -99,8 +106,9 @@ def joint_type_unknown(subject: Subject) -> Iterator[Diagnostic]:
             kind,
             JOINT_TYPES,
             attribute="type",
-            message=f'the joint "{nodes.name_of(joint)}" has the type "{kind}", which is none: '
-            "ROS refuses the whole robot",
+            message=f'joint "{nodes.name_of(joint)}" has the type "{kind}", which URDF does '
+            "not define",
+            values={"joint": nodes.name_of(joint), "type": kind},
             origin=joint.origin,
             mark="type",
         )
@@ -117,11 +125,16 @@ def two_parents(subject: Subject) -> Iterator[Diagnostic]:
         if child in holders:
             first = holders[child]
             yield robot_codes.MULTIPLE_PARENTS.diagnostic(
-                message=f'the link "{child}" is the child of two joints, '
-                f'"{nodes.name_of(first)}" and "{nodes.name_of(joint)}": a URDF is a tree',
+                message=f'link "{child}" is the child of two joints, "{nodes.name_of(first)}" '
+                f'and "{nodes.name_of(joint)}"',
+                values={
+                    "link": child,
+                    "joint": nodes.name_of(joint),
+                    "other": nodes.name_of(first),
+                },
                 origin=joint.origin,
                 mark=f'name="{nodes.name_of(joint)}"',
-                hint=f"Remove one of them, or make a link of its own for each. The joint "
+                hint="Remove one of them, or give each a child link of its own. Joint "
                 f'"{nodes.name_of(first)}" is at {first.origin}.',
             )
         holders.setdefault(child, joint)
@@ -132,9 +145,10 @@ def links_in_a_ring(subject: Subject) -> Iterator[Diagnostic]:
     holders = inbound(_parts(subject, "joint"), link_names(subject))
     for ring in rings(holders):
         yield robot_codes.KINEMATIC_LOOP.diagnostic(
-            message="the joints make a ring of links: " + " -> ".join(reversed([*ring, ring[0]])),
+            message=f"joints connect links in a loop: {' -> '.join(reversed([*ring, ring[0]]))}",
+            values={"links": tuple(reversed(ring))},
             origin=holders[ring[0]].origin,
-            hint="Turn round or remove one of its joints: a URDF is a tree.",
+            hint="Reverse or remove one of these joints.",
         )
 
 
@@ -155,7 +169,8 @@ def several_roots(subject: Subject) -> Iterator[Diagnostic]:
             continue
         root = nodes.name_of(first)
         yield robot_codes.MULTIPLE_ROOTS.diagnostic(
-            message=f'no joint joins the link "{name}" to the others: "{root}" is a root already',
+            message=f'no joint connects link "{name}" to "{root}", the root of the robot',
+            values={"link": name, "root": root},
             origin=node.origin,
             instead=f'<joint name="{name}_joint" type="fixed"><parent link="{root}"/>'
             f'<child link="{name}"/></joint>',
@@ -178,16 +193,18 @@ def mimic_unknown(subject: Subject) -> Iterator[Diagnostic]:
                 leader,
                 set(joints) - {name},
                 attribute="joint",
-                message=f'the joint "{name}" mimics "{leader}", which is no joint',
+                message=f'joint "{name}" mimics "{leader}", which is not a joint',
+                values={"joint": name, "leader": leader},
                 origin=mimic.origin,
                 mark=f'joint="{mimic.attributes.get("joint", "")}"',
             )
         elif name in mimic_chain(joints, leader):
             yield robot_codes.MIMIC_UNKNOWN.diagnostic(
-                message=f'the joint "{name}" mimics itself, by way of "{leader}"',
+                message=f'joint "{name}" mimics itself through "{leader}"',
+                values={"joint": name, "leader": leader},
                 origin=mimic.origin,
                 mark=f'joint="{leader}"',
-                hint="One joint of the chain must be free to move.",
+                hint="One joint of the loop must be free to move.",
             )
 
 
@@ -203,8 +220,9 @@ def reference_unknown(subject: Subject) -> Iterator[Diagnostic]:
             reference,
             known,
             attribute="reference",
-            message=f'<gazebo> refers to "{reference}", which is neither a link nor a joint: '
-            "Gazebo drops all that is in it without a word",
+            message=f'<gazebo> refers to "{reference}", which is neither a link nor a joint, '
+            "so Gazebo ignores it",
+            values={"reference": reference},
             origin=node.origin,
             mark=f'reference="{node.attributes["reference"]}"',
         )

@@ -34,8 +34,10 @@ def angle_degrees(subject: Subject) -> Iterator[Diagnostic]:
             xyz = " ".join(node.text.split()[:3])
             instead = nodes.written("pose", dict(node.attributes), f"{xyz} {radians}")
         yield robot_codes.ANGLE_IN_DEGREES.diagnostic(
-            message=f"the angles {text} are radians: {max(values, key=abs):g} rad are "
-            f"{max(map(abs, values)) / 2 / math.pi:.3g} turns. Degrees were meant?",
+            message=f"the angles {text} are in radians: {max(values, key=abs):g} rad is "
+            f"{max(map(abs, values)) / 2 / math.pi:.3g} turns",
+            values={"angles": values},
+            hint="Are they in degrees?",
             origin=node.origin,
             instead=instead,
             place="attribute" if attribute else "element",
@@ -56,8 +58,9 @@ def place_millimetres(subject: Subject) -> Iterator[Diagnostic]:
             continue
         metres = " ".join(nodes.short(value / 1000) for value in xyz)
         yield robot_codes.POSITION_IN_MILLIMETRES.diagnostic(
-            message=f"this <{holder.tag}> is {math.hypot(*xyz):.4g} m away: "
-            "millimetres for metres?",
+            message=f"this <{holder.tag}> is {math.hypot(*xyz):.4g} m away from its link",
+            values={"tag": holder.tag, "distance": math.hypot(*xyz)},
+            hint="Is the position in millimetres?",
             origin=origin.origin,
             instead=f'xyz="{metres}"',
             place="attribute",

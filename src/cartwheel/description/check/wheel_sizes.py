@@ -37,7 +37,11 @@ def wheel_separation(subject: Subject) -> Iterator[Diagnostic]:
         # A wheel may stand beside its joint; who states the distance of the joints meant it.
         if _differs(one.value, apart, _LEAST) and _differs(one.value, joints, _LEAST):
             far = "far" if one.value > apart else "little"
-            said = "the wheels are" if one.measure == "apart" else "half of base and track is"
+            said = (
+                "the wheels are"
+                if one.measure == "apart"
+                else "half the sum of wheel base and track is"
+            )
             yield _differing(
                 robot_codes.WHEEL_SEPARATION_MISMATCH,
                 one,
@@ -90,9 +94,15 @@ def wheel_diameter(subject: Subject) -> Iterator[Diagnostic]:
 def _differing(code: Code, one: Stated, real: float, why: str) -> Diagnostic:
     stated = f"{one.label} is {one.value:g} m"
     if not one.written:
-        stated = f"{one.label} is not written, so that {one.value:g} m counts"
+        stated = f"{one.label} is missing and defaults to {one.value:g} m"
     return code.diagnostic(
         message=f"{stated}, but {why}",
+        values={
+            "tag": one.label,
+            "joint": one.first[0],
+            "stated": one.value,
+            "measured": real,
+        },
         origin=one.origin,
         instead=one.write(nodes.short(round(real, 4))),
         place=one.place,

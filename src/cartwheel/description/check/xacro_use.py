@@ -30,11 +30,11 @@ def argument_unused(subject: Subject) -> Iterator[Diagnostic]:
             name = nodes.name_of(node)
             if node.tag == "xacro:arg" and _is_plain(name) and name not in used:
                 yield files_codes.ARGUMENT_UNUSED.diagnostic(
-                    message=f'the argument "{name}" is declared, but nothing uses it: '
-                    f"{name}:=… changes nothing",
+                    message=f'argument "{name}" is declared but never used',
+                    values={"name": name},
                     origin=node.origin,
                     mark=f'name="{name}"',
-                    hint=f"Write $(arg {name}) where it shall count, or remove it.",
+                    hint=f"Use it as $(arg {name}), or remove it.",
                 )
 
 
@@ -46,7 +46,8 @@ def property_unused(subject: Subject) -> Iterator[Diagnostic]:
             name = nodes.name_of(node)
             if node.tag == "xacro:property" and _is_plain(name) and name not in used:
                 yield files_codes.PROPERTY_UNUSED.diagnostic(
-                    message=f'the property "{name}" is not used',
+                    message=f'property "{name}" is never used',
+                    values={"name": name},
                     origin=node.origin,
                     mark=f'name="{name}"',
                     hint="Use it where its value is written again, or remove it.",
@@ -68,11 +69,12 @@ def property_twice(subject: Subject) -> Iterator[Diagnostic]:
                 if name in waiting and value is not None:
                     first = waiting[name]
                     yield files_codes.PROPERTY_OVERWRITTEN.diagnostic(
-                        message=f'the property "{name}" is set again before anything uses it: '
-                        f'"{first.attributes["value"]}" counts nowhere',
+                        message=f'property "{name}" is overwritten before its value '
+                        f'"{first.attributes["value"]}" is used',
+                        values={"name": name, "value": first.attributes["value"]},
                         origin=first.origin,
                         mark=f'name="{name}"',
-                        hint=f"The other is at {node.origin}. Remove one of them.",
+                        hint=f"The next value is at {node.origin}. Remove one of them.",
                     )
                 if value is not None and not node.children:
                     waiting[name] = node
@@ -93,11 +95,12 @@ def parameter_unused(subject: Subject) -> Iterator[Diagnostic]:
                 # What a macro calls sees its parameters too: any use anywhere counts.
                 if name is not None and name[1] not in used:
                     yield files_codes.PARAMETER_UNUSED.diagnostic(
-                        message=f'the parameter "{name[1]}" of the macro "{nodes.name_of(node)}" '
-                        "is not used: what calls give it changes nothing",
+                        message=f'macro "{nodes.name_of(node)}" never uses its parameter '
+                        f'"{name[1]}"',
+                        values={"name": name[1], "macro": nodes.name_of(node)},
                         origin=node.origin,
                         mark="params",
-                        hint=f"Write ${{{name[1]}}} where it shall count, or remove it.",
+                        hint=f"Use it as ${{{name[1]}}}, or remove it.",
                     )
 
 
@@ -110,7 +113,8 @@ def macro_unused(subject: Subject) -> Iterator[Diagnostic]:
             if node.tag == "xacro:macro" and name and name not in called:
                 params = node.attributes.get("params", "").split()
                 yield files_codes.MACRO_UNUSED.diagnostic(
-                    message=f'the macro "{name}" is never called: nothing of it is in the robot',
+                    message=f'macro "{name}" is never called',
+                    values={"name": name},
                     origin=node.origin,
                     mark=f'name="{nodes.name_of(node)}"',
                     hint=f"Call it, as in <xacro:{name}{' …' if params else ''}/>, or remove it.",

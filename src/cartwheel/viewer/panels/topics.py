@@ -91,8 +91,9 @@ def _words(kind: str) -> str:
 def list_html(topics: Sequence[TopicInfo]) -> str:
     """A table of topics."""
     rows = "".join(
-        f'<tr><td title="{escape(", ".join(topic.publishers) or "nobody")} → '
-        f'{escape(", ".join(topic.readers) or "nobody")}">{escape(topic.name)}{_lost(topic)}</td>'
+        f'<tr><td title="{escape(", ".join(topic.publishers) or "no publishers")} → '
+        f'{escape(", ".join(topic.readers) or "no subscribers")}">'
+        f"{escape(topic.name)}{_lost(topic)}</td>"
         f'<td class="cw-dim cw-words">{_words(topic.type.replace("/msg/", "/"))}</td>'
         f'<td class="cw-right">{f"{topic.rate:g} Hz" if topic.rate else ""}</td></tr>'
         for topic in topics
