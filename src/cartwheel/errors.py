@@ -138,6 +138,11 @@ class Diagnostic:
         message = self.message if self.code is UNCLASSIFIED else ""
         return (self.code, self.severity, *fixed, message)
 
+    @property
+    def text(self) -> str:
+        """The message and the hint, for logs that show one line."""
+        return f"{self.message}. {self.hint}" if self.hint else self.message
+
     def __str__(self) -> str:
         place = f"{self.origin}: " if self.origin else ""
         code = f" [{self.code}]" if self.code is not UNCLASSIFIED else ""

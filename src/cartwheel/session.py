@@ -176,8 +176,10 @@ class Session:
             if diagnostic.severity != "info":
                 raise CartwheelError(
                     diagnostic.message,
+                    code=diagnostic.code,
                     origin=diagnostic.origin,
-                    hint="--strict makes every warning an error.",
+                    hint=f"{diagnostic.hint} --strict makes every warning an error.".strip(),
+                    values=diagnostic.values,
                 )
 
     def _schedule_clock(self, rate: float) -> Task:

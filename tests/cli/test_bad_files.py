@@ -67,7 +67,7 @@ def test_a_missing_mesh_costs_its_shape_alone(program, name):
     strict = program(*run, "--strict", status=2)
     assert said in strict.stderr
     assert strict.stdout == ""
-    assert "[file-missing]" in program("check", "bad.urdf", status=1).stdout
+    assert "[CW101 file-missing]" in program("check", "bad.urdf", status=1).stdout
 
 
 def test_a_missing_file(cart):
@@ -82,7 +82,7 @@ def test_a_name_used_twice(cart):
     (cart.folder / "box.urdf").write_text(BOX)
     cart("spawn", "box.urdf", "-x", "9")
     done = cart("spawn", "box.urdf", "-x", "9", status=2)
-    assert 'a model named "box" stands in the world already' in done.stderr
+    assert 'a model named "box" is in the world already' in done.stderr
     assert "box_1" in done.stderr
     cart("delete", "box")
 

@@ -10,6 +10,8 @@ import pytest
 from tests.description.test_elements import DOCUMENTS
 
 import cartwheel as cw
+from cartwheel.codes import devices
+from cartwheel.codes import world as world_codes
 from cartwheel.description import load_text
 from cartwheel.description.check import check, mending, structure
 from cartwheel.description.model import WorldDescription
@@ -38,7 +40,7 @@ def _changed(text):
 
 
 def _refused(error):
-    assert error.origin is not None or "diverged" in error.message, str(error)
+    assert error.origin is not None or error.code is world_codes.SIMULATION_DIVERGED
 
 
 @pytest.mark.parametrize("kind", DOCUMENTS)
@@ -116,8 +118,10 @@ def test_a_mass_that_nothing_has(form):
 
 def test_boxes_in_one_place():
     world = _world("\n".join(_BOX.format(count) for count in range(400)))
-    with pytest.raises(WorldError, match="touch at 319200 points, more than the 10000") as got:
+    with pytest.raises(WorldError) as got:
         cw.World(world)
+    assert got.value.code is world_codes.TOO_MANY_CONTACTS
+    assert got.value.values["contacts"] > 10_000
     assert str(got.value.origin).startswith("w:")
 
 
@@ -140,11 +144,10 @@ def test_a_chain_of_thousands_of_links(form):
     lines = [link.format(each) for each in range(count)]
     lines += [joint.format(each, each + 1) for each in range(count - 1)]
     described = load_text("\n".join([*ends[:1], *lines, *ends[1:]]), file="r")
-    with (
-        cw.World("empty") as world,
-        pytest.raises(WorldError, match='link "l500" hangs on a chain of 501 links') as got,
-    ):
+    with cw.World("empty") as world, pytest.raises(WorldError) as got:
         world.spawn(described)
+    assert got.value.code is world_codes.CHAIN_TOO_LONG
+    assert got.value.values["link"] == "l500"
     assert str(got.value.origin) == "r:502"
 
 
@@ -299,22 +302,23 @@ _SCAN = """<ray><scan><horizontal>
 _CAMERA = """<camera><image><width>{}</width><height>{}</height></image>
 <clip><near>{}</near><far>{}</far></clip></camera>"""
 _TOO_MUCH = {
-    "no samples": ((0, 1, 1, 0), 4, "<samples> must be from 1 to 1,000,000, but is 0"),
-    "negative": ((-1, 1, 1, 0), 4, "<samples> must be from 1 to 1,000,000, but is -1"),
-    "samples": (("1e9", 1, 1, 0), 4, "<samples> must be from 1 to 1,000,000, but is 1e+09"),
-    "resolution": ((9, "1e308", 1, 0), 5, "must be a number from -1e+15 to 1e+15"),
-    "both": ((9, "1e9", 1, 0), 5, "<samples> times <resolution> must be at most 1,000,000"),
-    "rows": ((2000, 1, 2000, 0), 4, "at most 1,000,000 rays, but this one has 2000 x 2000"),
-    "noise": ((9, 1, 1, "1e308"), 8, '<stddev> "1e308" must be a number from 0 to 1e+15'),
+    "no samples": ((0, 1, 1, 0), 4, devices.SCAN_SAMPLES_INVALID),
+    "negative": ((-1, 1, 1, 0), 4, devices.SCAN_SAMPLES_INVALID),
+    "samples": (("1e9", 1, 1, 0), 4, devices.SCAN_SAMPLES_INVALID),
+    "resolution": ((9, "1e308", 1, 0), 5, devices.PLUGIN_PARAMETER_INVALID),
+    "both": ((9, "1e9", 1, 0), 5, devices.SCAN_SAMPLES_INVALID),
+    "rows": ((2000, 1, 2000, 0), 4, devices.SCAN_SAMPLES_INVALID),
+    "noise": ((9, 1, 1, "1e308"), 8, devices.PLUGIN_PARAMETER_INVALID),
 }  # fmt: skip
 
 
 @pytest.mark.parametrize("case", _TOO_MUCH)
 def test_scans_beyond_their_bounds(case):
-    values, line, message = _TOO_MUCH[case]
+    values, line, code = _TOO_MUCH[case]
     text = _SENSOR.format("ray", 10, _SCAN.format(*values), "libgazebo_ros_laser.so")
-    with cw.World("empty") as world, pytest.raises(PluginError, match=re.escape(message)) as got:
+    with cw.World("empty") as world, pytest.raises(PluginError) as got:
         world.spawn(load_text(text, file="r"))
+    assert got.value.code is code
     assert str(got.value.origin) == f"r:{line}"
 
 
@@ -392,36 +396,32 @@ def test_a_joint_that_follows_by_an_absurd_ratio(name, value):
         load_text(_ARM.format(mimic, ""), file="r")
     assert str(got.value.origin) == "r:4"
     described = load_text(_ARM.format("", _FOLLOWER.format(name, value)), file="r")
-    message = rf'<{name}> "{re.escape(value)}" must be a number from -1e\+06 to 1e\+06'
-    with cw.World("empty") as world, pytest.raises(PluginError, match=message) as failed:
+    with cw.World("empty") as world, pytest.raises(PluginError) as failed:
         world.spawn(described)
+    assert failed.value.code is devices.PLUGIN_PARAMETER_INVALID
+    assert failed.value.values["parameter"] == name
     assert str(failed.value.origin) == "r:7"
 
 
 _DRIVES = {
-    "skid steer": (
-        "libgazebo_ros_skid_steer_drive.so",
-        "wheelSeparation",
-        "must be from 1e-09 to 1e+06",
-    ),
-    "new diff drive": ("gz-sim-diff-drive-system", "wheel_radius", "must be from 1e-09 to 1e+06"),
+    "skid steer": ("libgazebo_ros_skid_steer_drive.so", "wheelSeparation"),
+    "new diff drive": ("gz-sim-diff-drive-system", "wheel_radius"),
 }
 
 
 @pytest.mark.parametrize("value", ["1e308", "1e15", "1e-300"])
 @pytest.mark.parametrize("case", _DRIVES)
 def test_wheels_of_an_absurd_size(case, value):
-    filename, tag, message = _DRIVES[case]
+    filename, tag = _DRIVES[case]
     plugin = f"""<gazebo><plugin name="p" filename="{filename}">
 <leftFrontJoint>i</leftFrontJoint><rightFrontJoint>j</rightFrontJoint>
 <leftRearJoint>i</leftRearJoint><rightRearJoint>j</rightRearJoint>
 <left_joint>i</left_joint><right_joint>j</right_joint>
 <{tag}>{value}</{tag}></plugin></gazebo>"""
     described = load_text(_ARM.format("", plugin), file="r")
-    if value == "1e308":
-        message = f'<{tag}> "{value}" must be a number from -1e+15 to 1e+15'
-    with cw.World("empty") as world, pytest.raises(PluginError, match=re.escape(message)) as got:
+    with cw.World("empty") as world, pytest.raises(PluginError) as got:
         world.spawn(described)
+    assert got.value.code is devices.PLUGIN_PARAMETER_INVALID
     assert str(got.value.origin) == ("r:9" if value == "1e308" else "r:5")
 
 
@@ -431,8 +431,9 @@ def test_a_divergence_names_the_place_of_its_link():
     with cw.World("empty") as world:
         world.spawn(described)
         world.session.simulation.data.joint("r::j").qvel[0] = math.nan
-        with pytest.raises(DivergedError, match=r'diverged by .* s, first at "r::a"') as got:
+        with pytest.raises(DivergedError) as got:
             world.run(0.1)
+    assert got.value.values["body"] == "r::a"
     assert str(got.value.origin) == "r:2"
 
 

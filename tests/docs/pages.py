@@ -12,7 +12,6 @@ PAGES = [
     ROOT / "README.md",
     ROOT / "CONTRIBUTING.md",
     ROOT / "CHANGELOG.md",
-    ROOT / "SECURITY.md",
     *sorted(DOCS.rglob("*.md")),
 ]
 

@@ -184,7 +184,7 @@ def test_packages_are_found_on_the_path(make, gazebo, tmp_path):
         ({"initial_pose": {"position": {"x": math.nan}}}, "initial_pose.position.x is nan"),
         ({"initial_pose": {"orientation": {"x": 1e-300}}}, "no rotation"),
         ({"model_name": "ground_plane"}, 'model name "ground_plane" already exists'),
-        ({"model_name": "a::b"}, "is no name for a model"),
+        ({"model_name": "a::b"}, 'must not be empty or contain "::"'),
     ],
 )
 def test_refusals(api, service, fields, said):

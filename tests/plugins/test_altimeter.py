@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from cartwheel.codes import devices, running
 from cartwheel.geometry import Pose, quat_from_rpy
 
 G = 9.8
@@ -121,7 +122,8 @@ def test_a_logical_camera_has_gazebos_long_name(make):
 def test_a_view_that_is_none_leaves_the_sensor_out(make, view):
     (told,) = make.world(make.sdf(logical(view))).diagnostics
     assert told.severity == "error"
-    assert 'sensor "lc" is left out' in told.message
+    assert told.code is running.PLUGIN_LEFT_OUT
+    assert told.values["plugin"] == "lc"
 
 
 def test_what_classic_alone_has_is_told(make):
@@ -129,5 +131,5 @@ def test_what_classic_alone_has_is_told(make):
       </link></model>"""
     for kind in ("altimeter", "logical_camera", "sonar", "wireless_receiver"):
         (told,) = make.world(make.sdf(model.format(kind))).diagnostics
-        assert told.message == 'sensor "a" has no <plugin>, so it publishes nothing'
+        assert told.code is devices.SENSOR_WITHOUT_PLUGIN
         assert told.origin is not None

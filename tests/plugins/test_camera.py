@@ -11,7 +11,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from PIL import Image
+from tests.coded import coded
 
+from cartwheel.codes import world as world_codes
 from cartwheel.geometry import Pose, quat_from_rpy
 
 RED = (0.9, 0.05, 0.05)
@@ -333,10 +335,10 @@ def test_a_machine_without_opengl_says_so_once_and_drives_on(make, rosbots, monk
     assert len(info.drain()) == 60
     assert len(odometry.drain()) == 200
     assert world.model("rosbots").pose.x > 0.5
-    (told,) = [d for d in world.diagnostics if "OpenGL" in d.message]
+    (told,) = coded(world, world_codes.OPENGL_MISSING)
     assert told.severity == "warning"
     for package in ("libegl1", "libgl1 ", "libgl1-mesa-dri"):
-        assert package in told.message
+        assert package in told.hint
 
 
 SCRIPT = """

@@ -4,7 +4,9 @@ import dataclasses
 
 import numpy as np
 import pytest
+from tests.coded import coded
 
+from cartwheel.codes import devices
 from cartwheel.geometry import Pose
 from cartwheel.simulation.contacts import read_contacts
 
@@ -187,7 +189,7 @@ def test_pushing_a_box_along_takes_its_friction(make, rosbots):
 )
 def test_every_spelling_of_a_collision_works(make, rosbots, name):
     world = push(make, naming(make, rosbots, name))
-    assert not [d for d in world.diagnostics if "collision" in d.message]
+    assert not coded(world, devices.CONTACT_COLLISION_UNKNOWN)
     assert read(world, 0.02)[-1].states[0].collision1_name == CHASSIS
 
 
@@ -195,15 +197,16 @@ def test_a_wrong_collision_is_told_with_the_likely_one(make, rosbots):
     world = make.world()
     world.session.spawn(naming(make, rosbots, "base_link_colision"), pose=Pose((0, 0, 0.05)))
     (told,) = [d for d in world.diagnostics if d.severity == "warning"]
-    assert 'there is no collision "base_link_colision"' in told.message
-    assert 'Did you mean "base_link_collision"?' in told.message
+    assert told.code is devices.CONTACT_COLLISION_UNKNOWN
+    assert told.values["collision"] == "base_link_colision"
+    assert told.values["meant"] == "base_link_collision"
     assert told.origin is not None
 
 
 def test_a_bumper_without_a_collision_is_told(make, rosbots):
     world = make.world()
     world.session.spawn(naming(make, rosbots), pose=Pose((0, 0, 0.05)))
-    assert any("names no <collision>" in d.message for d in world.diagnostics)
+    assert coded(world, devices.SENSOR_INCOMPLETE, missing="collision")
 
 
 def test_what_rests_on_a_standing_bumper_is_felt_for_as_long_as_it_rests(make):

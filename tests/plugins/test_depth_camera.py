@@ -7,6 +7,7 @@ import struct
 import numpy as np
 import pytest
 from PIL import Image
+from tests.coded import coded
 from tests.plugins.cameras import (
     RED,
     cloud_of,
@@ -20,6 +21,7 @@ from tests.plugins.cameras import (
     topic_names,
 )
 
+from cartwheel.codes import devices
 from cartwheel.geometry import Pose
 
 KINECT, DEPTH = "libgazebo_ros_openni_kinect.so", "libgazebo_ros_depth_camera.so"
@@ -45,7 +47,7 @@ def test_a_sensor_without_a_lens_has_sdf_s_own(make):
     assert (image.width, image.height) == (320, 240)
     focal = take(world, "/k/depth/camera_info").k[0]
     assert focal == pytest.approx(160 / math.tan(1.047 / 2), rel=1e-3)
-    (told,) = [each for each in world.diagnostics if "has no <camera>" in each.message]
+    (told,) = coded(world, devices.SENSOR_INCOMPLETE, missing="camera")
     assert told.severity == "warning"
 
 
@@ -306,7 +308,8 @@ def test_what_gazebo_11_does_not_publish_is_told(make):
     tags = "<cameraName>k</cameraName><normalsTopicName>n</normalsTopicName>"
     world = make.world(make.sdf(kinect(tags, DEPTH)))
     (told,) = [d for d in world.diagnostics if d.severity == "warning"]
-    assert "<normalsTopicName>" in told.message
+    assert told.code is devices.PLUGIN_PARAMETER_IGNORED
+    assert told.values["parameter"] == "normalsTopicName"
     assert told.origin is not None
 
 

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from cartwheel.codes import devices
 from cartwheel.errors import PluginError
 
 G = 9.8
@@ -68,5 +69,6 @@ def test_two_rockers_turn_alike(make):
 
 
 def test_a_rocker_without_another_is_refused(make):
-    with pytest.raises(PluginError, match="cannot follow itself"):
+    with pytest.raises(PluginError) as caught:
         make.world().session.spawn(make.sdf(ROVER.format("L")))
+    assert caught.value.code is devices.PLUGIN_PARAMETER_INVALID

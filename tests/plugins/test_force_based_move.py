@@ -3,7 +3,9 @@
 import math
 
 import pytest
+from tests.coded import coded
 
+from cartwheel.codes import devices
 from cartwheel.errors import PluginError
 from cartwheel.geometry import Pose, quat_from_rpy
 
@@ -85,6 +87,7 @@ def test_without_a_command_it_stands(make, read):
 
 def test_gains_that_differ_are_told_and_none_is_refused(make):
     world = spawn(make, "<y_velocity_p_gain>5</y_velocity_p_gain>")
-    assert any("<y_velocity_p_gain> has no effect" in d.message for d in world.diagnostics)
-    with pytest.raises(PluginError, match="cannot be below 0"):
+    assert coded(world, devices.PLUGIN_PARAMETER_IGNORED, parameter="y_velocity_p_gain")
+    with pytest.raises(PluginError) as caught:
         spawn(make, "<x_velocity_p_gain>-1</x_velocity_p_gain>")
+    assert caught.value.values["parameter"] == "x_velocity_p_gain"

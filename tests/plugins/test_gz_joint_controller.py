@@ -4,6 +4,7 @@ import math
 
 import pytest
 
+from cartwheel.codes import devices
 from cartwheel.errors import PluginError
 
 INERTIA = 1.0
@@ -106,16 +107,17 @@ def test_a_force_is_given_until_the_next(make):
 
 
 @pytest.mark.parametrize(
-    ("plugin", "message"),
+    ("plugin", "code"),
     [
-        (controller("joint-controller", "", joint=""), "joint_name"),
-        (controller("joint-controller", "<cmd_max>-2000</cmd_max>"), "lower bound"),
+        (controller("joint-controller", "", joint=""), devices.PLUGIN_PARAMETER_MISSING),
+        (controller("joint-controller", "<cmd_max>-2000</cmd_max>"), devices.PLUGIN_RANGE_REVERSED),
     ],
 )
-def test_what_makes_no_sense_is_refused(make, plugin, message):
+def test_what_makes_no_sense_is_refused(make, plugin, code):
     world = make.world(ground=None)
-    with pytest.raises(PluginError, match=message) as caught:
+    with pytest.raises(PluginError) as caught:
         world.session.spawn(make.sdf(arm(plugin)))
+    assert caught.value.code is code
     assert caught.value.origin is not None
 
 

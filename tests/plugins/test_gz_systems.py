@@ -3,7 +3,9 @@
 import math
 
 import pytest
+from tests.coded import coded
 
+from cartwheel.codes import devices, running
 from cartwheel.errors import PluginError, UnknownNameError
 from cartwheel.geometry import Pose
 
@@ -48,7 +50,7 @@ def test_a_detachable_joint_holds_until_it_is_told_to_part_and_joins_again(make)
 def test_a_child_that_comes_later_is_joined_then_and_missed_once(make):
     world = make.world(post(make, JOINT.format("")), ground=None)
     world.run(1.0)
-    missed = [d for d in world.diagnostics if "there is no link" in d.message]
+    missed = coded(world, running.ATTACHMENT_FAILED)
     assert len(missed) == 1
     world.session.spawn(load(make))
     world.run(1.0)
@@ -57,7 +59,7 @@ def test_a_child_that_comes_later_is_joined_then_and_missed_once(make):
         post(make, JOINT.format("<suppress_child_warning>1</suppress_child_warning>"))
     )
     quiet.run(0.1)
-    assert not [d for d in quiet.diagnostics if "there is no link" in d.message]
+    assert not coded(quiet, running.ATTACHMENT_FAILED)
 
 
 def test_topics_have_the_names_that_they_are_given(make):
@@ -83,8 +85,10 @@ def test_a_model_in_the_model_can_be_its_child(make):
 
 
 def test_a_parent_that_is_not_there_is_refused(make):
-    with pytest.raises(UnknownNameError, match='link "hnd" does not exist'):
+    with pytest.raises(UnknownNameError) as caught:
         make.world().session.spawn(post(make, JOINT.format("").replace(">hand<", ">hnd<")))
+    assert caught.value.code is running.UNKNOWN_LINK
+    assert caught.value.values["name"] == "hnd"
 
 
 POSES = """<plugin name="p" filename="gz-sim-pose-publisher-system">
@@ -230,17 +234,19 @@ def test_an_empty_battery_is_told_once_and_gives_nothing(make, read):
     world = cart(make, NOW + "<initial_charge>0.0001</initial_charge>")
     told = read(world, STATE, 2.0)[-1]
     assert (told.charge, told.current, told.percentage) == (0, 0, 0)
-    assert len([d for d in world.diagnostics if "is empty" in d.message]) == 1
+    assert len(coded(world, running.BATTERY_EMPTY)) == 1
 
 
 def test_a_battery_that_cannot_be_is_refused(make):
     tags = "<smooth_current_tau>0</smooth_current_tau>"
     model = make.sdf(CART.format(BATTERY.format(tags)))
-    with pytest.raises(PluginError, match="must be above 0"):
+    with pytest.raises(PluginError) as caught:
         make.world().session.spawn(model)
+    assert caught.value.code is devices.PLUGIN_PARAMETER_INVALID
+    assert caught.value.values["parameter"] == "smooth_current_tau"
 
 
 def test_without_a_charging_time_it_cannot_be_charged_and_that_is_told(make):
     world = cart(make, "<enable_recharge>1</enable_recharge>")
-    assert any("<enable_recharge> has no effect" in d.message for d in world.diagnostics)
+    assert coded(world, devices.PLUGIN_PARAMETER_IGNORED, parameter="enable_recharge")
     assert not any("recharge" in topic.name for topic in world.graph.topics())

@@ -47,5 +47,6 @@ def test_an_empty_topic_is_none(make):
 
 
 def test_a_noise_below_zero_is_refused(make):
-    with pytest.raises(PluginError, match="cannot be below 0"):
+    with pytest.raises(PluginError) as caught:
         make.world().session.spawn(drone(make, "<gaussianNoise>-1</gaussianNoise>"))
+    assert caught.value.values["parameter"] == "gaussianNoise"

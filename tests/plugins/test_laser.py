@@ -5,7 +5,9 @@ import math
 
 import numpy as np
 import pytest
+from tests.coded import coded
 
+from cartwheel.codes import devices
 from cartwheel.errors import CartwheelError
 from cartwheel.geometry import Pose, matrix_from_quat, quat_from_rpy
 
@@ -415,26 +417,26 @@ def test_many_rays_at_once_read_what_one_alone_reads(make):
 
 
 @pytest.mark.parametrize(
-    ("wrong", "said"),
+    ("wrong", "code"),
     [
-        ({"samples": 0}, "<samples>"),
-        ({"samples": "many"}, "many"),
-        ({"resolution": 0}, "<resolution>"),
-        ({"resolution": -1}, "<resolution>"),
-        ({"least": 2.0, "most": 1.0}, "<max>"),
-        ({"least": -1.0}, "<min>"),
-        ({"most": "nan"}, "nan"),
-        ({"noise": NOISE.format(mean=0, stddev=-1)}, "stddev"),
-        ({"noise": "<noise><type>pink</type></noise>"}, "pink"),
-        ({"samples": 100_000_000}, "<samples>"),
+        ({"samples": 0}, devices.SCAN_SAMPLES_INVALID),
+        ({"samples": "many"}, devices.PLUGIN_PARAMETER_INVALID),
+        ({"resolution": 0}, devices.SCAN_SAMPLES_INVALID),
+        ({"resolution": -1}, devices.SCAN_SAMPLES_INVALID),
+        ({"least": 2.0, "most": 1.0}, devices.SENSOR_RANGE_INVALID),
+        ({"least": -1.0}, devices.SENSOR_RANGE_INVALID),
+        ({"most": "nan"}, devices.PLUGIN_PARAMETER_INVALID),
+        ({"noise": NOISE.format(mean=0, stddev=-1)}, devices.PLUGIN_PARAMETER_INVALID),
+        ({"noise": "<noise><type>pink</type></noise>"}, devices.PLUGIN_PARAMETER_INVALID),
+        ({"samples": 100_000_000}, devices.SCAN_SAMPLES_INVALID),
     ],
 )
-def test_a_sensor_that_cannot_be_is_refused_with_its_place(make, wrong, said):
+def test_a_sensor_that_cannot_be_is_refused_with_its_place(make, wrong, code):
     described = make.sdf(model(sensor(**wrong)))
     world = make.world()
     with pytest.raises(CartwheelError) as error:
         world.session.spawn(described)
-    assert said in str(error.value)
+    assert error.value.code is code
     assert error.value.origin is not None
     assert error.value.origin.line > 0
     # Nothing is left of it.
@@ -445,8 +447,9 @@ def test_a_sensor_that_cannot_be_is_refused_with_its_place(make, wrong, said):
 def test_a_sensor_without_rays_is_refused(make):
     text = """<sensor name="lidar" type="ray"><plugin name="p" filename="libgazebo_ros_laser.so"/>
     </sensor>"""
-    with pytest.raises(CartwheelError, match="neither <ray> nor <lidar>"):
+    with pytest.raises(CartwheelError) as caught:
         make.world(make.sdf(model(text)))
+    assert caught.value.code is devices.SENSOR_INCOMPLETE
 
 
 def test_a_range_without_end_is_measured(make):
@@ -551,6 +554,6 @@ def test_angles_the_wrong_way_round_are_swept_clockwise_and_told(make):
     # From its corner behind on the left to its corner ahead on the right.
     assert angles.max() == pytest.approx(math.atan2(0.9, 1.4), abs=0.0101)
     assert angles.min() == pytest.approx(math.atan2(0.7, 1.6), abs=0.0101)
-    (told,) = [each for each in world.diagnostics if "backwards" in each.message]
+    (told,) = coded(world, devices.SCAN_REVERSED)
     assert told.severity == "info"
-    assert told.message == "<max_angle> -0.3 is below <min_angle> 0.7: the sweep runs backwards"
+    assert told.values == {"first": 0.7, "last": -0.3}

@@ -1,7 +1,10 @@
 """Joints between any two links, made and undone by service."""
 
 import pytest
+from tests.coded import coded
 
+from cartwheel.codes import devices, running
+from cartwheel.codes import world as world_codes
 from cartwheel.description.model import Element, PluginTag
 from cartwheel.errors import Origin
 from cartwheel.geometry import Pose
@@ -105,10 +108,14 @@ def test_the_reaction_of_a_joint_counts_what_is_attached(make, ask):
 def test_what_there_is_not_is_told_with_what_there_is(make, ask):
     world = world_of(make, "libgazebo_ros_link_attacher.so", *pair(make))
     assert not ask(world, ATTACH, **names("post", "lod")).ok
-    assert 'Did you mean "load"' in world.diagnostics[-1].message
+    assert coded(
+        world, running.ATTACHMENT_FAILED, cause=world_codes.UNKNOWN_MODEL.number, meant="load"
+    )
     request = names("post", "load") | {"link_name_2": "lnk"}
     assert not ask(world, ATTACH, **request).ok
-    assert 'link "load::lnk" does not exist' in world.diagnostics[-1].message
+    assert coded(
+        world, running.ATTACHMENT_FAILED, cause=running.UNKNOWN_LINK.number, name="load::lnk"
+    )
 
 
 def test_ros_2_s_services_answer_with_a_message(make, ask):
@@ -138,4 +145,4 @@ def test_inside_a_model_it_is_told_where_it_belongs(make):
         make.sdf("""<model name="m"><link name="l"/>
         <plugin name="p" filename="libgazebo_ros_link_attacher.so"/></model>""")
     )
-    assert any("it belongs inside a <world>" in d.message for d in world.diagnostics)
+    assert coded(world, devices.PLUGIN_MISPLACED, place="world")

@@ -4,7 +4,9 @@ import math
 
 import numpy as np
 import pytest
+from tests.coded import coded
 
+from cartwheel.codes import devices, running
 from cartwheel.errors import PluginError
 from cartwheel.geometry import Pose
 
@@ -197,7 +199,7 @@ def test_a_command_for_fewer_motors_is_ignored_and_told(make):
     world = fly(make)
     command(world, [HOVER, HOVER])
     world.run(0.1)
-    told = [each.message for each in world.diagnostics if "ignored" in each.message]
+    told = coded(world, running.COMMAND_IGNORED, speeds=2)
     assert len(told) == 2
 
 
@@ -208,21 +210,23 @@ def test_new_gazebos_motor_listens_under_the_models_name_by_default(make):
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "message"),
+    ("old", "new", "parameter"),
     [
-        ("<timeConstantUp>0.02", "<timeConstantUp>0", "must be above 0"),
-        ("<motorNumber>0", "<motorNumber>-1", "cannot be below 0"),
-        (">ccw<", ">left<", "is none of"),
+        ("<timeConstantUp>0.02", "<timeConstantUp>0", "timeConstantUp"),
+        ("<motorNumber>0", "<motorNumber>-1", "motorNumber"),
+        (">ccw<", ">left<", "turningDirection"),
     ],
 )
-def test_what_no_motor_can_be_is_an_error(make, old, new, message):
-    with pytest.raises(PluginError, match=message):
+def test_what_no_motor_can_be_is_an_error(make, old, new, parameter):
+    with pytest.raises(PluginError) as caught:
         make.world(bee(make, motor(0).replace(old, new)))
+    assert caught.value.code is devices.PLUGIN_PARAMETER_INVALID
+    assert caught.value.values["parameter"] == parameter
 
 
 def test_a_motor_that_is_told_otherwise_than_by_speed_is_left_alone_and_told(make):
     world = make.world(bee(make, motor(0, tags="<motorType>position</motorType>")))
-    assert any('"position" is not supported' in each.message for each in world.diagnostics)
+    assert coded(world, devices.PLUGIN_PARAMETER_UNSUPPORTED, value="position")
     assert not any(topic.name == TOPICS["rotors"][0] for topic in world.graph.topics())
 
 

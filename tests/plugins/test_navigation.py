@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from cartwheel.codes import devices, running
 from cartwheel.description.model import Element
 from cartwheel.errors import Origin, PluginError
 from cartwheel.geometry import Pose, quat_from_rpy, rotate
@@ -418,17 +419,19 @@ def test_an_imu_sensors_noise_is_its_own_by_axis(make, read, plugin, topic):
 
 
 @pytest.mark.parametrize(
-    ("model", "message"),
+    ("model", "parameter"),
     [
-        (hector("<rateDrift>-1 0 0</rateDrift>"), "below 0"),
-        (hector("<rateDrift>0.1</rateDrift>"), "1 numbers, not 3"),
+        (hector("<rateDrift>-1 0 0</rateDrift>"), "rateDrift"),
+        (hector("<rateDrift>0.1</rateDrift>"), "rateDrift"),
         (unit('<plugin name="g" filename="libhector_gazebo_ros_gps.so"><drift>-1 0 0</drift>'
-              "</plugin>"), "below 0"),
+              "</plugin>"), "drift"),
     ],
 )  # fmt: skip
-def test_errors_without_sense_name_their_line(make, model, message):
-    with pytest.raises(PluginError, match=message) as caught:
+def test_errors_without_sense_name_their_line(make, model, parameter):
+    with pytest.raises(PluginError) as caught:
         floating(make, model)
+    assert caught.value.code is devices.PLUGIN_PARAMETER_INVALID
+    assert caught.value.values["parameter"] == parameter
     assert caught.value.origin is not None
 
 
@@ -439,5 +442,6 @@ def test_a_sensor_of_unknown_noise_is_left_out(make):
     )
     world = floating(make, model)
     (told,) = [each for each in world.diagnostics if each.severity == "error"]
-    assert 'sensor "s" is left out' in told.message
-    assert "pink" in told.message
+    assert told.code is running.PLUGIN_LEFT_OUT
+    assert told.values["plugin"] == "s"
+    assert told.values["cause"] == devices.PLUGIN_PARAMETER_INVALID.number

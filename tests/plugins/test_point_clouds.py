@@ -231,17 +231,18 @@ def test_a_ray_sensor_gives_the_least_range(make):
 
 
 @pytest.mark.parametrize(
-    ("filename", "tags", "said"),
+    ("filename", "tags", "parameter"),
     [
-        (RAY, "<output_type>sensor_msgs/Image</output_type>", "sensor_msgs/PointCloud2"),
-        (VELODYNE, "<min_range>5</min_range><max_range>4</max_range>", "no point lies between"),
+        (RAY, "<output_type>sensor_msgs/Image</output_type>", "output_type"),
+        (VELODYNE, "<min_range>5</min_range><max_range>4</max_range>", "min_range"),
         (VELODYNE, "<gaussianNoise>-1</gaussianNoise>", "gaussianNoise"),
         ("libgazebo_ros_block_laser.so", "<gaussianNoise>-1</gaussianNoise>", "gaussianNoise"),
     ],
 )
-def test_tags_that_make_no_sense_are_refused_with_their_place(make, filename, tags, said):
-    with pytest.raises(CartwheelError, match=said) as error:
+def test_tags_that_make_no_sense_are_refused_with_their_place(make, filename, tags, parameter):
+    with pytest.raises(CartwheelError) as error:
         world_of(make, filename, tags)
+    assert error.value.values["parameter"] == parameter
     assert error.value.origin is not None
 
 

@@ -2,8 +2,10 @@
 
 import numpy as np
 import pytest
+from tests.coded import coded
 from tests.plugins.cameras import cloud_of, pixels_of, take, topic_names
 
+from cartwheel.codes import devices, running
 from cartwheel.geometry import Pose
 
 PLUGIN = """<plugin name="camera" filename="librealsense_gazebo_plugin.so">
@@ -59,7 +61,7 @@ def test_all_four_see_under_the_plugins_name(make):
         "/camera/depth/camera_info",
         "/camera/depth/color/points",
     } <= set(topic_names(world))
-    assert not [d for d in world.diagnostics if "publishes nothing" in d.message]
+    assert not coded(world, devices.SENSOR_WITHOUT_PLUGIN)
     colour = take(world, "/camera/color/image_raw")
     assert (colour.encoding, colour.header.frame_id) == ("rgb8", "color_optical")
     red, green, blue = pixels_of(colour)[24, 32].tolist()
@@ -97,9 +99,8 @@ def test_the_rate_is_the_lesser_of_both(make, read):
 
 def test_a_sensor_that_is_missing_and_a_tag_unknown_are_told_once(make):
     world = make.world(device(make, tags="<foo>1</foo>", without="ired2"))
-    told = [d.message for d in world.diagnostics]
-    assert sum('there is no sensor "rs_ired2"' in text for text in told) == 1
-    assert sum("<foo> has no effect" in text for text in told) == 1
+    assert len(coded(world, running.UNKNOWN_SENSOR, name="rs_ired2")) == 1
+    assert len(coded(world, devices.PLUGIN_PARAMETER_UNKNOWN, parameter="foo")) == 1
     names = topic_names(world)
     assert "/camera/infra1/image_raw" in names
     assert "/camera/infra2/image_raw" not in names

@@ -2,8 +2,10 @@
 
 import numpy as np
 import pytest
+from tests.coded import coded
 
 import cartwheel as cw
+from cartwheel.codes import world as world_codes
 from cartwheel.description import load_text
 
 
@@ -21,9 +23,8 @@ def test_overlapping_models_come_apart_at_walking_pace_and_it_is_said(world):
     first = world.spawn("object.urdf", name="first", x=2.0)
     world.run(0.5)
     second = world.spawn("object.urdf", name="second", x=2.05)
-    said = [d.message for d in world.diagnostics if "pushed apart" in d.message]
-    assert len(said) == 1
-    assert '"second" was put into first::' in said[0]
+    (said,) = coded(world, world_codes.MODELS_OVERLAP, model="second")
+    assert all(other.startswith("first::") for other in said.values["others"])
     speeds = []
     for _ in range(600):
         world.run(0.005)
@@ -51,7 +52,7 @@ def test_a_model_moved_into_another_one_comes_out_gently(world):
 def test_models_that_only_touch_are_left_alone(world):
     world.spawn("box_medium.urdf", name="first", x=2.0)
     world.run(1.0)
-    assert not [d for d in world.diagnostics if "pushed apart" in d.message]
+    assert not coded(world, world_codes.MODELS_OVERLAP)
 
 
 WALKER = """<robot name="walker"><link name="pelvis"><inertial><mass value="10"/>
@@ -70,8 +71,8 @@ def test_a_walker_put_up_to_its_hips_into_the_ground_is_not_thrown_by_its_legs(w
         legs += LEG.format(name=f"{side}_thigh", parent="pelvis", y=y, z=0)
         legs += LEG.format(name=f"{side}_shin", parent=f"{side}_thigh", y=0, z=-0.4)
     walker = world.spawn(load_text(WALKER.format(legs)))
-    (said,) = [d.message for d in world.diagnostics if "pushed apart" in d.message]
-    assert said.endswith("by 80 cm: they are pushed apart. At z = 0.8 it stands on it")
+    (said,) = coded(world, world_codes.MODELS_OVERLAP)
+    assert said.values["z"] == pytest.approx(0.8)
     for _ in range(10):
         world.run(0.05)
         assert fastest(world) < 8.0  # a fall from 0.8 m turns them no faster

@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 
 import cartwheel as cw
+from cartwheel.codes import devices
+from cartwheel.codes import world as world_codes
 from cartwheel.description import load_text
 from cartwheel.description.model import PluginTag
 from cartwheel.errors import PluginError, SimulationError, UnknownNameError, WorldError
@@ -87,7 +89,7 @@ def test_delete_takes_topics_and_body_away(driving):
     assert [topic.name for topic in driving.graph.topics()] == ["/clock"]
     assert driving.graph.services() == []
     assert np.array_equal(state(driving, "box"), before)
-    with pytest.raises(UnknownNameError, match='model "rosbots" does not exist'):
+    with pytest.raises(UnknownNameError):
         driving.model("rosbots")
     driving.run(0.1)
 
@@ -96,9 +98,10 @@ def test_a_taken_name_changes_nothing(driving, rosbots):
     simulation = driving.session.simulation
     before, scene = state(driving, "rosbots", "base_footprint"), simulation.scene
     topics = [(t.name, t.publishers, t.subscribers) for t in driving.graph.topics()]
-    with pytest.raises(WorldError, match='"rosbots" stands in the world already') as caught:
+    with pytest.raises(WorldError) as caught:
         driving.session.spawn(rosbots)
-    assert "rosbots_1" in str(caught.value)
+    assert caught.value.code is world_codes.MODEL_NAME_TAKEN
+    assert "rosbots_1" in caught.value.hint
     assert simulation.scene is scene
     assert np.array_equal(state(driving, "rosbots", "base_footprint"), before)
     assert [(t.name, t.publishers, t.subscribers) for t in driving.graph.topics()] == topics
@@ -108,8 +111,9 @@ def test_a_taken_name_changes_nothing(driving, rosbots):
 def test_a_name_that_is_none_is_refused(make, name):
     import dataclasses
 
-    with pytest.raises(WorldError, match="is no name for a model"):
+    with pytest.raises(WorldError) as caught:
         make.world().session.spawn(dataclasses.replace(make.box("box", (1, 1, 1)), name=name))
+    assert caught.value.code is world_codes.MODEL_NAME_INVALID
 
 
 BAD_PLANE = (
@@ -145,8 +149,9 @@ def test_a_plugin_without_sense_leaves_the_graph_as_it_was(make, rosbots, drivin
     topics = [(t.name, t.publishers, t.subscribers) for t in driving.graph.topics()]
     services = driving.graph.services()
     bad = make.with_parameters(rosbots, "imu_plugin", gaussianNoise="-1")
-    with pytest.raises(PluginError, match="below 0"):
+    with pytest.raises(PluginError) as caught:
         driving.session.spawn(bad, name="other")
+    assert caught.value.values["parameter"] == "gaussianNoise"
     assert [(t.name, t.publishers, t.subscribers) for t in driving.graph.topics()] == topics
     assert driving.graph.services() == services
     assert "other" not in driving.models
@@ -163,8 +168,9 @@ def test_a_model_that_cannot_be_built_takes_its_plugins_along(make, rosbots):
         rosbots, links=(dataclasses.replace(base, collisions=plane), *rosbots.links[1:])
     )
     world = make.world()
-    with pytest.raises(WorldError, match="plane"):
+    with pytest.raises(WorldError) as caught:
         world.session.spawn(bad)
+    assert caught.value.code is world_codes.PLANE_NOT_STATIC
     assert [topic.name for topic in world.graph.topics()] == ["/clock"]
     assert world.graph.services() == []
 
@@ -179,7 +185,8 @@ def test_an_unknown_plugin_is_told(make, rosbots):
     world = make.world()
     world.session.spawn(dataclasses.replace(rosbots, plugins=(wrong,)), pose=Pose((0, 0, 0.1)))
     (told,) = [d for d in world.diagnostics if d.severity == "warning"]
-    assert 'Did you mean "libgazebo_ros_diff_drive.so"?' in told.message
+    assert told.code is devices.PLUGIN_UNKNOWN
+    assert told.values["meant"] == "libgazebo_ros_diff_drive.so"
 
 
 def test_reset_takes_all_back_to_where_it_was_spawned(driving):
@@ -253,8 +260,9 @@ def test_other_threads_post_and_call(make, rosbots):
         assert owner == thread.ident
         box = make.box("box", (1, 1, 1), pose=Pose((5, 0, 0.5)))
         assert simulation.call(lambda: world.session.spawn(box)).result(120) == "box"
-        with pytest.raises(WorldError, match="stands in the world already"):
+        with pytest.raises(WorldError) as caught:
             simulation.call(lambda: world.session.spawn(box)).result(120)
+        assert caught.value.code is world_codes.MODEL_NAME_TAKEN
         # Eight threads publish at once; the last word is the stop.
         publishers = [
             threading.Thread(
@@ -306,12 +314,12 @@ def test_listeners_see_time_go_on(make, rosbots):
 
 def test_a_state_that_is_no_number_stops_the_run(driving):
     driving.session.simulation.data.joint("box::link").qvel[0] = np.nan
-    with pytest.raises(
-        SimulationError, match=r'diverged by 1\..* s, first at "box::link"'
-    ) as caught:
+    with pytest.raises(SimulationError) as caught:
         driving.run(1.0)
-    path = str(caught.value).split("The last states are in ")[1].rstrip(".")
-    with np.load(path) as dump:
+    assert caught.value.code is world_codes.SIMULATION_DIVERGED
+    assert caught.value.values["body"] == "box::link"
+    assert int(caught.value.values["time"]) == 1
+    with np.load(caught.value.values["states"]) as dump:
         assert set(dump) == {"time", "qpos", "qvel"}
         assert np.isfinite(dump["qpos"][0]).all()
         assert not np.isfinite(dump["qpos"][-1]).all()
@@ -322,8 +330,9 @@ def test_a_divergence_is_found_at_any_rate_of_work(driving):
     """A task at every step leaves no room in which the engine checks by itself."""
     driving.session.simulation.schedule(0, after=lambda: None)
     driving.session.simulation.data.joint("box::link").qpos[2] = np.inf
-    with pytest.raises(SimulationError, match="diverged"):
+    with pytest.raises(SimulationError) as caught:
         driving.run(1.0)
+    assert caught.value.code is world_codes.SIMULATION_DIVERGED
 
 
 def test_an_absurd_inertia_is_named(make, driving):
@@ -338,9 +347,10 @@ def test_an_absurd_inertia_is_named(make, driving):
     driving.session.spawn(bad)
     simulation = driving.session.simulation
     simulation.data.joint("bad::j").qfrc_applied[0] = 1e8
-    with pytest.raises(SimulationError, match='first at "bad::arm"') as caught:
+    with pytest.raises(SimulationError) as caught:
         driving.run(1.0)
-    assert "1e-09 kg m²" in str(caught.value)
+    assert caught.value.values["body"] == "bad::arm"
+    assert "1e-09 kg m²" in caught.value.hint
 
 
 def test_one_simulations_divergence_is_not_anothers(make, driving):

@@ -1,9 +1,12 @@
 """What the physics leaves out is told with its place, once for each kind."""
 
 import pytest
+from tests.coded import coded
 
 import cartwheel as cw
+from cartwheel.codes import world as world_codes
 from cartwheel.description import load_text
+from cartwheel.errors import Diagnostic
 
 URDF = """<robot name="r">
   <link name="base">
@@ -22,27 +25,32 @@ URDF = """<robot name="r">
 </robot>"""
 
 
-def notes(tags: str) -> list[str]:
+def notes(tags: str) -> list[Diagnostic]:
     with cw.World("empty") as world:
         world.spawn(load_text(URDF.format(tags=tags), file="r.urdf"))
-        return [str(d) for d in world.diagnostics if "has no effect" in d.message]
+        return coded(world, world_codes.PHYSICS_SETTING_IGNORED)
 
 
 @pytest.mark.parametrize(
-    ("tags", "said"),
+    ("tags", "setting", "line", "count"),
     [
-        ("<minDepth>0.001</minDepth>", "r.urdf:4: info: min_depth has no effect (2 times)"),
-        ("<maxVel>1</maxVel>", "r.urdf:4: info: max_vel has no effect (2 times)"),
+        ("<minDepth>0.001</minDepth>", "min_depth", 4, 2),
+        ("<maxVel>1</maxVel>", "max_vel", 4, 2),
         (
             "<collision><surface><friction><ode><slip1>0.1</slip1><slip2>0</slip2></ode></friction>"
             "</surface></collision>",
-            "r.urdf:4: info: slip1 has no effect (2 times)",
+            "slip1",
+            4,
+            2,
         ),
-        ("<dampingFactor>0.1</dampingFactor>", "r.urdf:2: info: velocity decay has no effect"),
+        ("<dampingFactor>0.1</dampingFactor>", "velocity decay", 2, 1),
     ],
 )
-def test_a_tag_that_does_nothing_is_told_at_its_first_place(tags: str, said: str) -> None:
-    assert any(note.startswith(said) for note in notes(tags)), notes(tags)
+def test_a_tag_that_does_nothing_is_told_at_its_first_place(tags, setting, line, count) -> None:
+    (note,) = [each for each in notes(tags) if each.values["setting"] == setting]
+    assert note.severity == "info"
+    assert note.origin.line == line
+    assert note.values["count"] == count
 
 
 def test_a_velocity_limit_is_told_and_nothing_else_is() -> None:
@@ -53,7 +61,8 @@ def test_a_velocity_limit_is_told_and_nothing_else_is() -> None:
         "<collide_bitmask>1</collide_bitmask></contact></surface></collision>"
     )
     (only,) = notes(f"<mu1>1</mu1><mu2>2</mu2><fdir1>1 0 0</fdir1><kp>1e6</kp>{surface}")
-    assert only.startswith("r.urdf:10: info: a joint's velocity limit has no effect: ")
+    assert only.values["setting"] == "a joint's velocity limit"
+    assert only.origin.line == 10
 
 
 def test_a_velocity_limit_that_controllers_heed_is_none_without_effect() -> None:
@@ -65,10 +74,13 @@ def test_a_velocity_limit_that_controllers_heed_is_none_without_effect() -> None
         text = URDF.format(tags="").replace("</robot>", f"{more}</robot>")
         with cw.World("empty") as world:
             world.spawn(load_text(text, file="r.urdf"))
-            found = [d for d in world.diagnostics if "velocity limit" in d.message]
+            setting = "a joint's velocity limit"
+            found = coded(world, world_codes.PHYSICS_SETTING_IGNORED, setting=setting)
         assert len(found) == told, more
 
 
+AXIS = "the axis of a joint"
+RESISTANCE = "a joint's limits, damping, friction or spring"
 LOOP = """<sdf version="1.7"><model name="loop"><link name="a"/><link name="b"/><link name="c"/>
   <joint name="ab" type="revolute"><parent>a</parent><child>b</child><axis/></joint>
   <joint name="ac" type="revolute"><parent>a</parent><child>c</child><axis/></joint>
@@ -77,26 +89,28 @@ LOOP = """<sdf version="1.7"><model name="loop"><link name="a"/><link name="b"/>
 
 
 @pytest.mark.parametrize(
-    ("kind", "axis", "said"),
+    ("kind", "axis", "setting"),
     [
         ("revolute", "", None),
         ("fixed", "", None),
-        ("revolute", "<dynamics><damping>1</damping></dynamics>", "turns freely"),
-        ("prismatic", "", "a prismatic joint that closes a loop constrains only one point"),
+        ("revolute", "<dynamics><damping>1</damping></dynamics>", RESISTANCE),
+        ("prismatic", "", AXIS),
     ],
 )
-def test_what_a_joint_that_closes_a_loop_does_not_do_is_told(kind, axis, said) -> None:
+def test_what_a_joint_that_closes_a_loop_does_not_do_is_told(kind, axis, setting) -> None:
     with cw.World("empty") as world:
         world.spawn(load_text(LOOP.format(kind, axis), file="l.sdf"))
-        told = [str(d) for d in world.diagnostics if "closes a loop" in d.message]
-    assert [each.startswith("l.sdf:4: info: ") for each in told] == [True] * (said is not None)
-    assert said is None or said in told[0]
+        told = [
+            each
+            for each in coded(world, world_codes.PHYSICS_SETTING_IGNORED)
+            if each.origin.line == 4 and each.values["setting"] in (RESISTANCE, AXIS)
+        ]
+    assert [each.values["setting"] for each in told] == ([] if setting is None else [setting])
 
 
 @pytest.mark.parametrize(("coefficient", "told"), [(0.5, 0), (1.0, 0), (1.5, 2)])
 def test_a_restitution_above_1_is_told(coefficient, told) -> None:
     bounce = f"""<collision><surface><bounce><threshold>0.1</threshold><restitution_coefficient>
       {coefficient}</restitution_coefficient></bounce></surface></collision>"""
-    said = [each for each in notes(bounce) if "restitution" in each]
-    assert len(said) == bool(told)
-    assert all("(2 times): an impact cannot add energy" in each for each in said)
+    said = [each for each in notes(bounce) if each.values["setting"] == "a restitution above 1"]
+    assert [each.values["count"] for each in said] == ([2] if told else [])

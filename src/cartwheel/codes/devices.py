@@ -134,3 +134,102 @@ CONTROLLER_PARAMETER_INVALID = Code(
 CONTROLLER_PARAMETER_MISSING = Code(
     "CW457", "controller-parameter-missing", "error", "a controller lacks a parameter it needs"
 )
+PLUGIN_PARAMETER_IGNORED = Code(
+    "CW458",
+    "plugin-parameter-ignored",
+    "warning",
+    "a parameter has no effect in Cartwheel, or with the other parameters",
+)
+PLUGIN_PARAMETER_UNSUPPORTED = Code(
+    "CW459",
+    "plugin-parameter-unsupported",
+    "error",
+    "a plugin cannot work with this value, which Gazebo supports",
+)
+PLUGIN_RANGE_REVERSED = Code(
+    "CW460",
+    "plugin-range-reversed",
+    "error",
+    "the lower bound of a range is not below its upper bound",
+)
+WHEELS_UNPAIRED = Code(
+    "CW461", "wheels-unpaired", "error", "a drive does not have as many left wheels as right wheels"
+)
+PLUGIN_IDLE = Code(
+    "CW462", "plugin-idle", "warning", "a plugin has nothing to do as it is configured"
+)
+PLUGIN_MISPLACED = Code(
+    "CW463", "plugin-misplaced", "warning", "a plugin is inside the wrong element"
+)
+SENSOR_WITHOUT_PLUGIN = Code(
+    "CW464", "sensor-without-plugin", "info", "a sensor has no plugin, so it publishes nothing"
+)
+SENSOR_INCOMPLETE = Code(
+    "CW465", "sensor-incomplete", "error", "a sensor lacks an element that it needs"
+)
+SCAN_SAMPLES_INVALID = Code(
+    "CW466", "scan-samples-invalid", "error", "a scan has no rays, too many, or a fraction of one"
+)
+SCAN_REVERSED = Code(
+    "CW467", "scan-reversed", "info", "a scan runs from its larger angle to its smaller one"
+)
+SENSOR_SETTING_IGNORED = Code(
+    "CW468", "sensor-setting-ignored", "warning", "a setting of a sensor has no effect"
+)
+CAMERA_VIEW_NARROWED = Code(
+    "CW469",
+    "camera-view-narrowed",
+    "warning",
+    "a camera's field of view is wider than can be rendered",
+)
+COORDINATES_MISSING = Code(
+    "CW470",
+    "coordinates-missing",
+    "info",
+    "a sensor of positions on Earth is in a world without coordinates",
+)
+CONTROLLERS_FILE_MISMATCH = Code(
+    "CW471",
+    "controllers-file-mismatch",
+    "error",
+    "a controller file is for the other ROS version than the robot",
+)
+CONTROLLERS_FILE_WITHOUT_CONTROLLERS = Code(
+    "CW472",
+    "controllers-file-without-controllers",
+    "warning",
+    "a controller file starts no controller",
+)
+CONTROLLERS_FILE_ARGUMENT = Code(
+    "CW473",
+    "controllers-file-argument",
+    "error",
+    "an expression in a controller file cannot be evaluated",
+)
+TRANSMISSION_IGNORED = Code(
+    "CW474", "transmission-ignored", "warning", "a transmission drives no joint"
+)
+HARDWARE_NOT_SIMULATED = Code(
+    "CW475",
+    "hardware-not-simulated",
+    "warning",
+    "the hardware of ros_control or ros2_control is not simulated",
+)
+CONTROL_WITHOUT_JOINTS = Code(
+    "CW476", "control-without-joints", "warning", "no joint is offered to controllers"
+)
+EFFORT_LIMIT_TOO_LOW = Code(
+    "CW477",
+    "effort-limit-too-low",
+    "warning",
+    "a joint's effort limit cannot carry what hangs on it",
+)
+BRIDGE_FILE_INVALID = Code(
+    "CW478",
+    "bridge-file-invalid",
+    "error",
+    "the configuration file of ros_gz_bridge cannot be used",
+)
+BRIDGE_ENTRY_IGNORED = Code(
+    "CW479", "bridge-entry-ignored", "warning", "an entry of ros_gz_bridge has no effect"
+)

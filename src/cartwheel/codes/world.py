@@ -1,1 +1,71 @@
 """CW601 to CW699: world and physics."""
+
+from cartwheel.errors import Code
+
+UNKNOWN_MODEL = Code("CW601", "unknown-model", "error", "a model that is not in the world")
+UNKNOWN_JOINT = Code("CW602", "unknown-joint", "error", "a joint that the model does not have")
+NUMBER_OUT_OF_RANGE = Code(
+    "CW603", "number-out-of-range", "error", "a number that cannot be simulated"
+)
+REAL_TIME_FACTOR_INVALID = Code(
+    "CW604", "real-time-factor-invalid", "error", "a real-time factor that cannot be kept"
+)
+STEP_COUNT_INVALID = Code(
+    "CW605", "step-count-invalid", "error", "a number of single steps that cannot be made"
+)
+MODEL_NAME_INVALID = Code(
+    "CW606", "model-name-invalid", "error", "a model name that is empty or contains ::"
+)
+MODEL_NAME_TAKEN = Code(
+    "CW607", "model-name-taken", "error", "a model of this name is in the world already"
+)
+JOINT_DRIVEN_BY_PLUGIN = Code(
+    "CW608", "joint-driven-by-plugin", "error", "a joint that a plugin drives by effort or position"
+)
+SIMULATION_CLOSED = Code("CW609", "simulation-closed", "error", "a simulation that is closed")
+SIMULATION_DIVERGED = Code(
+    "CW610", "simulation-diverged", "error", "the state of the simulation is no longer finite"
+)
+SIMULATION_RECOVERED = Code(
+    "CW611",
+    "simulation-recovered",
+    "warning",
+    "the simulation diverged, and all models are back where they were spawned",
+)
+TOO_MANY_CONTACTS = Code(
+    "CW612", "too-many-contacts", "error", "more contacts than can be simulated"
+)
+PHYSICS_WARNING = Code("CW613", "physics-warning", "warning", "a warning of the physics engine")
+FRICTION_DIRECTION_UNSUPPORTED = Code(
+    "CW614",
+    "friction-direction-unsupported",
+    "warning",
+    "friction cannot differ by direction with this MuJoCo",
+)
+MODELS_OVERLAP = Code("CW615", "models-overlap", "warning", "a model was put into another one")
+CHAIN_TOO_LONG = Code(
+    "CW616", "chain-too-long", "error", "a chain of links is too long to simulate"
+)
+LOOP_WITHOUT_ROOT = Code(
+    "CW617",
+    "loop-without-root",
+    "error",
+    "a link is part of a loop of joints that is connected to nothing else",
+)
+PLANE_NOT_STATIC = Code(
+    "CW618", "plane-not-static", "error", "an endless plane is part of a model that moves"
+)
+MODEL_NOT_BUILT = Code("CW619", "model-not-built", "error", "the physics engine refuses a model")
+PHYSICS_SETTING_IGNORED = Code(
+    "CW620", "physics-setting-ignored", "info", "a physical property that is not simulated"
+)
+OPENGL_MISSING = Code("CW621", "opengl-missing", "warning", "cameras need OpenGL, which is missing")
+OPENGL_FORKED = Code(
+    "CW622",
+    "opengl-forked",
+    "error",
+    "cameras do not work in a process that was forked after an image",
+)
+CALLBACK_FAILED = Code(
+    "CW623", "callback-failed", "error", "a callback or command raised an exception"
+)

@@ -176,7 +176,7 @@ class Operations:
             told = [
                 {
                     "severity": each.severity,
-                    "message": each.message,
+                    "message": each.text,
                     "file": each.origin.file if each.origin else "",
                     "line": each.origin.line if each.origin else 0,
                 }

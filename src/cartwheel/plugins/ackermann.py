@@ -6,9 +6,10 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar
 
+from cartwheel.codes import devices, running
 from cartwheel.description.kinematics import link_poses
 from cartwheel.description.model import Capsule, Cylinder, Sphere
-from cartwheel.errors import Diagnostic, PluginError
+from cartwheel.errors import PluginError
 from cartwheel.geometry import Quat, Vec3
 from cartwheel.messages import message_class
 from cartwheel.plugins.gz_drive import (
@@ -134,13 +135,10 @@ class AckermannDrive(SteeredDrive):
             self._wheel = part.servo(config.steering_wheel, max_effort=None, origin=origin)
             joints[config.steering_wheel] = part.joint(config.steering_wheel)
         if config.left_gain or config.right_gain or config.speed_gain:
-            part.report(
-                Diagnostic(
-                    severity="info",
-                    message="gains of PIDs have no effect: servos steer and drive, "
-                    "within the joints' effort limits",
-                    origin=origin,
-                )
+            self.warn(
+                devices.PLUGIN_PARAMETER_IGNORED,
+                "PID gains have no effect: servos steer and drive within the joints' effort limits",
+                severity="info",
             )
         rate = config.update_rate
         covariance = planar_covariance(
@@ -185,7 +183,10 @@ class AckermannDrive(SteeredDrive):
             if link is None or not link.collisions:
                 self.part.joint(name, origin=origin)
                 raise PluginError(
-                    f'the wheel of joint "{name}" has no collision to be measured', origin=origin
+                    f'the wheel of joint "{name}" has no collision, so its radius is unknown',
+                    code=running.NOT_A_WHEEL,
+                    origin=origin,
+                    values={"joint": name},
                 )
             collision = link.collisions[0]
             shape = collision.shape
@@ -195,8 +196,11 @@ class AckermannDrive(SteeredDrive):
             centres.append(poses[link.name].apply(place.position))
         if not isinstance(shape, Cylinder | Sphere | Capsule):
             raise PluginError(
-                f'the wheel of joint "{name}" is neither cylinder nor sphere: it has no radius',
+                f'the collision of the wheel of joint "{name}" is neither a cylinder nor a sphere, '
+                "so its radius is unknown",
+                code=running.NOT_A_WHEEL,
                 origin=origin,
+                values={"joint": name},
             )
         self._radius = shape.radius
         front_left, front_right, rear_left, rear_right = centres
@@ -205,7 +209,9 @@ class AckermannDrive(SteeredDrive):
         rear = [(a + b) / 2 for a, b in zip(rear_left, rear_right, strict=True)]
         self._wheel_base = math.dist(front, rear)
         if self._wheel_base <= 0 or self._track <= 0:
-            raise PluginError("the wheels stand in one place", origin=origin)
+            raise PluginError(
+                "the wheels are all at the same place", code=running.NOT_A_WHEEL, origin=origin
+            )
 
     def reset(self) -> None:
         super().reset()
@@ -300,7 +306,11 @@ class GzAckermann(SteeredDrive):
             (config.actuators, "use_actuator_msg"),
         ):
             if flag:
-                self.warn(f"<{what}> is not supported: the car is driven by Twist")
+                self.warn(
+                    devices.PLUGIN_PARAMETER_IGNORED,
+                    f"<{what}> has no effect: the car is driven by Twist messages",
+                    values={"parameter": what},
+                )
         report_limits(self, config)
         self._linear = Limiter.of(config, "linear")
         self._angular = Limiter.of(config, "angular")

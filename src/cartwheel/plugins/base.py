@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import contextlib
+import dataclasses
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, ClassVar, Generic, Protocol, TypeVar
 
+from cartwheel import errors
+from cartwheel.codes import running
 from cartwheel.description.model import PluginTag, Sensor
-from cartwheel.errors import Diagnostic, GraphError, Origin, PluginError
+from cartwheel.errors import Code, GraphError, Origin, Severity
 from cartwheel.graph import (
     Graph,
     JointInput,
@@ -21,7 +24,7 @@ from cartwheel.graph import (
 from cartwheel.graph.reconfigure import OnChange, Value
 from cartwheel.plugins.gz_bridge import GzBridge
 from cartwheel.plugins.inputs import obeyable, obeyable_positions
-from cartwheel.plugins.parameters import SMALLEST, read
+from cartwheel.plugins.parameters import SMALLEST, invalid, read
 from cartwheel.simulation import LinkHandle, Part
 from cartwheel.simulation.limits import FARTHEST
 
@@ -182,9 +185,14 @@ class Plugin(Generic[C]):
             )
         except GraphError as error:
             if not self._crowded:
-                # Who shares one name shares most, and the first tells what to do.
+                # Plugins that share one name share most: one warning is enough.
                 self._crowded = True
-                self.warn(f"{error.message}: give one of the two a namespace")
+                self.warn(
+                    running.SERVICE_TAKEN,
+                    error.message,
+                    hint="Give one of the two models a namespace.",
+                    values={"name": self.resolve(name)},
+                )
             return False
         self._open.callback(self.graph.withdraw, service)
         return True
@@ -228,14 +236,43 @@ class Plugin(Generic[C]):
                 preset=preset,
             )
         except GraphError as error:
-            self.warn(f"{error.message}, so {full} cannot be reconfigured")
+            self.warn(
+                running.RECONFIGURE_UNAVAILABLE,
+                f"{error.message}, so {full} cannot be reconfigured",
+                hint=error.hint or "",
+                values={"name": full},
+            )
             return None
         return self.keep(server)
 
-    def warn(self, message: str, *, at: Origin | None = None) -> None:
-        """Tells the user something about this plugin's tag, or about the element at a place."""
+    def warn(
+        self,
+        code: Code,
+        message: str,
+        *,
+        at: Origin | None = None,
+        hint: str = "",
+        values: Mapping[str, errors.Value] | None = None,
+        severity: Severity = "warning",
+    ) -> None:
+        """Reports something about this plugin.
+
+        Args:
+            code: Its kind. Plugins of other packages make their own: ``Code("ACME1", …)``.
+            message: One sentence.
+            at: The element that it is about; by default the plugin's tag.
+            hint: The likely fix, as a sentence.
+            values: What the message names, for programs.
+            severity: By default a warning, whatever the code's is.
+        """
         self.part.report(
-            Diagnostic(severity="warning", message=message, origin=at or self.tag.origin)
+            code.diagnostic(
+                message,
+                origin=at or self.tag.origin,
+                hint=hint,
+                values=values,
+                severity=severity,
+            )
         )
 
     def link_or_root(self, name: str) -> LinkHandle:
@@ -252,8 +289,27 @@ class Plugin(Generic[C]):
         """
         for name, value in values.items():
             if value < SMALLEST:
-                least = "above 0" if value <= 0 else f"at least {SMALLEST:g}"
-                raise PluginError(f"<{name}> {value:g} must be {least}", origin=self.place_of(name))
+                least = "positive" if value <= 0 else f"at least {SMALLEST:g}"
+                raise invalid(name, value, least, self.place_of(name))
+
+    def check_not_negative(self, *names: str) -> None:
+        """Refuses parameters below 0, given by the names of their fields, of those that it has.
+
+        Vectors are allowed: each of their numbers counts.
+
+        Raises:
+            PluginError: One of them is.
+        """
+        fields = {each.name: each for each in dataclasses.fields(self.parameters)}
+        for name in names:
+            value = getattr(self.config, name, 0.0)
+            numbers = value if isinstance(value, tuple) else (value,)
+            least = min((each for each in numbers if each is not None), default=0.0)
+            if least < 0:
+                tags: tuple[str, ...] = fields[name].metadata["tags"]
+                written = (each for each in tags if self.tag.element.find(each) is not None)
+                tag = next(written, tags[0])
+                raise invalid(tag, float(least), "at least 0", self.place_of(tag))
 
     def check_lengths(self, **values: float) -> None:
         """Refuses sizes of a drive in m, given by the names of their tags.
@@ -264,9 +320,7 @@ class Plugin(Generic[C]):
         self.check_above_zero(**values)
         for name, value in values.items():
             if value > FARTHEST:
-                raise PluginError(
-                    f"<{name}> {value:g} must be at most {FARTHEST:g} m", origin=self.place_of(name)
-                )
+                raise invalid(name, value, f"at most {FARTHEST:g} m", self.place_of(name))
 
     def place_of(self, tag: str) -> Origin | None:
         """Where a tag of the plugin is written, or the plugin itself."""

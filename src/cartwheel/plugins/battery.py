@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from cartwheel.errors import PluginError
+from cartwheel.codes import devices, running
 from cartwheel.messages import header, message_class
 from cartwheel.plugins.base import Plugin
 from cartwheel.plugins.gz_drive import gz_name
@@ -84,18 +84,25 @@ class Battery(Plugin[BatteryParameters]):
     parameters: ClassVar[type] = BatteryParameters
 
     def configure(self) -> None:
-        config, origin = self.config, self.tag.origin
+        config = self.config
         full = config.capacity
         charge = full if config.charge is None else config.charge
-        if full <= 0 or config.voltage <= 0 or config.smoothing <= 0:
-            raise PluginError(
-                "<capacity>, <voltage> and <smooth_current_tau> must be above 0", origin=origin
-            )
+        self.check_above_zero(
+            capacity=full, voltage=config.voltage, smooth_current_tau=config.smoothing
+        )
         if not 0 <= charge <= full:
-            self.warn(f"<initial_charge> {charge:g} is not between 0 and the capacity {full:g}")
+            self.warn(
+                devices.PLUGIN_PARAMETER_INVALID,
+                f"<initial_charge> must be from 0 to the capacity {full:g} (got {charge:g})",
+                values={"parameter": "initial_charge", "value": charge, "most": full},
+            )
         rechargeable = config.rechargeable and config.charging_time > 0
         if config.rechargeable and not rechargeable:
-            self.warn("<enable_recharge> has no effect without a <charging_time> above 0")
+            self.warn(
+                devices.PLUGIN_PARAMETER_IGNORED,
+                "<enable_recharge> has no effect without a positive <charging_time>",
+                values={"parameter": "enable_recharge"},
+            )
         self._first = min(max(charge, 0.0), full)
         self._State = message_class("sensor_msgs/msg/BatteryState")
         base = f"/model/{self.part.name}/battery/{config.name}"
@@ -167,7 +174,11 @@ class Battery(Plugin[BatteryParameters]):
         self._voltage = max(voltage, 1e-3)
         if self._charge <= 0 and not self._told_empty:
             self._told_empty = True
-            self.warn(f'battery "{config.name}" of model "{self.part.name}" is empty')
+            self.warn(
+                running.BATTERY_EMPTY,
+                f'battery "{config.name}" of model "{self.part.name}" is empty',
+                values={"battery": config.name, "model": self.part.name},
+            )
 
     def _publish(self) -> None:
         config, state = self.config, self._State

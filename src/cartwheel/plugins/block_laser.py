@@ -7,7 +7,6 @@ from typing import ClassVar
 
 import numpy as np
 
-from cartwheel.errors import PluginError
 from cartwheel.messages import header
 from cartwheel.plugins.base import Plugin
 from cartwheel.plugins.parameters import tag
@@ -44,8 +43,7 @@ class BlockLaser(Plugin[BlockLaserParameters]):
 
     def configure(self) -> None:
         assert self.sensor is not None
-        if self.config.noise < 0:
-            raise PluginError("<gaussianNoise> cannot be below 0", origin=self.tag.origin)
+        self.check_not_negative("noise")
         self._scanner = Scanner(self.part, self.sensor)
         self._frame = self.frame(self.config.frame or self.sensor.link)
         rate = self.sensor.update_rate

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import ClassVar, TypeVar
 
+from cartwheel.codes import devices
 from cartwheel.description.model import CameraIntrinsics
 from cartwheel.description.sdf.sensors import MOST_BENT
 from cartwheel.plugins.camera_base import CameraBase
@@ -245,4 +246,8 @@ class Prosilica(RosCamera[ProsilicaParameters]):
         super().configure()
         scope = f"{self.namespace}/{self._base()}"
         if self.graph.parameters.search("trigger_mode", scope) == "polled":
-            self.warn("trigger_mode polled is not supported: the camera streams instead")
+            self.warn(
+                devices.PLUGIN_PARAMETER_IGNORED,
+                'the parameter trigger_mode "polled" has no effect: the camera streams',
+                values={"parameter": "trigger_mode"},
+            )

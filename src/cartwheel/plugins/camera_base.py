@@ -6,8 +6,9 @@ import dataclasses
 from collections.abc import Iterator
 from typing import Any, ClassVar, TypeVar
 
+from cartwheel.codes import devices, running
 from cartwheel.description.model import CameraIntrinsics
-from cartwheel.errors import Diagnostic, GraphError
+from cartwheel.errors import GraphError
 from cartwheel.plugins.base import Plugin
 from cartwheel.plugins.camera_depth import DepthOptions, Depths
 from cartwheel.plugins.camera_eye import Eye, EyeTopics
@@ -43,16 +44,25 @@ class CameraBase(Plugin[C]):
             self.sensor = sensor = dataclasses.replace(sensor, cameras=(CameraIntrinsics(),))
             lens = sensor.cameras[0]
             self.warn(
-                f'sensor "{sensor.name}" has no <camera>: SDF\'s defaults count, {lens.width} x '
-                f"{lens.height} pixels, {lens.horizontal_fov:g} rad wide",
+                devices.SENSOR_INCOMPLETE,
+                f'sensor "{sensor.name}" has no <camera>, so it has the defaults of SDF: '
+                f"{lens.width} x {lens.height} pixels, {lens.horizontal_fov:g} rad wide",
                 at=sensor.origin,
+                values={"sensor": sensor.name, "missing": "camera"},
             )
         if sensor.type in _WIDE:
-            self.warn("a wide-angle lens is drawn as a pinhole")
+            self.warn(
+                devices.CAMERA_VIEW_NARROWED, "the wide-angle lens is rendered as a pinhole camera"
+            )
         for camera in sensor.element.find_all("camera"):
             for child in camera.children:
                 if child.tag in _LOST and child.attribute("enabled") not in ("false", "0"):
-                    self.warn(f"<{child.tag}> has no effect: {_LOST[child.tag]}", at=child.origin)
+                    self.warn(
+                        devices.SENSOR_SETTING_IGNORED,
+                        f"<{child.tag}> has no effect: {_LOST[child.tag]}",
+                        at=child.origin,
+                        values={"setting": child.tag},
+                    )
         rates = [rate for rate in (self._asked_rate(), sensor.update_rate) if rate > 0]
         self._rate = min(rates, default=0.0)
         self._triggers = 0
@@ -129,8 +139,10 @@ class CameraBase(Plugin[C]):
         if lens.horizontal_fov <= _WIDEST_VIEW:
             return lens
         self.warn(
-            f"a view of {lens.horizontal_fov:g} rad is drawn as one of {_WIDEST_VIEW:g}: "
-            "no pinhole has more"
+            devices.CAMERA_VIEW_NARROWED,
+            f"the field of view of {lens.horizontal_fov:g} rad is rendered as {_WIDEST_VIEW:g} "
+            "rad, the most that a pinhole camera can have",
+            values={"stated": lens.horizontal_fov, "used": _WIDEST_VIEW},
         )
         return dataclasses.replace(lens, horizontal_fov=_WIDEST_VIEW)
 
@@ -140,14 +152,24 @@ class CameraBase(Plugin[C]):
         if not any(own.coefficients):
             return told
         if any(told.coefficients) and told != own:
-            self.warn("the sensor's <distortion> counts, not the plugin's own other numbers")
+            self.warn(
+                devices.PLUGIN_PARAMETER_IGNORED,
+                "the plugin's distortion has no effect: that of the sensor is used",
+                values={"parameter": "distortion"},
+            )
         if lens.distortion_center != (0.5, 0.5):
-            self.warn("camera_info cannot tell the <center> of a distortion: it is drawn alone")
+            self.warn(
+                devices.SENSOR_SETTING_IGNORED,
+                "the <center> of the distortion is rendered, but camera_info cannot contain it",
+                values={"setting": "center"},
+            )
         return own
 
     def _set_rate(self, rate: float) -> None:
         if self._waits:
-            raise GraphError("a camera that waits for its trigger has no rate")
+            raise GraphError(
+                "a triggered camera has no rate to change", code=running.CAMERA_WITHOUT_RATE
+            )
         if rate != self._rate:
             self._rate = rate
             self._task = self.part.reschedule(self._task, rate)
@@ -189,8 +211,6 @@ class CameraBase(Plugin[C]):
                     if eye.sees:
                         eye.publish(now, eye.picture())
         except NoOpenGLError as error:
-            # Said once; everything but images goes on.
+            # Reported once; everything but images goes on.
             self._blind = True
-            self.part.report(
-                Diagnostic(severity="warning", message=str(error), origin=self.tag.origin)
-            )
+            self.warn(error.code, error.message, hint=error.hint or "", values=error.values)

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from cartwheel.codes import running
 from cartwheel.errors import GraphError
 from cartwheel.graph import ReconfigureParameter, choices
 from cartwheel.messages import message_class
@@ -159,7 +160,9 @@ class CompressedImages:
     def _change(self, values: dict[str, Any]) -> None:
         if values["format"] not in _FORMATS:
             raise GraphError(
-                f'"{values["format"]}" is no way to compress images',
+                f'images cannot be compressed as "{values["format"]}"',
+                code=running.IMAGE_COMPRESSION_UNKNOWN,
+                values={"format": str(values["format"])},
                 hint=f"There are: {', '.join(_FORMATS)}.",
             )
         self._values = values

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from cartwheel.codes import devices
 from cartwheel.description.model import CameraIntrinsics, Sensor
 from cartwheel.graph import Publisher, ReconfigureParameter
 from cartwheel.messages import header, message_class
@@ -195,7 +196,9 @@ def image_format(plugin: Plugin[Any], name: str) -> ImageFormat:
     # One of floats is of a depth camera's depths, which are floats whatever is said.
     if "FLOAT" not in name.upper():
         plugin.warn(
-            f'image format "{name}" is not supported, so it is R8G8B8. '
-            f"There are: {', '.join(FORMATS)}."
+            devices.IMAGE_FORMAT_UNKNOWN,
+            f'the image format "{name}" is not supported: R8G8B8 is used',
+            hint=f"There are: {', '.join(FORMATS)}.",
+            values={"format": name},
         )
     return FORMATS["R8G8B8"]

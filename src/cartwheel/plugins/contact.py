@@ -7,8 +7,9 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from cartwheel.codes import devices
 from cartwheel.description.model import Sensor
-from cartwheel.errors import suggestion
+from cartwheel.errors import meant_one, suggestion
 from cartwheel.geometry import Array
 from cartwheel.messages import header, message_class
 from cartwheel.plugins.base import Plugin
@@ -119,9 +120,20 @@ def watched_collisions(plugin: Plugin[Any], sensor: Sensor) -> set[str]:
             found.add(spellings.get(name) or spellings[bare])
         else:
             plugin.warn(
-                f'contact sensor "{sensor.name}": there is no collision "{name}", '
-                f"so it would never report. {suggestion(name, spellings)}"
+                devices.CONTACT_COLLISION_UNKNOWN,
+                f'contact sensor "{sensor.name}" names the collision "{name}", which does not '
+                "exist, so it never reports a contact",
+                hint=suggestion(name, spellings),
+                values={
+                    "sensor": sensor.name,
+                    "collision": name,
+                    "meant": meant_one(name, spellings),
+                },
             )
     if not sensor.collisions:
-        plugin.warn(f'contact sensor "{sensor.name}" names no <collision>, so it never reports')
+        plugin.warn(
+            devices.SENSOR_INCOMPLETE,
+            f'contact sensor "{sensor.name}" names no <collision>, so it never reports a contact',
+            values={"sensor": sensor.name, "missing": "collision"},
+        )
     return found

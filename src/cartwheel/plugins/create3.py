@@ -8,6 +8,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from cartwheel.codes import devices
 from cartwheel.errors import PluginError
 from cartwheel.geometry import quat_conjugate, rotate
 from cartwheel.messages import header, message_class
@@ -135,7 +136,11 @@ class Create3Intensity(Plugin[Create3IntensityParameters]):
         kind = "irobot_create_msgs/msg/IrIntensity"
         self._scanner = Scanner(self.part, sensor)
         if math.isinf(self._scanner.pattern.maximum):
-            raise PluginError("<max> of its <range> must be finite", origin=sensor.origin)
+            raise PluginError(
+                "the <max> of the <range> must be finite",
+                code=devices.SENSOR_RANGE_INVALID,
+                origin=sensor.origin,
+            )
         self._frame = self.frame(self.config.frame or sensor.link)
         self._IrIntensity = message_class(kind)
         rate = sensor.update_rate

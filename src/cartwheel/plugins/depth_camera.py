@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar
 
+from cartwheel.codes import devices
 from cartwheel.plugins.camera import CameraParameters, RosCamera
 from cartwheel.plugins.camera_depth import DepthOptions
 from cartwheel.plugins.camera_eye import joined
@@ -58,7 +59,11 @@ class DepthCamera(RosCamera[DepthCameraParameters]):
             ("normalsTopicName", self.config.normals_topic),
         ):
             if written:
-                self.warn(f"<{name}> has no effect: Gazebo 11 does not publish it either")
+                self.warn(
+                    devices.PLUGIN_PARAMETER_IGNORED,
+                    f"<{name}> has no effect: Gazebo 11 does not publish it either",
+                    values={"parameter": name},
+                )
 
     def _depth_options(self) -> DepthOptions:
         base, config = self._base(), self.config

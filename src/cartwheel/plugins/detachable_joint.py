@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
+from cartwheel.codes import running
 from cartwheel.messages import message_class
 from cartwheel.plugins.base import Plugin
 from cartwheel.plugins.gz_drive import gz_name
@@ -101,7 +102,11 @@ class DetachableJoint(Plugin[DetachableJointParameters]):
             self._tell("attached")
         elif not self._missed and not self.config.quiet:
             self._missed = True
-            self.warn(f'there is no link "{self.config.child_link}" of a model "{model}" to join')
+            self.warn(
+                running.ATTACHMENT_FAILED,
+                f'there is no link "{self.config.child_link}" in a model "{model}" to attach',
+                values={"link": self.config.child_link, "model": model},
+            )
 
     def _tell(self, state: str) -> None:
         if self._state.wanted:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar, Literal
 
-from cartwheel.errors import Diagnostic, PluginError
+from cartwheel.codes import devices
+from cartwheel.errors import PluginError
 from cartwheel.plugins.odometry import NO_COVARIANCE, Odometry, planar_covariance
 from cartwheel.plugins.parameters import tag
 from cartwheel.plugins.wheel_drive import WheelDrive, WheelPair
@@ -121,15 +122,14 @@ class DiffDrive(WheelDrive):
 
     def configure(self) -> None:
         config: DiffDriveParameters = self.config
-        origin, element = self.tag.origin, self.tag.element
+        element = self.tag.element
         self.check_above_zero(wheelTorque=config.wheel_torque)
         if element.find("torque") and not element.find("wheelTorque"):
-            self.part.report(
-                Diagnostic(
-                    severity="info",
-                    message="<torque> is read as <wheelTorque>; Gazebo 11 would take 5 N m",
-                    origin=origin,
-                )
+            self.warn(
+                devices.PLUGIN_PARAMETER_OBSOLETE,
+                "<torque> is read as <wheelTorque>; Gazebo 11 ignores it and uses 5 N m",
+                severity="info",
+                values={"parameter": "torque"},
             )
         self._take_wheels(self._wheel_pairs(), torque=config.wheel_torque)
         rate = config.update_rate
@@ -174,10 +174,12 @@ class DiffDrive(WheelDrive):
         lefts, rights = config.left_joint, config.right_joint
         if not len(lefts) == len(rights) == config.pairs:
             raise PluginError(
-                f"{len(lefts)} left and {len(rights)} right joints for "
-                f"{config.pairs} pairs of wheels",
+                f"{config.pairs} pairs of wheels need as many left and right joints "
+                f"(got {len(lefts)} left, {len(rights)} right)",
+                code=devices.WHEELS_UNPAIRED,
                 origin=self.tag.origin,
-                hint="<num_wheel_pairs> says how many pairs there are.",
+                hint="<num_wheel_pairs> states the number of pairs.",
+                values={"left": len(lefts), "right": len(rights)},
             )
         separations, diameters = config.wheel_separation, config.wheel_diameter
         return [

@@ -8,9 +8,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from cartwheel.errors import PluginError
+from cartwheel.codes import devices, running
 from cartwheel.plugins.base import Plugin
-from cartwheel.plugins.parameters import tag
+from cartwheel.plugins.parameters import shown, tag
 from cartwheel.simulation.handles import JointHandle, MotorHandle
 
 _RATE = 100.0
@@ -52,13 +52,14 @@ class Elevator(Plugin[ElevatorParameters]):
 
     def configure(self) -> None:
         config = self.config
-        if config.floor_height <= 0 or config.door_wait_time < 0:
-            raise PluginError(
-                "<floor_height> must be above 0 and <door_wait_time> not below it",
-                origin=self.tag.origin,
-            )
+        self.check_above_zero(floor_height=config.floor_height)
+        self.check_not_negative("door_wait_time")
         if self.tag.element.find("floor_height") is None:
-            self.warn("no <floor_height>: 3 m is taken")
+            self.warn(
+                devices.PLUGIN_PARAMETER_MISSING,
+                "<floor_height> is missing: 3 m is used",
+                values={"parameter": "floor_height"},
+            )
         self._lift = self._drive(config.lift_joint, _LIFT_EFFORT, _LIFT_SPEED, _LIFT_ACCELERATION)
         self._door = self._drive(config.door_joint, _DOOR_EFFORT, _DOOR_SPEED, _DOOR_ACCELERATION)
         self._steps: deque[Callable[[], bool]] = deque()
@@ -94,17 +95,29 @@ class Elevator(Plugin[ElevatorParameters]):
         try:
             floor = int(text)
         except ValueError:
-            self.warn(f'"{text}" is no floor: a whole number is expected')
+            self.warn(
+                running.COMMAND_IGNORED,
+                f'a floor must be a whole number (got "{shown(text)}")',
+                values={"floor": shown(text)},
+            )
             return
         lowest, highest = config.bottom_floor, config.top_floor
         if (lowest is not None and floor < lowest) or (highest is not None and floor > highest):
-            self.warn(f"there is no floor {floor}: they go from {lowest} to {highest}")
+            self.warn(
+                running.COMMAND_IGNORED,
+                f"floor {floor} does not exist: floors are from {lowest} to {highest}",
+                values={"floor": str(floor)},
+            )
             return
         if self._steps:
             return
         height = floor * config.floor_height
         if self._lift.within(height) != height:
-            self.warn(f"floor {floor} at {height:g} m is beyond the limits of the lift's joint")
+            self.warn(
+                running.COMMAND_IGNORED,
+                f"floor {floor} at {height:g} m is beyond the limits of the lift's joint",
+                values={"floor": str(floor)},
+            )
             return
         self._steps.extend(
             [

@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from cartwheel.errors import PluginError
+from cartwheel.codes import devices
 from cartwheel.geometry import Array, Pose
 from cartwheel.plugins.base import Plugin
 from cartwheel.plugins.odometry import UNKNOWN, Odometry, planar_motion
@@ -69,10 +69,13 @@ class ForceBasedMove(Plugin[ForceBasedMoveParameters]):
 
     def configure(self) -> None:
         config, part, origin = self.config, self.part, self.tag.origin
-        if min(config.x_gain, config.y_gain, config.yaw_gain) < 0:
-            raise PluginError("a velocity_p_gain cannot be below 0", origin=origin)
+        self.check_not_negative("x_gain", "y_gain", "yaw_gain")
         if config.y_gain != config.x_gain:
-            self.warn("<y_velocity_p_gain> has no effect: x's counts in both directions")
+            self.warn(
+                devices.PLUGIN_PARAMETER_IGNORED,
+                "<y_velocity_p_gain> has no effect: that of x is used in both directions",
+                values={"parameter": "y_velocity_p_gain"},
+            )
         known = part.description.link(config.base_frame) is not None
         self._base = part.link(config.base_frame if known else part.description.canonical_link)
         self._drive = part.body_drive(gains=(config.x_gain, config.yaw_gain), origin=origin)

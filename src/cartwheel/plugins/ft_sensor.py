@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
+from cartwheel.codes import devices
 from cartwheel.description.model import Sensor
 from cartwheel.errors import PluginError, UnknownNameError
 from cartwheel.geometry import IDENTITY, matrix_from_quat, quat_conjugate, quat_multiply
@@ -12,7 +13,7 @@ from cartwheel.messages import header, message_class
 from cartwheel.plugins.base import Plugin
 from cartwheel.plugins.gz_sensor import frame_tag
 from cartwheel.plugins.noise import VectorNoise, read_noise
-from cartwheel.plugins.parameters import tag
+from cartwheel.plugins.parameters import invalid, tag
 from cartwheel.simulation import Part
 
 _AXES = "xyz"
@@ -26,7 +27,11 @@ class _JointWrench(Plugin[Any]):
         joint = description.joint(name)
         if joint is None:
             raise UnknownNameError(
-                "joint", name, [one.name for one in description.joints], origin=self.tag.origin
+                "joint",
+                name,
+                [one.name for one in description.joints],
+                code=devices.PLUGIN_JOINT_UNKNOWN,
+                origin=self.tag.origin,
             )
         self._child = self.part.link(joint.child)
         self._anchor = joint.pose
@@ -35,8 +40,7 @@ class _JointWrench(Plugin[Any]):
 
     def _offer(self, topic: str, *, frame: str, rate: float) -> None:
         """Advertises and schedules."""
-        if rate < 0:
-            raise PluginError("a rate cannot be below 0", origin=self.tag.origin)
+        self.check_not_negative("update_rate")
         self._frame = self.frame(frame)
         self._WrenchStamped = message_class("geometry_msgs/msg/WrenchStamped")
         self._Wrench = message_class("geometry_msgs/msg/Wrench")
@@ -93,8 +97,7 @@ class FtSensor(_JointWrench):
         config: FtSensorParameters = self.config
         sensed = self.sensor.joint if self.sensor is not None else None
         name = config.joint or sensed or ""
-        if config.noise < 0:
-            raise PluginError("a noise cannot be below 0", origin=self.tag.origin)
+        self.check_not_negative("noise")
         rate = config.update_rate or (self.sensor.update_rate if self.sensor is not None else 0.0)
         if config.body:
             # Where both are named it is the link's in Gazebo too.
@@ -103,9 +106,18 @@ class FtSensor(_JointWrench):
             self._offer(config.topic, frame=config.frame or "world", rate=rate)
             return
         if not name:
-            raise PluginError("a force-torque sensor needs <jointName>", origin=self.tag.origin)
+            raise PluginError(
+                "a force-torque sensor needs <jointName>",
+                code=devices.PLUGIN_PARAMETER_MISSING,
+                origin=self.tag.origin,
+                values={"parameter": "jointName"},
+            )
         if config.frame:
-            self.warn("<frame_name> has no effect: a joint's wrench is in its child's frame")
+            self.warn(
+                devices.PLUGIN_PARAMETER_IGNORED,
+                "<frame_name> has no effect: the wrench of a joint is in the frame of its child",
+                values={"parameter": "frame_name"},
+            )
         self._take(name, topic=config.topic, frame="", rate=rate)
 
     def _measure(self) -> list[float]:
@@ -196,8 +208,11 @@ class GzForceTorque(_JointWrench):
         assert sensor is not None
         if sensor.joint is None:
             raise PluginError(
-                f'sensor "{sensor.name}" measures a joint: write it inside one',
+                f'sensor "{sensor.name}" measures a joint, but is not inside one',
+                code=devices.SENSOR_INCOMPLETE,
                 origin=sensor.origin,
+                hint="Move the <sensor> into the <joint>.",
+                values={"sensor": sensor.name, "missing": "joint"},
             )
         config: GzForceTorqueParameters = self.config
         scope = f"/world/{self.part.world.name}/model/{self.part.name}/joint/{sensor.joint}"
@@ -221,7 +236,5 @@ def _word(element: Any, name: str, allowed: tuple[str, ...]) -> str:
         return allowed[0]
     word: str = child.text.strip()
     if word not in allowed:
-        raise PluginError(
-            f'<{name}> "{word}" is none of: {", ".join(allowed)}', origin=child.origin
-        )
+        raise invalid(name, word, f"one of {', '.join(allowed)}", child.origin)
     return word

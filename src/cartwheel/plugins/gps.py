@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from cartwheel.errors import Diagnostic, PluginError
+from cartwheel.codes import devices
 from cartwheel.geometry import Vec3
 from cartwheel.messages import header, message_class
 from cartwheel.plugins.base import Plugin
@@ -105,8 +105,10 @@ class HectorGps(_Receiver):
     def configure(self) -> None:
         config: HectorGpsParameters = self.config
         part, origin = self.part, self.tag.origin
-        if config.update_rate < 0:
-            raise PluginError("a rate cannot be below 0", origin=origin)
+        self.check_not_negative(
+            "update_rate", "drift", "frequency", "noise",
+            "velocity_drift", "velocity_frequency", "velocity_noise",
+        )  # fmt: skip
         name = config.body or part.description.canonical_link
         self._link = part.link(name, origin=origin)
         self._frame = self.frame(config.frame)
@@ -152,11 +154,6 @@ class HectorGps(_Receiver):
 
     def _error(self, name: str, *numbers: tuple[float, float, float]) -> DriftingError:
         offset, drift, frequency, noise, scale = numbers
-        if min(*drift, *frequency, *noise) < 0:
-            raise PluginError(
-                f"a drift, its frequency or a noise of the {name} is below 0",
-                origin=self.tag.origin,
-            )
         return DriftingError(
             self.part,
             f"gps {self.config.topic} {name}",
@@ -213,11 +210,11 @@ class _GpsSensor(_Receiver):
         datum = world_datum(part.world.spherical_coordinates)
         if datum is None:
             part.report(
-                Diagnostic(
-                    severity="info",
-                    message=f'sensor "{sensor.name}": the world has no <spherical_coordinates>, '
-                    "so its origin is at latitude 0, longitude 0",
+                devices.COORDINATES_MISSING.diagnostic(
+                    f'sensor "{sensor.name}" is in a world without <spherical_coordinates>, '
+                    "whose origin is at latitude 0, longitude 0",
                     origin=sensor.origin,
+                    values={"sensor": sensor.name},
                 )
             )
         self._datum = datum or Datum()

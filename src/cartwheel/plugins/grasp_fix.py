@@ -9,12 +9,12 @@ from typing import ClassVar
 
 import numpy as np
 
+from cartwheel.codes import devices
 from cartwheel.description.model import Element
-from cartwheel.errors import PluginError
 from cartwheel.geometry import Array, Vec3
 from cartwheel.messages import message_class
 from cartwheel.plugins.base import Plugin
-from cartwheel.plugins.parameters import tag
+from cartwheel.plugins.parameters import invalid, missing, tag
 from cartwheel.simulation.handles import LinkHandle
 
 _LEAST_FORCE = 1e-4
@@ -72,17 +72,16 @@ class GraspFix(Plugin[GraspFixParameters]):
     parameters: ClassVar[type] = GraspFixParameters
 
     def configure(self) -> None:
-        config, origin = self.config, self.tag.origin
+        config = self.config
         if config.angle < 90 or config.angle > 180:
-            raise PluginError("<forces_angle_tolerance> must be from 90 to 180", origin=origin)
-        if config.rate <= 0 or config.tolerance < 0:
-            raise PluginError(
-                "<update_rate> must be above 0 and <release_tolerance> not below it", origin=origin
-            )
+            place = self.place_of("forces_angle_tolerance")
+            raise invalid("forces_angle_tolerance", config.angle, "from 90 to 180", place)
+        self.check_above_zero(update_rate=config.rate)
+        self.check_not_negative("tolerance")
         self._surroundings = self.part.surroundings()
         arms = [self._hand(element) for element in self.tag.element.find_all("arm")]
         if not arms:
-            self.warn("no <arm>: this plugin holds nothing")
+            self.warn(devices.PLUGIN_IDLE, "the plugin has no <arm>, so it grasps nothing")
         self._hands = arms
         self._threshold = config.most // 2 if config.threshold is None else config.threshold
         self._Event = message_class("gazebo_grasp_plugin_ros/msg/GazeboGraspEvent")
@@ -98,11 +97,11 @@ class GraspFix(Plugin[GraspFixParameters]):
         for name in ("arm_name", "palm_link"):
             found = element.find(name)
             if found is None:
-                raise PluginError(f"<arm> needs <{name}>", origin=element.origin)
+                raise missing("arm", name, element.origin)
             names[name] = found.text.strip()
         fingers = [each.text.strip() for each in element.find_all("gripper_link")]
         if not fingers:
-            raise PluginError("<arm> needs <gripper_link>", origin=element.origin)
+            raise missing("arm", "gripper_link", element.origin)
         links = [self.part.link(name, origin=element.origin) for name in fingers]
         self.part.link(names["palm_link"], origin=element.origin)
         return _Hand(self, names["arm_name"], names["palm_link"], links)

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from cartwheel import yaml_text
+from cartwheel.codes import devices
 from cartwheel.errors import CartwheelError, Diagnostic, GraphError, Origin, suggestion
 from cartwheel.graph import Graph, resolve_name
 from cartwheel.messages import type_name
@@ -62,8 +63,8 @@ class GzBridge:
         for entry in entries:
             first = self._entries.setdefault(entry.gz, entry)
             if first.ros != entry.ros:
-                told = f'{entry.ros} has no effect: "{entry.gz}" is {first.ros} already'
-                self._faults.append(_warning(entry, f"{told}, and has one name here"))
+                reason = f'"{entry.gz}" is published as {first.ros} already'
+                self._faults.append(_warning(entry, f"{entry.ros} has no effect: {reason}"))
 
     def published(self, name: str, type_name: str) -> str:
         """What ROS calls a topic that a plugin publishes."""
@@ -101,11 +102,10 @@ class GzBridge:
         for entry in self._entries.values():
             own = self._asked.get(entry.gz)
             if own is None and entry.gz not in topics and entry.type != CLOCK:
-                hint = suggestion(entry.gz, sorted(self._asked))
-                message = f'nothing here publishes or reads "{entry.gz}", which is {entry.ros}'
-                yield _warning(entry, f"{message} in ROS. {hint}")
+                message = f'no plugin publishes or reads "{entry.gz}", so {entry.ros} has no effect'
+                yield _warning(entry, message, suggestion(entry.gz, sorted(self._asked)))
             elif own is not None and own != entry.type and _inside(entry.type, own) is None:
-                yield _warning(entry, f"{entry.ros} has the type {own} here, not {entry.type}")
+                yield _warning(entry, f"{entry.ros} must have the type {own} (got {entry.type})")
 
     def _entry(self, name: str, type_name: str) -> Bridged | None:
         self._asked[name] = type_name
@@ -115,8 +115,10 @@ class GzBridge:
 _BY_GRAPH: weakref.WeakKeyDictionary[Graph, GzBridge] = weakref.WeakKeyDictionary()
 
 
-def _warning(entry: Bridged, message: str) -> Diagnostic:
-    return Diagnostic(severity="warning", message=message, origin=entry.origin)
+def _warning(entry: Bridged, message: str, hint: str = "") -> Diagnostic:
+    return devices.BRIDGE_ENTRY_IGNORED.diagnostic(
+        message, origin=entry.origin, hint=hint, values={"gz": entry.gz, "ros": entry.ros}
+    )
 
 
 def _inside(outer: str, inner: str) -> str | None:
@@ -140,21 +142,18 @@ def read_bridge(path: Path) -> list[Bridged]:
         root = loader.get_single_node()
         entries = _entries(loader, root)
     except OSError as error:
-        raise CartwheelError(
-            f"the file cannot be read: {error.strerror or error}", origin=origin
-        ) from None
+        raise _invalid(f"the file cannot be read: {error.strerror or error}", origin) from None
     except (UnicodeDecodeError, yaml.YAMLError) as error:
         mark = getattr(error, "problem_mark", None)
-        problem = getattr(error, "problem", None) or "it is no text"
+        problem = getattr(error, "problem", None) or "it is not text"
         line = mark.line + 1 if mark is not None else 0
-        raise CartwheelError(
-            f"the file is not valid YAML: {problem}", origin=Origin(file=str(path), line=line)
-        ) from None
+        place = Origin(file=str(path), line=line)
+        raise _invalid(f"the file is not valid YAML: {problem}", place) from None
     if entries is None:
-        raise CartwheelError(
-            "the file is no list of topics",
-            origin=origin,
-            hint="It is the one that the parameter config_file of ros_gz_bridge names.",
+        raise _invalid(
+            "the file is not a list of topics",
+            origin,
+            "Name the file that the parameter config_file of ros_gz_bridge names.",
         )
     return [_bridged(entry, Origin(file=str(path), line=line)) for entry, line in entries]
 
@@ -170,24 +169,23 @@ def _entries(loader: Any, root: Any) -> list[tuple[Any, int]] | None:
     ]
 
 
+def _invalid(message: str, origin: Origin, hint: str = "") -> CartwheelError:
+    return CartwheelError(message, code=devices.BRIDGE_FILE_INVALID, origin=origin, hint=hint)
+
+
 def _bridged(entry: Any, origin: Origin) -> Bridged:
     if not isinstance(entry, dict):
-        raise CartwheelError("an entry is no mapping", origin=origin)
+        raise _invalid("an entry must be a mapping", origin)
     both = entry.get("topic_name")
     ros, gz = (entry.get(f"{which}_topic_name") or both for which in ("ros", "gz"))
     # As the bridge: where one of the two is missing, they are the same.
     ros, gz = ros or gz, gz or ros
     kind = entry.get("ros_type_name")
     if not isinstance(gz, str) or not isinstance(ros, str) or not isinstance(kind, str):
-        raise CartwheelError(
-            "an entry needs ros_topic_name, gz_topic_name and ros_type_name", origin=origin
-        )
+        raise _invalid("an entry needs ros_topic_name, gz_topic_name and ros_type_name", origin)
     try:
         name = resolve_name(ros)
     except GraphError as error:
-        raise CartwheelError(
-            error.message,
-            origin=origin,
-            hint="Does a launch file fill it in? Write what it puts there into a copy.",
-        ) from None
+        hint = "If a launch file fills the name in, write the result into a copy of the file."
+        raise _invalid(error.message, origin, hint) from None
     return Bridged(gz=gz_topic(gz), ros=name, type=type_name(kind), origin=origin)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
+from cartwheel.codes import devices
 from cartwheel.errors import PluginError
 from cartwheel.plugins.gz_drive import (
     GzLimitedParameters,
@@ -47,9 +48,11 @@ class GzDiffDrive(WheelDrive):
         config: GzDiffDriveParameters = self.config
         if len(config.left_joint) != len(config.right_joint):
             raise PluginError(
-                f"{len(config.left_joint)} <left_joint> and "
-                f"{len(config.right_joint)} <right_joint> are no pairs",
+                f"the numbers of <left_joint> ({len(config.left_joint)}) and <right_joint> "
+                f"({len(config.right_joint)}) differ",
+                code=devices.WHEELS_UNPAIRED,
                 origin=self.tag.origin,
+                values={"left": len(config.left_joint), "right": len(config.right_joint)},
             )
         report_limits(self, config)
         self._linear = Limiter.of(config, "linear")

@@ -6,6 +6,7 @@ import dataclasses
 from dataclasses import dataclass
 from typing import Any
 
+from cartwheel.codes import devices
 from cartwheel.errors import PluginError
 from cartwheel.plugins.base import Plugin
 from cartwheel.plugins.gz_bridge import gz_topic
@@ -157,13 +158,19 @@ def report_limits(plugin: Plugin[Any], limits: GzCommonLimits) -> None:
     for field in dataclasses.fields(limits):
         value = getattr(limits, field.name)
         if value is not None and "jerk" in field.name:
-            plugin.warn(f"<{field.name}> has no effect: jerk is not limited")
+            plugin.warn(
+                devices.PLUGIN_PARAMETER_IGNORED,
+                f"<{field.name}> has no effect: jerk is not limited",
+                values={"parameter": field.name},
+            )
         if value is not None and field.name.startswith("min_"):
             most = getattr(limits, field.name.replace("min_", "max_"))
             if most is not None and value > most:
                 raise PluginError(
-                    f"<{field.name}> {value:g} is above its maximum {most:g}",
-                    origin=plugin.tag.origin,
+                    f"<{field.name}> must not exceed its maximum {most:g} (got {value:g})",
+                    code=devices.PLUGIN_RANGE_REVERSED,
+                    origin=plugin.place_of(field.name),
+                    values={"parameter": field.name, "value": value, "most": most},
                 )
 
 
@@ -178,8 +185,7 @@ def gz_odometry(plugin: Plugin[Any], config: GzDriveParameters) -> Odometry:
     Raises:
         PluginError: A rate below 0.
     """
-    if config.rate < 0:
-        raise PluginError("<odom_publish_frequency> cannot be below 0", origin=plugin.tag.origin)
+    plugin.check_not_negative("rate")
     name = plugin.part.name
     return plugin.keep(
         Odometry(

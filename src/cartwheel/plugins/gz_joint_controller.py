@@ -7,11 +7,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar, Protocol
 
+from cartwheel.codes import devices
 from cartwheel.errors import PluginError
 from cartwheel.messages import message_class
 from cartwheel.plugins.base import Plugin
 from cartwheel.plugins.gz_drive import gz_name
-from cartwheel.plugins.parameters import tag
+from cartwheel.plugins.parameters import missing, tag
 from cartwheel.simulation.limits import FARTHEST
 
 _FLOAT = "std_msgs/msg/Float64"
@@ -99,11 +100,24 @@ class _JointController(Plugin[Any]):
         config: _Gains = self.config
         part, origin = self.part, self.tag.origin
         if not config.joints:
-            raise PluginError("<joint_name> is missing", origin=origin)
-        if config.cmd_min > config.cmd_max or config.i_min > config.i_max:
-            raise PluginError("a lower bound is above its upper one", origin=origin)
+            raise missing("plugin", "joint_name", origin)
+        for what, low, high in (
+            ("cmd", config.cmd_min, config.cmd_max),
+            ("i", config.i_min, config.i_max),
+        ):
+            if low > high:
+                raise PluginError(
+                    f"<{what}_min> must not exceed <{what}_max> (got {low:g} and {high:g})",
+                    code=devices.PLUGIN_RANGE_REVERSED,
+                    origin=self.place_of(f"{what}_min"),
+                    values={"parameter": f"{what}_min", "value": low, "most": high},
+                )
         if config.actuators:
-            self.warn("<use_actuator_msg> is not supported: the joint is driven by Float64")
+            self.warn(
+                devices.PLUGIN_PARAMETER_IGNORED,
+                "<use_actuator_msg> has no effect: the joint is driven by Float64 messages",
+                values={"parameter": "use_actuator_msg"},
+            )
         names = [name.strip() for name in config.joints]
         self._joints = [
             (part.joint(name, origin=origin), part.servo(name, max_effort=None, origin=origin))
@@ -163,7 +177,11 @@ class JointPositionController(_JointController):
 
     def _default_topic(self) -> str:
         if self.config.index:
-            self.warn("<joint_index>: only the first axis of a joint is moved")
+            self.warn(
+                devices.PLUGIN_PARAMETER_IGNORED,
+                "<joint_index> has no effect: only the first axis of a joint is moved",
+                values={"parameter": "joint_index"},
+            )
         return "cmd_pos"
 
     def _follow(self) -> None:

@@ -9,6 +9,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from cartwheel.codes import devices, running
 from cartwheel.errors import PluginError
 from cartwheel.messages import header, message_class, zero
 from cartwheel.plugins.base import Plugin
@@ -106,14 +107,20 @@ class GzJointTrajectory(Plugin[JointTrajectoryParameters]):
             if joint.type in ("revolute", "continuous", "prismatic")
         ]
         if not names:
-            raise PluginError("there is no joint of one axis to follow a trajectory", origin=origin)
+            raise PluginError(
+                "the model has no joint of one axis that could follow a trajectory",
+                code=devices.PLUGIN_IDLE,
+                origin=origin,
+            )
         self._joints = {name: part.joint(name, origin=origin) for name in names}
         self._servos = {name: part.servo(name, max_effort=None, origin=origin) for name in names}
         self._gains = {
             name: [self._read(kind, index) for kind in _KINDS] for index, name in enumerate(names)
         }
         if not any(gains.p or gains.i for both in self._gains.values() for gains in both):
-            self.warn("no gain is above 0: the joints follow efforts alone")
+            self.warn(
+                devices.PLUGIN_IDLE, "all gains are 0, so the joints only follow commanded efforts"
+            )
         self._initial = {
             name: config.initial[index] if index < len(config.initial) else 0.0
             for index, name in enumerate(names)
@@ -161,15 +168,22 @@ class GzJointTrajectory(Plugin[JointTrajectoryParameters]):
         names = list(message.joint_names)
         known = [name for name in names if name in self._joints]
         if not known:
-            self.warn(f"a trajectory was ignored: it names none of {', '.join(self._joints)}")
+            self.warn(
+                running.TRAJECTORY_INVALID,
+                "a trajectory is ignored: it names no joint of the model",
+                hint=f"There are: {', '.join(self._joints)}.",
+                values={"fault": "joints"},
+            )
             return
         for point in message.points:
             for what in ("positions", "velocities", "effort"):
                 values = getattr(point, what)
                 if len(values) not in (0, len(names)):
                     self.warn(
-                        f"a trajectory was ignored: a point has {len(values)} {what} for "
-                        f"{len(names)} joints"
+                        running.TRAJECTORY_INVALID,
+                        f"a trajectory is ignored: a point has {len(values)} {what} for "
+                        f"{len(names)} joints",
+                        values={"fault": what},
                     )
                     return
         self._names, self._points, self._index = names, list(message.points), 0

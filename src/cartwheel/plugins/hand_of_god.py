@@ -9,6 +9,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from cartwheel.codes import running
 from cartwheel.errors import PluginError
 from cartwheel.geometry import Array, Quat, quat_conjugate, quat_multiply, rotate
 from cartwheel.graph.frames import Frames
@@ -47,12 +48,16 @@ class HandOfGod(Plugin[HandOfGodParameters]):
 
     def configure(self) -> None:
         config, part, origin = self.config, self.part, self.tag.origin
-        if config.stiffness < 0 or config.turning < 0:
-            raise PluginError("<kl> and <ka> cannot be below 0", origin=origin)
+        self.check_not_negative("stiffness", "turning")
         self._link = part.link(config.link, origin=origin)
         described = part.description.link(config.link)
         if described is None or described.inertial is None:
-            raise PluginError(f'link "{config.link}" has no mass to be pulled', origin=origin)
+            raise PluginError(
+                f'link "{config.link}" has no mass, so it cannot be pulled',
+                code=running.MODEL_NOT_MOVABLE,
+                origin=origin,
+                values={"link": config.link},
+            )
         self._push = part.wrench(config.link, origin=origin)
         name = config.frame
         if self.tag.element.find("ros") is not None and self.tag.element.find("frame_id") is None:

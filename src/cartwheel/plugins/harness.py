@@ -8,11 +8,12 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from cartwheel.codes import devices, running
 from cartwheel.description.model import Element
 from cartwheel.errors import PluginError, UnknownNameError
 from cartwheel.geometry import Array, Vec3, rotate
 from cartwheel.plugins.base import Plugin
-from cartwheel.plugins.parameters import number, tag, vector
+from cartwheel.plugins.parameters import invalid, number, tag, vector
 from cartwheel.simulation.attaching import AttachmentHandle
 from cartwheel.simulation.handles import LinkHandle
 from cartwheel.simulation.limits import FARTHEST
@@ -73,7 +74,7 @@ class Harness(Plugin[HarnessParameters]):
         config, element = self.config, self.tag.element
         self._ropes = dict(self._rope(each) for each in element.find_all("joint"))
         if not self._ropes:
-            self.warn("no <joint>: nothing hangs")
+            self.warn(devices.PLUGIN_IDLE, "the harness has no <joint>, so nothing hangs")
         wound = element.find("winch/joint")
         self._winch = self._named(wound.text.strip()) if wound is not None else None
         self._detached = self._named(config.detach) if config.detach else None
@@ -103,8 +104,10 @@ class Harness(Plugin[HarnessParameters]):
         kind = element.attribute("type")
         if kind != "prismatic" or texts["parent"] != "world":
             raise PluginError(
-                f'joint "{name}" of a harness must be prismatic, with the parent world',
+                f'joint "{name}" of a harness must be prismatic and have the parent "world"',
+                code=devices.PLUGIN_PARAMETER_INVALID,
                 origin=element.origin,
+                values={"parameter": "joint", "joint": name},
             )
         link = texts["child"].removeprefix(f"{self.part.description.name}::")
         handle = self.part.link(link, origin=element.origin)
@@ -112,7 +115,8 @@ class Harness(Plugin[HarnessParameters]):
         x, y, z = vector(axis, 3) if axis is not None and texts["axis/xyz"] else (0.0, 0.0, 1.0)
         length = math.hypot(x, y, z)
         if length < _SHORTEST:
-            raise PluginError(f'joint "{name}" has no axis', origin=element.origin)
+            axis_place = axis.origin if axis is not None else element.origin
+            raise invalid("xyz", texts["axis/xyz"], "a vector of some length", axis_place)
         limits = [
             self._limit(element, f"axis/limit/{what}", default)
             for what, default in (("lower", -math.inf), ("upper", math.inf))
@@ -130,12 +134,18 @@ class Harness(Plugin[HarnessParameters]):
 
     def _named(self, name: str) -> _Rope:
         if name not in self._ropes:
-            raise UnknownNameError("joint", name, self._ropes, origin=self.tag.origin)
+            raise UnknownNameError(
+                "joint",
+                name,
+                self._ropes,
+                code=devices.PLUGIN_JOINT_UNKNOWN,
+                origin=self.tag.origin,
+            )
         return self._ropes[name]
 
     def _on_velocity(self, message: Any) -> None:
         if self._winch is None:
-            self.warn("there is no <winch> to be wound")
+            self.warn(running.COMMAND_IGNORED, "the harness has no <winch> to turn")
         else:
             self._velocity = float(message.data)
 
@@ -145,7 +155,7 @@ class Harness(Plugin[HarnessParameters]):
             return
         rope = self._detached
         if rope is None or not rope.attached:
-            self.warn("there is nothing to be detached from the harness")
+            self.warn(running.ATTACHMENT_FAILED, "nothing is attached to the harness to detach")
         else:
             rope.attached = False
             rope.joint.release()

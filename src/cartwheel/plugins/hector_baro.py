@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from cartwheel.errors import PluginError
 from cartwheel.messages import header, message_class
 from cartwheel.plugins.base import Plugin
 from cartwheel.plugins.noise import DriftingError
@@ -50,8 +49,7 @@ class HectorBaro(Plugin[HectorBaroParameters]):
 
     def configure(self) -> None:
         config, part, origin = self.config, self.part, self.tag.origin
-        if min(config.update_rate, config.drift, config.frequency, config.noise) < 0:
-            raise PluginError("a rate, drift or noise cannot be below 0", origin=origin)
+        self.check_not_negative("update_rate", "drift", "frequency", "noise")
         name = config.body or part.description.canonical_link
         self._link = part.link(name, origin=origin)
         self._frame = self.frame(config.frame or name)

@@ -8,7 +8,6 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from cartwheel.errors import PluginError
 from cartwheel.geometry import (
     Pose,
     matrix_from_quat,
@@ -116,8 +115,12 @@ class HectorImu(Plugin[HectorImuParameters]):
 
     def configure(self) -> None:
         config, part, origin = self.config, self.part, self.tag.origin
-        if config.update_rate < 0 or config.noise < 0:
-            raise PluginError("a rate or noise cannot be below 0", origin=origin)
+        self.check_not_negative(
+            "update_rate", "noise",
+            "accel_drift", "accel_frequency", "accel_noise",
+            "rate_drift", "rate_frequency", "rate_noise",
+            "yaw_drift", "yaw_frequency", "yaw_noise",
+        )  # fmt: skip
         name = config.body or part.description.canonical_link
         self._link = part.link(name, origin=origin)
         self._mount = Pose(config.xyz_offset, quat_from_rpy(*config.rpy_offset))
@@ -181,10 +184,6 @@ class HectorImu(Plugin[HectorImuParameters]):
         self, name: str, drift: tuple[Any, Any, Any], noise: Any, scale: Any
     ) -> DriftingError:
         offset, deviation, frequency = drift
-        if min(*deviation, *frequency, *noise, 0.0) < 0:
-            raise PluginError(
-                f"a drift, its frequency or a noise of {name} is below 0", origin=self.tag.origin
-            )
         return DriftingError(
             self.part,
             f"imu {self.config.topic} {name}",

@@ -14,7 +14,6 @@ from typing import Any, ClassVar
 import numpy as np
 
 from cartwheel.description.model import Sensor
-from cartwheel.errors import PluginError
 from cartwheel.geometry import Pose, quat_conjugate, quat_from_rpy, rotate
 from cartwheel.messages import header, message_class
 from cartwheel.plugins.base import Plugin
@@ -64,8 +63,7 @@ class ImuBase(Plugin[Any]):
         sensor: Sensor | None = None,
         from_first: bool = False,
     ) -> None:
-        if rate < 0 or noise < 0:
-            raise PluginError("a rate or noise cannot be below 0", origin=self.tag.origin)
+        self.check_not_negative("update_rate", "noise")
         self._unit = InertialUnit(
             self.part,
             link,
@@ -203,8 +201,6 @@ class ImuSensor(ImuBase):
         named = element.find("topicName") or element.find("topic")
         if element.find("ros") is not None and named is None:
             topic = "out" if self.remaps("out") else f"{self.tag.name or 'imu'}/out"
-        if config.update_rate < 0:
-            raise PluginError("a rate cannot be below 0", origin=self.tag.origin)
         rates = [each for each in (config.update_rate, self.sensor.update_rate) if each > 0]
         self.start(
             link=self.sensor.link,

@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+from cartwheel.codes import devices
 from cartwheel.description.model import Element, Sensor
-from cartwheel.errors import Diagnostic, Origin, PluginError
+from cartwheel.errors import Origin
 from cartwheel.geometry import (
     IDENTITY,
     Pose,
@@ -19,7 +20,7 @@ from cartwheel.geometry import (
 )
 from cartwheel.plugins.geodesy import world_datum
 from cartwheel.plugins.noise import VectorNoise, read_noise
-from cartwheel.plugins.parameters import vector
+from cartwheel.plugins.parameters import invalid, vector
 from cartwheel.simulation import Part
 
 _NORTH = {
@@ -149,15 +150,13 @@ def _reference(part: Part, imu: Element) -> Quat:
     elif word in ("GRAV_UP", "GRAV_DOWN"):
         idle = f"<localization> {word}"
     else:
-        raise PluginError(
-            f'<localization> "{word}" is none of: CUSTOM, ENU, NED, NWU, GRAV_UP, GRAV_DOWN',
-            origin=frame.origin,
-        )
+        wanted = "one of CUSTOM, ENU, NED, NWU, GRAV_UP, GRAV_DOWN"
+        raise invalid("localization", word, wanted, frame.origin)
     part.report(
-        Diagnostic(
-            severity="warning",
-            message=f"{idle} has no effect: the orientation is against the world",
+        devices.SENSOR_SETTING_IGNORED.diagnostic(
+            f"{idle} has no effect: the orientation is relative to the world",
             origin=frame.origin,
+            values={"setting": "orientation_reference_frame"},
         )
     )
     return IDENTITY

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from cartwheel.codes import running
+from cartwheel.errors import Code
 from cartwheel.messages.limits import unfit
 from cartwheel.simulation import Part
 from cartwheel.simulation.limits import STRONGEST, number
@@ -13,7 +15,7 @@ from cartwheel.simulation.limits import STRONGEST, number
 def obeyable(
     take: Callable[[Any], None],
     part: Part,
-    warn: Callable[[str], None],
+    warn: Callable[[Code, str], None],
     *,
     unset: bool = False,
 ) -> Callable[[Any], None]:
@@ -21,8 +23,8 @@ def obeyable(
 
     Args:
         take: Takes the messages that can be obeyed.
-        part: Of the simulation, which is told that something from outside acts on it.
-        warn: Takes the warning.
+        part: Of the simulation, which counts commands from outside.
+        warn: Takes the code and the message of the warning.
         unset: Pass on NaN and infinities too.
     """
     warned = False
@@ -35,7 +37,8 @@ def obeyable(
             take(message)
         elif not warned:
             warned = True
-            warn(f"a command was ignored, as others like it will be: {reason} cannot be simulated")
+            text = f"a command is ignored, like any further one of its kind: {reason}"
+            warn(running.COMMAND_NOT_SIMULATED, f"{text} cannot be simulated")
 
     return checked
 

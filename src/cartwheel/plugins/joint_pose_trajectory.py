@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from cartwheel.errors import PluginError
+from cartwheel.codes import running
 from cartwheel.messages import message_class, nanoseconds
 from cartwheel.plugins.base import Plugin
 from cartwheel.plugins.parameters import tag
@@ -39,8 +39,7 @@ class JointPoseTrajectory(Plugin[JointPoseTrajectoryParameters]):
     parameters: ClassVar[type] = JointPoseTrajectoryParameters
 
     def configure(self) -> None:
-        if self.config.update_rate < 0:
-            raise PluginError("a rate cannot be below 0", origin=self.tag.origin)
+        self.check_not_negative("update_rate")
         self._handles: dict[str, JointHandle] = {
             joint.name: self.part.joint(joint.name)
             for joint in self.part.description.joints
@@ -62,7 +61,7 @@ class JointPoseTrajectory(Plugin[JointPoseTrajectoryParameters]):
     def _on_trajectory(self, trajectory: Any) -> None:
         problem = self._take(trajectory)
         if problem:
-            self.warn(f"a trajectory was ignored: {problem}")
+            self.warn(running.TRAJECTORY_INVALID, f"a trajectory is ignored: {problem}")
 
     def _on_request(self, request: Any) -> Any:
         problem = self._take(request.joint_trajectory)

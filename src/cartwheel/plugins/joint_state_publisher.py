@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from cartwheel.errors import Diagnostic, PluginError
+from cartwheel.codes import running
 from cartwheel.plugins.base import Plugin
 from cartwheel.plugins.gz_drive import gz_name
 from cartwheel.plugins.parameters import tag
@@ -22,12 +22,11 @@ def _joints(plugin: Plugin[Any], names: list[str]) -> list[JointHandle]:
     for name in names:
         joint = description.joint(name)
         if joint is not None and joint.type == "fixed":
-            plugin.part.report(
-                Diagnostic(
-                    severity="info",
-                    message=f'joint "{name}" is fixed: it has no state to be published',
-                    origin=plugin.tag.origin,
-                )
+            plugin.warn(
+                running.JOINT_WITHOUT_STATE,
+                f'joint "{name}" is fixed, so it has no state to publish',
+                severity="info",
+                values={"joint": name},
             )
         else:
             found.append(plugin.part.joint(name, origin=plugin.tag.origin))
@@ -61,8 +60,7 @@ class JointStatePublisher(Plugin[JointStatePublisherParameters]):
 
     def configure(self) -> None:
         config, element = self.config, self.tag.element
-        if config.update_rate < 0:
-            raise PluginError("a rate cannot be below 0", origin=self.tag.origin)
+        self.check_not_negative("update_rate")
         ros2 = any(element.find(name) for name in ("ros", "joint_name", "update_rate"))
         if not ros2:
             self.under_model()
@@ -102,8 +100,7 @@ class GzJointStatePublisher(Plugin[GzJointStatePublisherParameters]):
 
     def configure(self) -> None:
         config, part = self.config, self.part
-        if config.update_rate < 0:
-            raise PluginError("a rate cannot be below 0", origin=self.tag.origin)
+        self.check_not_negative("update_rate")
         topic = config.topic or f"/world/{part.world.name}/model/{part.name}/joint_state"
         self._states = JointStates(
             self,

@@ -8,6 +8,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from cartwheel.codes import running
 from cartwheel.description.model import Sensor
 from cartwheel.errors import UnknownNameError
 from cartwheel.geometry import Array, yaw_of
@@ -159,7 +160,9 @@ class Kobuki(WheelDrive):
         found = next((sensor for sensor in sensors if sensor.name == name), None)
         if found is None:
             known = [sensor.name for sensor in sensors]
-            raise UnknownNameError("sensor", name, known, origin=self.tag.origin)
+            raise UnknownNameError(
+                "sensor", name, known, code=running.UNKNOWN_SENSOR, origin=self.tag.origin
+            )
         self.part.read_sensors.add(name)
         return found
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
+from cartwheel.codes import devices
 from cartwheel.messages import header
 from cartwheel.plugins.base import Plugin
 from cartwheel.plugins.parameters import tag
@@ -47,7 +48,11 @@ class Laser(Plugin[LaserParameters]):
         self._scanner = Scanner(self.part, self.sensor)
         rows = self._scanner.pattern.vertical.count
         if rows > 1:
-            self.warn(f"a LaserScan has one row: of the {rows} the middle one is published")
+            self.warn(
+                devices.SENSOR_SETTING_IGNORED,
+                f"a LaserScan has a single row: only the middle one of {rows} is published",
+                values={"setting": "vertical", "rows": rows},
+            )
         self._frame = self.frame(self.config.frame or self.sensor.link)
         rate = self.sensor.update_rate
         self._publisher = self.advertise(

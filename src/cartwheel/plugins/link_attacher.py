@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
+from cartwheel.codes import running, world
 from cartwheel.errors import UnknownNameError
 from cartwheel.messages import service_classes
 from cartwheel.plugins.base import Plugin
@@ -68,10 +69,11 @@ class _Attacher(Plugin[LinkAttacherParameters]):
         links = [other for owner, other in self._surroundings.links if owner == model]
         if not links:
             models = {owner for owner, _ in self._surroundings.links}
-            raise UnknownNameError("model", model, models)
+            raise UnknownNameError("model", model, models, code=world.UNKNOWN_MODEL)
         link = link.removeprefix(f"{model}::")
         if link not in links:
-            raise UnknownNameError("link", f"{model}::{link}", [f"{model}::{x}" for x in links])
+            known = [f"{model}::{other}" for other in links]
+            raise UnknownNameError("link", f"{model}::{link}", known, code=running.UNKNOWN_LINK)
         return model, link
 
 
@@ -113,7 +115,12 @@ class LinkAttacher(_Attacher):
                 request.link_name_2,
             )
         except UnknownNameError as error:
-            self.warn(f"link attacher: {error.message}. {error.hint}")
+            self.warn(
+                running.ATTACHMENT_FAILED,
+                f"links cannot be attached or detached: {error.message}",
+                hint=error.hint or "",
+                values={**error.values, "cause": error.code.number},
+            )
             return None
 
 

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
+from cartwheel.codes import devices
 from cartwheel.errors import PluginError
 from cartwheel.geometry import Pose
 from cartwheel.messages import header, message_class
@@ -46,8 +47,10 @@ class LogicalCamera(Plugin[LogicalCameraParameters]):
         assert sensor is not None
         if not (0 <= config.near < config.far and 0 < config.view < _HALF_TURN):
             raise PluginError(
-                "a view needs 0 <= <near> < <far>, and a <horizontal_fov> between 0 and pi",
+                "the view needs 0 <= <near> < <far> and 0 < <horizontal_fov> < pi",
+                code=devices.SENSOR_RANGE_INVALID,
                 origin=sensor.origin,
+                values={"near": config.near, "far": config.far, "view": config.view},
             )
         self.check_above_zero(aspect_ratio=config.aspect)
         self._wide = math.tan(config.view / 2)

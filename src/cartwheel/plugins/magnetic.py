@@ -8,7 +8,6 @@ from typing import ClassVar
 
 import numpy as np
 
-from cartwheel.errors import PluginError
 from cartwheel.geometry import quat_conjugate, quat_multiply, rotate
 from cartwheel.messages import header, message_class
 from cartwheel.plugins.base import Plugin
@@ -65,8 +64,7 @@ class HectorMagnetic(Plugin[HectorMagneticParameters]):
 
     def configure(self) -> None:
         config, part, origin = self.config, self.part, self.tag.origin
-        if config.update_rate < 0 or min(*config.drift, *config.frequency, *config.noise) < 0:
-            raise PluginError("a rate, drift or noise cannot be below 0", origin=origin)
+        self.check_not_negative("update_rate", "drift", "frequency", "noise")
         name = config.body or part.description.canonical_link
         self._link = part.link(name, origin=origin)
         self._frame = self.frame(config.frame or name)

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
+from cartwheel.codes import devices
 from cartwheel.description.model import Mimic
 from cartwheel.description.numbers import MOST_RATIO
 from cartwheel.errors import PluginError
@@ -45,8 +46,7 @@ class MimicJoint(Plugin[MimicJointParameters]):
 
     def configure(self) -> None:
         config = self.config
-        if config.joint == config.mimic_joint:
-            raise PluginError("a joint cannot follow itself", origin=self.tag.origin)
+        _check_different(self, config.joint, config.mimic_joint)
         mimic = Mimic(joint=config.joint, multiplier=config.multiplier, offset=config.offset)
         self.part.mimic(config.mimic_joint, mimic, origin=self.tag.origin)
 
@@ -71,7 +71,16 @@ class Differential(Plugin[DifferentialParameters]):
 
     def configure(self) -> None:
         config = self.config
-        if config.first == config.second:
-            raise PluginError("a joint cannot follow itself", origin=self.tag.origin)
+        _check_different(self, config.first, config.second)
         mimic = Mimic(joint=config.first, multiplier=1.0, offset=0.0)
         self.part.mimic(config.second, mimic, origin=self.tag.origin)
+
+
+def _check_different(plugin: Plugin[Any], joint: str, follower: str) -> None:
+    if joint == follower:
+        raise PluginError(
+            f'joint "{joint}" cannot follow itself',
+            code=devices.PLUGIN_PARAMETER_INVALID,
+            origin=plugin.tag.origin,
+            values={"joint": joint},
+        )

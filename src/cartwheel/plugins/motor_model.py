@@ -8,7 +8,7 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 
-from cartwheel.errors import PluginError
+from cartwheel.codes import devices, running
 from cartwheel.geometry import rotate
 from cartwheel.messages import message_class
 from cartwheel.plugins.base import Plugin
@@ -62,8 +62,7 @@ class _MotorModel(Plugin[Any]):
             rotorVelocitySlowdownSim=config.slowdown,
             maxRotVelocity=fastest,
         )
-        if number < 0:
-            raise PluginError("the number of a motor cannot be below 0", origin=origin)
+        self.check_not_negative("number")
         joint = part.description.joint(config.joint)
         self._joint = part.joint(config.joint, origin=origin)
         assert joint is not None
@@ -75,7 +74,11 @@ class _MotorModel(Plugin[Any]):
         self._number, self._field, self._fastest = number, field, fastest
         self.reset()
         if config.kind != "velocity":
-            self.warn(f'<motorType> "{config.kind}" is not supported: the joint is left alone')
+            self.warn(
+                devices.PLUGIN_PARAMETER_UNSUPPORTED,
+                f'<motorType> "{config.kind}" is not supported, so the joint is not driven',
+                values={"parameter": "motorType", "value": config.kind},
+            )
             return
         self._motor = part.velocity_motor(config.joint, max_effort=None)
         self.subscribe(topic, kind, self._on_command)
@@ -91,7 +94,10 @@ class _MotorModel(Plugin[Any]):
         speeds = getattr(message, self._field)
         if self._number >= len(speeds):
             self.warn(
-                f"a command of {len(speeds)} speeds has none of motor {self._number}: ignored"
+                running.COMMAND_IGNORED,
+                f"a command is ignored: it has {len(speeds)} speeds, and none for motor "
+                f"{self._number}",
+                values={"speeds": len(speeds), "motor": self._number},
             )
             return
         self._wanted = min(float(speeds[self._number]), self._fastest)

@@ -6,6 +6,7 @@ import itertools
 from dataclasses import dataclass
 from typing import ClassVar
 
+from cartwheel.codes import devices
 from cartwheel.errors import PluginError
 from cartwheel.plugins.odometry import Odometry, planar_covariance
 from cartwheel.plugins.parameters import tag
@@ -48,7 +49,10 @@ class MultiWheelDrive(WheelDrive):
         left, right = config.left.split(), config.right.split()
         if not left or not right:
             raise PluginError(
-                "<leftJoints> and <rightJoints> must name a joint", origin=self.tag.origin
+                "<leftJoints> and <rightJoints> must each name a joint",
+                code=devices.WHEELS_UNPAIRED,
+                origin=self.tag.origin,
+                values={"left": len(left), "right": len(right)},
             )
         # Where a side has more wheels, its last ones are paired with one that turns already.
         sides = itertools.zip_longest(left, right)

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from cartwheel.codes import devices
 from cartwheel.description.model import Element
 from cartwheel.description.numbers import LARGEST
 from cartwheel.errors import Diagnostic, PluginError
@@ -64,8 +65,10 @@ def read_noise(element: Element | None, report: Callable[[Diagnostic], None]) ->
     if name not in ("gaussian", "gaussian_quantized"):
         raise PluginError(
             f'noise of type "{name}" is not supported',
+            code=devices.PLUGIN_PARAMETER_INVALID,
             origin=element.origin,
             hint="There are: none, gaussian, gaussian_quantized.",
+            values={"parameter": "noise", "value": name},
         )
     values = {}
     for tag, field in _FIELDS.items():
@@ -76,11 +79,11 @@ def read_noise(element: Element | None, report: Callable[[Diagnostic], None]) ->
     idle = ""
     if noise.precision and name != "gaussian_quantized":
         noise = replace(noise, precision=0.0)
-        idle = "<precision> has no effect: it belongs to noise of type gaussian_quantized"
+        idle = "<precision> only has an effect with noise of type gaussian_quantized"
     elif noise.walk and not noise.memory:
-        idle = "<dynamic_bias_stddev> has no effect without <dynamic_bias_correlation_time>"
+        idle = "<dynamic_bias_stddev> only has an effect with <dynamic_bias_correlation_time>"
     if idle:
-        report(Diagnostic(severity="warning", message=idle, origin=element.origin))
+        report(devices.SENSOR_SETTING_IGNORED.diagnostic(idle, origin=element.origin))
     return noise
 
 

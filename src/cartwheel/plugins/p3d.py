@@ -8,7 +8,7 @@ from typing import ClassVar, Literal
 
 import numpy as np
 
-from cartwheel.errors import PluginError
+from cartwheel.codes import devices
 from cartwheel.geometry import (
     Pose,
     quat_conjugate,
@@ -83,8 +83,7 @@ class P3D(Plugin[P3DParameters]):
 
     def configure(self) -> None:
         config, part = self.config, self.part
-        if config.noise < 0 or config.update_rate < 0:
-            raise PluginError("a rate or noise cannot be below 0", origin=self.tag.origin)
+        self.check_not_negative("update_rate", "noise")
         body = config.body or config.frame
         self._link = part.link(body, origin=self.tag.origin)
         self._reference = None
@@ -93,8 +92,10 @@ class P3D(Plugin[P3DParameters]):
                 self._reference = part.link(config.frame)
             else:
                 self.warn(
-                    f'<frameName> "{config.frame}" is no link: the pose in the world is told '
-                    "under that name; Gazebo would tell nothing"
+                    devices.FRAME_UNKNOWN,
+                    f'<frameName> "{config.frame}" is not a link: the pose in the world is '
+                    "published in a frame of that name; Gazebo publishes nothing",
+                    values={"frame": config.frame},
                 )
         self._turn = quat_from_rpy(*config.rpy_offset)
         self._frame, self._child = self.frame(config.frame), self.frame(body)
@@ -210,8 +211,7 @@ class OdometryPublisher(Plugin[OdometryPublisherParameters]):
 
     def configure(self) -> None:
         config, part = self.config, self.part
-        if config.noise < 0 or config.rate < 0:
-            raise PluginError("a rate or noise cannot be below 0", origin=self.tag.origin)
+        self.check_not_negative("rate", "noise")
         self._link = part.link(part.description.canonical_link)
         to_link = part.description.canonical_pose.inverse()
         offset = Pose(config.xyz_offset, quat_from_rpy(*config.rpy_offset))

@@ -11,7 +11,7 @@ from typing import Any, TypeVar, get_args, get_origin
 from cartwheel.codes import devices
 from cartwheel.description.model import Element
 from cartwheel.description.numbers import LARGEST
-from cartwheel.errors import Diagnostic, PluginError, meant_one
+from cartwheel.errors import Diagnostic, Origin, PluginError, Value, meant_one
 
 C = TypeVar("C")
 
@@ -83,9 +83,7 @@ def read(
             else:
                 values[item.name] = _value(kind, found, item.metadata["most"])
         elif item.default is dataclasses.MISSING:
-            raise PluginError(
-                f"<{element.tag}> needs <{names[0]}>: {item.metadata['doc']}", origin=element.origin
-            )
+            raise missing(element.tag, names[0], element.origin, hint=item.metadata["doc"])
     diagnostics += [_unknown(child, known) for child in element.children if child.tag not in known]
     return cls(**values), diagnostics
 
@@ -103,10 +101,39 @@ def _unknown(element: Element, known: Iterable[str]) -> Diagnostic:
 def _first(element: Element) -> tuple[Element, Diagnostic]:
     """The element with the first word alone, which is what Gazebo reads where one is wanted."""
     word = element.text.split()[0]
-    return dataclasses.replace(element, text=word), Diagnostic(
-        severity="warning",
-        message=f"<{element.tag}> is one number: of '{element.text.strip()}' {word} counts",
+    return dataclasses.replace(element, text=word), devices.PLUGIN_PARAMETER_NOT_SINGLE.diagnostic(
+        f"<{element.tag}> must be one number, but states several: {word} is used",
         origin=element.origin,
+        values={"parameter": element.tag, "value": word},
+    )
+
+
+def invalid(name: str, value: Value, wanted: str, origin: Origin | None) -> PluginError:
+    """The error for a parameter whose value is not allowed.
+
+    Args:
+        name: Its tag.
+        value: As it is stated.
+        wanted: What is allowed, behind "must be".
+        origin: The tag's place.
+    """
+    stated = f"{value:g}" if isinstance(value, float) else f'"{shown(str(value))}"'
+    return PluginError(
+        f"<{name}> must be {wanted} (got {stated})",
+        code=devices.PLUGIN_PARAMETER_INVALID,
+        origin=origin,
+        values={"parameter": name, "value": value},
+    )
+
+
+def missing(parent: str, name: str, origin: Origin | None, *, hint: str = "") -> PluginError:
+    """The error for a tag that is needed inside another one, which is at `origin`."""
+    return PluginError(
+        f"<{parent}> needs <{name}>",
+        code=devices.PLUGIN_PARAMETER_MISSING,
+        origin=origin,
+        hint=hint,
+        values={"parameter": name},
     )
 
 
@@ -148,17 +175,13 @@ def _value(kind: Any, element: Element, most: float | None) -> Any:
         options = get_args(kind)
     if get_origin(kind) is typing.Literal:
         if text not in options:
-            raise PluginError(
-                f'<{element.tag}> "{text}" is none of: {", ".join(map(str, options))}',
-                origin=element.origin,
-            )
+            wanted = f"one of {', '.join(map(str, options))}"
+            raise invalid(element.tag, text, wanted, element.origin)
         return text
     if kind is bool:
         if text.lower() in _TRUE | _FALSE:
             return text.lower() in _TRUE
-        raise PluginError(
-            f'<{element.tag}> "{text}" is neither true nor false', origin=element.origin
-        )
+        raise invalid(element.tag, text, "true or false", element.origin)
     if kind is float:
         most = LARGEST if most is None else most
         return _number(element, text, -most, most)
@@ -166,9 +189,7 @@ def _value(kind: Any, element: Element, most: float | None) -> Any:
         most = _MOST_COUNT if most is None else most
         number = _number(element, text, -most, most)
         if number != int(number):
-            raise PluginError(
-                f'<{element.tag}> "{text}" is not a whole number', origin=element.origin
-            )
+            raise invalid(element.tag, text, "a whole number", element.origin)
         return int(number)
     if get_origin(kind) is tuple:
         return _vector(element, len(options), LARGEST if most is None else most)
@@ -178,30 +199,22 @@ def _value(kind: Any, element: Element, most: float | None) -> Any:
 def _vector(element: Element, size: int, most: float) -> tuple[float, ...]:
     words = element.text.split()
     if len(words) != size:
-        raise PluginError(
-            f'<{element.tag}> "{shown(element.text)}" has {len(words)} numbers, not {size}',
-            origin=element.origin,
-        )
+        raise invalid(element.tag, element.text.strip(), f"{size} numbers", element.origin)
     return tuple(_number(element, word, -most, most) for word in words)
 
 
 def _number(
     element: Element, text: str, least: float, most: float, *, endless: bool = False
 ) -> float:
-    origin = element.origin
     try:
         number = float(text)
     except ValueError:
-        raise PluginError(
-            f'<{element.tag}> "{shown(text)}" is not a number', origin=origin
-        ) from None
+        raise invalid(element.tag, text, "a number", element.origin) from None
     if endless and abs(number) > LARGEST:
         return math.copysign(math.inf, number)
     if not least <= number <= most:
-        raise PluginError(
-            f'<{element.tag}> "{shown(text)}" must be a number from {least:g} to {most:g}',
-            origin=origin,
-        )
+        wanted = f"a number from {least:g} to {most:g}"
+        raise invalid(element.tag, text, wanted, element.origin)
     return number
 
 

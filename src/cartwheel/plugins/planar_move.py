@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
+from cartwheel.codes import devices
 from cartwheel.errors import PluginError
 from cartwheel.plugins.base import Plugin
 from cartwheel.plugins.gz_drive import gz_name
@@ -142,8 +143,10 @@ class VelocityControl(Plugin[VelocityControlParameters]):
     def configure(self) -> None:
         if self.tag.element.find("link_name"):
             raise PluginError(
-                "<link_name> is not supported: only the whole model is moved",
-                origin=self.tag.origin,
+                "<link_name> is not supported: only whole models are moved",
+                code=devices.PLUGIN_PARAMETER_UNSUPPORTED,
+                origin=self.place_of("link_name"),
+                values={"parameter": "link_name"},
             )
         self._drive = self.part.body_drive(origin=self.tag.origin)
         topic = gz_name(self, self.config.topic, "cmd_vel")

@@ -7,7 +7,6 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 
-from cartwheel.errors import PluginError
 from cartwheel.messages import header
 from cartwheel.plugins.base import Plugin
 from cartwheel.plugins.noise import DriftingError
@@ -33,8 +32,7 @@ class _RangeBase(Plugin[Any]):
         frequency: float = 0.0,
     ) -> None:
         assert self.sensor is not None
-        if min(noise or 0.0, rate, drift, frequency) < 0:
-            raise PluginError("a rate, drift or noise cannot be below 0", origin=self.tag.origin)
+        self.check_not_negative("noise", "update_rate", "drift", "drift_frequency")
         self._scanner = Scanner(self.part, self.sensor)
         self._fov = min(self._scanner.pattern.field_of_view) if fov is None else fov
         self._infrared = infrared

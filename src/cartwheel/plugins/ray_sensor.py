@@ -7,10 +7,9 @@ from typing import ClassVar, Literal
 
 import numpy as np
 
-from cartwheel.errors import PluginError
 from cartwheel.messages import header
 from cartwheel.plugins.base import Plugin
-from cartwheel.plugins.parameters import tag
+from cartwheel.plugins.parameters import invalid, tag
 from cartwheel.plugins.scan import Scanner
 from cartwheel.plugins.scan_messages import laser_scan, point_cloud, point_cloud2, range_reading
 
@@ -65,11 +64,9 @@ class RaySensor(Plugin[RaySensorParameters]):
         self._scanner = Scanner(self.part, sensor)
         self._output = config.output_type.rsplit("/", 1)[-1]
         if self._output not in _OUTPUTS:
-            raise PluginError(
-                f'<output_type> "{config.output_type}" is none of: '
-                + ", ".join(f"sensor_msgs/{name}" for name in _OUTPUTS),
-                origin=self.tag.origin,
-            )
+            wanted = f"one of {', '.join(f'sensor_msgs/{name}' for name in _OUTPUTS)}"
+            place = self.place_of("output_type")
+            raise invalid("output_type", config.output_type, wanted, place)
         self._frame = self.frame(config.frame or sensor.link)
         topic = config.topic or f"{self.tag.name}/out"
         rate = sensor.update_rate

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
+from cartwheel.codes import running
 from cartwheel.description.model import PluginTag, Sensor
 from cartwheel.plugins.base import Plugin
 from cartwheel.plugins.camera_base import CameraBase
@@ -152,11 +153,15 @@ class RealSense(Plugin[RealSenseParameters]):
                 if sensor.name == name:
                     self.part.read_sensors.add(name)
                     return sensor
-        self.warn(f'there is no sensor "{name}", so this camera lacks it')
+        self.warn(
+            running.UNKNOWN_SENSOR,
+            f'the sensor "{name}" does not exist, so this camera publishes nothing of it',
+            values={"name": name},
+        )
         return None
 
     def _quiet_tag(self) -> PluginTag:
-        """The tag without what nobody knows, which has been told."""
+        """The tag without unknown elements, which were reported."""
         known = tags_of(RealSenseParameters) | {"robotNamespace", "ros"}
         element = self.tag.element
         children = tuple(child for child in element.children if child.tag in known)

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator
 
+from cartwheel.codes import devices
 from cartwheel.description.model import PluginTag, Sensor
 from cartwheel.errors import (
     CartwheelError,
-    Diagnostic,
     StaticModelError,
     UnknownNameError,
-    fault,
-    likely,
+    meant_one,
 )
 from cartwheel.graph import Graph
 from cartwheel.plugins.base import Plugin
@@ -24,7 +23,7 @@ from cartwheel.plugins.catalogue import (
 )
 from cartwheel.plugins.gz_sensor import own_tag, publishes
 from cartwheel.plugins.parameters import tags_of
-from cartwheel.plugins.world_plugins import BUILT_IN
+from cartwheel.plugins.world_plugins import BUILT_IN, failed, left_out
 from cartwheel.simulation import Part
 from cartwheel.simulation.resident import Behaviour
 
@@ -65,13 +64,13 @@ def attach(part: Part, graph: Graph, *, lenient: bool = False) -> list[Behaviour
             if plugin is None:
                 _report_unknown(part, tag)
             elif plugin.for_world or (plugin.for_sensor and sensor is None):
-                place = "<world>" if plugin.for_world else "<sensor>"
+                place = "world" if plugin.for_world else "sensor"
                 part.report(
-                    Diagnostic(
-                        severity="warning",
-                        message=f'plugin "{tag.filename}" has no effect here: '
-                        f"it belongs inside a {place}",
+                    devices.PLUGIN_MISPLACED.diagnostic(
+                        f'plugin "{tag.filename}" has no effect here: '
+                        f"it belongs inside a <{place}>",
                         origin=tag.origin,
+                        values={"name": tag.filename, "place": place},
                     )
                 )
             else:
@@ -106,18 +105,9 @@ def _made(
     except CartwheelError as error:
         if not isinstance(error, forgiven):
             raise
-        what = f'plugin "{tag.filename}"' if tag.filename else f'sensor "{tag.name}"'
-        hint = f" {error.hint}" if error.hint else ""
-        part.report(
-            Diagnostic(
-                severity="error",
-                message=f"{what} is left out: {error.message}.{hint}",
-                origin=error.origin or tag.origin,
-            )
-        )
+        part.report(left_out(tag, error))
     except Exception as error:  # noqa: BLE001 - a plugin's own
-        what = f'plugin "{tag.filename}"' if tag.filename else f'sensor "{tag.name}"'
-        part.report(fault(f"{what} failed and is left out", error, tag.origin))
+        part.report(failed(tag, error))
     return []
 
 
@@ -133,30 +123,30 @@ def _serve(
             yield from _made(part, graph, plugin, tag, sensor, forgiven=_ANY)
             continue
         if sensor.plugins:
-            # What is missing was told of the plugin.
+            # The plugin's diagnostic says what is missing.
             continue
-        message = f'sensor "{sensor.name}" has no <plugin>, so it publishes nothing'
-        if wanted:
-            message = (
-                f'sensor "{sensor.name}": without a <plugin> a sensor of type "{sensor.type}" '
-                "publishes nothing yet"
-            )
+        reason = f' and type "{sensor.type}", which publishes nothing without one' if wanted else ""
         part.report(
-            Diagnostic(
-                severity="warning" if wanted else "info", message=message, origin=sensor.origin
+            devices.SENSOR_WITHOUT_PLUGIN.diagnostic(
+                f'sensor "{sensor.name}" has no <plugin>{reason or ", so it publishes nothing"}',
+                severity="warning" if wanted else "info",
+                origin=sensor.origin,
+                values={"sensor": sensor.name, "type": sensor.type},
             )
         )
 
 
 def _report_unknown(part: Part, tag: PluginTag) -> None:
     # Only a spelling error has a likely meant name: other plugins share most of theirs.
-    broken = " ".join(unloadable())
-    meant = likely(tag.filename, [f"lib{name}.so" for name in plugin_names()], cutoff=0.92)
+    meant = meant_one(tag.filename, [f"lib{name}.so" for name in plugin_names()], cutoff=0.92)
+    broken = unloadable()
+    suggested = f'Did you mean "{meant}"?' if meant else ""
     part.report(
-        Diagnostic(
+        devices.PLUGIN_UNKNOWN.diagnostic(
+            f'plugin "{tag.filename}" is not supported, so it has no effect',
             severity="warning",
-            message=f'plugin "{tag.filename}" is not supported: what it does is missing here. '
-            f"{meant} {broken}".strip(),
             origin=tag.origin,
+            hint=" ".join((suggested, *broken)).strip(),
+            values={"name": tag.filename, "meant": meant, "broken": tuple(broken)},
         )
     )

@@ -9,7 +9,6 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from cartwheel.errors import PluginError
 from cartwheel.geometry import Pose
 from cartwheel.messages import header, message_class
 from cartwheel.plugins.base import Plugin
@@ -180,8 +179,7 @@ class RotorsImu(ImuBase):
     def _error(
         self, kind: str, density: float, walk: float, time: float, bias: float
     ) -> DriftingError:
-        if min(density, walk, bias) < 0:
-            raise PluginError("a noise cannot be below 0", origin=self.tag.origin)
+        self.check_not_negative(f"{kind}_noise", f"{kind}_walk", f"{kind}_bias")
         part = self.part
         name = f"rotors imu {self.tag.name} {kind}"
         seconds = part.period_ns(0) * 1e-9

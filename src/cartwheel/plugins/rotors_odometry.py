@@ -7,6 +7,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from cartwheel.codes import devices
 from cartwheel.errors import PluginError
 from cartwheel.geometry import Array, Quat, quat_multiply, quat_normalize
 from cartwheel.messages import header, message_class
@@ -71,7 +72,10 @@ class RotorsOdometry(Plugin[RotorsOdometryParameters]):
         config, part, origin = self.config, self.part, self.tag.origin
         if config.parent != "world":
             raise PluginError(
-                f'<parentFrameId> "{config.parent}" is not supported: only "world"', origin=origin
+                f'<parentFrameId> "{config.parent}" is not supported: only "world" is',
+                code=devices.PLUGIN_PARAMETER_UNSUPPORTED,
+                origin=self.place_of("parentFrameId"),
+                values={"parameter": "parentFrameId", "value": config.parent},
             )
         self.check_above_zero(measurementDivisor=config.divisor)
         normal = [config.normal_position, config.normal_turn, config.normal_linear,
@@ -79,10 +83,16 @@ class RotorsOdometry(Plugin[RotorsOdometryParameters]):
         uniform = [config.uniform_position, config.uniform_turn, config.uniform_linear,
                    config.uniform_angular]  # fmt: skip
         self._normal, self._uniform = np.array(normal).ravel(), np.array(uniform).ravel()
-        if min(self._normal.min(), self._uniform.min()) < 0:
-            raise PluginError("a noise cannot be below 0", origin=origin)
+        self.check_not_negative(
+            "normal_position", "normal_turn", "normal_linear", "normal_angular",
+            "uniform_position", "uniform_turn", "uniform_linear", "uniform_angular",
+        )  # fmt: skip
         if config.delay:
-            self.warn("<measurementDelay> has no effect: what is measured is told at once")
+            self.warn(
+                devices.PLUGIN_PARAMETER_IGNORED,
+                "<measurementDelay> has no effect: measurements are published at once",
+                values={"parameter": "measurementDelay"},
+            )
         self._link = part.link(config.link, origin=origin)
         self._frames = self.frame(config.parent), self.frame(config.child)
         variance = self._normal**2

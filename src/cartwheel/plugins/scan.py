@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from cartwheel.codes import devices
 from cartwheel.description.model import Element, Sensor
 from cartwheel.errors import Diagnostic, Origin, PluginError
 from cartwheel.geometry import Array
@@ -82,21 +83,29 @@ def read_pattern(sensor: Sensor, report: Callable[[Diagnostic], None]) -> ScanPa
     ray = sensor.element.find("ray") or sensor.element.find("lidar")
     if ray is None:
         raise PluginError(
-            f'sensor "{sensor.name}" has neither <ray> nor <lidar>', origin=sensor.origin
+            f'sensor "{sensor.name}" has neither <ray> nor <lidar>',
+            code=devices.SENSOR_INCOMPLETE,
+            origin=sensor.origin,
+            values={"sensor": sensor.name, "missing": "ray"},
         )
     across = ray.find("scan/horizontal")
     if across is None:
         raise PluginError(
-            f'sensor "{sensor.name}" has no <scan> with a <horizontal>', origin=ray.origin
+            f'sensor "{sensor.name}" has no <scan> with a <horizontal>',
+            code=devices.SENSOR_INCOMPLETE,
+            origin=ray.origin,
+            values={"sensor": sensor.name, "missing": "horizontal"},
         )
     horizontal = _sweep(across, report, samples=640)
     upright = ray.find("scan/vertical")
     vertical = _sweep(upright, report, samples=1) if upright is not None else _LEVEL
     if horizontal.count * vertical.count > _MOST_RAYS:
         raise PluginError(
-            f"a scan has at most {_MOST_RAYS:,} rays, but this one has "
-            f"{horizontal.count} x {vertical.count}",
+            f"a scan must have at most {_MOST_RAYS:,} rays "
+            f"(got {horizontal.count} x {vertical.count})",
+            code=devices.SCAN_SAMPLES_INVALID,
             origin=_place(across, "samples"),
+            values={"sensor": sensor.name, "parameter": "samples"},
             hint="Lower <samples>.",
         )
     limits = ray.find("range")
@@ -104,8 +113,10 @@ def read_pattern(sensor: Sensor, report: Callable[[Diagnostic], None]) -> ScanPa
     maximum = _number(limits, "max", 0.0, endless=True)
     if minimum < 0 or maximum <= minimum:
         raise PluginError(
-            f'sensor "{sensor.name}" measures from {minimum:g} m to {maximum:g} m: '
-            "<max> must be above <min>, and <min> not below 0",
+            f'the range of sensor "{sensor.name}" must satisfy 0 <= <min> < <max> '
+            f"(got {minimum:g} m and {maximum:g} m)",
+            code=devices.SENSOR_RANGE_INVALID,
+            values={"sensor": sensor.name, "min": minimum, "max": maximum},
             origin=limits.origin if limits is not None else ray.origin,
         )
     noise = ray.find("noise") or sensor.element.find("noise")
@@ -124,39 +135,46 @@ def _sweep(element: Element, report: Callable[[Diagnostic], None], *, samples: i
     first, last = _number(element, "min_angle", 0.0), _number(element, "max_angle", 0.0)
     if not 1 <= asked <= _MOST_RAYS:
         raise PluginError(
-            f"<samples> must be from 1 to {_MOST_RAYS:,}, but is {asked:g}",
+            f"<samples> must be from 1 to {_MOST_RAYS:,} (got {asked:g})",
+            code=devices.SCAN_SAMPLES_INVALID,
             origin=_place(element, "samples"),
+            values={"parameter": "samples", "value": asked},
         )
     if asked != int(asked):
         # A quotient of angles, mostly.
         report(
-            Diagnostic(
+            devices.SCAN_SAMPLES_INVALID.diagnostic(
+                f"<samples> must be a whole number (got {asked:g}): {int(asked)} is used",
                 severity="info",
-                message=f"<samples> {asked:g} is no whole number: {int(asked)} are taken",
                 origin=_place(element, "samples"),
+                values={"parameter": "samples", "value": asked},
             )
         )
         asked = float(int(asked))
     if resolution <= 0:
         raise PluginError(
-            f"<resolution> {resolution:g} must be above 0",
+            f"<resolution> must be positive (got {resolution:g})",
+            code=devices.SCAN_SAMPLES_INVALID,
             origin=_place(element, "resolution"),
-            hint="It multiplies <samples>; 1 is one range a sample.",
+            hint="It multiplies <samples>: 1 gives one range per sample.",
+            values={"parameter": "resolution", "value": resolution},
         )
     if asked * resolution > _MOST_RAYS:
         raise PluginError(
-            f"<samples> times <resolution> must be at most {_MOST_RAYS:,}, "
-            f"but is {asked * resolution:g}",
+            f"<samples> times <resolution> must be at most {_MOST_RAYS:,} "
+            f"(got {asked * resolution:g})",
+            code=devices.SCAN_SAMPLES_INVALID,
             origin=_place(element, "resolution"),
+            values={"parameter": "resolution", "value": resolution},
         )
     if last < first:
         # As with Gazebo's rays.
         report(
-            Diagnostic(
-                severity="info",
-                message=f"<max_angle> {last:g} is below <min_angle> {first:g}: "
-                "the sweep runs backwards",
+            devices.SCAN_REVERSED.diagnostic(
+                f"<max_angle> {last:g} is below <min_angle> {first:g}, so the rays are in the "
+                "opposite order",
                 origin=_place(element, "max_angle"),
+                values={"first": first, "last": last},
             )
         )
     count = max(1, int(asked * resolution))

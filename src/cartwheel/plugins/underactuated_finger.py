@@ -6,10 +6,10 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar
 
+from cartwheel.codes import devices
 from cartwheel.description.model import Element
-from cartwheel.errors import PluginError
 from cartwheel.plugins.base import Plugin
-from cartwheel.plugins.parameters import number, tag
+from cartwheel.plugins.parameters import invalid, missing, number, tag
 from cartwheel.simulation.limits import FARTHEST
 from cartwheel.simulation.servo import ServoHandle
 
@@ -50,7 +50,9 @@ class UnderactuatedFinger(Plugin[UnderactuatedFingerParameters]):
             self._phalanx(element) for element in self.tag.element.find_all("virtualJoint")
         ]
         if not self._phalanges:
-            self.warn("no <virtualJoint>: this finger does not bend")
+            self.warn(
+                devices.PLUGIN_IDLE, "the plugin has no <virtualJoint>, so the finger does not bend"
+            )
         self.part.schedule(0, before=self._bend)
 
     def _phalanx(self, element: Element) -> _Phalanx:
@@ -58,14 +60,12 @@ class UnderactuatedFinger(Plugin[UnderactuatedFingerParameters]):
         for each in ("name", "scale_factor"):
             child = element.find(each)
             if child is None:
-                raise PluginError(f"<virtualJoint> needs <{each}>", origin=element.origin)
+                raise missing("virtualJoint", each, element.origin)
             found[each] = child
         scale = number(found["scale_factor"], least=-FARTHEST, most=FARTHEST)
         if abs(scale) < _LEAST_SCALE:
-            raise PluginError(
-                f"<scale_factor> must be at least {_LEAST_SCALE:g} or at most {-_LEAST_SCALE:g}",
-                origin=found["scale_factor"].origin,
-            )
+            wanted = f"at least {_LEAST_SCALE:g} or at most {-_LEAST_SCALE:g}"
+            raise invalid("scale_factor", scale, wanted, found["scale_factor"].origin)
         name = found["name"].text.strip()
         servo = self.part.servo(name, max_effort=None, origin=element.origin)
         joint = self.part.description.joint(name)

@@ -8,6 +8,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from cartwheel.codes import devices
 from cartwheel.errors import PluginError
 from cartwheel.messages import header
 from cartwheel.plugins.base import Plugin
@@ -80,16 +81,17 @@ class VelodyneLaser(Plugin[VelodyneParameters]):
     def configure(self) -> None:
         sensor, config = self.sensor, self.config
         assert sensor is not None
-        if config.noise < 0:
-            raise PluginError("<gaussianNoise> cannot be below 0", origin=self.tag.origin)
+        self.check_not_negative("noise")
         self._scanner = Scanner(self.part, sensor)
         pattern = self._scanner.pattern
         self._near = max(config.min_range, pattern.minimum)
         self._far = min(config.max_range, pattern.maximum)
         if self._near >= self._far:
             raise PluginError(
-                f"no point lies between {self._near:g} m and {self._far:g} m",
+                f"the range from {self._near:g} m to {self._far:g} m is empty",
+                code=devices.PLUGIN_RANGE_REVERSED,
                 origin=self.tag.origin,
+                values={"parameter": "min_range", "value": self._near, "most": self._far},
                 hint="<min_range> and <max_range> narrow the sensor's own <range>.",
             )
         self._frame = self.frame(config.frame or sensor.link)

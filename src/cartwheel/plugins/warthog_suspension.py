@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from cartwheel.errors import PluginError
 from cartwheel.plugins.base import Plugin
 from cartwheel.plugins.parameters import tag
 
@@ -29,8 +28,7 @@ class WarthogSuspension(Plugin[WarthogSuspensionParameters]):
 
     def configure(self) -> None:
         config, part, origin = self.config, self.part, self.tag.origin
-        if min(config.stiffness, config.damping) < 0:
-            raise PluginError("a spring or damper cannot be below 0", origin=origin)
+        self.check_not_negative("stiffness", "damping")
         self._sides = [
             (part.joint(name, origin=origin), part.servo(name, max_effort=None, origin=origin))
             for name in (config.left, config.right)

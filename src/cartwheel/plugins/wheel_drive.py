@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from cartwheel.codes import devices, robot
 from cartwheel.description.kinematics import link_poses
-from cartwheel.errors import Diagnostic, PluginError
+from cartwheel.errors import PluginError
 from cartwheel.geometry import Quat, Vec3
 from cartwheel.plugins.drive import Drive
 from cartwheel.plugins.odometry import AxleReckoning
@@ -42,14 +43,13 @@ class WheelDrive(Drive):
                 (pair.separation, "separation"),
                 (pair.diameter, "diameter or radius"),
             ):
-                if value <= 0:
-                    raise PluginError(
-                        f"the wheels' {what} {value:g} must be above 0", origin=origin
-                    )
                 if not SMALLEST <= value <= FARTHEST:
                     raise PluginError(
-                        f"the wheels' {what} {value:g} must be from {SMALLEST:g} to {FARTHEST:g} m",
+                        f"the {what} of the wheels must be from {SMALLEST:g} to {FARTHEST:g} m "
+                        f"(got {value:g} m)",
+                        code=devices.PLUGIN_PARAMETER_INVALID,
                         origin=origin,
+                        values={"parameter": what, "value": value},
                     )
         names = [name for pair in pairs for name in (pair.left, pair.right)]
         self._pairs = list(pairs)
@@ -75,13 +75,12 @@ class WheelDrive(Drive):
             made = [description.joint(name) for name in (pair.left, pair.right)]
             left, right = ((front @ poses[joint.child]).y for joint in made if joint is not None)
             if left < right:
-                self.part.report(
-                    Diagnostic(
-                        severity="info",
-                        message=f'the wheel of "{pair.left}" stands to the right of that of '
-                        f'"{pair.right}": the robot turns against its commands, as in Gazebo',
-                        origin=self.tag.origin,
-                    )
+                self.warn(
+                    robot.WHEELS_SWAPPED,
+                    f'the left wheel of joint "{pair.left}" is to the right of that of '
+                    f'"{pair.right}", so the robot turns against its commands, as in Gazebo',
+                    severity="info",
+                    values={"left": pair.left, "right": pair.right},
                 )
                 return
 
@@ -107,8 +106,7 @@ class WheelDrive(Drive):
             acceleration: m/s², of the wheels' rims; 0 is at once.
             reverse: Turn the other way.
         """
-        if acceleration < 0 or rate < 0 or control_rate < 0:
-            raise PluginError("an acceleration or rate cannot be below 0", origin=self.tag.origin)
+        self.check_not_negative("update_rate", "rate", "wheel_acceleration", "acceleration")
         self._encoded = encoded
         self._acceleration = acceleration
         self._reverse = reverse

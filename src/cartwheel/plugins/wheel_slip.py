@@ -9,6 +9,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from cartwheel.codes import devices
 from cartwheel.description.model import Cylinder, Element, Sphere
 from cartwheel.errors import PluginError
 from cartwheel.graph import ReconfigureParameter
@@ -83,11 +84,10 @@ class WheelSlip(Plugin[WheelSlipParameters]):
 
     def configure(self) -> None:
         config, element = self.config, self.tag.element
-        if config.rate < 0:
-            raise PluginError("a rate cannot be below 0", origin=self.tag.origin)
+        self.check_not_negative("rate")
         self._wheels = [self._wheel(each) for each in element.find_all("wheel")]
         if not self._wheels:
-            self.warn("no <wheel>: nothing slips")
+            self.warn(devices.PLUGIN_IDLE, "the plugin has no <wheel>, so nothing slips")
             return
         self.part.schedule(0, before=self._give)
         if "gazebo_ros_wheel_slip" not in self.tag.filename:
@@ -106,13 +106,20 @@ class WheelSlip(Plugin[WheelSlipParameters]):
         origin = element.origin
         name = element.attribute("link_name")
         if not name:
-            raise PluginError("<wheel> needs the attribute link_name", origin=origin)
+            raise PluginError(
+                "<wheel> needs the attribute link_name",
+                code=devices.PLUGIN_PARAMETER_MISSING,
+                origin=origin,
+                values={"parameter": "link_name"},
+            )
         radius = _number(element, "wheel_radius") or self._radius(name)
         normal = _number(element, "wheel_normal_force")
         if radius <= 0 or normal <= 0:
             raise PluginError(
-                f'wheel "{name}" needs <wheel_radius> and <wheel_normal_force> above 0',
+                f'wheel "{name}" needs a positive <wheel_radius> and <wheel_normal_force>',
+                code=devices.PLUGIN_PARAMETER_INVALID,
                 origin=origin,
+                values={"link": name, "wheel_radius": radius, "wheel_normal_force": normal},
             )
         slip = self.part.slip(name, radius=radius, origin=origin)
         joint = next(each for each in self.part.description.joints if each.child == name)
@@ -120,7 +127,12 @@ class WheelSlip(Plugin[WheelSlipParameters]):
         for sense in _SENSES:
             value = _number(element, f"slip_compliance_{sense}")
             if value < 0:
-                self.warn(f"<slip_compliance_{sense}> {value:g} is below 0: 0 is taken", at=origin)
+                self.warn(
+                    devices.PLUGIN_PARAMETER_INVALID,
+                    f"<slip_compliance_{sense}> must not be negative (got {value:g}): 0 is used",
+                    at=origin,
+                    values={"parameter": f"slip_compliance_{sense}", "value": value},
+                )
             found[sense] = max(value, 0.0)
         return _Wheel(
             link=name,

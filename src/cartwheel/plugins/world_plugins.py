@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import functools
 
-from cartwheel.errors import CartwheelError, Diagnostic, Severity, fault
+from cartwheel.codes import devices, running
+from cartwheel.description.model import PluginTag
+from cartwheel.errors import CartwheelError, Diagnostic, fault
 from cartwheel.graph import Graph
 from cartwheel.plugins.catalogue import plugin_named, short_name
 from cartwheel.plugins.gz_sensor import SYSTEMS
@@ -27,6 +29,35 @@ BUILT_IN = {
 """Physics, spawning, time and sensors need no plugin here, wherever one is named."""
 
 
+def left_out(tag: PluginTag, error: CartwheelError) -> Diagnostic:
+    """The diagnostic for a plugin or sensor that cannot be made."""
+    return running.PLUGIN_LEFT_OUT.diagnostic(
+        f"{_title(tag)} is left out: {error.message}",
+        origin=error.origin or tag.origin,
+        hint=error.hint or "",
+        values={
+            **error.values,
+            "plugin": tag.filename or tag.name,
+            "cause": error.code.number,
+        },
+    )
+
+
+def failed(tag: PluginTag, error: Exception) -> Diagnostic:
+    """The diagnostic for a plugin or sensor whose code raises an exception while it is made."""
+    return fault(
+        f"{_title(tag)} failed and is left out",
+        error,
+        tag.origin,
+        code=running.PLUGIN_FAILED,
+        values={"plugin": tag.filename or tag.name},
+    )
+
+
+def _title(tag: PluginTag) -> str:
+    return f'plugin "{tag.filename}"' if tag.filename else f'sensor "{tag.name}"'
+
+
 def attach_world(part: Part, graph: Graph) -> list[Behaviour]:
     """Makes the plugins of the world itself; one that does nothing here is reported.
 
@@ -42,23 +73,28 @@ def attach_world(part: Part, graph: Graph) -> list[Behaviour]:
         if name in BUILT_IN:
             continue
         plugin = plugin_named(tag.filename)
-        severity: Severity = "warning"
         if plugin is None:
-            message = (
-                f'world plugin "{tag.filename}" is not supported: what it does is missing here'
+            part.report(
+                devices.PLUGIN_UNKNOWN.diagnostic(
+                    f'the world plugin "{tag.filename}" is not supported, so it has no effect',
+                    severity="warning",
+                    origin=tag.origin,
+                    values={"name": tag.filename},
+                )
             )
         elif not plugin.for_world:
-            message = f'plugin "{tag.filename}" has no effect here: it belongs inside a <model>'
+            part.report(
+                devices.PLUGIN_MISPLACED.diagnostic(
+                    f'plugin "{tag.filename}" has no effect here: it belongs inside a <model>',
+                    origin=tag.origin,
+                    values={"name": tag.filename, "place": "model"},
+                )
+            )
         else:
             try:
                 made.append(part.made(functools.partial(plugin, part, graph, tag, None)))
-                continue
             except CartwheelError as error:
-                severity = "error"
-                message = f'plugin "{tag.filename}" is left out: {error.message}'
+                part.report(left_out(tag, error))
             except Exception as error:  # noqa: BLE001 - a plugin's own
-                text = f'plugin "{tag.filename}" failed and is left out'
-                part.report(fault(text, error, tag.origin))
-                continue
-        part.report(Diagnostic(severity=severity, message=message, origin=tag.origin))
+                part.report(failed(tag, error))
     return made

@@ -18,6 +18,7 @@ from typing import Any
 
 import mujoco
 
+from cartwheel.codes import world as world_codes
 from cartwheel.errors import SimulationError
 from cartwheel.world.pairs import Alignment
 
@@ -169,8 +170,9 @@ def _entries() -> Any:
             for a, b in zip([numbers[0], *numbers[4:]], expected, strict=True)
         ):
             raise SimulationError(
-                f"MuJoCo {mujoco.__version__} finds contacts in another way than this version of "
-                "Cartwheel knows: friction cannot differ by direction",
+                f"MuJoCo {mujoco.__version__} computes contacts in another way than this version "
+                "of Cartwheel supports, so friction cannot differ by direction",
+                code=world_codes.FRICTION_DIRECTION_UNSUPPORTED,
                 hint="Install an older MuJoCo, or give mu1 and mu2 the same value.",
             )
     return entries
@@ -185,7 +187,11 @@ def _library() -> Path:
         for path in folder.glob(pattern)
     )
     if not found:
-        raise SimulationError(f"MuJoCo's library is not in {folder}")
+        raise SimulationError(
+            f"MuJoCo's library is not in {folder}, so friction cannot differ by direction",
+            code=world_codes.FRICTION_DIRECTION_UNSUPPORTED,
+            hint="Install MuJoCo again.",
+        )
     return found[0]
 
 

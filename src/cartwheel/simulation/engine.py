@@ -8,6 +8,7 @@ from typing import Any
 
 import mujoco
 
+from cartwheel.codes import world as world_codes
 from cartwheel.description.model import WorldDescription
 from cartwheel.errors import Diagnostic, SimulationError
 from cartwheel.geometry import Pose, Vec3, from_wxyz, quat_conjugate, rotate, to_wxyz
@@ -96,7 +97,7 @@ class Engine:
         )
 
     def report(self, diagnostic: Diagnostic) -> None:
-        """Keeps something that the user should know, and tells those who listen."""
+        """Keeps a diagnostic, and passes it to all callbacks."""
         self.diagnostics.append(diagnostic)
         for callback in self.on_diagnostic:
             callback(diagnostic)
@@ -119,8 +120,7 @@ class Engine:
         try:
             self._directions = Directions(model, data, alignments)
         except SimulationError as error:
-            hint = f" {error.hint}" if error.hint else ""
-            self.report(Diagnostic(severity="warning", message=f"{error.message}.{hint}"))
+            self.report(error.diagnostic("warning"))
         self._bounces = Bounces(model, bounces) if len(bounces) > 1 else None
         self.renderer.bind(model)
 
@@ -172,7 +172,9 @@ class Engine:
         return SimulationError(
             f"the simulation cannot go on with {self.data.ncon} contacts: "
             f"{str(error).splitlines()[0]}",
-            hint="Do models stand inside each other?",
+            code=world_codes.TOO_MANY_CONTACTS,
+            hint="Are models inside each other?",
+            values={"contacts": int(self.data.ncon)},
         )
 
     def rewind(self, *, keep_time: bool = False) -> None:

@@ -5,12 +5,12 @@ from __future__ import annotations
 import tempfile
 from collections import deque
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import mujoco
 import numpy as np
 
+from cartwheel.codes import world as world_codes
 from cartwheel.errors import DivergedError, Origin
 
 _KEPT = 40
@@ -98,15 +98,19 @@ class Guard:
                 qpos=np.array([state[1] for state in self._states]),
                 qvel=np.array([state[2] for state in self._states]),
             )
-        return self._error(f" The last states are in {Path(file.name)}.")
+        return self._error(file.name)
 
-    def _error(self, where: str) -> DivergedError:
+    def _error(self, states: str) -> DivergedError:
+        """The error, with the file of the last states where there is one."""
         body = self._culprit()
         name = mujoco.mj_id2name(self._model, mujoco.mjtObj.mjOBJ_BODY, body) or "world"
         return DivergedError(
             f'the simulation diverged by {self._data.time:.3f} s, first at "{name}"',
+            code=world_codes.SIMULATION_DIVERGED,
+            values={"body": name, "time": float(self._data.time), "states": states},
             origin=self._place_of(name),
-            hint=f"{_likely(self._model, body)}{where}",
+            hint=_likely(self._model, body)
+            + (f" The last states are in {states}." if states else ""),
         )
 
     def _culprit(self) -> int:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+from cartwheel.codes import world as world_codes
 from cartwheel.errors import CartwheelError
 from cartwheel.geometry import Pose, Quat, quat_normalize
 
@@ -26,10 +27,18 @@ def number(value: float, name: str, *, most: float = FARTHEST) -> float:
     """
     value = float(value)
     if not math.isfinite(value):
-        raise CartwheelError(f"{name} is {value}, but must be a finite number")
+        raise _out_of_range(name, "a finite number", value)
     if abs(value) > most:
-        raise CartwheelError(f"{name} is {value:g}, but must be from {-most:g} to {most:g}")
+        raise _out_of_range(name, f"from {-most:g} to {most:g}", value)
     return value
+
+
+def _out_of_range(name: str, wanted: str, value: float) -> CartwheelError:
+    return CartwheelError(
+        f"{name} is {value:g}, but must be {wanted}",
+        code=world_codes.NUMBER_OUT_OF_RANGE,
+        values={"name": name, "value": value},
+    )
 
 
 def numbers(values: Sequence[float], name: str, *, most: float = FARTHEST) -> None:
@@ -49,7 +58,9 @@ def rotation(parts: Sequence[float], name: str) -> Quat:
     try:
         return quat_normalize(parts)
     except ValueError as error:
-        raise CartwheelError(f"{name}: {error}") from None
+        raise CartwheelError(
+            f"{name}: {error}", code=world_codes.NUMBER_OUT_OF_RANGE, values={"name": name}
+        ) from None
 
 
 def check_pose(pose: Pose, name: str) -> None:
@@ -71,7 +82,9 @@ def check_speed(speed: float | None) -> None:
     if speed is not None and not SLOWEST <= speed <= FASTEST:
         raise CartwheelError(
             f"the real-time factor is {speed:g}, but must be from {SLOWEST:g} to {FASTEST:g}",
-            hint="To hold time, pause.",
+            code=world_codes.REAL_TIME_FACTOR_INVALID,
+            hint="To hold the time, pause the simulation.",
+            values={"value": speed},
         )
 
 
@@ -82,4 +95,8 @@ def check_steps(count: int) -> None:
         CartwheelError: It is not from 1 to `MOST_STEPS`.
     """
     if not 1 <= count <= MOST_STEPS:
-        raise CartwheelError(f"{count} steps were asked for, but 1 to {MOST_STEPS} are possible")
+        raise CartwheelError(
+            f"the number of steps must be from 1 to {MOST_STEPS} (got {count})",
+            code=world_codes.STEP_COUNT_INVALID,
+            values={"value": count},
+        )

@@ -13,6 +13,7 @@ import weakref
 from collections.abc import Iterator
 from typing import Any, ClassVar
 
+from cartwheel.codes import world as world_codes
 from cartwheel.errors import SimulationError
 
 _PACKAGES = "libegl1 libgl1 libgl1-mesa-dri"
@@ -22,9 +23,13 @@ _BACKENDS = {"egl": "mujoco.egl", "osmesa": "mujoco.osmesa"}
 class NoOpenGLError(SimulationError):
     """OpenGL is missing on this machine."""
 
+    code = world_codes.OPENGL_MISSING
+
 
 class ForkedError(SimulationError):
     """OpenGL was opened before this process was forked."""
+
+    code = world_codes.OPENGL_FORKED
 
     def __init__(self) -> None:
         super().__init__(
@@ -119,7 +124,7 @@ def _open(width: int, height: int) -> Any:
             return context
     raise NoOpenGLError(
         f"cameras need OpenGL, which this machine lacks ({'; '.join(reasons)})",
-        hint=f"On Debian or Ubuntu: sudo apt-get install {_PACKAGES}. All else works without.",
+        hint=f"On Debian or Ubuntu: sudo apt-get install {_PACKAGES}. Only images need it.",
     )
 
 

@@ -11,6 +11,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from cartwheel.codes import devices, running
 from cartwheel.description.kinematics import link_poses
 from cartwheel.description.model import CameraIntrinsics, Mimic, RobotDescription, WorldDescription
 from cartwheel.errors import (
@@ -121,7 +122,11 @@ class Part:
         """
         if self.description.link(name) is None:
             raise UnknownNameError(
-                "link", name, [link.name for link in self.description.links], origin=origin
+                "link",
+                name,
+                [link.name for link in self.description.links],
+                code=running.UNKNOWN_LINK,
+                origin=origin,
             )
         handle = LinkHandle(self.name, name)
         self.handles.append(handle)
@@ -137,10 +142,19 @@ class Part:
         movable = [joint.name for joint in self.description.joints if joint.drivable]
         if self.description.static:
             raise StaticModelError(
-                f'model "{self.name}" is static: its joints do not move', origin=origin
+                f'model "{self.name}" is static, so its joints do not move',
+                code=running.STATIC_MODEL_DRIVEN,
+                origin=origin,
+                values={"model": self.name, "joint": name},
             )
         if name not in movable:
-            raise UnknownNameError("movable joint", name, movable, origin=origin)
+            raise UnknownNameError(
+                "movable joint",
+                name,
+                movable,
+                code=devices.PLUGIN_JOINT_UNKNOWN,
+                origin=origin,
+            )
         handle = JointHandle(self.name, name)
         self.handles.append(handle)
         return handle
@@ -167,7 +181,7 @@ class Part:
         elif motor.mode == "servo":
             motor = self._share(motor, max_effort, origin)
         else:
-            self._warn(f'joint "{joint}" is turned by two plugins: the last command counts', origin)
+            self._warn_of_two(joint, "the last command is used", origin)
         handle = MotorHandle(self.name, motor)
         self.handles.append(handle)
         return handle
@@ -208,15 +222,17 @@ class Part:
         for handle in self.handles:
             if isinstance(handle, ServoHandle) and handle.motor.joint == motor.joint:
                 handle.shared = True
-        self._warn(
-            f'joint "{motor.joint}" is turned by a drive and by another plugin: '
-            "the efforts of the one add to the motor of the other",
-            origin,
-        )
+        self._warn_of_two(motor.joint, "the efforts of both add up", origin)
         return shared
 
-    def _warn(self, message: str, origin: Origin | None) -> None:
-        self.report(Diagnostic(severity="warning", message=message, origin=origin))
+    def _warn_of_two(self, joint: str, result: str, origin: Origin | None) -> None:
+        self.report(
+            running.JOINT_DRIVEN_TWICE.diagnostic(
+                f'joint "{joint}" is driven by two plugins: {result}',
+                origin=origin,
+                values={"joint": joint},
+            )
+        )
 
     def mimic(self, joint: str, mimic: Mimic, *, origin: Origin | None = None) -> None:
         """Makes a joint follow another one.
@@ -248,7 +264,10 @@ class Part:
         bolted = any(j.child == description.canonical_link for j in description.joints)
         if description.static or bolted or link is None or description.mass <= 0:
             raise PluginError(
-                f'model "{self.name}" cannot be moved: it is fixed or has no mass', origin=origin
+                f'model "{self.name}" cannot be moved: it is fixed or has no mass',
+                code=running.MODEL_NOT_MOVABLE,
+                origin=origin,
+                values={"model": self.name},
             )
         poses = link_poses(description, {})
         to_link = poses[link.name].inverse()
@@ -305,9 +324,19 @@ class Part:
         self.link(link, origin=origin)
         joint = next((each for each in self.description.joints if each.child == link), None)
         if axle_of(joint) is None:
-            raise PluginError(f'link "{link}" turns about no joint without end', origin=origin)
+            raise PluginError(
+                f'link "{link}" is not a wheel: no continuous joint turns it',
+                code=running.NOT_A_WHEEL,
+                origin=origin,
+                values={"link": link},
+            )
         if link in self._entry.slips:
-            raise PluginError(f'two plugins say how link "{link}" slips', origin=origin)
+            raise PluginError(
+                f'two plugins state the slip of link "{link}"',
+                code=running.JOINT_DRIVEN_TWICE,
+                origin=origin,
+                values={"link": link},
+            )
         self._entry.slips[link] = radius
         handle = SlipHandle(self.name, link, radius)
         self.handles.append(handle)

@@ -6,6 +6,8 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Protocol
 
+from cartwheel.codes import running
+from cartwheel.codes import world as world_codes
 from cartwheel.description.model import RobotDescription
 from cartwheel.errors import Origin, WorldError, fault
 from cartwheel.geometry import Pose
@@ -72,7 +74,11 @@ class Resident:
         motors = self.entry.motors
         motor = motors.get(joint)
         if motor is not None and motor.mode != "velocity":
-            raise WorldError(f'joint "{joint}" is driven by a plugin, by effort or position')
+            raise WorldError(
+                f'joint "{joint}" is driven by a plugin, by effort or position',
+                code=world_codes.JOINT_DRIVEN_BY_PLUGIN,
+                values={"joint": joint},
+            )
         if max_effort is None or max_effort == (motor.max_effort if motor else 0.0):
             return False
         if motor is None:
@@ -103,7 +109,7 @@ class Resident:
             behaviour.close()
         except Exception as error:  # noqa: BLE001 - a plugin's own
             text = f"{title(behaviour)} failed while it was closed"
-            self.part.report(fault(text, error, place(behaviour)))
+            self.part.report(fault(text, error, place(behaviour), code=running.PLUGIN_FAILED))
 
     def forget(self) -> None:
         """After `close`: lets go of plugins, and they of all that they have.

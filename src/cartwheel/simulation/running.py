@@ -11,6 +11,7 @@ from concurrent.futures import Future
 from typing import TypeVar
 
 from cartwheel.calls import answered
+from cartwheel.codes import world as world_codes
 from cartwheel.errors import SimulationError
 from cartwheel.simulation.limits import check_speed
 from cartwheel.simulation.snapshot import RunState
@@ -84,7 +85,7 @@ class Run:
             SimulationError: It has ended for good.
         """
         if self.closed:
-            raise SimulationError("the simulation is closed")
+            raise SimulationError("the simulation is closed", code=world_codes.SIMULATION_CLOSED)
         return answered(self.post, function)
 
     def end(self) -> None:

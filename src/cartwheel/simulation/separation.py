@@ -9,6 +9,9 @@ from typing import Any
 import mujoco
 import numpy as np
 
+from cartwheel.codes import world as world_codes
+from cartwheel.errors import Diagnostic, Origin
+
 DEEP = 0.005
 """m; no contact between models that met in motion gets that deep."""
 _SPEED = 0.5
@@ -83,18 +86,30 @@ class Separation:
             data.qvel[limbs] = np.clip(data.qvel[limbs], -most_of_each, most_of_each)
 
 
-def told(name: str, z: float, overlaps: Sequence[tuple[str, float]]) -> str:
-    """What the user should know of a model that was put into others.
+def overlap(
+    name: str, z: float, overlaps: Sequence[tuple[str, float]], *, origin: Origin | None
+) -> Diagnostic:
+    """The diagnostic for a model that was put into others.
 
     Args:
         name: Of the model.
         z: m, of its frame.
         overlaps: The bodies that it overlaps, with the depth in m.
+        origin: The place of the model.
     """
     others = ", ".join(f"{other} by {depth * 100:.0f} cm" for other, depth in overlaps)
     floor = max((d for other, d in overlaps if other.startswith("ground")), default=0.0)
-    advice = f". At z = {math.ceil((z + floor) * 100) / 100:g} it stands on it" if floor else ""
-    return f'model "{name}" was put into {others}: they are pushed apart{advice}'
+    height = math.ceil((z + floor) * 100) / 100
+    return world_codes.MODELS_OVERLAP.diagnostic(
+        f'model "{name}" overlaps {others}: they are pushed apart',
+        origin=origin,
+        hint=f"At z = {height:g} it is on the ground." if floor else "",
+        values={
+            "model": name,
+            "others": tuple(other for other, _ in overlaps),
+            "z": height if floor else None,
+        },
+    )
 
 
 def _turns(model: Any, dofs: slice) -> Any:

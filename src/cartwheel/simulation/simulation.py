@@ -6,6 +6,8 @@ import threading
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
+from cartwheel.codes import running
+from cartwheel.codes import world as world_codes
 from cartwheel.description.model import RobotDescription, WorldDescription
 from cartwheel.errors import (
     Diagnostic,
@@ -31,7 +33,7 @@ from cartwheel.simulation.part import Part
 from cartwheel.simulation.placing import place_model, with_mimics
 from cartwheel.simulation.resident import Attach, Resident, place, title, world_resident
 from cartwheel.simulation.running import Run
-from cartwheel.simulation.separation import Separation, told
+from cartwheel.simulation.separation import Separation, overlap
 from cartwheel.simulation.sight import in_sight
 from cartwheel.simulation.snapshot import RunState, Scene, Snapshot
 from cartwheel.simulation.space import Space, occupied
@@ -230,7 +232,7 @@ class Simulation(Run):
         if not self.tolerant:
             self.defer(error)
         elif self._told_once(f"{what} {error!r}"):
-            self.engine.report(fault(f"{what} failed", error))
+            self.engine.report(fault(f"{what} failed", error, code=world_codes.CALLBACK_FAILED))
 
     def command_failed(self, error: Exception) -> None:
         """See `fail`."""
@@ -247,7 +249,8 @@ class Simulation(Run):
         else:
             name = getattr(task.after or task.before, "__qualname__", "a task of the world")
             task.forget()
-            self._report_fault(fault(f"{name} failed and is disabled", error))
+            text = f"{name} failed and is disabled"
+            self._report_fault(fault(text, error, code=world_codes.CALLBACK_FAILED))
 
     def _disable(self, plugin: object, error: Exception) -> None:
         """Ends a plugin that raised an error, and says so; everything else goes on."""
@@ -255,21 +258,30 @@ class Simulation(Run):
         if resident is None:
             # It was disabled or deleted already.
             return
-        found = fault(f"{title(plugin)} failed and is disabled", error, place(plugin))
+        text = f"{title(plugin)} failed and is disabled"
+        values = {"plugin": title(plugin)}
+        diagnostic = fault(text, error, place(plugin), code=running.PLUGIN_FAILED, values=values)
         resident.end(plugin)
         self._gather_tasks()
-        self._report_fault(found)
+        self._report_fault(diagnostic)
 
-    def _report_fault(self, found: Diagnostic) -> None:
-        self.engine.report(found)
+    def _report_fault(self, diagnostic: Diagnostic) -> None:
+        self.engine.report(diagnostic)
         if self.strict:
-            hint = "--strict ends the run with the first error."
-            self.defer(PluginError(found.message, origin=found.origin, hint=hint))
+            self.defer(
+                PluginError(
+                    diagnostic.message,
+                    code=diagnostic.code,
+                    origin=diagnostic.origin,
+                    hint="--strict ends the run at the first error.",
+                    values=diagnostic.values,
+                )
+            )
 
     def _watch(self) -> None:
         self._guard_due = self.engine.step + max(1, _GUARD_INTERVAL_NS // self.step_ns)
         for message in self._guard.check():
-            self.engine.report(Diagnostic(severity="warning", message=message))
+            self.engine.report(world_codes.PHYSICS_WARNING.diagnostic(message))
         self._guard.keep()
 
     def refresh(self) -> None:
@@ -345,10 +357,14 @@ class Simulation(Run):
         self._recoveries += 1
         if self._recoveries <= _RECOVERIES:
             last = " Further ones are not reported." if self._recoveries == _RECOVERIES else ""
-            text = (
-                f"{error.message}. All models are back where they were spawned. {error.hint}{last}"
+            self.engine.report(
+                world_codes.SIMULATION_RECOVERED.diagnostic(
+                    f"{error.message}; all models are back where they were spawned",
+                    origin=error.origin,
+                    hint=f"{error.hint}{last}",
+                    values=error.values,
+                )
             )
-            self.engine.report(Diagnostic(severity="warning", message=text))
         return True
 
     def report(self, diagnostic: Diagnostic) -> None:
@@ -501,7 +517,7 @@ class Simulation(Run):
         known = [other for model, other in self.scene.joints if model == name]
         for joint, position in positions.items():
             if joint not in known:
-                raise UnknownNameError("joint", joint, known)
+                raise UnknownNameError("joint", joint, known, code=world_codes.UNKNOWN_JOINT)
             number(position, f'the position of joint "{joint}"')
         self.engine.commanded += 1
         for joint, position in with_mimics(description, positions).items():
@@ -599,7 +615,7 @@ class Simulation(Run):
         self._resident(name)
         if (name, joint) not in self.scene.joints:
             known = [other for model, other in self.scene.joints if model == name]
-            raise UnknownNameError("joint", joint, known)
+            raise UnknownNameError("joint", joint, known, code=world_codes.UNKNOWN_JOINT)
         return self.engine.joint_position(self.engine.joint_id(name, joint))
 
     def schedule(
@@ -663,12 +679,19 @@ class Simulation(Run):
     ) -> Resident:
         """A model with its plugins, before it is compiled."""
         if not name or "::" in name:
-            raise WorldError(f'"{name}" is no name for a model')
+            raise WorldError(
+                f'the name of a model must not be empty or contain "::" (got "{name}")',
+                code=world_codes.MODEL_NAME_INVALID,
+                values={"name": name},
+            )
         if name in self._residents:
             raise WorldError(
-                f'a model named "{name}" stands in the world already',
+                f'a model named "{name}" is in the world already',
+                code=world_codes.MODEL_NAME_TAKEN,
                 origin=description.origin,
-                hint=f'Give it another with --model, such as "{free_name(name, self._residents)}".',
+                hint="Give it another name with --model, such as "
+                f'"{free_name(name, self._residents)}".',
+                values={"name": name},
             )
         entry = ModelEntry(name=name, description=description, pose=pose or description.pose)
         part = Part(self.engine, entry, namespace=namespace, frame_prefix=frame_prefix)
@@ -707,14 +730,13 @@ class Simulation(Run):
             later = {other.name for other in before}
             overlaps = [each for each in overlaps if each[0].partition("::")[0] not in later]
         if overlaps:
-            message = told(name, self.pose(name).z, overlaps)
             self.engine.report(
-                Diagnostic(severity="warning", message=message, origin=description.origin)
+                overlap(name, self.pose(name).z, overlaps, origin=description.origin)
             )
 
     def _resident(self, name: str) -> Resident:
         if name not in self._residents:
-            raise UnknownNameError("model", name, self._residents)
+            raise UnknownNameError("model", name, self._residents, code=world_codes.UNKNOWN_MODEL)
         return self._residents[name]
 
     def _inhabitants(self) -> tuple[Resident, ...]:

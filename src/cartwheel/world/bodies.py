@@ -8,6 +8,7 @@ from typing import Any
 import mujoco
 import numpy as np
 
+from cartwheel.codes import world as world_codes
 from cartwheel.description.inertia import tensor
 from cartwheel.description.model import (
     Collision,
@@ -142,8 +143,11 @@ class BodyBuilder:
         lost = [link for link in description.links if link.name not in bodies]
         if lost:
             raise WorldError(
-                f'link "{lost[0].name}" hangs on a loop of joints and on nothing else',
+                f'link "{lost[0].name}" is part of a loop of joints that is connected to nothing '
+                "else",
+                code=world_codes.LOOP_WITHOUT_ROOT,
                 origin=lost[0].origin,
+                values={"link": lost[0].name},
             )
         for joint in loops:
             joints.close_loop(self._spec, entry, joint)
@@ -209,8 +213,10 @@ class BodyBuilder:
             bottom = lowest(shape, there) if trunk else None
             if isinstance(shape, Plane) and not entry.description.static:
                 raise WorldError(
-                    f'collision "{collision.name}": an endless plane must be static',
+                    f'collision "{collision.name}" is an endless plane, which must be static',
+                    code=world_codes.PLANE_NOT_STATIC,
                     origin=collision.origin,
+                    values={"collision": collision.name},
                     hint="Use a flat box instead, or <static>true</static>.",
                 )
             # The base of an arm is its hull as its other links are: nothing is put into one.

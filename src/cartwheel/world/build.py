@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
+from cartwheel.codes import world as world_codes
 from cartwheel.description.model import WorldDescription
 from cartwheel.errors import Origin, WorldError
 from cartwheel.world import chains, contact, joints, pairs
@@ -156,9 +157,11 @@ def _check_chain(entry: ModelEntry) -> None:
             depths[each] = depth
         if depths[link.name] > LONGEST_CHAIN and len(path) <= len(description.links):
             raise WorldError(
-                f'link "{link.name}" hangs on a chain of {depths[link.name]} links: '
+                f'link "{link.name}" is at the end of a chain of {depths[link.name]} links: '
                 f"at most {LONGEST_CHAIN} can be simulated",
+                code=world_codes.CHAIN_TOO_LONG,
                 origin=link.origin,
+                values={"link": link.name, "links": depths[link.name], "most": LONGEST_CHAIN},
             )
 
 
@@ -183,8 +186,10 @@ def _check_contacts(model: mujoco.MjModel, entries: list[ModelEntry]) -> None:
     raise WorldError(
         f"the models touch at {data.ncon} points, more than the {MOST_CONTACTS} that can be "
         f'simulated: "{owner}" alone at {int(touched[body])}',
+        code=world_codes.TOO_MANY_CONTACTS,
+        values={"contacts": int(data.ncon), "model": owner},
         origin=found.description.origin if found else None,
-        hint="Do models stand inside each other?",
+        hint="Are models inside each other?",
     )
 
 
@@ -265,7 +270,10 @@ def _empty(world: WorldDescription) -> mujoco.MjSpec:
 
 
 def _explain(message: str, entries: list[ModelEntry]) -> WorldError:
-    """Leads an error of MuJoCo's compiler back to the line of the element it names."""
+    """The error for what MuJoCo's compiler refuses, at the line of the element that it names.
+
+    Here alone its texts are read.
+    """
     text = message.splitlines()[0].removeprefix("Error: ")
     for entry in entries:
         for link in entry.description.links:
@@ -273,12 +281,19 @@ def _explain(message: str, entries: list[ModelEntry]) -> WorldError:
             named += [(scoped(entry.name, link.name, c.name), c.origin) for c in link.collisions]
             for name, origin in reversed(named):
                 if re.search(rf"'{re.escape(name)}'", message):
-                    return WorldError(f'model "{entry.name}": {text}', origin=origin)
+                    return _refused(entry, text, origin)
         for joint in entry.description.joints:
             if re.search(rf"'{re.escape(scoped(entry.name, joint.name))}'", message):
-                return WorldError(f'model "{entry.name}": {text}', origin=joint.origin)
+                return _refused(entry, text, joint.origin)
     newest = entries[-1] if entries else None
+    return _refused(newest, text, newest.description.origin if newest else None)
+
+
+def _refused(entry: ModelEntry | None, text: str, origin: Origin | None) -> WorldError:
+    model = f'model "{entry.name}"' if entry else "the world"
     return WorldError(
-        f'model "{newest.name}": {text}' if newest else text,
-        origin=newest.description.origin if newest else None,
+        f"{model} cannot be simulated: {text}",
+        code=world_codes.MODEL_NOT_BUILT,
+        origin=origin,
+        values={"model": entry.name if entry else "", "reason": text},
     )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
+from cartwheel.codes import world as world_codes
 from cartwheel.description.meshes import load_mesh, standing_parts
 from cartwheel.description.model import Joint, Mesh, RobotDescription
 from cartwheel.description.paint import paint_of
@@ -71,8 +72,10 @@ def unused(description: RobotDescription) -> Iterator[Diagnostic]:
             note("a joint's stop_cfm or stop_erp", joint.origin, "joint limits are always stiff")
     for what, (origin, count, why) in found.items():
         times = f" ({count} times)" if count > 1 else ""
-        yield Diagnostic(
-            severity="info", message=f"{what} has no effect{times}: {why}", origin=origin
+        yield world_codes.PHYSICS_SETTING_IGNORED.diagnostic(
+            f"{what} has no effect{times}: {why}",
+            origin=origin,
+            values={"setting": what, "count": count},
         )
 
 
@@ -88,9 +91,13 @@ def unreadable(description: RobotDescription) -> Iterator[Diagnostic]:
             seen.add(image)
             error = picture_error(image)
             if error is not None:
-                hint = f" {error.hint}" if error.hint else ""
-                message = f"{error.message}; the surface has its colour alone.{hint}"
-                yield Diagnostic(severity="warning", message=message, origin=visual.origin)
+                yield error.code.diagnostic(
+                    f"{error.message}, so the surface has its plain colour",
+                    severity="warning",
+                    origin=visual.origin,
+                    hint=error.hint or "",
+                    values=error.values,
+                )
 
 
 def _closing(description: RobotDescription) -> Iterator[Joint]:

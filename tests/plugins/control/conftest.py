@@ -38,7 +38,7 @@ class Bench:
 
     @property
     def warnings(self):
-        return [d.message for d in self.world.diagnostics if d.severity != "info"]
+        return [d for d in self.world.diagnostics if d.severity != "info"]
 
 
 @pytest.fixture

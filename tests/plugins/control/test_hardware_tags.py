@@ -2,6 +2,7 @@
 
 import pytest
 import yaml
+from tests.coded import coded
 from tests.plugins.control.arms import (
     ROS1,
     beam,
@@ -13,6 +14,7 @@ from tests.plugins.control.arms import (
 )
 from tests.plugins.control.arms import ros2_system as system
 
+from cartwheel.codes import devices, running
 from cartwheel.messages import from_dict
 
 
@@ -74,7 +76,9 @@ def test_a_file_without_a_type_says_that_it_starts_nothing(bench, tmp_path):
     file.write_text(yaml.safe_dump({"lead": {"ros__parameters": {"joints": ["a_joint"]}}}))
     tags = system(ros2_joint("a_joint"))
     made = bench(robot(beam("a", "world") + tags, ros2_plugin(file)))
-    assert made.warnings == [f"{file} states the type of no controller: none starts"]
+    (told,) = made.warnings
+    assert told.code is devices.CONTROLLERS_FILE_WITHOUT_CONTROLLERS
+    assert told.origin.file == str(file)
 
 
 def test_a_joint_follows_another_as_its_parameters_say(bench, tmp_path):
@@ -122,7 +126,7 @@ def test_a_joint_of_several_interfaces_takes_what_its_controller_commands(bench,
         ros2_joint("a_joint", "position", "velocity"),
         place=group("a_joint"), speed=group("a_joint", kind="velocity"),
     )  # fmt: skip
-    assert any("a_joint" in text and "place" in text for text in made.warnings)
+    assert coded(made.warnings, running.CONTROLLER_NOT_STARTED, controller="speed")
     made.publish("/place/commands", "std_msgs/msg/Float64MultiArray", data=[0.5])
     made.world.run(0.5)
     assert made.position("a_joint") == pytest.approx(0.5, abs=0.01)
@@ -189,19 +193,14 @@ def test_another_hardware_drives_all_joints_of_a_transmission(bench):
 
 def test_the_default_hardware_drives_none_of_several(bench):
     made = wrist(bench, ROS1)
-    assert any("has 2 joints: only one with one joint acts" in each for each in made.warnings)
-    assert any(
-        'joint "a_joint" is none that controllers have: no <transmission> names it' in each
-        for each in made.warnings
-    )
+    assert coded(made.warnings, devices.TRANSMISSION_IGNORED, joints=2)
+    cause = devices.CONTROLLER_INTERFACE_MISMATCH.number
+    assert coded(made.warnings, running.CONTROLLER_NOT_STARTED, joint="a_joint", cause=cause)
 
 
 @pytest.mark.parametrize("order", [1, -1], ids=["controllers first", "drive first"])
-@pytest.mark.parametrize(
-    ("interface", "told"),
-    [("Effort", "is turned by a drive and by another"), ("Velocity", "is turned by two plugins")],
-)
-def test_a_drive_and_controllers_may_name_one_joint(bench, order, interface, told):
+@pytest.mark.parametrize("interface", ["Effort", "Velocity"])
+def test_a_drive_and_controllers_may_name_one_joint(bench, order, interface):
     """As Gazebo has it: a motor that holds its speed, and whatever effort is given beside it."""
     motor = """<plugin name="drive" filename="librotors_gazebo_motor_model.so">
       <robotNamespace>/</robotNamespace><jointName>beam_joint</jointName><linkName>beam</linkName>
@@ -213,7 +212,7 @@ def test_a_drive_and_controllers_may_name_one_joint(bench, order, interface, tol
     upright = base + beam("beam", "base", axis="0 0 1", kind="continuous")
     plugins = "".join((ROS1, motor)[::order])
     made = bench(robot(upright + transmission("beam_joint", interface), plugins))
-    assert [each for each in made.warnings if told in each]
+    assert coded(made.warnings, running.JOINT_DRIVEN_TWICE, joint="beam_joint")
     if interface == "Effort":
         made.publish("/command/motor_speed", "mav_msgs/msg/Actuators", angular_velocities=[3.0])
         made.world.run(1.0)

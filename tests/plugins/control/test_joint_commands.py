@@ -3,7 +3,10 @@
 import math
 
 import pytest
+from tests.coded import coded
 from tests.plugins.control.arms import ARM, GRAVITY, INERTIA, MASS, ROS1, beam, robot, transmission
+
+from cartwheel.codes import devices, running
 
 WEIGHT = MASS * GRAVITY * ARM
 TURNED = INERTIA + MASS * ARM**2
@@ -166,7 +169,7 @@ def test_a_group_takes_one_value_for_each(bench):
     assert made.position("a_joint") == pytest.approx(-0.2, abs=1e-3)
     made.publish("/g/command", "std_msgs/msg/Float64MultiArray", data=[0.4])
     made.world.run(0.1)
-    assert any("1 values for 2 joints" in text for text in made.warnings)
+    assert coded(made.warnings, running.COMMAND_IGNORED, got=1, joints=2)
 
 
 def test_a_group_of_one_interface_may_name_it(bench):
@@ -191,7 +194,14 @@ def test_a_wrong_interface_is_told_and_the_rest_runs(bench):
             "states": {"type": "joint_state_controller/JointStateController", "publish_rate": 20},
         },
     )
-    assert any("has no position interface; it has: effort" in text for text in made.warnings)
+    cause = devices.CONTROLLER_INTERFACE_MISMATCH.number
+    assert coded(
+        made.warnings,
+        running.CONTROLLER_NOT_STARTED,
+        cause=cause,
+        interface="position",
+        offered="effort",
+    )
     box = made.box("/joint_states")
     made.world.run(1.0)
     found = box.drain()

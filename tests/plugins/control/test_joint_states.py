@@ -4,6 +4,7 @@ import math
 
 import pytest
 import yaml
+from tests.coded import coded
 from tests.plugins.control.arms import (
     beam,
     robot,
@@ -12,6 +13,8 @@ from tests.plugins.control.arms import (
     ros2_plugin,
     ros2_system,
 )
+
+from cartwheel.codes import devices
 
 TYPE = "joint_state_broadcaster/JointStateBroadcaster"
 UPRIGHT = "0 0 1"
@@ -61,7 +64,8 @@ def test_joints_and_interfaces_are_chosen_together(told):
 def test_joints_alone_choose_nothing(told):
     message, made = told("/joint_states", joints=["a_joint"])
     assert message.name == ["a_joint", "b_joint"]
-    assert any("without effect: joints" in each for each in made.warnings)
+    (told,) = coded(made.warnings, devices.CONTROLLER_PARAMETER_UNKNOWN)
+    assert told.values["parameters"][0] == "joints"
 
 
 def test_topics_may_be_below_the_broadcaster(told):
@@ -78,7 +82,7 @@ def test_a_field_may_be_another_interface(told):
     )
     assert list(message.velocity) == list(message.position)
     assert all(math.isnan(each) for each in message.effort)
-    assert any('no joint has an interface "current"' in each for each in made.warnings)
+    assert coded(made.warnings, devices.INTERFACE_UNKNOWN, interface="current")
 
 
 def test_the_interfaces_need_not_be_told(told):

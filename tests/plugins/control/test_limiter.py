@@ -4,6 +4,7 @@ import math
 
 import pytest
 
+from cartwheel.codes import devices
 from cartwheel.errors import PluginError
 from cartwheel.plugins.control.limiter import Limiter
 from cartwheel.plugins.control.settings import Settings
@@ -56,15 +57,16 @@ def test_ros2_slows_by_a_limit_of_its_own():
 
 
 @pytest.mark.parametrize(
-    ("values", "text"),
+    ("values", "code"),
     [
-        ({"has_velocity_limits": True}, "there is no .max_velocity."),
-        ({"max_velocity": 1.0, "min_velocity": 2.0}, "is above"),
+        ({"has_velocity_limits": True}, devices.CONTROLLER_PARAMETER_MISSING),
+        ({"max_velocity": 1.0, "min_velocity": 2.0}, devices.PLUGIN_RANGE_REVERSED),
     ],
 )
-def test_limits_that_make_no_sense(values, text):
-    with pytest.raises(PluginError, match=text):
+def test_limits_that_make_no_sense(values, code):
+    with pytest.raises(PluginError) as caught:
         Limiter.read(Settings(values, "c"))
+    assert caught.value.code is code
 
 
 @pytest.mark.parametrize(

@@ -1,7 +1,10 @@
 """The controller manager's services, and what may run beside what."""
 
 import pytest
+from tests.coded import coded
 from tests.plugins.control.arms import ROS1, beam, robot, transmission
+
+from cartwheel.codes import devices, running
 
 STRICT, BEST_EFFORT = 2, 1
 ONE = {"type": "position_controllers/JointPositionController", "joint": "beam_joint"}
@@ -68,7 +71,7 @@ def test_a_joint_has_one_controller_at_a_time(arm):
     assert switch(arm, start=["one", "states"])
     assert not switch(arm, start=["two"])
     assert states(arm) == {"one": "running", "two": "initialized", "states": "running"}
-    assert any('is commanded by "one"' in text for text in arm.warnings)
+    assert coded(arm.warnings, running.CONTROLLER_CONFLICT, controller="two")
     assert switch(arm, start=["two"], stop=["one"])
     assert states(arm) == {"one": "stopped", "two": "running", "states": "running"}
 
@@ -83,12 +86,12 @@ def test_strict_is_all_or_nothing_and_best_effort_what_it_can(arm):
 
 def test_what_cannot_be_loaded_is_told(arm):
     assert not load(arm, "nowhere")
-    assert any("there is no parameter /nowhere/type" in text for text in arm.warnings)
+    assert coded(arm.warnings, running.CONTROLLER_TYPE_MISSING, parameter="/nowhere/type")
     arm.world.graph.parameters.set("/odd", {"type": "odd_controllers/Odd"})
     assert not load(arm, "odd")
     arm.world.graph.parameters.set("/bad", {"type": ONE["type"], "joint": "elbow"})
     assert not load(arm, "bad")
-    assert any('"elbow" does not exist' in text for text in arm.warnings)
+    assert coded(arm.warnings, devices.CONTROLLER_JOINT_UNKNOWN, name="elbow")
     assert load(arm, "one")
     assert not load(arm, "one")
 
@@ -125,4 +128,4 @@ def test_a_plugin_that_a_maker_derived_runs_controllers_and_is_told(bench):
     made.world.graph.parameters.set("/one", ONE)
     made.world.graph.post = lambda function: function()
     assert load(made, "one")
-    assert any("is taken for libgazebo_ros_control.so" in d.message for d in made.world.diagnostics)
+    assert coded(made.world, devices.HARDWARE_NOT_SIMULATED)

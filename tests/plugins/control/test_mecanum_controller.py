@@ -3,7 +3,10 @@
 import math
 
 import pytest
+from tests.coded import coded
 from tests.plugins.control.cars import BASE, RADIUS, TRACK, Car, four_wheels, heading, rollers
+
+from cartwheel.codes import devices
 
 REACH = (BASE + TRACK) / 2
 NAMES = ("front_left", "front_right", "rear_left", "rear_right")
@@ -79,9 +82,8 @@ def test_husarions_controller_of_the_same_name_has_its_own_parameters(make, tmp_
     assert found == pytest.approx(wheels(*motion), abs=0.05)
     made.go(1.0, y=0.3)
     assert made.odometry("/base/odom").twist.twist.linear.y == pytest.approx(0.3, rel=0.05)
-    told = [each.message for each in made.world.diagnostics if "no effect" in each.message]
-    assert len(told) == 1
-    assert "open_loop" in told[0]
+    (told,) = coded(made.world, devices.CONTROLLER_PARAMETER_UNKNOWN)
+    assert told.values["parameters"] == ("open_loop",)
     made.world.run(0.8)
     assert made.odometry("/base/odom").twist.twist.linear.y == pytest.approx(0, abs=0.02)
 

@@ -2,9 +2,11 @@
 
 import pytest
 import yaml
+from tests.coded import coded
 from tests.plugins.control.arms import beam, robot, ros2_joint, ros2_parameters, ros2_plugin
 from tests.plugins.control.arms import ros2_system as system
 
+from cartwheel.codes import devices, running
 from cartwheel.messages import from_dict
 
 MANAGER = "/controller_manager"
@@ -106,7 +108,7 @@ def test_a_spawner_with_a_file_of_its_own(arm, tmp_path):
     file = tmp_path / "more.yaml"
     file.write_text(yaml.safe_dump({"more": {"ros__parameters": {"joints": ["beam_joint"]}}}))
     assert not named(arm, "load_controller", "more")
-    assert any("there is no parameter more.type" in text for text in arm.warnings)
+    assert coded(arm.warnings, running.CONTROLLER_TYPE_MISSING, parameter="more.type")
     give(arm, "more.params_file", STRINGS, [str(file)])
     give(arm, "more.type", STRING, GROUP["type"])
     assert named(arm, "load_controller", "more")
@@ -115,7 +117,7 @@ def test_a_spawner_with_a_file_of_its_own(arm, tmp_path):
     assert named(arm, "configure_controller", "more")
     refused = switch(arm, ["more"])
     assert not refused.ok
-    assert 'is commanded by "group"' in refused.message
+    assert coded(arm.warnings, running.CONTROLLER_CONFLICT, controller="more")
     assert switch(arm, ["more"], ["group"]).ok
     assert states(arm) == {"states": "active", "group": "inactive", "more": "active"}
     arm.publish("/more/commands", "std_msgs/msg/Float64MultiArray", data=[-0.2])
@@ -163,7 +165,7 @@ def test_faults_are_told(arm, tmp_path):
     assert not named(arm, "configure_controller", "nobody")
     give(arm, "gone.params_file", STRING, str(tmp_path / "gone.yaml"))
     assert not named(arm, "load_controller", "gone")
-    assert any("cannot be read" in text for text in arm.warnings)
+    assert coded(arm.warnings, devices.CONTROLLERS_FILE_UNREADABLE)
 
 
 def test_types_are_listed(arm):
@@ -216,7 +218,7 @@ def test_hardware_is_listed_and_taken_away(arm):
     assert not component().command_interfaces[0].is_available
     refused = switch(arm, ["group"])
     assert not refused.ok
-    assert "hardware is not active" in refused.message
+    assert coded(arm.warnings, running.HARDWARE_COMPONENT, controller="group")
     assert become(id=3).ok
     assert switch(arm, ["group"]).ok
     assert not become(label="asleep").ok

@@ -1,10 +1,9 @@
 """Numbers of controllers and sensors beyond what can be simulated."""
 
-import re
-
 import pytest
 
 import cartwheel as cw
+from cartwheel.codes import devices
 from cartwheel.description import load_text
 from cartwheel.errors import PluginError
 from cartwheel.plugins.air_pressure import pressure_at
@@ -22,9 +21,11 @@ _SLIP = """<robot name="r"><link name="a"/>
 )
 def test_a_number_beyond_its_bound(value):
     settings = Settings({"a": value}, "c", "c.yaml")
-    with pytest.raises(PluginError, match='controller c: the parameter "a" must be') as got:
+    with pytest.raises(PluginError) as got:
         settings.number("a")
-    assert "(c.yaml)" in got.value.message
+    assert got.value.code is devices.CONTROLLER_PARAMETER_INVALID
+    assert got.value.values["parameter"] == "a"
+    assert str(got.value.origin) == "c.yaml"
     assert len(got.value.message) < 200
 
 
@@ -34,20 +35,22 @@ def test_infinity_is_no_limit():
 
 @pytest.mark.parametrize("value", [1e9, float("inf"), 1.5])
 def test_a_count_beyond_its_bound(value):
-    message = r"must be a whole number from -1,000,000 to 1,000,000"
-    with pytest.raises(PluginError, match=message):
+    with pytest.raises(PluginError) as got:
         Settings({"a": value}, "c").integer("a")
+    assert got.value.code is devices.CONTROLLER_PARAMETER_INVALID
 
 
 def test_a_list_with_a_number_beyond_its_bound():
-    with pytest.raises(PluginError, match=re.escape("must be from -1e+15 to 1e+15")):
+    with pytest.raises(PluginError) as got:
         Settings({"a": [1.0, 1e308]}, "c").numbers("a")
+    assert got.value.code is devices.CONTROLLER_PARAMETER_INVALID
 
 
 def test_a_wheel_that_slips_has_a_bounded_radius():
-    message = '<wheel_radius> "1e308" must be a number from -1e+15 to 1e+15'
-    with cw.World("empty") as world, pytest.raises(PluginError, match=re.escape(message)) as got:
+    with cw.World("empty") as world, pytest.raises(PluginError) as got:
         world.spawn(load_text(_SLIP, file="r"))
+    assert got.value.code is devices.PLUGIN_PARAMETER_INVALID
+    assert got.value.values["parameter"] == "wheel_radius"
     assert str(got.value.origin) == "r:4"
 
 

@@ -3,6 +3,8 @@
 import pytest
 from tests.plugins.control.arms import ROS1, beam, robot, transmission
 
+from cartwheel.errors import PluginError
+
 HARD = 'lower="-2" upper="2" effort="50" velocity="1"'
 SOFT = (
     '<safety_controller soft_lower_limit="-1" soft_upper_limit="0.8" k_position="5" '
@@ -88,8 +90,9 @@ def test_parameters_go_before_the_description(bench):
 
 
 def test_a_limit_that_is_no_number_is_told(bench):
-    with pytest.raises(Exception, match="max_velocity"):
+    with pytest.raises(PluginError) as caught:
         spawn(
             bench, "position_controllers/JointPositionController", "Position",
             has_velocity_limits=True, max_velocity="fast",
         )  # fmt: skip
+    assert caught.value.values["parameter"].endswith("max_velocity")

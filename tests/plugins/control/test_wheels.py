@@ -5,7 +5,9 @@ import math
 
 import pytest
 import yaml
+from tests.coded import coded
 
+from cartwheel.codes import running
 from cartwheel.messages import from_dict
 
 RADIUS, TRACK = 0.1, 0.4
@@ -222,5 +224,5 @@ def test_wheels_that_two_controllers_want_go_to_the_base_s(make, tmp_path):
     drive = Drive(make, tmp_path, cart(ROS1), content)
     drive.go(3.0, linear=0.5)
     assert drive.odometry().twist.twist.linear.x == pytest.approx(0.5, rel=0.02)
-    (told,) = [each for each in drive.world.diagnostics if "was not started" in each.message]
-    assert 'is commanded by "base"' in told.message
+    (told,) = coded(drive.world, running.CONTROLLER_NOT_STARTED)
+    assert told.values["cause"] == running.CONTROLLER_CONFLICT.number

@@ -57,7 +57,7 @@ class Log:
             stamp=stamp(time_ns),
             level=_LEVELS[diagnostic.severity],
             name=NODE,
-            msg=diagnostic.message,
+            msg=diagnostic.text,
             file=origin.file if origin else "",
             function="",
             line=origin.line if origin else 0,

@@ -63,7 +63,7 @@ class Log:
             header=header(self._time_ns(), ""),
             level=level,
             name=self._node,
-            msg=diagnostic.message,
+            msg=diagnostic.text,
             file=origin.file if origin else "",
             function="",
             line=origin.line if origin else 0,

@@ -43,7 +43,7 @@ class Log:
             stamp=stamp(self._time_ns()),
             level=_LEVELS[diagnostic.severity],
             name=self._node,
-            msg=diagnostic.message,
+            msg=diagnostic.text,
             file=origin.file if origin else "",
             function="",
             line=origin.line if origin else 0,

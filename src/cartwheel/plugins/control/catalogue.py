@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 
+from cartwheel.codes import devices
 from cartwheel.errors import UnknownNameError
 from cartwheel.plugins.control.controller import Controller
 
@@ -66,5 +67,5 @@ def find_type(name: str, *, ros2: bool) -> type[Controller]:
 
         return SingleSteering
     if plain not in known:
-        raise UnknownNameError("controller type", name, known)
+        raise UnknownNameError("controller type", name, known, code=devices.CONTROLLER_TYPE_UNKNOWN)
     return known[plain]

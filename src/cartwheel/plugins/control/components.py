@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import Any
 
+from cartwheel.codes import running
 from cartwheel.description.model import Element
 from cartwheel.errors import GraphError, UnknownNameError
 from cartwheel.messages import message_class
@@ -71,13 +72,24 @@ class HardwareComponents:
             GraphError: It is finalized, which is for good.
         """
         if name not in self._systems:
-            raise UnknownNameError("hardware component", name, self._systems)
+            raise UnknownNameError(
+                "hardware component", name, self._systems, code=running.HARDWARE_COMPONENT
+            )
         by_label = {label: number for number, label in _LABELS.items()}
         wanted = int(target.id) or by_label.get(target.label, 0)
         if wanted not in _LABELS:
-            raise UnknownNameError("state of hardware", target.label or str(target.id), by_label)
+            raise UnknownNameError(
+                "hardware state",
+                target.label or str(target.id),
+                by_label,
+                code=running.HARDWARE_COMPONENT,
+            )
         if self._states[name] == _FINALIZED and wanted != _FINALIZED:
-            raise GraphError(f'hardware component "{name}" is finalized')
+            raise GraphError(
+                f'hardware component "{name}" is finalized',
+                code=running.HARDWARE_COMPONENT,
+                values={"component": name},
+            )
         self._states[name] = wanted
 
     def state(self, name: str) -> Any:

@@ -9,7 +9,7 @@ from fractions import Fraction
 from typing import Any, ClassVar, Protocol
 
 from cartwheel.description.model import Sensor
-from cartwheel.errors import CartwheelError, Diagnostic, GraphError, Origin
+from cartwheel.errors import CartwheelError, Code, GraphError, Origin, Value
 from cartwheel.graph import Graph, JointInput, Publisher, Qos, Service, resolve_name
 from cartwheel.messages import message_class
 from cartwheel.plugins.base import Plugin
@@ -78,10 +78,17 @@ class Rig:
         self.remappings: dict[str, Mapping[str, str]] = {}
         """Of controllers' names of topics, by controller."""
 
-    def report(self, message: str, *, at: Origin | None = None) -> None:
-        """Tells the user something, at the plugin's place where no other is given."""
-        origin = self.plugin.tag.origin if at is None else at
-        self.plugin.part.report(Diagnostic(severity="warning", message=message, origin=origin))
+    def report(
+        self,
+        code: Code,
+        message: str,
+        *,
+        at: Origin | None = None,
+        hint: str = "",
+        values: Mapping[str, Value] | None = None,
+    ) -> None:
+        """Reports a warning, at the plugin's place unless another is given; see `Plugin.warn`."""
+        self.plugin.warn(code, message, at=at, hint=hint, values=values)
 
 
 class Controller:
@@ -322,9 +329,20 @@ class Controller:
         """Who publishes, for listings."""
         return f"{self.rig.plugin.part.name}/{self.name}"
 
-    def warn(self, message: str) -> None:
-        """Tells the user something about this controller."""
-        self.rig.report(f"controller {self.name}: {message}")
+    def warn(
+        self,
+        code: Code,
+        message: str,
+        *,
+        at: Origin | None = None,
+        hint: str = "",
+        values: Mapping[str, Value] | None = None,
+    ) -> None:
+        """Reports a warning about this controller; see `Plugin.warn`."""
+        values = {"controller": self.name, **(values or {})}
+        self.rig.report(
+            code, f'controller "{self.name}": {message}', at=at, hint=hint, values=values
+        )
 
 
 class Rhythm:

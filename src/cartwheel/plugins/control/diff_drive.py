@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import ClassVar
 
+from cartwheel.codes import devices, running
 from cartwheel.messages import header, message_class
 from cartwheel.plugins.control.controller import Controller
 from cartwheel.plugins.control.limiter import Limiter
@@ -35,7 +36,11 @@ class DiffDriveController(Controller):
         left = settings.texts("left_wheel_names" if ros2 else "left_wheel")
         right = settings.texts("right_wheel_names" if ros2 else "right_wheel")
         if not left or len(left) != len(right):
-            raise settings.error(f"{len(left)} left and {len(right)} right wheels make no drive")
+            raise settings.error(
+                devices.WHEELS_UNPAIRED,
+                f"needs as many left as right wheels (got {len(left)} and {len(right)})",
+                values={"left": len(left), "right": len(right)},
+            )
         self._left = [self.claim(name, "velocity") for name in left]
         self._right = [self.claim(name, "velocity") for name in right]
         for wheel in (*self._left, *self._right):
@@ -141,7 +146,7 @@ class DiffDriveController(Controller):
             math.dist(joint_place(description, left), joint_place(description, right)),
         )
         if value <= 0:
-            raise settings.error(f'"wheel_separation" {value:g} must be above 0')
+            raise settings.invalid("wheel_separation", value, "positive")
         return value
 
     def _radius(self, settings: Settings, wheel: str) -> float:
@@ -150,11 +155,13 @@ class DiffDriveController(Controller):
         )
         if value is None:
             raise settings.error(
-                f'"wheel_radius" is missing, and the wheel of "{wheel}" has no cylinder to take '
-                "it from"
+                running.NOT_A_WHEEL,
+                f'"wheel_radius" is missing, and the wheel of joint "{wheel}" has no cylinder to '
+                "take it from",
+                values={"parameter": "wheel_radius", "joint": wheel},
             )
         if value <= 0:
-            raise settings.error(f'"wheel_radius" {value:g} must be above 0')
+            raise settings.invalid("wheel_radius", value, "positive")
         return value
 
 

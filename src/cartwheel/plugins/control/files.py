@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from cartwheel import yaml_text
+from cartwheel.codes import devices
 from cartwheel.description.model import RobotDescription
 from cartwheel.errors import Origin, PluginError
 from cartwheel.graph import Graph
@@ -114,23 +115,24 @@ def read_yaml(path: Path) -> dict[str, Any]:
             _join(node, set())
         content = loader.construct_document(node) if node is not None else None
     except OSError as error:
-        raise PluginError(
-            f"the file cannot be read: {error.strerror or error}", origin=origin
-        ) from None
+        raise _unreadable(f"the file cannot be read: {error.strerror or error}", origin) from None
     except UnicodeDecodeError:
-        raise PluginError("the file is no text", origin=origin) from None
+        raise _unreadable("the file is not text", origin) from None
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
         line = mark.line + 1 if mark is not None else 0
-        problem = getattr(error, "problem", None) or "it is no YAML"
-        raise PluginError(
-            f"the file is not valid YAML: {problem}", origin=Origin(file=str(path), line=line)
-        ) from None
+        problem = getattr(error, "problem", None) or "it is not YAML"
+        place = Origin(file=str(path), line=line)
+        raise _unreadable(f"the file is not valid YAML: {problem}", place) from None
     if content is None:
         return {}
     if not isinstance(content, dict):
-        raise PluginError("the file holds no parameters by name", origin=origin)
+        raise _unreadable("the file is not a mapping of parameters", origin)
     return content
+
+
+def _unreadable(message: str, origin: Origin) -> PluginError:
+    return PluginError(message, code=devices.CONTROLLERS_FILE_UNREADABLE, origin=origin)
 
 
 def _join(node: Any, seen: set[int]) -> None:
@@ -180,8 +182,10 @@ def read_ros2(path: Path, robot: RobotDescription) -> dict[str, Any]:
     content = for_robot(read_yaml(path), path, robot)
     if content and not is_ros2(content):
         raise PluginError(
-            f"{path} has no ros__parameters, and the robot has ros2_control",
-            hint="In ROS 2 a node's parameters stand under its name and ros__parameters.",
+            "the file has no ros__parameters, but the robot has ros2_control",
+            code=devices.CONTROLLERS_FILE_MISMATCH,
+            origin=Origin(file=str(path)),
+            hint="In ROS 2, parameters are below the name of their node and ros__parameters.",
         )
     return content
 

@@ -111,7 +111,9 @@ class GripperActionController(Controller):
     def _on_goal(self, goal: Goal) -> None:
         position, effort, speed = self._asked(goal.goal.command)
         if not self.running or not math.isfinite(position):
-            text = "the position is no number" if self.running else "the controller does not run"
+            text = "the controller is not running"
+            if self.running:
+                text = "the position is not a finite number"
             goal.reject(self._told("Result"), text)
             return
         self._finish("abort" if self.rig.ros2 else "cancel")

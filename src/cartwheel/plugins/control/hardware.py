@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping
 from functools import cache, partial
 from typing import Any
 
+from cartwheel.codes import devices
 from cartwheel.description.model import Axis, Mimic, SoftLimits
 from cartwheel.errors import PluginError, UnknownNameError
 from cartwheel.plugins.base import Plugin
@@ -96,10 +97,12 @@ class JointHardware:
             if limit < need:
                 held, unit = 2 * need, "N" if self.type == "prismatic" else "N m"
                 plugin.warn(
-                    f'joint "{self.name}": its effort limit of {limit:g} {unit} cannot bear what '
-                    f"the joint carries, which is up to {need:.3g} {unit}: as Gazebo's, a command "
-                    f"of its position is followed all the same, with up to {held:.3g} {unit}",
+                    devices.EFFORT_LIMIT_TOO_LOW,
+                    f'the effort limit of joint "{self.name}", {limit:g} {unit}, is below the '
+                    f"{need:.3g} {unit} that gravity demands: as in Gazebo, position commands are "
+                    f"followed all the same, with up to {held:.3g} {unit}",
                     at=self.interfaces.origin,
+                    values={"joint": self.name, "stated": limit, "needed": need, "used": held},
                 )
                 limit = held
         return min(limit, _STRONGEST)
@@ -325,22 +328,27 @@ class Hardware:
         stated = self._description.joint(name)
         if name not in self._joints and stated is not None:
             raise PluginError(
-                f'joint "{name}" is none that controllers have: {self._tags} names it as one that '
-                "moves",
+                f'joint "{name}" is not offered to controllers: {self._tags} names it',
+                code=devices.CONTROLLER_INTERFACE_MISMATCH,
                 origin=stated.origin,
+                values={"joint": name},
             )
         if name not in self._joints:
             raise UnknownNameError(
-                "joint of a controller",
+                "joint",
                 name,
                 [*self._joints, *(each.name for each in self.references.values())],
+                code=devices.CONTROLLER_JOINT_UNKNOWN,
             )
         found = self._joints[name]
         if interface is not None and interface not in found.interfaces.commands:
-            offered = ", ".join(found.interfaces.commands) or "none"
+            offered = ", ".join(found.interfaces.commands)
             raise PluginError(
-                f'joint "{name}" has no {interface} interface; it has: {offered}',
+                f'joint "{name}" has no {interface} interface',
+                code=devices.CONTROLLER_INTERFACE_MISMATCH,
                 origin=found.interfaces.origin,
+                hint=f"It has: {offered}." if offered else "It has no command interface.",
+                values={"joint": name, "interface": interface, "offered": offered},
             )
         return found
 

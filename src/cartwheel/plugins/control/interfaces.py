@@ -7,10 +7,11 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from cartwheel.codes import devices
 from cartwheel.description.model import Element, RobotDescription
 from cartwheel.description.numbers import LARGEST, MOST_RATIO
-from cartwheel.errors import Diagnostic, Origin, PluginError
-from cartwheel.plugins.parameters import shown
+from cartwheel.errors import Code, Diagnostic, Origin, Value
+from cartwheel.plugins.parameters import invalid
 from cartwheel.simulation.limits import FARTHEST
 
 COMMANDS = ("position", "velocity", "effort")
@@ -75,8 +76,8 @@ def transmissions(
     found: dict[str, JointInterfaces] = {}
     notes: list[Diagnostic] = []
 
-    def warn(element: Element, message: str) -> None:
-        notes.append(Diagnostic(severity="warning", message=message, origin=element.origin))
+    def warn(code: Code, element: Element, message: str, **values: Value) -> None:
+        notes.append(code.diagnostic(message, origin=element.origin, values=values))
 
     for element in description.transmissions:
         label = f'transmission "{element.attribute("name") or ""}"'
@@ -85,15 +86,17 @@ def transmissions(
         if kind is None and element.attribute("type"):
             # Of a format before ros_control's, which its parser skips as well.
             notes.append(
-                Diagnostic(
+                devices.TRANSMISSION_IGNORED.diagnostic(
+                    f"{label} has the format of the PR2, so it drives nothing",
                     severity="info",
-                    message=f"{label} is of the format of the PR2: it drives nothing",
                     origin=element.origin,
+                    values={"transmission": element.attribute("name")},
                 )
             )
             continue
         if not joints or (len(joints) > 1 and not several):
-            warn(element, f"{label} has {len(joints)} joints: only one with one joint acts")
+            text = f"{label} must have one joint to have an effect (got {len(joints)})"
+            warn(devices.TRANSMISSION_IGNORED, element, text, joints=len(joints))
             continue
         for joint in joints:
             name = joint.attribute("name") or ""
@@ -110,11 +113,14 @@ def transmissions(
                 if short in _HARDWARE:
                     commands.append(_HARDWARE[short])
                 elif short not in _STATES_ONLY:
-                    warn(interface, f'{label}: there is no hardware interface "{interface.text}"')
+                    text = f'{label}: the hardware interface "{interface.text}" does not exist'
+                    warn(devices.INTERFACE_UNKNOWN, interface, text, interface=interface.text)
             if not written:
-                warn(element, f"{label} names no <hardwareInterface>, so nothing drives its joint")
+                text = f"{label} names no <hardwareInterface>, so nothing drives its joint"
+                warn(devices.TRANSMISSION_IGNORED, element, text, joint=name)
             if not _movable(description, name):
-                warn(element, f'{label}: "{name}" is no joint that moves')
+                text = f'{label}: "{name}" is not a movable joint'
+                warn(devices.TRANSMISSION_JOINT_UNKNOWN, element, text, joint=name)
                 continue
             before = found[name].commands if name in found else ()
             found[name] = JointInterfaces(
@@ -153,21 +159,21 @@ def ros2_control(
             name = element.attribute("name") or ""
             if not _movable(description, name):
                 notes.append(
-                    Diagnostic(
-                        severity="warning",
-                        message=f'<ros2_control>: "{name}" is no joint that moves',
+                    devices.ROS2_CONTROL_JOINT_UNKNOWN.diagnostic(
+                        f'<ros2_control>: "{name}" is not a movable joint',
                         origin=element.origin,
+                        values={"joint": name},
                     )
                 )
                 continue
             joints[name] = _joint(element, name, notes)
         sensors += [_sensor(element) for element in system.find_all("sensor")]
         notes += [
-            Diagnostic(
-                severity="warning",
-                message=f'<gpio name="{element.attribute("name") or ""}"> has no effect: '
-                "there is nothing behind it in a simulation",
+            devices.HARDWARE_NOT_SIMULATED.diagnostic(
+                f'<gpio name="{element.attribute("name") or ""}"> has no effect: '
+                "general-purpose pins are not simulated",
                 origin=element.origin,
+                values={"gpio": element.attribute("name")},
             )
             for element in system.find_all("gpio")
         ]
@@ -194,11 +200,11 @@ def _joint(element: Element, name: str, notes: list[Diagnostic]) -> JointInterfa
         kind = written.removesuffix("_pid")
         if kind not in COMMANDS:
             notes.append(
-                Diagnostic(
-                    severity="warning",
-                    message=f'joint "{name}": the command interface "{kind}" is not simulated; '
-                    f"there are {', '.join(COMMANDS)}",
+                devices.INTERFACE_UNKNOWN.diagnostic(
+                    f'the command interface "{kind}" of joint "{name}" is not simulated',
                     origin=interface.origin,
+                    hint=f"There are: {', '.join(COMMANDS)}.",
+                    values={"joint": name, "interface": kind},
                 )
             )
             continue
@@ -250,17 +256,13 @@ def _number(
     try:
         number = float(text)
     except ValueError:
-        raise PluginError(
-            f'<param name="{name}"> "{shown(text)}" is not a number', origin=element.origin
-        ) from None
+        raise invalid(f'param name="{name}"', text, "a number", element.origin) from None
     if math.isnan(number):
         return None
     if abs(number) > most or LARGEST < abs(number) < math.inf:
         most = min(most, LARGEST)
-        raise PluginError(
-            f'<param name="{name}"> "{shown(text)}" must be a number from {-most:g} to {most:g}',
-            origin=element.origin,
-        )
+        wanted = f"a number from {-most:g} to {most:g}"
+        raise invalid(f'param name="{name}"', text, wanted, element.origin)
     return number
 
 

@@ -8,6 +8,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from cartwheel.codes import running
 from cartwheel.messages import header, message_class, zero
 from cartwheel.plugins.control.controller import Controller
 from cartwheel.plugins.control.hardware import JointHardware
@@ -146,7 +147,7 @@ class JointGroup(Controller):
             if not interface:
                 names = settings.texts("interface_names")
                 if len(names) != 1:
-                    raise settings.error('"interface_names" must hold one interface')
+                    raise settings.invalid("interface_names", names, "a list of one interface")
                 interface = names[0]
         else:
             # Published files state it for these too, whose type says it.
@@ -157,7 +158,7 @@ class JointGroup(Controller):
             else settings.texts("joints")
         )
         if not names:
-            raise settings.error('"joints" is empty')
+            raise settings.invalid("joints", names, "a list of at least one joint")
         self._joints: list[JointHardware] = [self.claim(name, interface) for name in names]
         self._pids: list[Pid] = []
         if self.type == "effort_controllers/JointGroupPositionController":
@@ -202,7 +203,11 @@ class JointGroup(Controller):
     def _on_commands(self, message: Any) -> None:
         values = [float(value) for value in message.data]
         if len(values) != len(self._joints):
-            self.warn(f"a command has {len(values)} values for {len(self._joints)} joints")
+            self.warn(
+                running.COMMAND_IGNORED,
+                f"a command has {len(values)} values for {len(self._joints)} joints",
+                values={"got": len(values), "joints": len(self._joints)},
+            )
         elif all(math.isfinite(value) for value in values):
             self._commands = values
 

@@ -7,6 +7,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from cartwheel.codes import devices
 from cartwheel.graph import Publisher
 from cartwheel.messages import header, message_class
 from cartwheel.messages.store import TWIN
@@ -37,7 +38,7 @@ class JointStateController(Controller):
         rig = self.rig
         self._rate = 0.0 if rig.ros2 else settings.number("publish_rate")
         if self._rate < 0 or (not rig.ros2 and self._rate == 0):
-            raise settings.error(f'"publish_rate" {self._rate:g} must be above 0')
+            raise settings.invalid("publish_rate", self._rate, "positive")
         names = sorted(rig.hardware.names) if not rig.ros2 else rig.hardware.names
         self._sources = {kind: kind for kind in COMMANDS}
         self._chosen: list[str] = []
@@ -75,7 +76,11 @@ class JointStateController(Controller):
             if kind in self._chosen:
                 source = kind
             if source not in COMMANDS:
-                self.warn(f'no joint has an interface "{source}": its {kind} is told as nan')
+                self.warn(
+                    devices.INTERFACE_UNKNOWN,
+                    f'no joint has an interface "{source}", so the {kind} of all joints is NaN',
+                    values={"interface": source},
+                )
             self._sources[kind] = source
             if self._chosen and source not in self._chosen:
                 self._sources[kind] = ""
@@ -86,7 +91,7 @@ class JointStateController(Controller):
 
     def _read_extra(self, entries: Any, known: list[str]) -> list[tuple[str, float, float, float]]:
         if not isinstance(entries, list):
-            raise self.settings.error('"extra_joints" must be a list')
+            raise self.settings.invalid("extra_joints", entries, "a list")
         found = []
         for index, entry in enumerate(entries):
             each = Settings(

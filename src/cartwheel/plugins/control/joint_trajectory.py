@@ -8,6 +8,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from cartwheel.codes import devices, running
 from cartwheel.graph import Goal
 from cartwheel.messages import header, message_class, zero
 from cartwheel.messages.store import TWIN
@@ -61,7 +62,7 @@ class JointTrajectoryController(Controller):
         ros2 = self.rig.ros2
         self._names = settings.texts("joints")
         if not self._names:
-            raise settings.error('"joints" is empty')
+            raise settings.invalid("joints", self._names, "a list of at least one joint")
         self._interface = self._take_interface(settings)
         commanded = settings.texts("command_joints", []) or self._names
         self._joints: list[JointHardware] = [
@@ -152,7 +153,9 @@ class JointTrajectoryController(Controller):
         for interface in ("position", "velocity", "effort"):
             if interface in wanted:
                 return interface
-        raise settings.error(f'"command_interfaces" {wanted} holds none that is known')
+        raise settings.invalid(
+            "command_interfaces", wanted, "position, velocity or effort, or several of them"
+        )
 
     def _read_gains(self, settings: Settings) -> None:
         for index, name in enumerate(self._names):
@@ -164,7 +167,11 @@ class JointTrajectoryController(Controller):
             elif section.has("p"):
                 gains = Gains.read(section)
             elif self._interface == "effort":
-                raise settings.error(f'"gains/{name}/p" is missing')
+                raise settings.error(
+                    devices.CONTROLLER_GAINS_MISSING,
+                    f'the parameter "gains/{name}/p" is missing',
+                    values={"parameter": f"gains/{name}/p", "joint": name},
+                )
             else:
                 gains = Gains(p=0.0)
             self._forward[index] = settings.number(f"velocity_ff/{name}", forward)
@@ -222,7 +229,11 @@ class JointTrajectoryController(Controller):
         try:
             trajectory = self._reader.read(message, time_ns, self._following)
         except InvalidTrajectoryError as error:
-            self.warn(f"a trajectory was ignored: {error.message}")
+            self.warn(
+                running.TRAJECTORY_INVALID,
+                f"a trajectory is ignored: {error.message}",
+                values=error.values,
+            )
             return
         self._preempt("another trajectory took its place")
         self._follow(trajectory, time_ns)
@@ -239,14 +250,14 @@ class JointTrajectoryController(Controller):
         time_ns = self.part.time_ns
         if not self.running:
             goal.reject(
-                self._result(INVALID_GOAL, "the controller does not run"),
-                "the controller does not run",
+                self._result(INVALID_GOAL, "the controller is not running"),
+                "the controller is not running",
             )
             return
         try:
             if goal.goal.multi_dof_trajectory.points:
                 raise InvalidTrajectoryError(
-                    INVALID_GOAL, "joints of several degrees of freedom are none of its own"
+                    INVALID_GOAL, "joints of several degrees of freedom are not supported"
                 )
             if not goal.goal.trajectory.points:
                 raise InvalidTrajectoryError(INVALID_GOAL, "the trajectory has no points")

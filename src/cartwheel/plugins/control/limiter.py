@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from cartwheel.codes import devices
 from cartwheel.plugins.control.settings import Settings
 
 
@@ -74,13 +75,17 @@ def _pair(settings: Settings, kind: str) -> tuple[float, float] | None:
     if stated is not None and not settings.boolean(f"has_{kind}_limits"):
         return None
     if stated is not None and high is None:
-        raise settings.error(f'"has_{kind}_limits" is true, but there is no "max_{kind}"')
+        raise settings.missing(f"max_{kind}", f"has_{kind}_limits is true, which needs it.")
     if high is None:
         return None
     if low is None:
         low = -high
     if low > high:
-        raise settings.error(f'"min_{kind}" {low:g} is above "max_{kind}" {high:g}')
+        raise settings.error(
+            devices.PLUGIN_RANGE_REVERSED,
+            f'"min_{kind}" must not exceed "max_{kind}" (got {low:g} and {high:g})',
+            values={"parameter": f"min_{kind}", "value": low, "most": high},
+        )
     if stated is None and low == high == 0 and kind != "velocity":
         # Written for releases that ask for has_…_limits too; obeyed, nothing would ever move.
         return None

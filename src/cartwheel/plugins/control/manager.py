@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from cartwheel.errors import CartwheelError, GraphError
+from cartwheel.codes import devices, running
+from cartwheel.errors import CartwheelError, GraphError, Origin
 from cartwheel.plugins.control.catalogue import find_type
 from cartwheel.plugins.control.chaining import Reference, owners
 from cartwheel.plugins.control.controller import Controller, Rig
@@ -55,13 +56,18 @@ class ControllerManager:
                 joints do not fit; nothing has changed.
         """
         if name in self._controllers:
-            raise GraphError(f'controller "{name}" is loaded already')
+            raise wrong_state(name, "is loaded already")
         family = find_type(type_name, ros2=self.rig.ros2)
         made = family(name, type_name.strip().replace("::", "/"), settings, self.rig)
         settings.ignore("type")
         unread = settings.unread()
         if unread:
-            self.rig.report(f"controller {name}: without effect: {', '.join(unread)}")
+            self.rig.report(
+                devices.CONTROLLER_PARAMETER_UNKNOWN,
+                f'controller "{name}" does not read these parameters: {", ".join(unread)}',
+                at=Origin(file=settings.source) if settings.source else None,
+                values={"controller": name, "parameters": tuple(unread)},
+            )
         self._controllers[name] = made
         self._sort()
         return made
@@ -79,9 +85,9 @@ class ControllerManager:
         """
         controller = self._controllers.get(name)
         if controller is None:
-            raise GraphError(f'controller "{name}" is not loaded')
+            raise wrong_state(name, "is not loaded")
         if controller.running:
-            raise GraphError(f'controller "{name}" runs: stop it first')
+            raise wrong_state(name, "is running", hint="Stop it first.")
         del self._controllers[name]
         self._sort()
         self._begun.discard(name)
@@ -103,7 +109,8 @@ class ControllerManager:
         for name in self.with_leaders(stop)[len(stop) :]:
             led = [each for each in self._led(name) if each in stop]
             if led:
-                self._refuse(f'controller "{led[0]}" cannot stop: "{name}" commands it', strict)
+                problem = f'controller "{led[0]}" cannot stop: "{name}" commands it'
+                self._refuse(led[0], problem, strict)
             stopping = [each for each in stopping if each.name not in led]
         starting = [each for name in start if (each := self._one(name, False, strict))]
         # What is stopped and started at once begins anew.
@@ -121,7 +128,7 @@ class ControllerManager:
         for controller in starting:
             problem = self._hindrance(controller, starting, stopping, held)
             if problem:
-                self._refuse(problem, strict)
+                self._refuse(controller.name, problem, strict)
                 continue
             held.update(dict.fromkeys(controller.claims, controller.name))
             able.append(controller)
@@ -242,7 +249,7 @@ class ControllerManager:
             if name in held:
                 why = f'joint "{name}" is commanded by "{held[name]}"'
             elif isinstance(claim, Reference) and not self._offered(claim, starting, stopping):
-                why = f'it commands "{claim.owner}", which does not run'
+                why = f'it commands "{claim.owner}", which is not running'
             else:
                 continue
             return f'controller "{controller.name}" cannot start: {why}'
@@ -257,30 +264,48 @@ class ControllerManager:
             return False
         return owner in starting or (owner.running and owner not in stopping)
 
-    def _refuse(self, message: str, strict: bool) -> None:
-        """Says what is not done; raises it while strict."""
+    def _refuse(self, name: str, message: str, strict: bool) -> None:
+        """Raises the conflict of a controller while strict; else reports it."""
+        values = {"controller": name}
         if strict:
-            raise GraphError(message)
-        self.rig.report(message)
+            raise GraphError(message, code=running.CONTROLLER_CONFLICT, values=values)
+        self.rig.report(running.CONTROLLER_CONFLICT, message, values=values)
 
-    def _one(self, name: str, running: bool, strict: bool) -> Controller | None:
+    def _one(self, name: str, runs: bool, strict: bool) -> Controller | None:
         """A controller that is to change its state; None where it cannot and need not."""
         controller = self._controllers.get(name)
         problem = ""
         if controller is None:
-            problem = f'controller "{name}" is not loaded'
-        elif controller.running != running:
-            if not running and not strict:
+            problem = "is not loaded"
+        elif controller.running != runs:
+            if not runs and not strict:
                 return None
-            problem = f'controller "{name}" {"does not run" if running else "runs already"}'
+            problem = "is not running" if runs else "is running already"
         if not problem:
             return controller
-        if strict and (controller is None or running):
-            raise GraphError(problem)
+        if strict and (controller is None or runs):
+            raise wrong_state(name, problem)
         return None
 
 
+def wrong_state(name: str, problem: str, *, hint: str = "") -> GraphError:
+    """The error for a request that does not fit the state of a controller.
+
+    Args:
+        name: The controller.
+        problem: Its state, behind its name.
+        hint: What to do.
+    """
+    return GraphError(
+        f'controller "{name}" {problem}',
+        code=running.CONTROLLER_STATE,
+        hint=hint,
+        values={"controller": name},
+    )
+
+
 def tell(rig: Rig, error: CartwheelError) -> None:
-    """Reports an error that the user did not cause by a call of their own."""
-    text = error.message if error.hint is None else f"{error.message}. {error.hint}"
-    rig.report(text)
+    """Reports the error of a request that came over a wire."""
+    rig.report(
+        error.code, error.message, at=error.origin, hint=error.hint or "", values=error.values
+    )

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any, ClassVar
 
+from cartwheel.codes import devices, running
 from cartwheel.geometry import Vec3
 from cartwheel.messages import header, zero
 from cartwheel.messages.store import TWIN
@@ -78,7 +79,12 @@ class MecanumDriveController(Controller):
         self._reach = reach * settings.number("wheel_separation_multiplier", 1.0)
         self._radius *= settings.number("wheel_radius_multiplier", 1.0)
         if self._radius <= 0 or self._reach <= 0:
-            raise settings.error("the wheels' radius and separations must be above 0")
+            raise settings.error(
+                devices.CONTROLLER_PARAMETER_INVALID,
+                "the radius and the separations of the wheels must be positive "
+                f"(got {self._radius:g} and {self._reach:g})",
+                values={"radius": self._radius, "reach": self._reach},
+            )
         offset = settings.section("kinematics/base_frame_offset")
         self._offset = tuple(offset.number(axis, 0.0) for axis in ("x", "y", "theta"))
         self._limits = [
@@ -109,12 +115,17 @@ class MecanumDriveController(Controller):
             settings.ignore("position_feedback")
             for name in ("open_loop", "publish_limited_velocity"):
                 if settings.boolean(name, False):
-                    self.warn(f'"{name}" has no effect')
+                    self.warn(
+                        devices.CONTROLLER_PARAMETER_UNKNOWN,
+                        f'the parameter "{name}" has no effect',
+                        values={"parameters": (name,)},
+                    )
         self._turned = [0.0] * 4
         if self.rig.push is None and not has_rollers(description):
             self.warn(
-                "its wheels roll like any others: sideways they move the robot only where "
-                "the controller's parameters are known when the robot is spawned"
+                running.WHEELS_WITHOUT_ROLLERS,
+                "the wheels roll like ordinary ones, so the robot does not move sideways",
+                hint="Give the controller's parameters when the robot is spawned.",
             )
 
     def start(self, time_ns: int) -> None:

@@ -33,9 +33,7 @@ class Gains:
         clamp = abs(settings.number("i_clamp", math.inf))
         strategy = settings.text("antiwindup_strategy", "legacy")
         if strategy not in ("legacy", "none"):
-            raise settings.error(
-                f'the antiwindup_strategy "{strategy}" is not supported; there is "legacy"'
-            )
+            raise settings.invalid("antiwindup_strategy", strategy, '"legacy" or "none"')
         settings.ignore("normalize_error", "angle_wraparound")
         return cls(
             p=settings.number("p", 0.0),

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
+from cartwheel.codes import running
 from cartwheel.messages import header, message_class, zero
 from cartwheel.messages.store import TWIN
 from cartwheel.plugins.control.chaining import Reference
@@ -36,13 +37,12 @@ class PidController(Controller):
         names = settings.texts("dof_names")
         self._names = settings.texts("reference_and_state_dof_names", []) or names
         if not names or len(self._names) != len(names):
-            raise settings.error(f"{len(names)} joints and {len(self._names)} references of them")
+            wanted = f"a list of as many names as dof_names, {len(names)}"
+            raise settings.invalid("reference_and_state_dof_names", self._names, wanted)
         kinds = settings.texts("reference_and_state_interfaces")
         if not (len(kinds) == 1 and kinds[0] in COMMANDS) and kinds != ["position", "velocity"]:
-            raise settings.error(
-                f'"reference_and_state_interfaces" {kinds} must be one of {", ".join(COMMANDS)}, '
-                "or position and velocity"
-            )
+            wanted = f"one of {', '.join(COMMANDS)}, or position and velocity"
+            raise settings.invalid("reference_and_state_interfaces", kinds, wanted)
         interface = settings.text("command_interface")
         self._external = settings.boolean("use_external_measured_states", False)
         self._feeds_forward = settings.boolean("enable_feedforward", True)
@@ -119,7 +119,10 @@ class PidController(Controller):
         rates = [float(each) for each in message.values_dot] or [math.nan] * len(names)
         fits = len(values) == len(rates) == len(names)
         if not fits or sorted(names) != sorted(self._names):
-            self.warn(f"a {what} that is not one of {', '.join(self._names)} is ignored")
+            self.warn(
+                running.COMMAND_IGNORED,
+                f"a {what} is ignored: it must have values for {', '.join(self._names)}",
+            )
             return []
         said = dict(zip(names, zip(values, rates, strict=True), strict=True))
         return [said[name] for name in self._names]

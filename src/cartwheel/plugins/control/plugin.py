@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
+from cartwheel.codes import running
 from cartwheel.description.model import Sensor
 from cartwheel.errors import CartwheelError
 from cartwheel.plugins.base import Plugin
@@ -89,5 +90,14 @@ class ControlPlugin(Plugin[Any]):
                 loaded.append(manager.load_entry(entry))
                 manager.switch([entry.name], [])
             except CartwheelError as error:
-                hint = f". {error.hint}" if error.hint else ""
-                self.warn(f"controller {entry.name} was not started: {error.message}{hint}")
+                self.warn(
+                    running.CONTROLLER_NOT_STARTED,
+                    f'controller "{entry.name}" is not started: {error.message}',
+                    at=error.origin,
+                    hint=error.hint or "",
+                    values={
+                        **error.values,
+                        "controller": entry.name,
+                        "cause": error.code.number,
+                    },
+                )

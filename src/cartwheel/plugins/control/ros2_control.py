@@ -8,8 +8,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar
 
+from cartwheel.codes import devices, running
 from cartwheel.description.model import Element
-from cartwheel.errors import Diagnostic
+from cartwheel.errors import Origin
 from cartwheel.plugins.control.components import HardwareComponents
 from cartwheel.plugins.control.controller import Rig
 from cartwheel.plugins.control.files import (
@@ -85,31 +86,43 @@ class Ros2Control(ControlPlugin):
         source = ", ".join(str(path) for path in paths)
         if found.elsewhere and not found.manager:
             self.warn(
-                f"the files hold {', '.join(found.elsewhere)}, and the controller manager is "
-                f'"/{self.namespace}/{config.manager}": they start nothing'.replace("//", "/")
+                devices.CONTROLLERS_FILE_WITHOUT_CONTROLLERS,
+                f"the controller files have parameters for {', '.join(found.elsewhere)}, but the "
+                f'controller manager is "/{self.namespace}/{config.manager}", so no controller '
+                "starts".replace("//", "/"),
+                values={"nodes": tuple(found.elsewhere)},
             )
         settings = Settings(found.manager, config.manager, source)
         rate = settings.number("update_rate", 100.0)
         if rate <= 0:
-            raise settings.error(f'"update_rate" {rate:g} must be above 0')
+            raise settings.invalid("update_rate", rate, "positive")
         joints, sensors, notes = ros2_control(part.description)
         for note in notes:
             part.report(note)
         for system in simulated_systems(part.description):
             self._check_system(system)
         if not joints:
-            self.warn("no <ros2_control> names a joint, so controllers have none to command")
+            self.warn(
+                devices.CONTROL_WITHOUT_JOINTS,
+                "no <ros2_control> names a joint, so controllers have no joint to command",
+            )
         known = {sensor.name for link in part.description.links for sensor in link.sensors}
         for sensor in sensors:
             if sensor.name not in known:
                 self.warn(
-                    f'<ros2_control>: there is no <sensor name="{sensor.name}"> in a <gazebo> tag, '
-                    "so nothing measures",
+                    running.UNKNOWN_SENSOR,
+                    f'<ros2_control> names the sensor "{sensor.name}", which no <gazebo> tag '
+                    "describes, so nothing is measured",
                     at=sensor.origin,
+                    values={"name": sensor.name},
                 )
         entries = controller_entries(found, self.namespace, source)
         if paths and not entries and not found.elsewhere:
-            self.warn(f"{source} states the type of no controller: none starts")
+            self.warn(
+                devices.CONTROLLERS_FILE_WITHOUT_CONTROLLERS,
+                "no parameter is the type of a controller, so none starts",
+                at=Origin(file=source),
+            )
         hardware = Hardware(self, joints, _gains(joints, found.nodes))
         hardware.holds = config.hold_joints
         rig = Rig(
@@ -139,8 +152,12 @@ class Ros2Control(ControlPlugin):
             # A text that came over a wire has no folder: the current one, as for its meshes.
             path = Path("" if origin.file.startswith("<") else origin.file).parent / path
         if not path.is_file():
-            message = f'<parameters> "{text}": there is no such file: nothing of it is started'
-            self.part.report(Diagnostic(severity="error", message=message, origin=origin))
+            self.warn(
+                devices.CONTROLLERS_FILE_UNREADABLE,
+                f'<parameters>: the file "{text}" does not exist, so its controllers do not start',
+                severity="error",
+                values={"file": text},
+            )
             return None
         return path
 
@@ -148,9 +165,11 @@ class Ros2Control(ControlPlugin):
         name = hardware_of(system)
         if name and name not in SYSTEMS:
             self.warn(
-                f'<ros2_control name="{system.attribute("name") or ""}">: the hardware '
-                f'"{name}" is not simulated, so its joints are driven as by {SYSTEMS[0]}',
+                devices.HARDWARE_NOT_SIMULATED,
+                f'the hardware "{name}" of <ros2_control name="{system.attribute("name") or ""}"> '
+                f"is not simulated, so its joints are driven as by {SYSTEMS[0]}",
                 at=system.origin,
+                values={"hardware": name},
             )
 
 

@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from cartwheel.codes import running
 from cartwheel.errors import CartwheelError, GraphError
 from cartwheel.messages import message_class
 from cartwheel.plugins.base import Plugin
@@ -21,7 +22,7 @@ from cartwheel.plugins.control.files import (
     remappings,
     ros2_file,
 )
-from cartwheel.plugins.control.manager import ControllerManager, tell
+from cartwheel.plugins.control.manager import ControllerManager, tell, wrong_state
 from cartwheel.plugins.control.ros2_parameters import ParameterServices
 
 _MESSAGES = "controller_manager_msgs_ros2"
@@ -134,7 +135,7 @@ class Ros2ManagerServices:
     def _load(self, request: Any) -> None:
         name = request.name
         if name in self._unconfigured or self._manager.find(name) is not None:
-            raise GraphError(f'controller "{name}" is loaded already')
+            raise wrong_state(name, "is loaded already")
         entry = self._entry(name)
         find_type(entry.type, ros2=True)
         self._unconfigured[name] = entry
@@ -164,8 +165,10 @@ class Ros2ManagerServices:
         kind = stated.get("type") or found.type
         if not kind:
             raise GraphError(
-                f'controller "{name}": there is no parameter {name}.type',
-                hint="Name it in a file of <parameters>, or give the spawner --param-file.",
+                f'the type of controller "{name}" is not stated: there is no parameter {name}.type',
+                code=running.CONTROLLER_TYPE_MISSING,
+                hint="State it in a file of <parameters>, or give the spawner --param-file.",
+                values={"controller": name, "parameter": f"{name}.type"},
             )
         renamed = remappings(stated.get("node_options_args", []))
         return replace(found, type=kind, remappings={**found.remappings, **renamed})
@@ -175,7 +178,7 @@ class Ros2ManagerServices:
         controller = self._manager.find(name)
         if controller is None:
             if name not in self._unconfigured:
-                raise GraphError(f'controller "{name}" is not loaded')
+                raise wrong_state(name, "is not loaded")
             self._manager.load_entry(self._unconfigured[name])
             del self._unconfigured[name]
         elif name in self._by_itself:
@@ -183,7 +186,7 @@ class Ros2ManagerServices:
             if controller.running:
                 self._manager.switch([], self._manager.with_leaders([name]))
         elif controller.running:
-            raise GraphError(f'controller "{name}" is active: it cannot be configured')
+            raise wrong_state(name, "is active, so it cannot be configured")
         else:
             entry = replace(self._entry(name), type=controller.type)
             self._manager.unload(name)
@@ -205,10 +208,10 @@ class Ros2ManagerServices:
             self._by_itself.discard(request.name)
 
     def _reload(self, request: Any) -> None:
-        running = [each.name for each in self._manager.controllers if each.running]
-        if running and not request.force_kill:
-            raise GraphError(f"controllers are active: {', '.join(running)}")
-        self._manager.switch([], running)
+        active = [each.name for each in self._manager.controllers if each.running]
+        if active and not request.force_kill:
+            raise wrong_state(active[0], "is active", hint="Stop all controllers first.")
+        self._manager.switch([], active)
         for each in self._manager.controllers:
             self._manager.unload(each.name)
         self._unconfigured.clear()
@@ -221,9 +224,13 @@ class Ros2ManagerServices:
             unready = [name for name in start if name in self._unconfigured]
             away = [name for name in start if self._components.lacks(self._manager.find(name))]
             if strict and unready:
-                raise GraphError(f'controller "{unready[0]}" is not configured')
+                raise wrong_state(unready[0], "is not configured")
             if strict and away:
-                raise GraphError(f'controller "{away[0]}": its hardware is not active')
+                raise GraphError(
+                    f'the hardware of controller "{away[0]}" is not active',
+                    code=running.HARDWARE_COMPONENT,
+                    values={"controller": away[0]},
+                )
             wanted = [name for name in start if name not in (*unready, *away)]
             self._manager.switch(wanted, stop, strict=strict)
         except CartwheelError as error:

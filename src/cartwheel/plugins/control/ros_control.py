@@ -6,7 +6,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
-from cartwheel.errors import PluginError
+from cartwheel.codes import devices
+from cartwheel.errors import Origin, PluginError
 from cartwheel.plugins.catalogue import ROS_CONTROL, short_name
 from cartwheel.plugins.control.controller import Rig
 from cartwheel.plugins.control.files import (
@@ -58,18 +59,21 @@ class RosControl(ControlPlugin):
     def configure(self) -> None:
         config: RosControlParameters = self.config
         part = self.part
-        if config.period < 0:
-            raise PluginError("<controlPeriod> cannot be below 0", origin=self.tag.origin)
+        self.check_not_negative("period")
         plain = config.sim_type.rpartition("::")[2] in _PLAIN
         if not plain:
             self.warn(
-                f'<robotSimType> "{config.sim_type}" is not simulated: joints are driven as by '
-                "DefaultRobotHWSim"
+                devices.HARDWARE_NOT_SIMULATED,
+                f'<robotSimType> "{config.sim_type}" is not simulated, so joints are driven as by '
+                "DefaultRobotHWSim",
+                values={"hardware": config.sim_type},
             )
         if short_name(self.tag.filename) != ROS_CONTROL:
             self.warn(
-                f'"{self.tag.filename}" is taken for lib{ROS_CONTROL}.so, as its name says: '
-                "what it does beyond that is missing here"
+                devices.HARDWARE_NOT_SIMULATED,
+                f'plugin "{self.tag.filename}" is simulated as lib{ROS_CONTROL}.so, without what '
+                "it adds to it",
+                values={"hardware": self.tag.filename},
             )
         self.namespace = self.namespace.strip("/")
         contents = [
@@ -81,7 +85,10 @@ class RosControl(ControlPlugin):
         for note in notes:
             part.report(note)
         if not joints:
-            self.warn("no <transmission> drives a joint, so controllers have none to command")
+            self.warn(
+                devices.CONTROL_WITHOUT_JOINTS,
+                "no <transmission> drives a joint, so controllers have no joint to command",
+            )
         rate = 0.0 if config.period == 0 else 1.0 / config.period
         found = self.graph.parameters.get(f"/{self.namespace}/joint_limits")
         limits = Settings(found if isinstance(found, Mapping) else {}, "joint_limits")
@@ -123,12 +130,18 @@ class RosControl(ControlPlugin):
         """Puts a file's parameters into the namespace, as rosparam would; its controllers."""
         if is_ros2(content):
             raise PluginError(
-                f"{path} is a file for ros2_control, and the robot has gazebo_ros_control",
+                "the file is for ros2_control, but the robot has gazebo_ros_control",
+                code=devices.CONTROLLERS_FILE_MISMATCH,
+                origin=Origin(file=path),
                 hint="Name the file that its launch file gives to rosparam.",
             )
         entries = ros1_entries(content, path)
         if not entries:
-            self.warn(f"{path} names no controller: none of its parameters has a type")
+            self.warn(
+                devices.CONTROLLERS_FILE_WITHOUT_CONTROLLERS,
+                "no parameter is the type of a controller, so none starts",
+                at=Origin(file=path),
+            )
         spaces = {entry.namespace for entry in entries}
         inner: Any = content
         if len(spaces) == 1 and (space := spaces.pop()):

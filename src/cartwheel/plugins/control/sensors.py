@@ -6,6 +6,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from cartwheel.codes import running
 from cartwheel.errors import UnknownNameError
 from cartwheel.geometry import Array
 from cartwheel.graph import Publisher
@@ -33,13 +34,22 @@ class _SensorBroadcaster(Controller):
             if not name and len(found) == 1:
                 name = found[0].name
             if name not in [each.name for each in found]:
-                raise UnknownNameError(f"{self.kind} sensor", name, [each.name for each in found])
+                raise UnknownNameError(
+                    f"{self.kind} sensor",
+                    name,
+                    [each.name for each in found],
+                    code=running.UNKNOWN_SENSOR,
+                )
             chosen = self.rig.sensors[name]
             frame = settings.text("frame_id", chosen.sensor.link)
             self._outlets.append((chosen, self.advertise(self.topic, self.message), frame))
         else:
             if not found:
-                raise settings.error(f"the robot has no {self.kind} sensor in a <gazebo> tag")
+                raise settings.error(
+                    running.UNKNOWN_SENSOR,
+                    f"the robot has no {self.kind} sensor in a <gazebo> tag",
+                    values={"type": self.kind},
+                )
             space = f"/{self.rig.namespace.strip('/')}/"
             self._outlets = [
                 (
@@ -152,5 +162,5 @@ class ForceTorqueBroadcaster(_SensorBroadcaster):
 def _nine(settings: Settings, name: str) -> Array:
     values = settings.numbers(name, [0.0] * 9)
     if len(values) != 9:
-        raise settings.error(f'"{name}" has {len(values)} numbers, not 9')
+        raise settings.invalid(name, values, "9 numbers")
     return np.array(values)

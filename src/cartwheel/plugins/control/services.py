@@ -7,13 +7,14 @@ from concurrent.futures import TimeoutError as NotYet
 from typing import Any, TypeVar
 
 from cartwheel.calls import answered
+from cartwheel.codes import running
 from cartwheel.errors import CartwheelError, GraphError
 from cartwheel.graph import resolve_name
 from cartwheel.messages import message_class
 from cartwheel.plugins.base import Plugin
 from cartwheel.plugins.control.catalogue import controller_types
 from cartwheel.plugins.control.controller import Controller
-from cartwheel.plugins.control.manager import ControllerManager, tell
+from cartwheel.plugins.control.manager import ControllerManager, tell, wrong_state
 from cartwheel.plugins.control.settings import Settings
 
 T = TypeVar("T")
@@ -76,16 +77,19 @@ class ManagerServices:
         try:
             path = resolve_name(name, self._manager.rig.namespace)
         except GraphError as error:
-            message = error.message
-            self._plugin.graph.post(lambda: self._manager.rig.report(message))
+            fault = error  # the name of an except clause ends with it
+            self._plugin.graph.post(lambda: tell(self._manager.rig, fault))
             return _response("LoadController")(ok=False)
         values = self._plugin.graph.parameters.get(path)
 
         def load() -> bool:
             if not isinstance(values, dict) or not isinstance(values.get("type"), str):
                 raise GraphError(
-                    f'controller "{name}": there is no parameter {path}/type',
-                    hint="Its YAML file must be loaded into that namespace first.",
+                    f'the type of controller "{name}" is not stated: there is no parameter '
+                    f"{path}/type",
+                    code=running.CONTROLLER_TYPE_MISSING,
+                    hint="Load its YAML file into that namespace first.",
+                    values={"controller": name, "parameter": f"{path}/type"},
                 )
             settings = Settings(values, name, f"parameters of {path}")
             self._manager.load(name, settings, values["type"])
@@ -113,10 +117,10 @@ class ManagerServices:
 
     def _reload(self, request: Any) -> Any:
         def reload() -> bool:
-            running = [each.name for each in self._manager.controllers if each.running]
-            if running and not request.force_kill:
-                raise GraphError(f"controllers run: {', '.join(running)}")
-            self._manager.switch([], running)
+            active = [each.name for each in self._manager.controllers if each.running]
+            if active and not request.force_kill:
+                raise wrong_state(active[0], "is running", hint="Stop all controllers first.")
+            self._manager.switch([], active)
             for each in self._manager.controllers:
                 self._manager.unload(each.name)
             return True
@@ -136,7 +140,9 @@ class ManagerServices:
             return future.result(timeout=_PATIENCE)
         except NotYet:
             future.cancel()
-            raise GraphError("the simulation does not answer") from None
+            raise GraphError(
+                "the simulation does not respond", code=running.SIMULATION_UNRESPONSIVE
+            ) from None
 
 
 def _response(service: str) -> Any:

@@ -8,8 +8,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from operator import getitem
 from typing import Any
 
+from cartwheel.codes import devices
 from cartwheel.description.numbers import LARGEST
-from cartwheel.errors import PluginError, likely
+from cartwheel.errors import Code, Origin, PluginError, Value, meant_one
 from cartwheel.plugins.parameters import shown
 
 _MISSING: Any = object()
@@ -67,9 +68,9 @@ class Settings:
             try:
                 value = float(value)
             except ValueError:
-                raise self._wrong(name, value, "a number") from None
+                raise self.invalid(name, value, "a number") from None
         if isinstance(value, bool) or not isinstance(value, int | float):
-            raise self._wrong(name, value, "a number")
+            raise self.invalid(name, value, "a number")
         return self._bounded(name, value)
 
     def optional_number(self, name: str) -> float | None:
@@ -83,7 +84,7 @@ class Settings:
         """A whole number."""
         value = self.number(name, default)
         if abs(value) > _MOST_COUNT or value != int(value):
-            raise self._wrong(
+            raise self.invalid(
                 name, value, f"a whole number from {-_MOST_COUNT:,} to {_MOST_COUNT:,}"
             )
         return int(value)
@@ -97,13 +98,13 @@ class Settings:
             return value
         if value in (0, 1) and isinstance(value, int):
             return bool(value)
-        raise self._wrong(name, value, "true or false")
+        raise self.invalid(name, value, "true or false")
 
     def text(self, name: str, default: str = _MISSING) -> str:
         """A text."""
         value = self._get(name, default)
         if not isinstance(value, str):
-            raise self._wrong(name, value, "a text")
+            raise self.invalid(name, value, "a string")
         return value.strip()
 
     def texts(self, name: str, default: Sequence[str] = _MISSING) -> list[str]:
@@ -112,7 +113,7 @@ class Settings:
         if isinstance(value, str):
             return [value.strip()]
         if not isinstance(value, list | tuple) or not all(isinstance(one, str) for one in value):
-            raise self._wrong(name, value, "a list of texts")
+            raise self.invalid(name, value, "a list of strings")
         return [one.strip() for one in value]
 
     def numbers(self, name: str, default: Sequence[float] = _MISSING) -> list[float]:
@@ -122,7 +123,7 @@ class Settings:
             isinstance(one, int | float) and not isinstance(one, bool) for one in value
         )
         if not good:
-            raise self._wrong(name, value, "a list of numbers")
+            raise self.invalid(name, value, "a list of numbers")
         return [self._bounded(name, one) for one in value]
 
     def unread(self) -> list[str]:
@@ -144,20 +145,55 @@ class Settings:
         """Counts names as read: they have no meaning here and do no harm."""
         self._asked.update(self._prefix + name for name in names)
 
-    def error(self, message: str) -> PluginError:
-        """Something that makes no sense, with its place; to be raised by the caller."""
-        return PluginError(f"controller {self.name}: {message}{self._place()}")
+    def error(
+        self,
+        code: Code,
+        message: str,
+        *,
+        hint: str = "",
+        values: Mapping[str, Value] | None = None,
+    ) -> PluginError:
+        """The error for parameters that cannot be used, with their file; the caller raises it."""
+        return PluginError(
+            f'controller "{self.name}": {message}',
+            code=code,
+            origin=Origin(file=self.source) if self.source else None,
+            hint=hint,
+            values={"controller": self.name, **(values or {})},
+        )
+
+    def invalid(self, name: str, value: Any, wanted: str) -> PluginError:
+        """The error for a parameter whose value is not allowed; the caller raises it.
+
+        Args:
+            name: The parameter.
+            value: As it is stated.
+            wanted: What is allowed, behind "must be".
+        """
+        stated = f"{value:g}" if isinstance(value, float) else shown(repr(value))
+        return self.error(
+            devices.CONTROLLER_PARAMETER_INVALID,
+            f'the parameter "{self._prefix}{name}" must be {wanted} (got {stated})',
+            values={"parameter": self._prefix + name, "value": stated},
+        )
+
+    def missing(self, name: str, hint: str = "") -> PluginError:
+        """The error for a parameter that is needed; the caller raises it."""
+        meant = meant_one(name, list(_leaves(self._values)))
+        return self.error(
+            devices.CONTROLLER_PARAMETER_MISSING,
+            f'the parameter "{self._prefix}{name}" is missing',
+            hint=f'Did you mean "{meant}"?' if meant else hint,
+            values={"parameter": self._prefix + name, "meant": meant},
+        )
 
     def _bounded(self, name: str, value: float) -> float:
         # A whole number of YAML can be too long for a float.
         unset = isinstance(value, float) and math.isnan(value)
         if unset or LARGEST < abs(value) < math.inf:
             wanted = "a number" if unset else f"from {-LARGEST:g} to {LARGEST:g}"
-            raise self._wrong(name, value, wanted)
+            raise self.invalid(name, value, wanted)
         return float(value)
-
-    def _place(self) -> str:
-        return f" ({self.source})" if self.source else ""
 
     def _find(self, name: str) -> Any:
         self._asked.add(self._prefix + name)
@@ -173,19 +209,8 @@ class Settings:
         if found is not _MISSING:
             return found
         if default is _MISSING:
-            hint = likely(name, list(_leaves(self._values)))
-            raise PluginError(
-                f'controller {self.name}: the parameter "{self._prefix}{name}" is missing'
-                f"{self._place()}",
-                hint=hint or None,
-            )
+            raise self.missing(name)
         return default
-
-    def _wrong(self, name: str, value: Any, wanted: str) -> PluginError:
-        return PluginError(
-            f'controller {self.name}: the parameter "{self._prefix}{name}" must be {wanted}, '
-            f"not {shown(repr(value))}{self._place()}"
-        )
 
 
 def _nested(values: Mapping[str, Any]) -> dict[str, Any]:

@@ -8,6 +8,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from cartwheel.codes import devices
 from cartwheel.messages import header, zero
 from cartwheel.messages.store import TWIN
 from cartwheel.plugins.control.controller import Controller
@@ -49,7 +50,8 @@ class SingleSteering(Controller):
             base = abs(joint_place(description, steer)[0] - joint_place(description, wheel)[0])
         radius = settings.optional_number("wheel_radius") or wheel_radius(description, wheel)
         if not base or base <= 0 or not radius or radius <= 0:
-            raise settings.error('"wheel_separation_h" and "wheel_radius" must be above 0')
+            name = "wheel_radius" if base and base > 0 else "wheel_separation_h"
+            raise settings.invalid(name, radius if name == "wheel_radius" else base, "positive")
         self._base = base * settings.number("wheel_separation_h_multiplier", 1.0)
         self._radius = radius * settings.number("wheel_radius_multiplier", 1.0)
         angle = settings.number("steer_pos_multiplier", 1.0)
@@ -123,7 +125,11 @@ class SteeringController(Controller):
         )
         for names in (traction, steering):
             if len(names) not in (1, 2):
-                raise settings.error(f"{len(names)} wheels of an axle: there must be one or two")
+                raise settings.error(
+                    devices.WHEELS_UNPAIRED,
+                    f"an axle must have one or two wheels (got {len(names)})",
+                    values={"wheels": len(names)},
+                )
         self._traction = self._axle(traction, "velocity")
         self._steering = self._axle(steering, "position")
         # What is told of them is in the order of the lists.
@@ -268,7 +274,7 @@ class SteeringController(Controller):
     def _positive(settings: Settings, name: str) -> float:
         value = settings.number(name)
         if value <= 0:
-            raise settings.error(f'"{name}" {value:g} must be above 0')
+            raise settings.invalid(name, value, "positive")
         return value
 
     def _first(self, settings: Settings, names: Sequence[str], needed: bool) -> float:
@@ -276,7 +282,7 @@ class SteeringController(Controller):
             if settings.has(name):
                 return self._positive(settings, name)
         if needed:
-            raise settings.error(f'"{names[0]}" is missing')
+            raise settings.missing(names[0])
         return 0.0
 
 
@@ -292,8 +298,9 @@ class TricycleController(Controller):
         check_axis(self, self._steer.joint, UP)
         self._base = settings.number("wheelbase")
         self._radius = settings.number("wheel_radius")
-        if self._base <= 0 or self._radius <= 0:
-            raise settings.error('"wheelbase" and "wheel_radius" must be above 0')
+        for name, value in (("wheelbase", self._base), ("wheel_radius", self._radius)):
+            if value <= 0:
+                raise settings.invalid(name, value, "positive")
         self._open_loop = settings.boolean("open_loop", False)
         traction, steering = settings.section("traction"), settings.section("steering")
         self._traction_limits = Limiter.read(traction)
@@ -305,7 +312,11 @@ class TricycleController(Controller):
         settings.ignore("traction", "steering")
         for name in ("publish_ackermann_command", "odom_only_twist"):
             if settings.boolean(name, False):
-                self.warn(f"{name} has no effect")
+                self.warn(
+                    devices.CONTROLLER_PARAMETER_UNKNOWN,
+                    f'the parameter "{name}" has no effect',
+                    values={"parameters": (name,)},
+                )
         timeout = settings.number("cmd_vel_timeout", 500.0) / 1000.0
         stamped = settings.boolean("use_stamped_vel", True)
         self._command = TwistCommand(self, "cmd_vel", timeout=timeout, stamped=stamped)

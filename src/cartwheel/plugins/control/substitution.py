@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from cartwheel import yaml_text
+from cartwheel.codes import devices
 from cartwheel.description.packages import Packages
 from cartwheel.errors import CartwheelError, Origin, PluginError
 
@@ -49,13 +50,20 @@ def substitute(content: Any, path: Path, arguments: Mapping[str, str]) -> Any:
             return " ".join(words[1:])
         if command in ("arg", "var"):
             raise PluginError(
-                f"{match[0]}: the robot has no argument of that name",
+                f"{match[0]} has no value: the robot has no argument of that name",
+                code=devices.CONTROLLERS_FILE_ARGUMENT,
                 origin=Origin(file=str(path)),
                 hint=f"Write its value into the file, or give one: {name}:=…."
                 if not arguments
                 else f"It has: {', '.join(sorted(arguments))}.",
+                values={"name": name},
             )
-        raise PluginError(f"{match[0]} cannot be replaced", origin=Origin(file=str(path)))
+        raise PluginError(
+            f"{match[0]} cannot be evaluated",
+            code=devices.CONTROLLERS_FILE_ARGUMENT,
+            origin=Origin(file=str(path)),
+            values={"name": match[0]},
+        )
 
     def text(found: str) -> str:
         try:
@@ -64,7 +72,11 @@ def substitute(content: Any, path: Path, arguments: Mapping[str, str]) -> Any:
             raise
         except CartwheelError as error:
             raise PluginError(
-                error.message, origin=Origin(file=str(path)), hint=error.hint
+                error.message,
+                code=devices.CONTROLLERS_FILE_ARGUMENT,
+                origin=Origin(file=str(path)),
+                hint=error.hint,
+                values=error.values,
             ) from None
 
     def walk(found: Any) -> Any:

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
+from cartwheel.codes import running
 from cartwheel.errors import PluginError
 from cartwheel.plugins.control.hardware import JointHardware
 from cartwheel.plugins.control.settings import Settings
@@ -21,9 +22,11 @@ _STILL = 1e-5
 class InvalidTrajectoryError(PluginError):
     """A trajectory that cannot be followed, with the error code of the action."""
 
-    def __init__(self, code: int, message: str) -> None:
-        super().__init__(message)
-        self.result = code
+    code = running.TRAJECTORY_INVALID
+
+    def __init__(self, result: int, message: str) -> None:
+        super().__init__(message, values={"result": result})
+        self.result = result
 
 
 class TrajectoryReader:
@@ -79,7 +82,7 @@ class TrajectoryReader:
             time = span.sec + span.nanosec / 1e9
             if time < 0 or time <= last:
                 raise InvalidTrajectoryError(
-                    INVALID_GOAL, f"the time of point {number} does not come after the one before"
+                    INVALID_GOAL, f"the time of point {number} must be after that of the one before"
                 )
             last = time
             moved = time - (begin_ns - start_ns) / 1e9
@@ -93,7 +96,7 @@ class TrajectoryReader:
                 # At once, as fast as the joints can: it ends when they may be there.
                 return Trajectory(time_ns, [replace(made, time=self._shortest(made))])
         if not points:
-            raise InvalidTrajectoryError(OLD_HEADER, "all of its points lie in the past")
+            raise InvalidTrajectoryError(OLD_HEADER, "all its points are in the past")
         if self._must_stop and any(abs(rate) > _STILL for rate in points[-1].velocity):
             raise InvalidTrajectoryError(INVALID_GOAL, "the last point has a velocity")
         self._unwind(points, begin)
@@ -115,7 +118,7 @@ class TrajectoryReader:
         unknown = [name for name in names if name not in self._names]
         if unknown:
             raise InvalidTrajectoryError(
-                INVALID_JOINTS, f'joint "{unknown[0]}" is not of this controller'
+                INVALID_JOINTS, f'joint "{unknown[0]}" does not belong to this controller'
             )
         missing = [name for name in self._names if name not in names]
         if missing and not self._partial:
@@ -138,7 +141,7 @@ class TrajectoryReader:
             numbers = [float(value) for value in values]
             if not all(math.isfinite(value) for value in numbers):
                 raise InvalidTrajectoryError(
-                    INVALID_GOAL, f"point {number} has {what} that are none"
+                    INVALID_GOAL, f"the {what} of point {number} are not all finite"
                 )
             return tuple(
                 numbers[place] if place >= 0 else rest[index] for index, place in enumerate(order)

@@ -56,7 +56,7 @@ class Tolerances:
         """
         for each in (*goal.component_path_tolerance, *goal.component_goal_tolerance):
             raise InvalidTrajectoryError(
-                INVALID_JOINTS, f'"{each.joint_name}" is no joint of several degrees of freedom'
+                INVALID_JOINTS, f'"{each.joint_name}" is not a joint of several degrees of freedom'
             )
         return self._merged(self.path, goal.path_tolerance), self._merged(
             self.goal, goal.goal_tolerance
@@ -67,7 +67,8 @@ class Tolerances:
         for each in stated:
             if each.name not in self._names:
                 raise InvalidTrajectoryError(
-                    INVALID_JOINTS, f'there is a tolerance for the unknown joint "{each.name}"'
+                    INVALID_JOINTS,
+                    f'a tolerance names the joint "{each.name}", which does not exist',
                 )
             index = self._names.index(each.name)
             # 0 leaves the default, and what is below takes the check away.

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
+from cartwheel.codes import robot
 from cartwheel.description.kinematics import link_poses
 from cartwheel.description.model import Cylinder, RobotDescription, Sphere
 from cartwheel.geometry import Array, matrix_from_quat
@@ -51,10 +52,12 @@ def check_axis(controller: Controller, joint: str, wanted: tuple[float, float, f
     axis = turn @ np.array(found.axis.xyz)
     if float(axis @ np.array(wanted)) < -0.5:
         name = "xyz"[max(range(3), key=lambda index: wanted[index])]
-        controller.rig.report(
-            f'controller {controller.name}: the axis of "{joint}" points along -{name} of the '
-            "robot, so it turns the other way than the drive means",
+        controller.warn(
+            robot.WHEEL_AXIS_MISALIGNED,
+            f'the axis of joint "{joint}" points along -{name} of the robot, so it turns in the '
+            "opposite direction",
             at=found.origin,
+            values={"joint": joint, "axis": f"-{name}"},
         )
 
 
@@ -141,12 +144,11 @@ class WheelOdometry:
     ) -> None:
         rate = settings.number("publish_rate", 50.0)
         if rate <= 0:
-            raise settings.error(f'"publish_rate" {rate:g} must be above 0')
+            raise settings.invalid("publish_rate", rate, "positive")
         size = settings.integer("velocity_rolling_window_size", 10)
         if not 1 <= size <= _MOST_KEPT:
-            raise settings.error(
-                f'"velocity_rolling_window_size" must be from 1 to {_MOST_KEPT:,}, not {size:,}'
-            )
+            wanted = f"from 1 to {_MOST_KEPT:,}"
+            raise settings.invalid("velocity_rolling_window_size", size, wanted)
         self._recent: deque[tuple[float, float, float]] = deque(maxlen=size)
         self._rhythm = Rhythm(rate)
         self.reckoning = DeadReckoning()
@@ -198,5 +200,5 @@ def _covariance(settings: Settings, name: str) -> Array:
     if len(values) == 36:
         return np.array(values)
     if len(values) != 6:
-        raise settings.error(f'"{name}" has {len(values)} numbers, not 6')
+        raise settings.invalid(name, values, "6 numbers, or 36")
     return np.diag(values).ravel()

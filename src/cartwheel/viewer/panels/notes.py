@@ -33,7 +33,7 @@ def notes_html(diagnostics: Sequence[Diagnostic]) -> str:
     """All of them, the gravest first."""
     order = {"error": 0, "warning": 1, "info": 2}
     notes = "".join(
-        f'<div class="cw-note cw-{note.severity}">{escape(note.message)}'
+        f'<div class="cw-note cw-{note.severity}">{escape(note.text)}'
         f'<div class="cw-dim">{escape(note.origin) if note.origin else ""}</div></div>'
         for note in sorted(diagnostics, key=lambda note: order[note.severity])
     )
