@@ -55,7 +55,7 @@ NAVIGATION: list[tuple[str, list[Entry]]] = [
             "security-policy.md",
         ],
     ),
-    ("Tutorials", ["tutorial/README.md", "tutorial/[0-9]*.md", "tutorial/*.md"]),
+    ("Tutorials", ["quickstart.md", "tutorial/README.md", "tutorial/[0-9]*.md", "tutorial/*.md"]),
     (
         "How-to",
         [
