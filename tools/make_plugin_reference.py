@@ -246,7 +246,7 @@ def _default(item: dataclasses.Field[Any]) -> str:
     value = item.default
     if value is dataclasses.MISSING:
         return "required"
-    if value is None or value == "":
+    if value is None or value in ("", ()):
         return ""
     if isinstance(value, bool):
         return "`true`" if value else "`false`"

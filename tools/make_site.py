@@ -24,6 +24,7 @@ from collections.abc import Mapping
 from pathlib import Path, PurePosixPath
 
 import site_pages
+from cartwheel.codes import MODULES
 
 ROOT = Path(__file__).resolve().parent.parent
 DOCS = ROOT / "docs"
@@ -44,6 +45,7 @@ ELSEWHERE = {
 
 Entry = str | tuple[str, "str | list[Entry]"]
 """A pattern, a page with a title, or a section."""
+_CODES: list[Entry] = [(title, [f"codes/CW{n}*.md"]) for n, title in enumerate(MODULES.values())]
 NAVIGATION: list[tuple[str, list[Entry]]] = [
     (
         "Home",
@@ -76,7 +78,7 @@ NAVIGATION: list[tuple[str, list[Entry]]] = [
         [
             ("Plugins and sensors", ["plugins/index.md", "plugins/*.md"]),
             ("Commands", ["commands/index.md", "commands/*.md"]),
-            ("Diagnostic codes", ["codes/index.md", "codes/*.md"]),
+            ("Diagnostic codes", ["codes/index.md", *_CODES]),
             "topics.md",
             "api.md",
             "plugin-api.md",

@@ -133,5 +133,14 @@ def test_each_public_name_is_in_the_api(staged: Path) -> None:
     assert set(re.findall(r"^::: cartwheel\.(\w+)$", page, re.MULTILINE)) == {*cartwheel.__all__}
 
 
+def test_no_page_has_a_tag_that_a_browser_would_hide(staged: Path) -> None:
+    """Such as a <gazebo> outside of code."""
+    code = re.compile(r"```.*?```|(`+)(?!`).*?(?<!`)\1(?!`)|\\<|<!--.*?-->", re.DOTALL)
+    shown = {"a", "br", "div", "img", "kbd", "p", "picture", "source", "sub", "sup"}
+    for page in (staged / "docs").rglob("*.md"):
+        tags = re.findall(r"</?([A-Za-z][\w.-]*)(?=[\s/>])", code.sub("", page.read_text()))
+        assert set(tags) <= shown, page.relative_to(staged)
+
+
 def test_written_pages_are_not_in_the_repository() -> None:
     assert not [name for name in site_pages.pages() if (DOCS / name).exists()]
