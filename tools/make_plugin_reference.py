@@ -209,7 +209,7 @@ def _prose(plugin: type[Plugin[Any]]) -> list[str]:
 def _markdown(text: str) -> str:
     """Text in which a tag is code, so that no page takes it for HTML."""
     parts = text.split("`")
-    parts[::2] = [re.sub(r"</?\w+>", r"`\g<0>`", part) for part in parts[::2]]
+    parts[::2] = [re.sub(r"<[/\w][^<>]*>", r"`\g<0>`", part) for part in parts[::2]]
     return "`".join(parts)
 
 
