@@ -15,9 +15,10 @@ from cartwheel.errors import CartwheelError
 
 if TYPE_CHECKING:
     from cartwheel.api import Model, World
+    from cartwheel.checks import check
     from cartwheel.geometry import Pose
 
-__all__ = ["CartwheelError", "Model", "Pose", "World"]
+__all__ = ["CartwheelError", "Model", "Pose", "World", "check"]
 __version__ = "0.1.0"
 
 
@@ -28,6 +29,10 @@ def __getattr__(name: str) -> Any:
         from cartwheel import api
 
         return getattr(api, name)
+    if name == "check":
+        from cartwheel.checks import check
+
+        return check
     if name == "Pose":
         from cartwheel.geometry import Pose
 

@@ -143,6 +143,12 @@ class Diagnostic:
         """The message and the hint, for logs that show one line."""
         return f"{self.message}. {self.hint}" if self.hint else self.message
 
+    @property
+    def identity(self) -> tuple[object, ...]:
+        """Equal for two reports of the same fault."""
+        values = tuple(sorted(self.values.items(), key=lambda item: item[0]))
+        return (self.code, self.message, str(self.origin), values)
+
     def __str__(self) -> str:
         place = f"{self.origin}: " if self.origin else ""
         code = f" [{self.code}]" if self.code is not UNCLASSIFIED else ""

@@ -30,6 +30,7 @@ MAY_IMPORT = {
     "gazebo": {"description", "world", "simulation", "messages", "graph", "plugins", "session"},
     "bridges": {"messages", "graph", "gate"},
     "playback": {"description", "simulation", "messages", "graph", "bridges"},
+    "checks": {"description", "plugins"},
     "corpus": {"description", "simulation", "messages", "graph", "plugins", "api"},
     "cli": {
         "description",
@@ -47,6 +48,7 @@ MAY_IMPORT = {
         "api",
         "plugins",
         "corpus",
+        "checks",
     },
 }
 

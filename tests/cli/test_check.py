@@ -96,11 +96,26 @@ def test_a_caret_points_at_what_is_wrong(checked):
 
 def test_json_keeps_to_its_schema(checked):
     report = json.loads(checked(ERROR, "--json", status=1))
-    assert set(report) == {"schema", "file", "name", "complete", "summary", "findings"}
+    assert set(report) == {
+        "schema",
+        "file",
+        "name",
+        "complete",
+        "descriptions",
+        "summary",
+        "findings",
+    }
     assert report["schema"] == 2
     assert report["name"] == "bar"
     assert report["complete"] is True
-    assert report["summary"] == {"error": 1, "warning": 0, "info": 0, "ignored": 0}
+    assert report["summary"] == {
+        "error": 1,
+        "warning": 0,
+        "info": 0,
+        "ignored": 0,
+        "suppressed": 0,
+        "accepted": 0,
+    }
     (finding,) = report["findings"]
     assert {key: type(value) for key, value in finding.items()} == KEYS
     assert finding["code"] == "CW220"

@@ -2,12 +2,23 @@
 
 from __future__ import annotations
 
+from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from cartwheel.cli import arguments, help
+
+
+class Format(StrEnum):
+    """Forms of a report."""
+
+    text = "text"
+    json = "json"
+    sarif = "sarif"
+    github = "github"
+    junit = "junit"
 
 
 def add_to(app: typer.Typer) -> None:
@@ -18,9 +29,31 @@ def add_to(app: typer.Typer) -> None:
 def check(
     words: arguments.Names = None,
     *,
+    select: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--select",
+            metavar="CODES",
+            help="Report only these codes: CW204, a name, or all that begin with CW2. Separate"
+            " several with commas.",
+            rich_help_panel=help.REPORT,
+        ),
+    ] = None,
+    ignore: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--ignore",
+            metavar="CODES",
+            help="Do not report these codes.",
+            rich_help_panel=help.REPORT,
+        ),
+    ] = None,
+    format: Annotated[
+        Format,
+        typer.Option("--format", help="Form of the report.", rich_help_panel=help.REPORT),
+    ] = Format.text,
     json: Annotated[
-        bool,
-        typer.Option("--json", help="Print the findings as JSON.", rich_help_panel=help.REPORT),
+        bool, typer.Option("--json", help="Same as --format json.", rich_help_panel=help.REPORT)
     ] = False,
     strict: Annotated[
         bool,
@@ -28,17 +61,42 @@ def check(
             "--strict", help="Exit with status 1 for notes too.", rich_help_panel=help.REPORT
         ),
     ] = False,
-    ignore: Annotated[
-        list[str] | None,
+    baseline: Annotated[
+        Path | None,
         typer.Option(
-            "--ignore",
-            metavar="RULE",
-            help="Skip this rule. Can be repeated.",
+            "--baseline",
+            metavar="FILE",
+            help="Report only findings that are not in this file.",
             rich_help_panel=help.REPORT,
         ),
     ] = None,
-    rules: Annotated[
-        bool, typer.Option("--list", help="List all rules and exit.", rich_help_panel=help.REPORT)
+    write_baseline: Annotated[
+        Path | None,
+        typer.Option(
+            "--write-baseline",
+            metavar="FILE",
+            help="Write all findings to this file and exit.",
+            rich_help_panel=help.REPORT,
+        ),
+    ] = None,
+    fix: Annotated[
+        bool,
+        typer.Option(
+            "--fix",
+            help="Fix misspelt tags, degrees, inertias and wheel sizes in the files.",
+            rich_help_panel=help.REPORT,
+        ),
+    ] = False,
+    diff: Annotated[
+        bool,
+        typer.Option(
+            "--diff",
+            help="Show what --fix would change, and exit.",
+            rich_help_panel=help.REPORT,
+        ),
+    ] = False,
+    codes: Annotated[
+        bool, typer.Option("--list", help="List all codes and exit.", rich_help_panel=help.REPORT)
     ] = False,
     package_path: arguments.PackagePath = None,
     controllers: Annotated[
@@ -58,7 +116,7 @@ def check(
     """
     from cartwheel.cli.commands import check as work
 
-    if rules:
+    if codes:
         work.list_codes()
         return
     file, values = arguments.split(words)
@@ -66,10 +124,19 @@ def check(
         arguments.needed(file),
         values,
         package_path or [],
-        ignore=ignore or [],
-        json=json,
+        select=_words(select),
+        ignore=_words(ignore),
+        format="json" if json else format.value,
         strict=strict,
         controllers=controllers or [],
+        accepted=baseline,
+        write_baseline=write_baseline,
+        fix=fix and not diff,
+        diff=diff,
     )
     if status:
         raise typer.Exit(status)
+
+
+def _words(options: list[str] | None) -> list[str]:
+    return [word for text in options or () for word in text.split(",") if word.strip()]

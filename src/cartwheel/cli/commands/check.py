@@ -1,22 +1,17 @@
-"""Findings about a description, as a compiler shows them or as JSON."""
+"""Findings about descriptions, as a compiler shows them or for other programs."""
 
 from __future__ import annotations
 
-import json as json_module
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
+import sys
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
 
-from cartwheel.cli.console import paint, say, table
-from cartwheel.cli.showing import STYLES, column_of, shown
-from cartwheel.codes import files as files_codes
-from cartwheel.description.check import REPORTED, PluginKnowledge, Report
-from cartwheel.description.check import check as check_description
-from cartwheel.description.model import PluginTag, Sensor
-from cartwheel.errors import UNCLASSIFIED, DescriptionError, Diagnostic, PluginError
-
-SCHEMA = 2
+from cartwheel.checks import Result, baseline, fixing, run
+from cartwheel.cli.commands.check_formats import FORMATS
+from cartwheel.cli.console import note, paint, say, table
+from cartwheel.cli.showing import STYLES, shown
+from cartwheel.description.check import REPORTED
+from cartwheel.errors import Diagnostic
 
 
 def list_codes() -> None:
@@ -25,87 +20,86 @@ def list_codes() -> None:
 
 
 def check(
-    file: str,
+    path: str,
     values: Mapping[str, str],
     package_path: Sequence[Path],
     *,
-    ignore: Sequence[str],
-    json: bool,
-    strict: bool,
+    select: Sequence[str] = (),
+    ignore: Sequence[str] = (),
+    format: str = "text",
+    strict: bool = False,
     controllers: Sequence[Path] = (),
+    accepted: Path | None = None,
+    write_baseline: Path | None = None,
+    fix: bool = False,
+    diff: bool = False,
 ) -> int:
-    """Prints what is found; returns the status: 1 for findings, 2 where much could not be read.
+    """Prints the findings; returns the status: 1 for findings, 2 where much could not be read.
 
     Args:
-        file: As for `cartwheel.description.load`.
+        path: A description or a folder.
         values: Of the xacro's arguments.
         package_path: Where packages are looked for first.
-        ignore: Rules to leave out.
-        json: Whether a program reads it.
+        select: Codes to report.
+        ignore: Codes not to report.
+        format: ``text`` or one of `FORMATS`.
         strict: Whether notes count as findings.
         controllers: Files of controllers, in place of those that lie near the robot.
+        accepted: The baseline.
+        write_baseline: Where to write a baseline of all findings instead of printing them.
+        fix: Whether to write the fixes that are beyond doubt.
+        diff: Whether to only print them.
     """
-    try:
-        report = check_description(
-            file,
+
+    def checked() -> Result:
+        return run.check(
+            path,
             arguments=values,
             package_path=package_path,
-            known=knowledge(),
+            controllers=controllers,
+            select=select,
             ignore=ignore,
-            controller_files=controllers,
+            baseline=accepted,
+            use_baseline=write_baseline is None,
         )
-    except DescriptionError as error:
-        if not json and (error.origin is None or not error.origin.line):
-            raise  # there is no line to show
-        report = _unread(file, error)
-    if json:
-        say(json_module.dumps(as_mapping(report), indent=2, ensure_ascii=False))
-    else:
-        for finding, others in _alike(report.findings):
+
+    result = checked()
+    if fix or diff:
+        fixes = fixing.fixes(result.findings, fixing.project_of(Path(path)))
+        count = sum(len(each.findings) for each in fixes)
+        for each in fixes:
+            (say if format == "text" else note)(each.diff)
+        if diff and not fix:
+            say(f"{_findings(count)} can be fixed")
+            return int(bool(fixes))
+        for each in fixes:
+            each.write()
+        note(f"fixed {_findings(count)}")
+        result = checked()
+    if write_baseline is not None:
+        count = baseline.write(write_baseline, result.findings)
+        say(f"wrote {_findings(count)} to {write_baseline}")
+        return 0
+    if format == "text":
+        for finding, others in _alike(result.findings):
             say(shown(finding, others) + "\n")
-        say(_summary(report))
-    if not report.complete:
+        say(_summary(result))
+    else:
+        text = FORMATS[format](result)
+        if text:
+            say(text)
+    if format in ("github", "junit", "sarif"):
+        # The log shows how it went as well.
+        sys.stdout.flush()
+        note(_summary(result))
+    if not result.complete:
         return 2
-    counted = ("error", "warning", "info") if strict else ("error", "warning")
-    return int(any(report.count(severity) for severity in counted))
+    counted = ("error", "warning", "info") if strict or result.strict else ("error", "warning")
+    return int(any(result.count(severity) for severity in counted))
 
 
-def knowledge() -> PluginKnowledge:
-    """What Cartwheel's own plugins and controllers know."""
-    from cartwheel.plugins.control.catalogue import controller_types
-    from cartwheel.plugins.control.suggestion import files_for
-
-    return PluginKnowledge(
-        filenames=_filenames(),
-        judge=_judge,
-        controller_types=tuple(sorted(controller_types())),
-        controller_files=files_for,
-    )
-
-
-def as_mapping(report: Report) -> dict[str, Any]:
-    """The report in the form that docs/check.md promises."""
-    return {
-        "schema": SCHEMA,
-        "file": report.file,
-        "name": report.name,
-        "complete": report.complete,
-        "summary": {
-            "error": report.count("error"),
-            "warning": report.count("warning"),
-            "info": report.count("info"),
-            "ignored": report.ignored,
-        },
-        "findings": [_finding(finding) for finding in report.findings],
-    }
-
-
-def _unread(file: str, error: DescriptionError) -> Report:
-    """What ends a check at once, as its one finding."""
-    finding = error.diagnostic()
-    if finding.code is UNCLASSIFIED:
-        finding = replace(finding, code=files_codes.UNREADABLE)
-    return Report(file=file, name="", findings=(finding,), ignored=0, complete=False)
+def _findings(count: int) -> str:
+    return f"{count} finding{'s' if count != 1 else ''}"
 
 
 def _alike(findings: Sequence[Diagnostic]) -> list[tuple[Diagnostic, list[Diagnostic]]]:
@@ -126,58 +120,24 @@ def _alike(findings: Sequence[Diagnostic]) -> list[tuple[Diagnostic, list[Diagno
     return list(groups.values())
 
 
-def _summary(report: Report) -> str:
+def _summary(result: Result) -> str:
     counts = [
         f"{count} {name}{'s' if count != 1 else ''}"
         for name, severity in (("error", "error"), ("warning", "warning"), ("note", "info"))
-        if (count := report.count(severity))
+        if (count := result.count(severity))
     ]
     text = ", ".join(counts) if counts else "nothing found"
-    if report.ignored:
-        text += f", {report.ignored} ignored"
-    if not report.complete:
+    for count, word in (
+        (result.ignored, "ignored"),
+        (result.suppressed, "suppressed"),
+        (result.accepted, "in the baseline"),
+    ):
+        if count:
+            text += f", {count} {word}"
+    if not result.complete:
         text += "; not everything could be checked"
-    worst = next((s for s in ("error", "warning", "info") if report.count(s)), None)
+    worst = next((s for s in ("error", "warning", "info") if result.count(s)), None)
     styles = STYLES[worst] if worst is not None else ("green", "bold")
-    return f"{report.file}: {paint(text, *styles)}"
-
-
-def _finding(finding: Diagnostic) -> dict[str, Any]:
-    origin = finding.origin
-    return {
-        "code": finding.code.number,
-        "name": finding.code.name,
-        "rule": finding.code.name,
-        "severity": finding.severity,
-        "message": finding.message,
-        "file": origin.file if origin is not None else "",
-        "line": origin.line if origin is not None else 0,
-        "column": column_of(finding),
-        "stack": list(origin.stack) if origin is not None else [],
-        "instead": finding.instead,
-        "place": finding.place,
-        "hint": finding.hint,
-        "values": dict(finding.values),
-        "also": [each.message for each in finding.also],
-    }
-
-
-def _filenames() -> tuple[str, ...]:
-    from cartwheel.plugins.catalogue import all_plugins
-
-    return tuple(sorted({name for plugin in all_plugins() for name in plugin.filenames}))
-
-
-def _judge(tag: PluginTag, _sensor: Sensor | None) -> Iterable[Diagnostic] | None:
-    from cartwheel.plugins.catalogue import plugin_named, short_name
-    from cartwheel.plugins.parameters import read
-    from cartwheel.plugins.world_plugins import BUILT_IN
-
-    plugin = plugin_named(tag.filename)
-    if plugin is None:
-        return () if short_name(tag.filename) in BUILT_IN else None
-    try:
-        _, diagnostics = read(plugin.parameters, tag.element)
-    except PluginError as error:
-        return [error.diagnostic()]
-    return diagnostics
+    reports = result.reports
+    subject = reports[0].file if len(reports) == 1 else f"{result.path} ({len(reports)} robots)"
+    return f"{subject}: {paint(text, *styles)}"

@@ -79,6 +79,8 @@ class Report:
     """In the order of their places."""
     ignored: int
     """Findings of ignored codes."""
+    files: tuple[str, ...] = ()
+    """All files that were read for it: included ones, and those of controllers."""
     complete: bool
     """False where it could not be read in spite of all: rules that need it were left out."""
 
@@ -131,6 +133,9 @@ def check(
         findings=tuple(told),
         ignored=len(found) - len(told),
         complete=subject.read is not None,
+        files=tuple(
+            dict.fromkeys([*subject.files, *(str(own.path) for _, own in subject.control)])
+        ),
     )
 
 
@@ -227,18 +232,13 @@ def _distinct(findings: Iterable[Diagnostic]) -> list[Diagnostic]:
     """Each once; those of one kind that one line of a macro makes for several parts as one."""
     distinct: dict[tuple[object, ...], Diagnostic] = {}
     for each in findings:
-        key = _identity(each)
+        key = each.identity
         if each.origin is not None and each.origin.stack:
             key = (*each.kind, str(each.origin))
         first = distinct.setdefault(key, each)
-        if all(_identity(each) != _identity(other) for other in (first, *first.also)):
+        if all(each.identity != other.identity for other in (first, *first.also)):
             distinct[key] = replace(first, also=(*first.also, each))
     return list(distinct.values())
-
-
-def _identity(finding: Diagnostic) -> tuple[object, ...]:
-    values = tuple(sorted(finding.values.items(), key=lambda item: item[0]))
-    return (finding.code, finding.message, str(finding.origin), values)
 
 
 def _place(finding: Diagnostic, order: Mapping[str, int]) -> tuple[int, str, int]:

@@ -1,0 +1,39 @@
+"""What Cartwheel's own plugins and controllers know, for the rules about them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from cartwheel.description.check import PluginKnowledge
+from cartwheel.description.model import PluginTag, Sensor
+from cartwheel.errors import Diagnostic, PluginError
+
+
+def knowledge() -> PluginKnowledge:
+    """The knowledge of all plugins and controllers that Cartwheel simulates."""
+    from cartwheel.plugins.catalogue import all_plugins
+    from cartwheel.plugins.control.catalogue import controller_types
+    from cartwheel.plugins.control.suggestion import files_for
+
+    names = {name for plugin in all_plugins() for name in plugin.filenames}
+    return PluginKnowledge(
+        filenames=tuple(sorted(names)),
+        judge=_judge,
+        controller_types=tuple(sorted(controller_types())),
+        controller_files=files_for,
+    )
+
+
+def _judge(tag: PluginTag, _sensor: Sensor | None) -> Iterable[Diagnostic] | None:
+    from cartwheel.plugins.catalogue import plugin_named, short_name
+    from cartwheel.plugins.parameters import read
+    from cartwheel.plugins.world_plugins import BUILT_IN
+
+    plugin = plugin_named(tag.filename)
+    if plugin is None:
+        return () if short_name(tag.filename) in BUILT_IN else None
+    try:
+        _, diagnostics = read(plugin.parameters, tag.element)
+    except PluginError as error:
+        return [error.diagnostic()]
+    return diagnostics

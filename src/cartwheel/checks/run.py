@@ -1,0 +1,180 @@
+"""Checks a file or a workspace, with the settings, suppressions and baseline of its project."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from cartwheel.checks import workspace
+from cartwheel.checks.baseline import Baseline
+from cartwheel.checks.knowledge import knowledge
+from cartwheel.checks.selection import Selection
+from cartwheel.checks.settings import Settings, settings_for
+from cartwheel.checks.suppressions import Suppressions
+from cartwheel.codes import files as files_codes
+from cartwheel.description.check import PluginKnowledge, Report
+from cartwheel.description.check import check as check_description
+from cartwheel.errors import UNCLASSIFIED, DescriptionError, Diagnostic, Origin
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Result:
+    """What a check of a file or a folder reports."""
+
+    path: str
+    """The file or the folder."""
+    reports: tuple[Report, ...]
+    """Of each description, before anything is selected or suppressed."""
+    findings: tuple[Diagnostic, ...]
+    """By file, and then by line; what several descriptions share is there once."""
+    ignored: int = 0
+    """Findings whose codes are ignored or not selected."""
+    suppressed: int = 0
+    """Findings that a comment suppresses."""
+    accepted: int = 0
+    """Findings of the baseline."""
+    strict: bool = False
+    """Whether the project's settings make notes count."""
+
+    @property
+    def complete(self) -> bool:
+        """False if something could not be read, so that some rules were not applied."""
+        return all(report.complete for report in self.reports)
+
+    def count(self, severity: str) -> int:
+        """The number of findings of a severity: ``error``, ``warning`` or ``info``."""
+        return sum(finding.severity == severity for finding in self.findings)
+
+
+def check(
+    path: Path | str,
+    *,
+    arguments: Mapping[str, str] | None = None,
+    package_path: Sequence[Path] = (),
+    controllers: Sequence[Path] = (),
+    select: Sequence[str] = (),
+    ignore: Sequence[str] = (),
+    baseline: Path | None = None,
+    settings: bool = True,
+    use_baseline: bool = True,
+) -> Result:
+    """Finds mistakes in a description, or in all descriptions of a folder.
+
+    The findings are those of ``cartwheel check``, which calls this function.
+
+    Args:
+        path: A xacro, URDF, SDF or world, a shipped one, or a folder with some.
+        arguments: Values of the xacro's arguments.
+        package_path: Folders in which packages are looked for first.
+        controllers: Controller files to check, in place of those near the robot.
+        select: Codes to report, in place of the settings': numbers, names, or the begin of a
+            number such as ``CW2``. Empty for the settings', or all.
+        ignore: Codes not to report, besides those of the settings.
+        baseline: A file of accepted findings, in place of the settings'.
+        settings: Whether ``cartwheel.toml`` or ``pyproject.toml`` at or above the path count.
+        use_baseline: False to report the findings that the baseline accepts as well.
+
+    Raises:
+        DescriptionError: A single file cannot be read at all, or is not a description.
+        UnknownNameError: A code does not exist.
+        CartwheelError: The settings or the baseline cannot be read.
+    """
+    project = settings_for(Path(path)) if settings and Path(path).exists() else Settings()
+    selection = Selection.of(select or project.select, (*project.ignore, *ignore))
+    accepted_file = (baseline or project.baseline) if use_baseline else None
+    accepted = Baseline.read(accepted_file) if accepted_file is not None else None
+    known = knowledge()
+    folder = Path(path).is_dir() and not (Path(path) / "model.config").is_file()
+    files = workspace.descriptions(Path(path)) if folder else [Path(path)]
+    reports = tuple(
+        _report(file, arguments or {}, package_path, controllers, known, folder=folder)
+        for file in files
+    )
+    return _result(str(path), reports, selection, accepted, strict=project.strict)
+
+
+def _report(
+    file: Path,
+    arguments: Mapping[str, str],
+    package_path: Sequence[Path],
+    controllers: Sequence[Path],
+    known: PluginKnowledge,
+    *,
+    folder: bool,
+) -> Report:
+    try:
+        return check_description(
+            file,
+            arguments=arguments,
+            package_path=package_path,
+            known=known,
+            controller_files=controllers,
+        )
+    except DescriptionError as error:
+        # Without a line there is nothing to show of a single file but the error itself.
+        if not folder and (error.origin is None or not error.origin.line):
+            raise
+        finding = error.diagnostic()
+        if finding.code is UNCLASSIFIED:
+            finding = replace(finding, code=files_codes.UNREADABLE)
+        if finding.origin is None:
+            finding = replace(finding, origin=Origin(file=str(file)))
+        return Report(
+            file=str(file),
+            name="",
+            findings=(finding,),
+            ignored=0,
+            complete=False,
+            files=(str(file),),
+        )
+
+
+def _result(
+    path: str,
+    reports: tuple[Report, ...],
+    selection: Selection,
+    baseline: Baseline | None,
+    *,
+    strict: bool,
+) -> Result:
+    suppressions = Suppressions()
+    findings: list[Diagnostic] = []
+    seen: set[tuple[object, ...]] = set()
+    ignored = suppressed = accepted = 0
+    for report in reports:
+        for finding in report.findings:
+            if finding.identity in seen:
+                continue
+            seen.add(finding.identity)
+            # Comments first: one that suppresses an ignored code is not unused.
+            if suppressions.suppresses(finding):
+                suppressed += 1
+            elif finding.code not in selection:
+                ignored += 1
+            elif baseline is not None and baseline.accepts(finding):
+                accepted += 1
+            else:
+                findings.append(finding)
+    notes = suppressions.unused(file for report in reports for file in report.files)
+    findings += [note for note in notes if note.code in selection]
+    order: dict[str, int] = {}
+    for report in reports:
+        for file in report.files:
+            order.setdefault(file, len(order))
+
+    def place(finding: Diagnostic) -> tuple[int, str, int]:
+        if finding.origin is None:
+            return (-1, "", 0)
+        file = finding.origin.file
+        return (order.get(file, len(order)), file, finding.origin.line)
+
+    return Result(
+        path=path,
+        reports=reports,
+        findings=tuple(sorted(findings, key=place)),
+        ignored=ignored,
+        suppressed=suppressed,
+        accepted=accepted,
+        strict=strict,
+    )

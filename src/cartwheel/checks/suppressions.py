@@ -1,0 +1,113 @@
+"""Comments that suppress a code at one place.
+
+``<!-- cartwheel: ignore CW204 -->`` in XML and ``# cartwheel: ignore CW204`` in YAML, at the
+line of the element or on the line before. Several codes are separated by commas or spaces; a
+reason may follow in parentheses.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from cartwheel.checks.selection import codes_matching
+from cartwheel.codes import command
+from cartwheel.description import xml
+from cartwheel.description.regular import read_regular_text
+from cartwheel.errors import Code, Diagnostic, Origin, UnknownNameError
+
+_IN_XML = re.compile(r"<!--\s*cartwheel:\s*ignore\b([^(]*?)(?:\(.*?)?-->")
+_IN_YAML = re.compile(r"#\s*cartwheel:\s*ignore\b([^(\n]*)")
+_YAML = (".yaml", ".yml")
+MOST = 1000
+"""Suppressions of one file; later ones are not read."""
+
+
+@dataclass
+class Suppression:
+    """A comment, and whether it has suppressed anything."""
+
+    file: str
+    line: int
+    lines: frozenset[int]
+    """Whose findings it suppresses."""
+    word: str
+    codes: frozenset[Code]
+    hint: str = ""
+    used: bool = field(default=False)
+
+
+class Suppressions:
+    """Those of the files of one or several checks."""
+
+    def __init__(self) -> None:
+        self._by_file: dict[str, list[Suppression]] = {}
+
+    def suppresses(self, finding: Diagnostic) -> bool:
+        """Whether a comment suppresses a finding; that comment then counts as used."""
+        if finding.origin is None or not finding.origin.line:
+            return False
+        suppressed = False
+        for each in self._of(finding.origin.file):
+            if finding.origin.line in each.lines and finding.code in each.codes:
+                each.used = suppressed = True
+        return suppressed
+
+    def unused(self, files: Iterable[str]) -> list[Diagnostic]:
+        """A note for each comment in these files that has suppressed nothing."""
+        return [
+            command.SUPPRESSION_UNUSED.diagnostic(
+                f"nothing at this place has the code {each.word}"
+                if each.codes
+                else f'the code "{each.word}" does not exist',
+                origin=Origin(file=each.file, line=each.line),
+                hint=each.hint or "Remove the comment.",
+                mark=each.word,
+                values={"code": each.word},
+            )
+            for file in dict.fromkeys(files)
+            for each in self._of(file)
+            if not each.used
+        ]
+
+    def _of(self, file: str) -> list[Suppression]:
+        if file not in self._by_file:
+            self._by_file[file] = _read(file)
+        return self._by_file[file]
+
+
+def _read(file: str) -> list[Suppression]:
+    try:
+        lines = read_regular_text(Path(file), xml.MAX_BYTES).split("\n")
+    except (OSError, ValueError):
+        return []
+    pattern = _IN_YAML if file.endswith(_YAML) else _IN_XML
+    found: list[Suppression] = []
+    for number, line in enumerate(lines, 1):
+        # A plain search first: most lines of large files have no comment of ours.
+        if "cartwheel:" not in line:
+            continue
+        for match in pattern.finditer(line):
+            alone = not pattern.sub("", line).strip()
+            reach = {number, _next(lines, number, pattern)} if alone else {number}
+            for word in re.split(r"[\s,]+", match[1].strip()):
+                if word and len(found) < MOST:
+                    found.append(_suppression(file, number, frozenset(reach), word))
+    return found
+
+
+def _next(lines: Sequence[str], number: int, pattern: re.Pattern[str]) -> int:
+    """The first line behind a comment that holds something else."""
+    for following in range(number, min(number + 20, len(lines))):
+        if pattern.sub("", lines[following]).strip():
+            return following + 1
+    return number
+
+
+def _suppression(file: str, line: int, lines: frozenset[int], word: str) -> Suppression:
+    try:
+        return Suppression(file, line, lines, word, codes_matching(word))
+    except UnknownNameError as error:
+        return Suppression(file, line, lines, word, frozenset(), hint=error.hint or "")

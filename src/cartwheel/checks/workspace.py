@@ -1,0 +1,115 @@
+"""The robots, models and worlds of a folder: files that others only include are not among them."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterator
+from pathlib import Path, PurePosixPath
+
+from cartwheel.description import xml
+from cartwheel.description.node import Node
+from cartwheel.errors import DescriptionError
+
+SUFFIXES = (".xacro", ".urdf", ".sdf", ".world")
+MOST = 5000
+"""Files of a folder that are looked at."""
+_LEFT_OUT = {"build", "install", "devel", "log", "node_modules", "__pycache__"}
+_MARKERS = ("COLCON_IGNORE", "CATKIN_IGNORE", "AMENT_IGNORE")
+_SUBSTITUTION = re.compile(r"\$\{[^}]*\}|\$\([^)]*\)|^(?:package|model|file)://")
+_FIND = re.compile(r"^(?:\$\(find(?:-pkg-share)? +([\w.-]+)\)|package://([\w.-]+))/(.+)$")
+_BUILT_IN = frozenset({
+    "include", "arg", "property", "macro", "if", "unless", "insert_block", "call", "element",
+    "attribute",
+})  # fmt: skip
+
+
+def descriptions(folder: Path) -> list[Path]:
+    """The top-level descriptions below a folder, in the order of their paths.
+
+    Build and hidden folders, and those with ``COLCON_IGNORE`` and the like, are not searched.
+    A file that cannot be read counts, so that its error is reported.
+    """
+    roots: dict[Path, Node | None] = {}
+    for path in _files(folder):
+        roots[path] = _root(path)
+    included: set[Path] = set()
+    packages = {path.parent.name: path.parent for path in _manifests(folder)}
+    for path, root in roots.items():
+        if root is not None:
+            included |= set(_included(path, root, packages, roots)) - {path}
+    return [
+        path
+        for path, root in roots.items()
+        if path not in included and (root is None or _describes(root))
+    ]
+
+
+def _walk(folder: Path) -> Iterator[tuple[Path, list[str]]]:
+    for here, folders, files in os.walk(folder):
+        folders[:] = sorted(
+            name
+            for name in folders
+            if name not in _LEFT_OUT
+            and not name.startswith(".")
+            and not any(Path(here, name, marker).exists() for marker in _MARKERS)
+        )
+        yield Path(here), sorted(files)
+
+
+def _files(folder: Path) -> list[Path]:
+    found = (
+        here / name for here, names in _walk(folder) for name in names if name.endswith(SUFFIXES)
+    )
+    return [path for _, path in zip(range(MOST), found, strict=False) if path.is_file()]
+
+
+def _manifests(folder: Path) -> list[Path]:
+    above = [each / "package.xml" for each in folder.absolute().parents]
+    below = (here / "package.xml" for here, names in _walk(folder) if "package.xml" in names)
+    return [*(path for path in above if path.is_file()), *below]
+
+
+def _root(path: Path) -> Node | None:
+    try:
+        return xml.parse(xml.read_bytes(path), str(path))
+    except DescriptionError:
+        return None
+
+
+def _included(
+    path: Path, root: Node, packages: dict[str, Path], known: dict[Path, Node | None]
+) -> Iterator[Path]:
+    waiting = [root]
+    while waiting:
+        node = waiting.pop()
+        waiting += node.children
+        name = node.attributes.get("filename", "")
+        if node.tag not in ("xacro:include", "include") or not name:
+            continue
+        match = _FIND.match(name)
+        if match is not None and "$" not in match[3]:
+            package = packages.get(match[1] or match[2])
+            if package is not None:
+                yield package / match[3]
+                continue
+        if not _SUBSTITUTION.search(name):
+            yield Path(os.path.normpath(path.parent / name))
+            continue
+        # What an expression says is not known here: any file with the same end may be meant.
+        tail = PurePosixPath(_SUBSTITUTION.split(name)[-1].lstrip("/")).parts
+        if tail:
+            yield from (each for each in known if each.parts[-len(tail) :] == tail)
+
+
+def _describes(root: Node) -> bool:
+    """Whether a file describes something by itself, and not only defines macros."""
+    if root.tag != "robot":
+        tags = ("model", "world", "light")
+        return root.tag in ("sdf", "gazebo") and any(each.tag in tags for each in root.children)
+    return any(
+        each.tag == "link"
+        or (each.tag.startswith("xacro:") and each.tag.removeprefix("xacro:") not in _BUILT_IN)
+        or each.tag in ("xacro:if", "xacro:unless", "xacro:call", "xacro:include")
+        for each in root.children
+    )
