@@ -164,8 +164,9 @@ def publish(version: str, *, latest: bool) -> None:
         site, version, aliases=aliases, update_aliases=True, message=message, allow_empty=True
     ):
         build()
-    if latest:
-        commands.set_default("latest", allow_empty=True)
+    # Until there is a latest version, the first page leads to this one.
+    released = any("latest" in info.aliases for info in commands.list_versions())
+    commands.set_default("latest" if released else version, allow_empty=True)
 
 
 def generate(*words: str) -> None:

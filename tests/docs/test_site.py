@@ -15,6 +15,7 @@ from cartwheel.cli.app import app
 from cartwheel.codes import all_codes
 
 from .pages import DOCS, ROOT
+from .pages import commands as shown_commands
 
 sys.path.insert(0, str(ROOT / "tools"))
 import make_site
@@ -131,6 +132,19 @@ def test_each_code_has_a_page_and_a_row(staged: Path) -> None:
 def test_each_public_name_is_in_the_api(staged: Path) -> None:
     page = (staged / "docs" / site_pages.API).read_text()
     assert set(re.findall(r"^::: cartwheel\.(\w+)$", page, re.MULTILINE)) == {*cartwheel.__all__}
+
+
+def test_the_commands_of_written_pages_work(staged: Path) -> None:
+    """Without those of the codes: many of them show what fails."""
+    ran = []
+    path = f"{Path(sys.executable).parent}:{os.environ['PATH']}"
+    for name in site_pages.pages():
+        if not name.startswith("codes/CW"):
+            for command in shown_commands(staged / "docs" / name):
+                words = ["bash", "-c", command.text]
+                subprocess.run(words, check=True, env={**os.environ, "PATH": path})
+                ran.append(command.text)
+    assert "cartwheel explain CW204" in ran
 
 
 def test_no_page_has_a_tag_that_a_browser_would_hide(staged: Path) -> None:
