@@ -32,13 +32,9 @@ class Guard:
 
     The engine would write its warnings to a file in the current folder and, left alone,
     quietly start a diverged simulation anew.
-
-    Args:
-        place_of: The place in a file of the link that a body of the engine stands for.
     """
 
-    def __init__(self, place_of: Callable[[str], Origin | None] = lambda _: None) -> None:
-        self._place_of = place_of
+    def __init__(self) -> None:
         mujoco.set_mju_user_warning(_swallow)
         self._states: deque[tuple[float, Any, Any]] = deque(maxlen=_KEPT)
         self._seen: dict[int, int] = {}
@@ -60,8 +56,12 @@ class Guard:
         self._states.clear()
         self._seen.clear()
 
-    def check(self) -> list[str]:
-        """Warnings that can be lived with, each once; none is the rule.
+    def check(self, place_of: Callable[[str], Origin | None] = lambda _: None) -> list[str]:
+        """The engine's new warnings after which a run goes on; usually none.
+
+        Args:
+            place_of: The place in a file of the link of a body. It is not kept: it would keep
+                its simulation alive.
 
         Raises:
             DivergedError: The state is no longer finite.
@@ -70,7 +70,7 @@ class Guard:
         with np.errstate(over="ignore", invalid="ignore"):
             size = self._qpos.dot(self._qpos) + self._qvel.dot(self._qvel)
         if not size < _HUGE**2:
-            raise self._diverged()
+            raise self._diverged(place_of)
         counts = self._counts.tolist()
         if not any(counts):
             return []
@@ -78,16 +78,16 @@ class Guard:
         for kind, count in enumerate(counts):
             if count and kind not in self._seen:
                 if _WARNING(kind) in _UNSTABLE:
-                    raise self._diverged()
+                    raise self._diverged(place_of)
                 text = mujoco.mju_warningText(kind, int(self._data.warning[kind].lastinfo))
                 messages.append(str(text).strip())
             self._seen[kind] = count
         return messages
 
-    def _diverged(self) -> DivergedError:
+    def _diverged(self, place_of: Callable[[str], Origin | None]) -> DivergedError:
         self.keep()
         if self._dumps >= _DUMPS:
-            return self._error("")
+            return self._error("", place_of)
         self._dumps += 1
         with tempfile.NamedTemporaryFile(
             prefix="cartwheel-diverged-", suffix=".npz", delete=False
@@ -98,9 +98,9 @@ class Guard:
                 qpos=np.array([state[1] for state in self._states]),
                 qvel=np.array([state[2] for state in self._states]),
             )
-        return self._error(file.name)
+        return self._error(file.name, place_of)
 
-    def _error(self, states: str) -> DivergedError:
+    def _error(self, states: str, place_of: Callable[[str], Origin | None]) -> DivergedError:
         """The error, with the file of the last states where there is one."""
         body = self._culprit()
         name = mujoco.mj_id2name(self._model, mujoco.mjtObj.mjOBJ_BODY, body) or "world"
@@ -108,7 +108,7 @@ class Guard:
             f'the simulation diverged by {self._data.time:.3f} s, first at "{name}"',
             code=world_codes.SIMULATION_DIVERGED,
             values={"body": name, "time": float(self._data.time), "states": states},
-            origin=self._place_of(name),
+            origin=place_of(name),
             hint=_likely(self._model, body)
             + (f" The last states are in {states}." if states else ""),
         )

@@ -80,7 +80,7 @@ class Simulation(Run):
         self._world_tasks: list[Task] = []
         self.engine.on_tasks.append(self._gather_tasks)
         self.engine.on_entries.append(lambda: self._compile(self._residents))
-        self._guard = Guard(self._place_of)
+        self._guard = Guard()
         self._guard_due = 0
         self._separation = Separation()
         self._recovered = 0
@@ -280,7 +280,7 @@ class Simulation(Run):
 
     def _watch(self) -> None:
         self._guard_due = self.engine.step + max(1, _GUARD_INTERVAL_NS // self.step_ns)
-        for message in self._guard.check():
+        for message in self._guard.check(self._place_of):
             self.engine.report(world_codes.PHYSICS_WARNING.diagnostic(message))
         self._guard.keep()
 
