@@ -74,7 +74,8 @@ def test_every_parameter_has_a_phrase_of_its_own(name):
     for parameter in parameters:
         text = parameter.help or ""
         assert re.match(r"[A-Z].*\.$", text, re.DOTALL), f"{name} {parameter.name}: {text!r}"
-        assert parameter.metavar or getattr(parameter, "is_flag", False) or parameter.name == "to"
+        shown, _ = parameter.get_help_record(context)
+        assert parameter.metavar or not re.search(r"<(?!\w+\|)", shown), f"{name} {shown}"
 
 
 @pytest.mark.parametrize("name", COMMANDS)

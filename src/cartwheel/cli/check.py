@@ -50,7 +50,7 @@ def check(
     ] = None,
     format: Annotated[
         Format,
-        typer.Option("--format", help="Form of the report.", rich_help_panel=help.REPORT),
+        typer.Option("--format", help="Format of the report.", rich_help_panel=help.REPORT),
     ] = Format.text,
     json: Annotated[
         bool, typer.Option("--json", help="Same as --format json.", rich_help_panel=help.REPORT)
