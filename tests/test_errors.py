@@ -1,8 +1,26 @@
 """The errors that a user sees."""
 
 import difflib
+from dataclasses import replace
 
-from cartwheel.errors import Once, UnknownNameError, likely
+import pytest
+
+from cartwheel.codes.wires import PEER_LIMIT
+from cartwheel.codes.wires import SLOW_SUBSCRIBER as SLOW
+from cartwheel.errors import (
+    DescriptionError,
+    Diagnostic,
+    Once,
+    Origin,
+    UnknownNameError,
+    likely,
+)
+
+PLACE = Origin(file="a.urdf", line=3)
+
+
+def warning(name):
+    return SLOW.diagnostic(f"{name} reads slowly", values={"name": name})
 
 
 def test_a_name_of_megabytes_is_cut_and_compared_with_nothing(monkeypatch):
@@ -27,15 +45,59 @@ def test_a_flood_of_warnings_is_shown_at_a_bounded_rate_and_counted(monkeypatch)
     now = [0.0]
     monkeypatch.setattr("time.monotonic", lambda: now[0])
     once = Once(5)
-    assert once("a") == "a"
-    assert once("a") is None
-    shown = [once(f"name {number}") for number in range(100)]
-    assert shown[:3] == ["name 0", "name 1", "name 2"]
-    assert shown[3] == "name 3 (from now on at most one warning every 10 s is shown)"
-    assert shown[4:] == [None] * 96
+
+    def shown(name):
+        diagnostic = once(warning(name))
+        return diagnostic and (diagnostic.values["name"], diagnostic.values.get("left_out", 0))
+
+    assert shown("a") == ("a", 0)
+    assert shown("a") is None
+    flood = [shown(f"name {number}") for number in range(100)]
+    assert flood == [*((f"name {number}", 0) for number in range(4)), *[None] * 96]
     now[0] += Once.PAUSE
-    assert once("important") == "important (warnings that are not shown: 96)"
-    assert once("b") is None
+    assert shown("important") == ("important", 96)
+    assert shown("b") is None
     now[0] += 3 * Once.PAUSE
-    assert once("c") == "c (warnings that are not shown: 1)"
-    assert once("d") == "d"
+    assert shown("c") == ("c", 1)
+    assert shown("d") == ("d", 0)
+
+
+@pytest.mark.wording
+def test_the_last_warning_before_the_bounded_rate_says_so():
+    once = Once(1)
+    assert str(once(warning("a")).message) == (
+        "a reads slowly (from now on at most one warning every 10 s is shown)"
+    )
+
+
+def test_warnings_are_the_same_if_code_place_and_values_are():
+    once = Once(50)
+    first = warning("a")
+    assert once(first) is first
+    assert once(replace(first, message="in other words")) is None
+    assert once(warning("b")) is not None
+    assert once(SLOW.diagnostic("a reads slowly", values={"name": "a"}, origin=PLACE)) is not None
+    assert once(PEER_LIMIT.diagnostic("a reads slowly", values={"name": "a"})) is not None
+    text = Diagnostic(severity="warning", message="without a code")
+    assert once(text) is text
+    assert once(text) is None
+    assert once(replace(text, message="another without a code")) is not None
+
+
+def test_what_an_error_caused_keeps_its_hint_values_and_code():
+    cause = DescriptionError(
+        "m", code=PEER_LIMIT, hint="Do it.", values={"name": "x"}, origin=PLACE
+    )
+    made = SLOW.because("it failed", cause, values={"topic": "/t"})
+    assert (made.code, made.hint, made.origin) == (SLOW, "Do it.", PLACE)
+    assert made.values == {"name": "x", "topic": "/t", "cause": PEER_LIMIT.number}
+    other = SLOW.because("it failed", KeyError("x"))
+    assert other.values == {"cause": "KeyError: 'x'"}
+    assert SLOW.because("it failed", KeyError("y")).values != other.values
+
+
+@pytest.mark.wording
+def test_logs_have_message_hint_and_code_in_one_line():
+    diagnostic = SLOW.diagnostic("it is slow", hint="Wait.", origin=PLACE)
+    assert diagnostic.text == f"it is slow. Wait. [{SLOW.number}]"
+    assert Diagnostic(severity="info", message="m").text == "m"

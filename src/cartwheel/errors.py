@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import difflib
 import threading
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Hashable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
 from cartwheel.budget import Budget
@@ -99,6 +99,41 @@ class Code:
             place=place,
         )
 
+    def because(
+        self,
+        message: str,
+        error: Exception,
+        *,
+        hint: str | None = None,
+        severity: Severity | None = None,
+        values: Mapping[str, Value] | None = None,
+    ) -> Diagnostic:
+        """A diagnostic of this kind with its cause.
+
+        Args:
+            message: What failed; the error's own message follows it.
+            error: What was raised.
+            hint: Instead of the error's.
+            severity: Where it differs from the code's.
+            values: For programs. The error's values are added, and ``cause``: the number of its
+                code, or its text.
+        """
+        if not isinstance(error, CartwheelError):
+            cause = one_line(error)
+            return self.diagnostic(
+                f"{message}: {cause}",
+                hint=hint or "",
+                severity=severity,
+                values={**(values or {}), "cause": cause},
+            )
+        return self.diagnostic(
+            f"{message}: {error.message}",
+            origin=error.origin,
+            hint=(error.hint or "") if hint is None else hint,
+            severity=severity,
+            values={**error.values, **(values or {}), "cause": error.code.number},
+        )
+
 
 UNCLASSIFIED = Code("CW000", "unclassified", "error", "a diagnostic without a code of its own")
 """Of diagnostics that have no code yet."""
@@ -140,8 +175,10 @@ class Diagnostic:
 
     @property
     def text(self) -> str:
-        """The message and the hint, for logs that show one line."""
-        return f"{self.message}. {self.hint}" if self.hint else self.message
+        """Message, hint and number of the code in one line without place, for logs."""
+        hint = f". {self.hint}" if self.hint else ""
+        code = f" [{self.code.number}]" if self.code is not UNCLASSIFIED else ""
+        return f"{self.message}{hint}{code}"
 
     @property
     def identity(self) -> tuple[object, ...]:
@@ -331,13 +368,14 @@ def fault(
 
 
 class Once:
-    """Chooses which warnings are shown: each text once, and different ones at a bounded rate.
+    """Chooses which warnings are shown: each once, and different ones at a bounded rate.
 
-    Texts may hold names that a stranger chose, so their number is bounded, but a warning that
-    comes after a flood is still shown. Those left out are counted. From any thread.
+    Two warnings are the same if their codes, places and values are. Values may hold names that a
+    stranger chose, so their number is bounded, but a warning that comes after a flood is still
+    shown. Those left out are counted. From any thread.
 
     Args:
-        most: Different texts at once; after these, one every 10 s.
+        most: Different warnings at once; after these, one every 10 s.
     """
 
     PAUSE = 10.0
@@ -347,14 +385,36 @@ class Once:
         self._budget = Budget(most, 1 / self.PAUSE)
         self._most = most
         self._shown: dict[int, None] = {}
-        """Hashes of the latest texts, since a text may be long."""
+        """Hashes of the latest warnings, since their values may be long."""
         self._left_out = 0
         self._lock = threading.Lock()
 
-    def __call__(self, text: str) -> str | None:
-        """The text to show, with the number of those left out; None if it is not shown."""
+    def __call__(self, diagnostic: Diagnostic) -> Diagnostic | None:
+        """The warning to show, with the number of those left out; None if it is not shown.
+
+        The number is also in its values, as ``left_out``.
+        """
+        left_out = self._take(_identity(diagnostic))
+        if left_out is None:
+            return None
+        if left_out < 0:
+            more = f" (from now on at most one warning every {self.PAUSE:g} s is shown)"
+            return replace(diagnostic, message=diagnostic.message + more)
+        if not left_out:
+            return diagnostic
+        return replace(
+            diagnostic,
+            message=f"{diagnostic.message} (warnings that are not shown: {left_out})",
+            values={**diagnostic.values, "left_out": left_out},
+        )
+
+    def allows(self, key: Hashable) -> bool:
+        """The same for a warning that is not made yet: whether it is shown."""
+        return self._take(hash(key)) is not None
+
+    def _take(self, key: int) -> int | None:
+        """The number left out before; -1 with the last that is shown at once; None if it is not."""
         with self._lock:
-            key = hash(text)
             if key in self._shown:
                 return None
             if not self._budget.take():
@@ -364,11 +424,16 @@ class Once:
             if len(self._shown) > self._most:
                 del self._shown[next(iter(self._shown))]
             elif len(self._shown) == self._most:
-                return f"{text} (from now on at most one warning every {self.PAUSE:g} s is shown)"
-            if not self._left_out:
-                return text
+                return -1
             left_out, self._left_out = self._left_out, 0
-            return f"{text} (warnings that are not shown: {left_out})"
+            return left_out
+
+
+def _identity(diagnostic: Diagnostic) -> int:
+    if diagnostic.code is UNCLASSIFIED:
+        return hash((diagnostic.message, diagnostic.origin))
+    values = tuple(sorted(diagnostic.values.items(), key=lambda item: item[0]))
+    return hash((diagnostic.code.number, diagnostic.origin, values))
 
 
 def likely(name: str, existing: Iterable[str], *, cutoff: float = 0.75) -> str:

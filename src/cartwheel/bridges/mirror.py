@@ -8,7 +8,9 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from cartwheel.bridges.bridged import BridgedGraph
-from cartwheel.errors import CartwheelError, GraphError
+from cartwheel.codes.graph import SERVICE_TIMED_OUT
+from cartwheel.codes.wires import INCOMING_DROPPED, MALFORMED_MESSAGE
+from cartwheel.errors import CartwheelError, Diagnostic, GraphError
 from cartwheel.graph import TopicInfo
 
 BRIDGES = frozenset({"ros1", "ros2"})
@@ -79,7 +81,11 @@ def asked(graph: BridgedGraph, service: str, request: Any) -> Any:
         return future.result(_CALL)
     except TimeoutError:
         future.cancel()
-        raise GraphError(f"the simulation did not answer {service} within {_CALL:g} s") from None
+        raise GraphError(
+            f"the simulation did not answer {service} within {_CALL:g} s",
+            code=SERVICE_TIMED_OUT,
+            values={"service": service, "seconds": _CALL},
+        ) from None
 
 
 class Arrivals:
@@ -90,7 +96,7 @@ class Arrivals:
         tell: Takes a warning.
     """
 
-    def __init__(self, graph: BridgedGraph, tell: Callable[[str], None]) -> None:
+    def __init__(self, graph: BridgedGraph, tell: Callable[[Diagnostic], None]) -> None:
         self._graph = graph
         self._tell = tell
         self._under_way: dict[int, Any] = {}
@@ -110,14 +116,23 @@ class Arrivals:
             size: In bytes, as far as that is known.
         """
         if len(self._under_way) >= _BACKLOG or self._bytes + size > _BACKLOG_BYTES:
-            self._tell("the simulation does not keep up with what ROS sends: it is dropped")
+            self._tell(
+                INCOMING_DROPPED.diagnostic(
+                    "ROS nodes send messages faster than the simulation takes them: some are "
+                    "dropped"
+                )
+            )
             return
         self._under_way[id(message)] = message
         self._count(size)
         try:
             self._graph.publish(topic, type_name, message)
         except CartwheelError as error:
-            self._tell(f"{topic}: {error}")
+            self._tell(
+                MALFORMED_MESSAGE.because(
+                    f"a message to {topic} cannot be used", error, values={"topic": topic}
+                )
+            )
 
         def taken() -> None:
             self._under_way.pop(id(message), None)

@@ -7,6 +7,8 @@ from typing import Any
 
 from cartwheel.bridges.bridged import BridgedGraph, BridgedSubscription
 from cartwheel.bridges.loop import Loop
+from cartwheel.codes.wires import PUBLISHED_TOO_FAST
+from cartwheel.errors import Diagnostic
 from cartwheel.graph import Mailbox
 
 _WAITING = 200
@@ -38,7 +40,7 @@ class Tap:
         reader: str,
         ignored: Callable[[Any], bool],
         take: Callable[[Any], None],
-        tell: Callable[[str], None],
+        tell: Callable[[Diagnostic], None],
         beyond: Callable[[], int] = lambda: 0,
     ) -> None:
         self._loop = loop
@@ -92,5 +94,8 @@ class Tap:
         if self._box.dropped and not self._late:
             self._late = True
             self._tell(
-                f"{self._topic} is published faster than it can be sent: messages are dropped"
+                PUBLISHED_TOO_FAST.diagnostic(
+                    f"{self._topic} is published faster than it can be sent: messages are dropped",
+                    values={"topic": self._topic},
+                )
             )

@@ -9,6 +9,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from urllib.parse import parse_qsl, urlencode
 
+from cartwheel.codes.wires import ADDRESS_UNAVAILABLE, ORIGIN_INVALID, PAGE_REFUSED
 from cartwheel.errors import ControlError, Diagnostic
 from cartwheel.gate.listening import is_loopback, resolve
 
@@ -72,7 +73,11 @@ class Access:
         try:
             _, (address, _) = resolve(host, 0)
         except (OSError, UnicodeError) as error:
-            raise ControlError(f"--host {host}: {error}") from error
+            raise ControlError(
+                f"--host {host} cannot be used: {error}",
+                code=ADDRESS_UNAVAILABLE,
+                values={"host": host},
+            ) from error
         return cls(
             host=host,
             origins=tuple(_normal_origin(origin) for origin in origins),
@@ -172,9 +177,9 @@ def refused_page(title: str, origin: str) -> Diagnostic:
         title: Of the server.
         origin: The page's, safe to print.
     """
-    remedy = "" if origin in _NOBODY else f"; to allow it: --allow-origin {origin}"
-    message = f"{title} refused a web page of the origin {origin or '(empty)'}{remedy}"
-    return Diagnostic(severity="warning", message=message)
+    hint = "" if origin in _NOBODY else f"To allow it: --allow-origin {origin}"
+    message = f"{title} refused a web page of the origin {origin or '(empty)'}"
+    return PAGE_REFUSED.diagnostic(message, hint=hint, values={"server": title, "origin": origin})
 
 
 def without_token(target: str) -> str:
@@ -229,8 +234,12 @@ def _normal_origin(text: str) -> str:
     match = _ORIGIN.fullmatch(text.strip().lower())
     if match is None or bool(match["authority"]) == (match["scheme"] == "file"):
         raise ControlError(
-            f"--allow-origin {text}: expected SCHEME://HOST or SCHEME://HOST:PORT",
-            hint="For example: --allow-origin https://robots.example.org",
+            f'"{text}" is not an origin for --allow-origin',
+            code=ORIGIN_INVALID,
+            hint=(
+                "Expected SCHEME://HOST or SCHEME://HOST:PORT, such as https://robots.example.org."
+            ),
+            values={"origin": text},
         )
     scheme, authority = match["scheme"], match["authority"]
     if scheme in _PORTS:

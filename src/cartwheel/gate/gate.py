@@ -197,7 +197,7 @@ class Gate:
         if found is not None and found.origin is not None:
             # A stranger's text: it may hold anything, and be as long as a head.
             origin = ascii(found.origin)[1:-1][:_SHOWN_LENGTH]
-            if self._once(origin) is not None:
+            if self._once.allows(origin):
                 self._refused(origin)
         return found
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ipaddress
 import socket
 
+from cartwheel.codes.wires import ADDRESS_UNAVAILABLE
 from cartwheel.errors import ControlError
 
 BACKLOG = 128
@@ -52,7 +53,9 @@ def listen(host: str, port: int, *, title: str, option: str) -> socket.socket:
     except (OSError, UnicodeError) as error:
         raise ControlError(
             f"{title} cannot listen on {host}:{port}: {error}",
+            code=ADDRESS_UNAVAILABLE,
             hint=f"Another program may use it; choose another port with {option}.",
+            values={"server": title, "host": host, "port": port},
         ) from error
     made.setblocking(False)
     return made

@@ -90,8 +90,8 @@ class Teller:
         self._once = Once(_REMEMBERED)
 
     def __call__(self, text: str) -> None:
-        if shown := self._once(text):
-            self._simulation.report(Diagnostic(severity="warning", message=shown))
+        if shown := self._once(Diagnostic(severity="warning", message=text)):
+            self._simulation.report(shown)
 
 
 def vector(value: Any, name: str, *, most: float = FARTHEST) -> Vec3:

@@ -231,7 +231,7 @@ class Simulation(Run):
         """
         if not self.tolerant:
             self.defer(error)
-        elif self._told_once(f"{what} {error!r}"):
+        elif self._told_once.allows(f"{what} {error!r} {getattr(error, 'values', '')}"):
             self.engine.report(fault(f"{what} failed", error, code=world_codes.CALLBACK_FAILED))
 
     def command_failed(self, error: Exception) -> None:

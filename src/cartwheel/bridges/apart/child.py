@@ -14,7 +14,7 @@ from typing import Any, Protocol
 from cartwheel.bridges.apart.link import Link
 from cartwheel.bridges.apart.remote_graph import RemoteGraph
 from cartwheel.bridges.apart.ring import RingFiles, RingReader
-from cartwheel.errors import Diagnostic, one_line
+from cartwheel.codes.wires import BRIDGE_FAULT
 
 WIRES = {
     "ros1": "Ros1Wire",
@@ -54,7 +54,7 @@ def main(kind: str, patient: str, link_file: str, ring_files: str) -> None:
     def fault(error: Exception) -> None:
         link.tell(
             "report",
-            Diagnostic(severity="warning", message=f"a fault of the bridge: {one_line(error)}"),
+            BRIDGE_FAULT.because("unexpected error in the bridge", error),
         )
 
     link = Link(socket.socket(fileno=int(link_file)), name="link", on_end=over.set, on_fault=fault)

@@ -6,6 +6,7 @@ import threading
 import time
 from collections.abc import Callable
 from concurrent.futures import Future
+from dataclasses import replace
 from typing import Any
 
 from cartwheel.bridges.apart.hosted_actions import HostedActions
@@ -16,7 +17,8 @@ from cartwheel.bridges.apart.remote_graph import GraphState
 from cartwheel.bridges.apart.ring import Put, RingWriter
 from cartwheel.bridges.mirror import Arrivals
 from cartwheel.calls import answered, mapped
-from cartwheel.errors import Diagnostic, Once, one_line
+from cartwheel.codes.wires import MESSAGE_NOT_SENT
+from cartwheel.errors import Diagnostic, Once
 from cartwheel.graph import Graph, Service, Subscription
 from cartwheel.messages import decode_cdr, encode_cdr, service_classes
 
@@ -170,7 +172,13 @@ class GraphHost:
         try:
             data = self._graph.cdr.encode(message)
         except Exception as error:  # noqa: BLE001 - rosbags lets whatever it meets through
-            self._warn(f"{relay.topic}: a message that is none: {one_line(error)}")
+            self._warn(
+                MESSAGE_NOT_SENT.because(
+                    f"a message of {relay.topic} cannot be sent",
+                    error,
+                    values={"topic": relay.topic},
+                )
+            )
             return
         if self._patient:
             put, waited = self._ring.put_patiently(relay.number, self._time_ns(), data)
@@ -185,10 +193,10 @@ class GraphHost:
         """Runs a function on the link's thread."""
         self._link.loop.post(lambda: self._link.loop.after(seconds, function))
 
-    def _warn(self, text: str) -> None:
-        """Once for each text."""
-        if shown := self._once(text):
-            self._report(Diagnostic(severity="warning", message=f"{self._title}: {shown}"))
+    def _warn(self, diagnostic: Diagnostic) -> None:
+        """Reports a warning once."""
+        if shown := self._once(diagnostic):
+            self._report(replace(shown, message=f"{self._title}: {shown.message}"))
 
 
 class _Relay:

@@ -10,6 +10,7 @@ from cartwheel.bridges.apart.link import Link
 from cartwheel.bridges.apart.offers import Offer, Offers
 from cartwheel.bridges.apart.remote_action import GoalNews, news_of
 from cartwheel.calls import answered
+from cartwheel.codes.graph import ACTION_GONE
 from cartwheel.errors import GraphError
 from cartwheel.graph import Action, Goal, Graph
 from cartwheel.messages import decode_cdr, encode_cdr
@@ -58,7 +59,7 @@ class HostedActions:
             return answered(self._graph.post, lambda: function(action, teller, *arguments))
         if what in ("listen", "want_feedback"):
             return None
-        raise GraphError("there is no such action any more")
+        raise GraphError("the action no longer exists", code=ACTION_GONE)
 
     # -- on the owner's thread
 

@@ -15,6 +15,7 @@ from typing import Any
 
 from cartwheel.bridges.apart.workers import THREADS, WAITING, Workers
 from cartwheel.bridges.loop import READ, WRITE, Loop, taken
+from cartwheel.codes.wires import BRIDGE_ENDED, BRIDGE_RECOVERED, BRIDGE_SLOW, CALL_LIMIT
 from cartwheel.errors import CartwheelError, ControlError, one_line
 
 _LENGTH = struct.Struct("<Q")
@@ -167,8 +168,9 @@ class Link:
         unread = f"{self._queued >> 20} MB"
         self._on_fault(
             ControlError(
-                f"the other end does not read its messages ({unread} wait): "
-                "the connection is closed"
+                f"the process at the other end does not read its messages ({unread} wait): the "
+                "connection is closed",
+                code=BRIDGE_SLOW,
             )
         )
         self._end()
@@ -178,7 +180,13 @@ class Link:
         if self._ended:
             return
         if self._reported == 0:
-            self._on_fault(ControlError("the other end is slow: feedback of goals is dropped"))
+            self._on_fault(
+                ControlError(
+                    "the bridge reads too slowly: feedback of goals is dropped",
+                    code=BRIDGE_SLOW,
+                    values={"dropped": "feedback"},
+                )
+            )
         self.loop.after(_LOOKS, self._count_late)
 
     def _count_late(self) -> None:
@@ -190,7 +198,11 @@ class Link:
         with self._counting:
             count, self._reported = self.dropped - self._reported, self.dropped
         self._on_fault(
-            ControlError(f"the other end reads again; {count} messages of feedback were dropped")
+            ControlError(
+                f"the bridge reads again; {count} messages of feedback were dropped",
+                code=BRIDGE_RECOVERED,
+                values={"dropped": count},
+            )
         )
 
     def _flush(self) -> None:
@@ -254,7 +266,11 @@ class Link:
         if not threaded:
             self._run(kind, number, handler, content)
         elif not self._workers.run(lambda: self._run(kind, number, handler, content)):
-            busy = ControlError(f"{THREADS} calls run and {WAITING} wait: {name} is refused")
+            busy = ControlError(
+                f"{THREADS} calls run and {WAITING} wait: {name} is refused",
+                code=CALL_LIMIT,
+                values={"name": name, "most": THREADS},
+            )
             if kind == _TELL:
                 self._on_fault(busy)
             else:
@@ -315,4 +331,4 @@ def _fail(future: Future[Any], error: Exception) -> None:
 
 
 def _gone() -> ControlError:
-    return ControlError("the process at the other end has ended")
+    return ControlError("the process at the other end has ended", code=BRIDGE_ENDED)

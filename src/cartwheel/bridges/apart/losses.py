@@ -7,6 +7,13 @@ from collections import Counter
 from collections.abc import Callable
 
 from cartwheel.bridges.apart.ring import Put, RingWriter
+from cartwheel.codes.wires import (
+    BRIDGE_RECOVERED,
+    BRIDGE_SLOW,
+    MESSAGE_TOO_LARGE,
+    PUBLISHED_TOO_FAST,
+)
+from cartwheel.errors import Diagnostic
 
 _JUDGED = 0.5
 """s after the first loss, when it is clear whether the reader goes on reading."""
@@ -20,10 +27,10 @@ class Losses:
     Args:
         ring: That did not take them.
         later: Runs a function after some seconds, on a thread of its own.
-        warn: Shows a text to the user, once for each text.
+        warn: Takes a warning for the user.
     """
 
-    def __init__(self, ring: RingWriter, later: Later, warn: Callable[[str], None]) -> None:
+    def __init__(self, ring: RingWriter, later: Later, warn: Callable[[Diagnostic], None]) -> None:
         self._ring = ring
         self._later = later
         self._warn = warn
@@ -47,8 +54,11 @@ class Losses:
             if topic not in self._too_large:
                 self._too_large.add(topic)
                 self._warn(
-                    f"a message of {topic} has {size / 1e6:.0f} MB, and a bridge takes at most "
-                    f"{self._ring.largest / 1e6:.0f} MB: such messages are dropped"
+                    MESSAGE_TOO_LARGE.diagnostic(
+                        f"a message of {topic} has {size / 1e6:.0f} MB, but a bridge takes at "
+                        f"most {self._ring.largest / 1e6:.0f} MB: such messages are dropped",
+                        values={"topic": topic},
+                    )
                 )
             return
         with self._lock:
@@ -72,17 +82,28 @@ class Losses:
         if not reads:
             self._still = True
             self._warn(
-                "its process does not read: it is stopped, or waits. Messages are dropped until "
-                "it goes on"
+                BRIDGE_SLOW.diagnostic(
+                    "its process does not read: it is suspended or waits. Messages are dropped "
+                    "until it reads again"
+                )
             )
             self._later(_JUDGED, self._judge)
         elif self._still:
             self._still = False
-            self._warn(f"its process reads again; {_counted(lost)} were dropped")
+            self._warn(
+                BRIDGE_RECOVERED.diagnostic(
+                    f"its process reads again; dropped were {_counted(lost)}",
+                    values={"dropped": _counted(lost)},
+                )
+            )
         else:
             for topic in lost:
                 self._warn(
-                    f"{topic} is published faster than its process reads: messages are dropped"
+                    PUBLISHED_TOO_FAST.diagnostic(
+                        f"{topic} is published faster than the bridge's process reads it: "
+                        "messages are dropped",
+                        values={"topic": topic},
+                    )
                 )
 
 

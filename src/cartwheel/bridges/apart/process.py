@@ -8,12 +8,14 @@ import socket
 import subprocess
 import sys
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import Any
 
 from cartwheel.bridges.apart.host import GraphHost
 from cartwheel.bridges.apart.link import Handler, Link
 from cartwheel.bridges.apart.ring import RingFiles, RingWriter
-from cartwheel.errors import CartwheelError, ControlError, Diagnostic, Once, one_line
+from cartwheel.codes.wires import BRIDGE_ENDED, BRIDGE_FAULT, BRIDGE_SLOW
+from cartwheel.errors import CartwheelError, ControlError, Diagnostic, Once
 from cartwheel.graph import Graph
 
 _START = 60.0
@@ -131,9 +133,15 @@ class BridgeProcess:
         try:
             return self._link.call(name, *arguments).result(timeout)
         except TimeoutError:
-            raise CartwheelError(f"{self.title} does not answer within {timeout:g} s") from None
+            raise CartwheelError(
+                f"{self.title} does not answer within {timeout:g} s",
+                code=BRIDGE_SLOW,
+                values={"bridge": self.title, "seconds": timeout},
+            ) from None
         except ControlError:
-            raise ControlError(self._death) from None
+            raise ControlError(
+                self._death, code=BRIDGE_ENDED, values={"bridge": self.title}
+            ) from None
 
     def tell(self, name: str, *arguments: Any) -> None:
         """Has the bridge do something."""
@@ -175,10 +183,13 @@ class BridgeProcess:
             return
         self.leave_graph()
         self._ring.close()
-        self._report(Diagnostic(severity="error", message=self._death))
+        self._report(BRIDGE_ENDED.diagnostic(self._death, values={"bridge": self.title}))
         self.on_lost()
 
     def _fault(self, error: Exception) -> None:
-        text = f"{self.title}: {one_line(error)}"
-        if shown := self._once(text):
-            self._report(Diagnostic(severity="warning", message=shown))
+        if isinstance(error, CartwheelError):
+            diagnostic = error.diagnostic("warning")
+        else:
+            diagnostic = BRIDGE_FAULT.because("unexpected error in the bridge", error)
+        if shown := self._once(diagnostic):
+            self._report(replace(shown, message=f"{self.title}: {shown.message}"))

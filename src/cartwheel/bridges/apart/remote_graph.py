@@ -15,6 +15,7 @@ from cartwheel.bridges.apart.offers import Offer
 from cartwheel.bridges.apart.remote_action import RemoteAction
 from cartwheel.bridges.packed import Packed
 from cartwheel.calls import answered, mapped
+from cartwheel.codes.graph import SERVICE_UNKNOWN, TOPIC_UNKNOWN
 from cartwheel.errors import UnknownNameError
 from cartwheel.graph import ParameterServer, Service, TopicInfo
 from cartwheel.messages import decode_cdr, encode_cdr, service_classes
@@ -179,7 +180,7 @@ class RemoteGraph:
         if type_name is None:
             known = {info.name: info.type for info in self._state.topics}
             if name not in known:
-                raise UnknownNameError("topic", name, known)
+                raise UnknownNameError("topic", name, known, code=TOPIC_UNKNOWN)
             type_name = known[name]
         made = RemoteSubscription(self, next(self._numbers), type_name, callback)
         # Before the first message can come.
@@ -203,7 +204,7 @@ class RemoteGraph:
         """
         types = {one.name: one.type for one in self._state.services}
         if name not in types:
-            raise UnknownNameError("service", name, types)
+            raise UnknownNameError("service", name, types, code=SERVICE_UNKNOWN)
         response = service_classes(types[name])[1].__msgtype__
         answer = self._link.call("call", name, encode_cdr(request))
         return mapped(answer, lambda data: decode_cdr(data, response))

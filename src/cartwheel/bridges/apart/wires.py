@@ -78,7 +78,7 @@ class Ros1Wire(_BridgeWire):
             **options,
             report=self._report,
             time_ns=self._time_ns,
-            on_end=lambda reason: self._link.tell("ended", reason),
+            on_end=lambda diagnostic: self._link.tell("ended", diagnostic),
         )
 
         def start() -> tuple[bool, tuple[int, ...]]:

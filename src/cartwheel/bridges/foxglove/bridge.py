@@ -9,6 +9,7 @@ import socket
 import threading
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 from cartwheel.bridges.bridged import BridgedGraph, BridgedSubscription
@@ -22,7 +23,14 @@ from cartwheel.bridges.foxglove.publication import READER, Publication
 from cartwheel.bridges.foxglove.values import PAUSED, SPEED, Values
 from cartwheel.bridges.mirror import offered_by_others
 from cartwheel.budget import Budget
-from cartwheel.errors import CartwheelError, Diagnostic, Once, one_line
+from cartwheel.codes.wires import (
+    BRIDGE_FAULT,
+    FOXGLOVE_NOT_STARTED,
+    PACKAGE_MISSING,
+    SLOW_SUBSCRIBER,
+    TYPE_UNSUPPORTED,
+)
+from cartwheel.errors import CartwheelError, Diagnostic, Once
 from cartwheel.gate.access import Access, refused_page
 from cartwheel.gate.gate import Gate
 from cartwheel.gate.listening import hidden_host, listen
@@ -185,7 +193,9 @@ class FoxgloveBridge:
             )
         except Exception as error:  # whatever the library has for it
             self._listener.close()
-            raise CartwheelError(f"the Foxglove server cannot start: {error}") from error
+            raise CartwheelError(
+                f"the Foxglove server cannot start: {error}", code=FOXGLOVE_NOT_STARTED
+            ) from error
         self._log = Log(context=self._context, time_ns=lambda: self._controls.time_ns)
         self._by_channel[self._log.channel.id()] = self._log
         self._mirror()
@@ -267,9 +277,9 @@ class FoxgloveBridge:
             try:
                 job()
             except CartwheelError as error:
-                self._warn(error.message)
+                self._warn(error.diagnostic("warning"))
             except Exception as error:  # noqa: BLE001 - one topic must not end the others
-                self._warn(f"a fault of the bridge: {one_line(error)}")
+                self._warn(BRIDGE_FAULT.because("unexpected error in the bridge", error))
 
     def _tell_time(self) -> None:
         state = self._controls.state()
@@ -381,7 +391,11 @@ class FoxgloveBridge:
                 try:
                     made.append(offered(self._graph, service, self._warn))
                 except CartwheelError as error:
-                    self._warn(f"service {name} is left out: {error.message}")
+                    self._warn(
+                        TYPE_UNSUPPORTED.because(
+                            f"service {name} is not offered", error, values={"service": name}
+                        )
+                    )
                 self._services[name] = service
         if made:
             self._server.add_services(made)
@@ -403,18 +417,23 @@ class FoxgloveBridge:
         # The server knows the gate's end of the connection alone.
         port = client.rpartition(":")[2]
         known = self._gate.peer(int(port)) if self._gate is not None and port.isdigit() else None
-        self._warn(f"the client {known or client} is too slow: messages to it are dropped")
+        self._warn(
+            SLOW_SUBSCRIBER.diagnostic(
+                f"the client {known or client} reads too slowly: messages to it are dropped",
+                values={"peer": known or client},
+            )
+        )
 
-    def _warn(self, text: str) -> None:
-        """Once for each text, to the user and, not too often, to clients."""
-        shown = self._once(text)
+    def _warn(self, diagnostic: Diagnostic) -> None:
+        """Reports a warning once to the user and, not too often, to clients."""
+        shown = self._once(diagnostic)
         if not shown:
             return
-        self._report(Diagnostic(severity="warning", message=f"Foxglove: {shown}"))
+        self._report(replace(shown, message=f"Foxglove: {shown.message}"))
         if self._server is not None and not self._closed and self._statuses.take():
             from foxglove import StatusLevel
 
-            self._server.publish_status(text, StatusLevel.Warning)
+            self._server.publish_status(diagnostic.text, StatusLevel.Warning)
 
 
 class _Slow(logging.Handler):
@@ -445,5 +464,7 @@ def require() -> None:
     except ImportError as error:
         raise CartwheelError(
             f"--foxglove needs the package foxglove-sdk: {error}",
+            code=PACKAGE_MISSING,
             hint='pip install "cartwheel[foxglove]"',
+            values={"package": "foxglove-sdk"},
         ) from None

@@ -6,6 +6,9 @@ import json
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
+from cartwheel.codes.wires import CLIENT_REQUEST_IGNORED
+from cartwheel.errors import Diagnostic
+
 _MOST, _MOST_BYTES = 1000, 1 << 20
 """Entries of one kind of a client, and the length of their text."""
 _ALL, _ALL_BYTES = 10_000, 16 << 20
@@ -21,7 +24,7 @@ class Clients:
         warn: Takes a warning, for clients and the user; on the gate's thread, as all here.
     """
 
-    def __init__(self, warn: Callable[[str], None]) -> None:
+    def __init__(self, warn: Callable[[Diagnostic], None]) -> None:
         self._warn = warn
         self._channels = _Total("channels")
         self._parameters = _Total("watched parameters")
@@ -40,7 +43,9 @@ class JoinedClient:
         warn: See `Clients`.
     """
 
-    def __init__(self, channels: _Share, parameters: _Share, warn: Callable[[str], None]) -> None:
+    def __init__(
+        self, channels: _Share, parameters: _Share, warn: Callable[[Diagnostic], None]
+    ) -> None:
         self._channels = channels
         self._parameters = parameters
         self._warn = warn
@@ -51,10 +56,18 @@ class JoinedClient:
             self._take(json.loads(text.decode()))
         except (ValueError, RecursionError):
             # Not handed on either: the library may read more than Python does.
-            self._warn("a client sent a text that is not JSON: it is ignored")
+            self._warn(
+                CLIENT_REQUEST_IGNORED.diagnostic(
+                    "a client sent a request that is not JSON: it is ignored"
+                )
+            )
             return False
         except _FullError as error:
-            self._warn(f"{error}: the rest is ignored")
+            self._warn(
+                CLIENT_REQUEST_IGNORED.diagnostic(
+                    f"{error}: further ones are ignored", values={"limit": str(error)}
+                )
+            )
             return False
         return True
 

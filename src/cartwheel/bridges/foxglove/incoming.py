@@ -9,7 +9,9 @@ from typing import Any
 from cartwheel.bridges.bridged import BridgedGraph
 from cartwheel.bridges.foxglove.forms import encoding_of, schema_of
 from cartwheel.bridges.mirror import asked
-from cartwheel.errors import CartwheelError, GraphError
+from cartwheel.codes.graph import SERVICE_FAILED
+from cartwheel.codes.wires import INCOMING_DROPPED, MALFORMED_MESSAGE, MESSAGE_UNREAD
+from cartwheel.errors import CartwheelError, Diagnostic, GraphError
 from cartwheel.graph import TWIST, TWIST_STAMPED, Service
 from cartwheel.messages import (
     decode_cdr,
@@ -41,11 +43,16 @@ def decode(data: bytes, encoding: str, kind: str) -> Any:
     if encoding == "ros1":
         return decode_ros1(data, kind)
     if encoding != "json":
-        raise GraphError(f'messages cannot be sent as "{encoding}"')
+        raise GraphError(
+            f'messages cannot be sent as "{encoding}"',
+            code=MALFORMED_MESSAGE,
+            hint=f"Supported are: {', '.join(ENCODINGS)}.",
+            values={"encoding": encoding},
+        )
     try:
         return from_dict(kind, json.loads(data))
     except ValueError as error:
-        raise GraphError(f"that is no JSON: {error}") from None
+        raise GraphError(f"invalid JSON: {error}", code=MALFORMED_MESSAGE) from None
 
 
 class Incoming:
@@ -56,7 +63,7 @@ class Incoming:
         tell: Takes a warning, for clients and the user.
     """
 
-    def __init__(self, graph: BridgedGraph, tell: Callable[[str], None]) -> None:
+    def __init__(self, graph: BridgedGraph, tell: Callable[[Diagnostic], None]) -> None:
         self._graph = graph
         self._tell = tell
         self._channels: dict[tuple[int, int], tuple[str, str, str]] = {}
@@ -78,12 +85,21 @@ class Incoming:
             return
         topic, encoding, kind = known
         if self._waiting >= _BACKLOG:
-            self._tell("the simulation does not keep up with what clients send: it is dropped")
+            self._tell(
+                INCOMING_DROPPED.diagnostic(
+                    "clients send messages faster than the simulation takes them: some are dropped"
+                )
+            )
             return
         try:
             types = {info.name: info.type for info in self._graph.topics()}
             if topic not in types:
-                self._tell(f"nobody reads {topic}: what a client sends there is lost")
+                self._tell(
+                    MESSAGE_UNREAD.diagnostic(
+                        f"{topic} has no subscribers: messages from clients to it are dropped",
+                        values={"topic": topic},
+                    )
+                )
                 return
             message = decode(data, encoding, kind)
             if (kind, types[topic]) == (TWIST, TWIST_STAMPED):
@@ -93,13 +109,17 @@ class Incoming:
             self._graph.publish(topic, kind, message)
             self._graph.post(self._taken)
         except CartwheelError as error:
-            self._tell(f"{topic}: {error.message}")
+            self._tell(
+                MALFORMED_MESSAGE.because(
+                    f"a client's message to {topic} cannot be used", error, values={"topic": topic}
+                )
+            )
 
     def _taken(self) -> None:
         self._waiting -= 1
 
 
-def offered(graph: BridgedGraph, service: Service, tell: Callable[[str], None]) -> Any:
+def offered(graph: BridgedGraph, service: Service, tell: Callable[[Diagnostic], None]) -> Any:
     """A service of the graph as the server takes it; it is called on threads of the server.
 
     Args:
@@ -126,7 +146,11 @@ def offered(graph: BridgedGraph, service: Service, tell: Callable[[str], None]) 
             message = decode(bytes(request.payload), request.encoding, request_class.__msgtype__)
             response = asked(graph, service.name, message)
         except CartwheelError as error:
-            tell(f"{service.name}: {error.message}")
+            tell(
+                SERVICE_FAILED.because(
+                    f"{service.name} failed", error, values={"service": service.name}
+                )
+            )
             raise  # That is the client's answer.
         if request.encoding == "json":
             return json.dumps(to_dict(response)).encode()

@@ -8,7 +8,7 @@ from typing import Any
 from cartwheel.bridges.foxglove.controls import Controls, TimeState
 from cartwheel.bridges.foxglove.incoming import Incoming
 from cartwheel.bridges.foxglove.values import Values
-from cartwheel.errors import CartwheelError
+from cartwheel.errors import CartwheelError, Diagnostic
 
 
 class Listener:
@@ -29,7 +29,7 @@ class Listener:
         values: Values,
         controls: Controls,
         subscribed: Callable[[int, bool], None],
-        tell: Callable[[str], None],
+        tell: Callable[[Diagnostic], None],
     ) -> None:
         self._incoming = incoming
         self._values = values
@@ -86,7 +86,7 @@ class Listener:
             play = request.playback_command == PlaybackCommand.Play
             (controls.resume if play else controls.pause)()
         except CartwheelError as error:
-            self._tell(error.message)
+            self._tell(error.diagnostic("warning"))
         return playback_state(
             controls.state(),
             did_seek=request.seek_time is not None,

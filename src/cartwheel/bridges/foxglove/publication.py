@@ -7,6 +7,8 @@ from typing import Any
 
 from cartwheel.bridges.bridged import BridgedGraph, BridgedSubscription
 from cartwheel.bridges.foxglove.forms import encoding_of, packed, schema_of
+from cartwheel.codes.wires import PUBLISHED_TOO_FAST
+from cartwheel.errors import Diagnostic
 from cartwheel.graph import Mailbox, TopicInfo
 
 READER = "foxglove"
@@ -36,7 +38,7 @@ class Publication:
         context: Any,
         time_ns: Callable[[], int],
         wake: Callable[[], None],
-        tell: Callable[[str], None],
+        tell: Callable[[Diagnostic], None],
     ) -> None:
         import foxglove
 
@@ -90,7 +92,11 @@ class Publication:
         if self._box.dropped and not self._told:
             self._told = True
             self._tell(
-                f"{self.info.name} is published faster than it can be sent: messages are dropped"
+                PUBLISHED_TOO_FAST.diagnostic(
+                    f"{self.info.name} is published faster than it can be sent: messages are "
+                    "dropped",
+                    values={"topic": self.info.name},
+                )
             )
 
     def close(self) -> None:

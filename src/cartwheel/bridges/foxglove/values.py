@@ -8,7 +8,9 @@ from typing import Any
 
 from cartwheel.bridges.bridged import BridgedGraph
 from cartwheel.bridges.foxglove.controls import Controls
-from cartwheel.errors import CartwheelError, GraphError
+from cartwheel.codes.graph import PARAMETER_VALUE_INVALID
+from cartwheel.codes.wires import PARAMETER_REFUSED
+from cartwheel.errors import CartwheelError, Diagnostic, GraphError
 
 _MOST, _MOST_BYTES, _LARGEST = 1000, 4 << 20, 64 << 10
 """Parameters that clients set, characters of their names and values, and of one of them."""
@@ -37,7 +39,7 @@ class Values:
         *,
         controls: Controls,
         descriptions: Mapping[str, str],
-        tell: Callable[[str], None],
+        tell: Callable[[Diagnostic], None],
     ) -> None:
         self._graph = graph
         self._controls = controls
@@ -63,24 +65,36 @@ class Values:
                 self._set_one(value.name, value.get_value())
             except _FullError as error:
                 # Without the name: it is one warning, however many parameters there are.
-                self._tell(error.message)
+                self._tell(error.diagnostic("warning"))
             except CartwheelError as error:
-                self._tell(f"{value.name[:_LONGEST_NAME]}: {error.message}")
+                self._tell(
+                    PARAMETER_REFUSED.because(
+                        f"parameter {value.name[:_LONGEST_NAME]} was not set",
+                        error,
+                        values={"parameter": value.name[:_LONGEST_NAME]},
+                    )
+                )
         return self.get([value.name for value in values])
 
     def _set_one(self, name: str, value: Any) -> None:
         controls = self._controls
         if name == PAUSED:
             if not isinstance(value, bool):
-                raise GraphError("it is true or false")
+                raise GraphError("it must be true or false", code=PARAMETER_VALUE_INVALID)
             (controls.pause if value else controls.resume)()
         elif name == SPEED:
             number = isinstance(value, int | float) and not isinstance(value, bool)
             if not number:
-                raise GraphError("expected a number; 0 is as fast as possible")
+                raise GraphError(
+                    "it must be a number; 0 is as fast as possible", code=PARAMETER_VALUE_INVALID
+                )
             controls.set_speed(float(value) or None)
         elif name in self._descriptions:
-            raise GraphError("the description of a robot that stands there cannot be changed")
+            raise GraphError(
+                "the description of a robot cannot be changed while it is simulated",
+                code=PARAMETER_REFUSED,
+                values={"parameter": name},
+            )
         else:
             with self._lock:
                 size = self._room_for(name, value)
@@ -92,15 +106,21 @@ class Values:
         size = len(name) + len(repr(value))
         if len(name) > _LONGEST_NAME or size > _LARGEST:
             raise _FullError(
-                f"a parameter has a name of at most {_LONGEST_NAME} characters, "
-                f"and a value of at most {_LARGEST >> 10} KiB"
+                f"a client's parameter exceeds {_LONGEST_NAME} characters of its name or "
+                f"{_LARGEST >> 10} KiB of its value: it was not set",
+                values={"limit": "size"},
             )
         known = self._sizes.get(name)
         if known is None and len(self._sizes) >= _MOST:
-            raise _FullError(f"clients may set at most {_MOST} parameters")
+            raise _FullError(
+                f"clients may set at most {_MOST} parameters: further ones are not set",
+                values={"limit": "count"},
+            )
         if sum(self._sizes.values()) - (known or 0) + size > _MOST_BYTES:
             raise _FullError(
-                f"the parameters that clients set may have at most {_MOST_BYTES >> 20} MiB"
+                f"parameters set by clients may have at most {_MOST_BYTES >> 20} MiB: further "
+                "ones are not set",
+                values={"limit": "bytes"},
             )
         return size
 

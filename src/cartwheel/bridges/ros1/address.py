@@ -8,6 +8,7 @@ import socket
 from collections.abc import Mapping
 from urllib.parse import urlsplit
 
+from cartwheel.codes.wires import ROS_URI_INVALID
 from cartwheel.errors import CartwheelError
 
 MASTER_URI = "http://localhost:11311"
@@ -39,7 +40,10 @@ def host_and_port(uri: str) -> tuple[str, int]:
     except ValueError:
         pass
     raise CartwheelError(
-        f'"{uri}" is no address of a ROS node', hint=f"It looks like {MASTER_URI}."
+        f'"{uri}" is not the address of a ROS master or node',
+        code=ROS_URI_INVALID,
+        hint=f"Addresses have the form {MASTER_URI}.",
+        values={"uri": uri},
     )
 
 

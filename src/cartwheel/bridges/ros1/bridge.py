@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Any
 
 from cartwheel.bridges.bridged import BridgedGraph
@@ -26,7 +27,15 @@ from cartwheel.bridges.ros1.registrar import Entry, Registrar
 from cartwheel.bridges.ros1.rpc import Peer, RpcError, UnreachableError
 from cartwheel.bridges.ros1.service import OfferedService
 from cartwheel.bridges.ros1.subscription import TopicSubscription
-from cartwheel.errors import CartwheelError, Diagnostic, Once, UnknownNameError, one_line
+from cartwheel.codes.wires import (
+    BRIDGE_FAULT,
+    ROS_MASTER_BACK,
+    ROS_MASTER_LOST,
+    ROS_MASTER_UNAVAILABLE,
+    ROS_NODE_ENDED,
+    TYPE_UNSUPPORTED,
+)
+from cartwheel.errors import CartwheelError, Diagnostic, Once, UnknownNameError
 from cartwheel.graph import Service, TopicInfo
 from cartwheel.messages.ros1 import ros1_service, ros1_type
 from cartwheel.messages.store import is_ros2_only
@@ -56,7 +65,7 @@ class Ros1Bridge:
         arguments: ``name:=value`` as ROS's nodes take them.
         report: Takes what the user should know, from any thread.
         time_ns: Simulation time, for the stamps of ``/rosout``.
-        on_end: Told why another node or user has ended this one; from another thread.
+        on_end: Takes why another node or user has ended this one; from another thread.
 
     Raises:
         CartwheelError: A name or URI is none.
@@ -70,7 +79,7 @@ class Ros1Bridge:
         arguments: Sequence[str] = (),
         report: Report = lambda _: None,
         time_ns: Callable[[], int] = lambda: 0,
-        on_end: Callable[[str], None] = lambda _: None,
+        on_end: Report = lambda _: None,
     ) -> None:
         self._graph = graph
         self._report = report
@@ -178,18 +187,26 @@ class Ros1Bridge:
             host, _ = host_and_port(self.master_uri)
             if is_local(host) and error.silent:
                 raise CartwheelError(
-                    f"no ROS master: {error}",
+                    f"the ROS master does not answer: {error.message}",
+                    code=ROS_MASTER_UNAVAILABLE,
                     hint="Something listens on its port: a roscore that hangs, or another program.",
+                    values={"uri": self.master_uri},
                 ) from None
             if not is_local(host):
                 raise CartwheelError(
-                    f"no ROS master: {error}",
+                    f"the ROS master does not answer: {error.message}",
+                    code=ROS_MASTER_UNAVAILABLE,
                     hint="ROS_MASTER_URI names another computer: is its roscore running?",
+                    values={"uri": self.master_uri},
                 ) from None
             self._core = OwnCore(self.master_uri, self._host)
             self._core.start()
         except RpcError as error:
-            raise CartwheelError(f"{self.master_uri} is no ROS master: {error}") from None
+            raise CartwheelError(
+                f"{self.master_uri} is not a ROS master: {error.message}",
+                code=ROS_MASTER_UNAVAILABLE,
+                values={"uri": self.master_uri},
+            ) from None
 
     def _use_sim_time(self) -> None:
         if self._parameters.get("/use_sim_time") is None:
@@ -199,28 +216,45 @@ class Ros1Bridge:
         if not self._lost:
             self._lost = True
             self._warn(
-                f"the ROS master is gone: {reason}. The simulation goes on, and joins the next"
-                " master there"
+                ROS_MASTER_LOST.diagnostic(
+                    f"the ROS master no longer answers: {reason}",
+                    hint="The simulation goes on, and joins the next master at that address.",
+                    values={"uri": self.master_uri, "reason": reason},
+                )
             )
         if self._core is not None and self._core.dead and not self._closed:
             try:
                 self._core.start()
             except CartwheelError as error:
-                self._warn(str(error))
+                self._warn(error.diagnostic("warning"))
 
     def _found_master(self) -> None:
         self._lost = False
-        self._tell("info", "a ROS master answers again: registered anew")
+        self._warn(
+            ROS_MASTER_BACK.diagnostic(
+                "a ROS master answers again: topics and services are registered"
+            )
+        )
 
     def _taken(self, uri: str) -> None:
-        self._finish(f"another ROS node took the name {self.name}: {uri}")
+        self._finish(
+            ROS_NODE_ENDED.diagnostic(
+                f"another ROS node took the name {self.name}: {uri}",
+                values={"node": self.name, "uri": uri},
+            )
+        )
 
     def _shut_down(self, reason: str) -> None:
-        self._finish(f"ROS ended the node {self.name}: {reason or 'no reason given'}")
+        self._finish(
+            ROS_NODE_ENDED.diagnostic(
+                f"ROS ended the node {self.name}: {reason or 'no reason given'}",
+                values={"node": self.name, "reason": reason},
+            )
+        )
 
-    def _finish(self, reason: str) -> None:
+    def _finish(self, diagnostic: Diagnostic) -> None:
         if not self._closed:
-            self._on_end(_printable(reason))
+            self._on_end(_printable(diagnostic))
 
     def _wake(self) -> None:
         self._registrar.wake()
@@ -342,7 +376,10 @@ class Ros1Bridge:
             ros1_type(info.type)
         except UnknownNameError:
             self._warn(
-                f"topic {info.name} has type {info.type}, which ROS 1 does not have: it is left out"
+                TYPE_UNSUPPORTED.diagnostic(
+                    f"topic {info.name} is not offered: ROS 1 has no type {info.type}",
+                    values={"topic": info.name, "type": info.type},
+                )
             )
             return False
         return True
@@ -354,23 +391,26 @@ class Ros1Bridge:
             ros1_service(type_name)
         except UnknownNameError:
             self._warn(
-                f"service {name} has type {type_name}, which ROS 1 does not have: it is left out"
+                TYPE_UNSUPPORTED.diagnostic(
+                    f"service {name} is not offered: ROS 1 has no type {type_name}",
+                    values={"service": name, "type": type_name},
+                )
             )
             return False
         return True
 
-    def _warn(self, text: str) -> None:
-        self._tell("warning", text)
-
-    def _tell(self, severity: Any, text: str) -> None:
-        """Once for each text that warns; what strangers wrote in it moves no cursor."""
-        text = _printable(text)
-        if shown := text if severity == "info" else self._once(text):
-            self._report(Diagnostic(severity=severity, message=f"ROS: {shown}"))
+    def _warn(self, diagnostic: Diagnostic) -> None:
+        """Reports a warning once; what strangers wrote in it moves no cursor."""
+        diagnostic = _printable(diagnostic)
+        if shown := diagnostic if diagnostic.severity == "info" else self._once(diagnostic):
+            self._report(replace(shown, message=f"ROS: {shown.message}"))
 
     def _fault(self, error: Exception) -> None:
-        self._warn(f"a fault of the bridge: {one_line(error)}")
+        self._warn(BRIDGE_FAULT.because("unexpected error in the bridge", error))
 
 
-def _printable(text: str) -> str:
-    return "".join(c if c.isprintable() else "?" for c in text[:_LONGEST])
+def _printable(diagnostic: Diagnostic) -> Diagnostic:
+    def cleaned(text: str) -> str:
+        return "".join(c if c.isprintable() else "?" for c in text[:_LONGEST])
+
+    return replace(diagnostic, message=cleaned(diagnostic.message), hint=cleaned(diagnostic.hint))

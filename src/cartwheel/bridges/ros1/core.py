@@ -11,6 +11,7 @@ from pathlib import Path
 
 from cartwheel.bridges.ros1.address import host_and_port
 from cartwheel.bridges.ros1.rpc import Peer, UnreachableError
+from cartwheel.codes.wires import ROS_MASTER_NOT_STARTED, ROS_MASTER_UNAVAILABLE
 from cartwheel.errors import CartwheelError
 
 _START = 20.0
@@ -50,10 +51,13 @@ class OwnCore:
         program = _found("rosmaster", "bin/rosmaster")
         if program is None:
             raise CartwheelError(
-                f"no ROS master answers at {self._uri}, and none can be started here:"
-                " rosmaster is not installed",
-                hint="Install python3-rosmaster and rosout (Debian), ros-noetic-roscore (Ubuntu)"
-                " or start a roscore elsewhere and set ROS_MASTER_URI.",
+                f"no ROS master answers at {self._uri}, and rosmaster is not installed here",
+                code=ROS_MASTER_UNAVAILABLE,
+                hint=(
+                    "Install python3-rosmaster and rosout (Debian), ros-noetic-roscore (Ubuntu) "
+                    "or start a roscore elsewhere and set ROS_MASTER_URI."
+                ),
+                values={"uri": self._uri},
             )
         _, port = host_and_port(self._uri)
         self._master = _Child([program, "--core", "-p", str(port)], self._environment(program))
@@ -67,8 +71,10 @@ class OwnCore:
                 if self.dead or time.monotonic() > deadline:
                     self.stop()
                     raise CartwheelError(
-                        f"the ROS master that was started for {self._uri} does not answer: {error}",
-                        hint="Does roscore run on its own? It may be the port that is taken.",
+                        f"the ROS master started for {self._uri} does not answer: {error.message}",
+                        code=ROS_MASTER_NOT_STARTED,
+                        hint="Does roscore run on its own? Its port may be in use.",
+                        values={"uri": self._uri},
                     ) from None
             time.sleep(0.02)
         rosout = _found("rosout", "lib/rosout/rosout")
@@ -116,7 +122,11 @@ class _Child:
         threading.Thread(target=self._run, name="ros1 child", daemon=True).start()
         self._started.wait()
         if self._error is not None:
-            raise CartwheelError(f"{command[0]} cannot be started: {self._error}")
+            raise CartwheelError(
+                f"{command[0]} cannot be started: {self._error}",
+                code=ROS_MASTER_NOT_STARTED,
+                values={"command": command[0]},
+            )
 
     @property
     def ended(self) -> bool:

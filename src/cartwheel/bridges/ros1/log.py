@@ -8,6 +8,7 @@ from typing import Any, Literal
 
 from cartwheel.bridges.loop import Loop
 from cartwheel.bridges.ros1.publication import Publication
+from cartwheel.codes.wires import LOG_LEVEL_UNKNOWN
 from cartwheel.errors import CartwheelError, Diagnostic
 from cartwheel.messages import header, message_class, service_classes, zero
 from cartwheel.messages.ros1 import ros1_type
@@ -35,7 +36,12 @@ class Log:
     """
 
     def __init__(
-        self, loop: Loop, *, node: str, time_ns: Callable[[], int], tell: Callable[[str], None]
+        self,
+        loop: Loop,
+        *,
+        node: str,
+        time_ns: Callable[[], int],
+        tell: Callable[[Diagnostic], None],
     ) -> None:
         self._loop = loop
         self._node = node
@@ -81,7 +87,12 @@ class Log:
         """``roscpp/SetLoggerLevel``."""
         level = request.level.lower()
         if level not in _LEVELS:
-            raise CartwheelError(f'"{request.level}" is no level: there are {", ".join(_LEVELS)}')
+            raise CartwheelError(
+                f'"{request.level}" is not a logger level',
+                code=LOG_LEVEL_UNKNOWN,
+                hint=f"Levels are {', '.join(_LEVELS)}.",
+                values={"level": request.level},
+            )
         self._level = level
         return zero("roscpp/srv/SetLoggerLevel_Response")
 

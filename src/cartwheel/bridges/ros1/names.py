@@ -11,6 +11,7 @@ from typing import Any
 import yaml
 
 from cartwheel import yaml_text
+from cartwheel.codes.wires import ROS_ARGUMENT_INVALID, ROS_NODE_NAME_INVALID
 from cartwheel.errors import CartwheelError
 
 _BASE = re.compile(r"[A-Za-z][A-Za-z0-9_]*\Z")
@@ -43,7 +44,11 @@ class Arguments:
         for word in words:
             name, sign, value = word.partition(":=")
             if not sign or not name:
-                raise CartwheelError(f'"{word}" is no name:=value')
+                raise CartwheelError(
+                    f'"{word}" is not of the form name:=value',
+                    code=ROS_ARGUMENT_INVALID,
+                    values={"argument": word},
+                )
             if name.startswith("__"):
                 made.special[name] = value
             elif name.startswith("_"):
@@ -72,12 +77,18 @@ class NodeNames:
             base = base[1:]
         if not _BASE.match(base):
             raise CartwheelError(
-                f'"{base}" is no name for a ROS node',
-                hint="It holds letters, digits and _, and begins with a letter.",
+                f'"{base}" is not a valid name for a ROS node',
+                code=ROS_NODE_NAME_INVALID,
+                hint="Names hold letters, digits and _, and begin with a letter.",
+                values={"name": base},
             )
         self.namespace = "/" + "/".join(part for part in space.split("/") if part)
         if not _NAME.match(self.namespace):
-            raise CartwheelError(f'"{space}" is no namespace of ROS')
+            raise CartwheelError(
+                f'"{space}" is not a valid ROS namespace',
+                code=ROS_NODE_NAME_INVALID,
+                values={"name": space},
+            )
         self.node = _join(self.namespace, base)
         """With its namespace."""
         self._remappings = {
@@ -105,7 +116,11 @@ class NodeNames:
 
     def _resolved(self, name: str) -> str:
         if not _NAME.match(name) or not name:
-            raise CartwheelError(f'"{name}" is no name that ROS can remap')
+            raise CartwheelError(
+                f'"{name}" cannot be remapped: it is not a valid ROS name',
+                code=ROS_ARGUMENT_INVALID,
+                values={"name": name},
+            )
         if name.startswith("/"):
             return "/" + name.strip("/")
         if name.startswith("~"):

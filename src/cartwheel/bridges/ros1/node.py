@@ -15,6 +15,8 @@ from cartwheel.bridges.ros1.http import RpcConnection
 from cartwheel.bridges.ros1.publication import Publication
 from cartwheel.bridges.ros1.service import Calls, OfferedService
 from cartwheel.bridges.ros1.subscription import TopicSubscription
+from cartwheel.codes.wires import PEER_LIMIT
+from cartwheel.errors import Diagnostic
 
 _UNKNOWN = 100
 """Connections that have not told yet what they are for."""
@@ -46,7 +48,7 @@ class Node:
         address: str,
         master_uri: str,
         on_shutdown: Callable[[str], None],
-        tell: Callable[[str], None],
+        tell: Callable[[Diagnostic], None],
     ) -> None:
         self._loop = loop
         self.name = name
@@ -102,8 +104,11 @@ class Node:
         if self.traffic.full:
             sock.close()
             self._tell(
-                f"other nodes have {self.traffic.most} connections, the most there can be: further"
-                " ones are refused"
+                PEER_LIMIT.diagnostic(
+                    f"other nodes have opened {self.traffic.most} connections, the maximum: "
+                    "further connections are refused",
+                    values={"most": self.traffic.most},
+                )
             )
             return
         connection = Connection(self._loop, sock, self.traffic, on_header=self._assign)

@@ -11,7 +11,8 @@ from cartwheel.bridges.loop import Loop
 from cartwheel.bridges.ros1.connection import Connection
 from cartwheel.bridges.ros1.header import encode_header
 from cartwheel.bridges.tap import Tap
-from cartwheel.errors import GraphError
+from cartwheel.codes.wires import MESSAGE_NOT_SENT, PEER_TYPE_MISMATCH, SLOW_SUBSCRIBER
+from cartwheel.errors import Diagnostic, GraphError
 from cartwheel.messages.ros1 import Ros1Type, write_ros1
 
 _LENGTH = struct.Struct("<I")
@@ -39,7 +40,7 @@ class Publication:
         type_: Ros1Type,
         latched: bool,
         node: str,
-        tell: Callable[[str], None],
+        tell: Callable[[Diagnostic], None],
     ) -> None:
         self._loop = loop
         self.topic = topic
@@ -73,8 +74,16 @@ class Publication:
                     f" not {wanted[0]} with {wanted[1]}"
                 )
                 self._tell(
-                    f"{link.peer} expects {wanted[0]} ({wanted[1]}) on {self.topic}, which is"
-                    f" {self.type.name} ({self.type.md5}): it gets nothing"
+                    PEER_TYPE_MISMATCH.diagnostic(
+                        f"{link.peer} cannot subscribe to {self.topic}: it expects {wanted[0]} "
+                        f"({wanted[1]}), but the type is {self.type.name} ({self.type.md5})",
+                        values={
+                            "peer": link.peer,
+                            "topic": self.topic,
+                            "type": wanted[0],
+                            "md5": wanted[1],
+                        },
+                    )
                 )
                 return
         link.send(self._header)
@@ -82,7 +91,11 @@ class Publication:
             return
         link.on_close = lambda: self._leave(link)
         link.on_drop = lambda: self._tell(
-            f"{link.peer or 'a node'} reads {self.topic} too slowly: messages to it are dropped"
+            SLOW_SUBSCRIBER.diagnostic(
+                f"{link.peer or 'a node'} reads {self.topic} too slowly: messages to it are "
+                "dropped",
+                values={"peer": link.peer, "topic": self.topic},
+            )
         )
         if self._last is not None:
             link.send(self._last)
@@ -110,7 +123,13 @@ class Publication:
         except GraphError as error:
             if not self._faulty:
                 self._faulty = True
-                self._tell(f"{self.topic}: {error}")
+                self._tell(
+                    MESSAGE_NOT_SENT.because(
+                        f"a message of {self.topic} cannot be sent",
+                        error,
+                        values={"topic": self.topic},
+                    )
+                )
             return
         data = b"".join([_LENGTH.pack(sum(map(_size, parts))), *parts])
         if self.latched:
@@ -155,7 +174,7 @@ class GraphPublication(Publication):
         type_: Ros1Type,
         latched: bool,
         node: str,
-        tell: Callable[[str], None],
+        tell: Callable[[Diagnostic], None],
     ) -> None:
         super().__init__(loop, topic=topic, type_=type_, latched=latched, node=node, tell=tell)
         self.type_name = type_name

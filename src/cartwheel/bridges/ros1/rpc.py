@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from cartwheel.bridges.ros1.marshalling import read_values
+from cartwheel.codes.wires import ROS_CALL_FAILED
 from cartwheel.errors import CartwheelError
 
 TIMEOUT = 5.0
@@ -23,6 +24,8 @@ _ADDRESSES = 4
 
 class RpcError(CartwheelError):
     """A node or master that cannot be reached, or refuses a call."""
+
+    code = ROS_CALL_FAILED
 
 
 class UnreachableError(RpcError):
@@ -170,7 +173,9 @@ class Peer:
         packed = [{"methodName": method, "params": list(rest)} for method, rest in calls]
         found = self._answer("system.multicall", (packed,))
         if not isinstance(found, list) or len(found) != len(calls):
-            raise RpcError(f"{self.uri} did not answer each of {len(calls)} calls")
+            raise RpcError(
+                f"{self.uri} did not answer each of {len(calls)} calls", values={"uri": self.uri}
+            )
         answers = []
         for answer in found:
             if isinstance(answer, list) and len(answer) == 1:
@@ -191,7 +196,10 @@ class Peer:
                 return getattr(self._proxy, method)(*arguments)
             except xmlrpc.client.Fault as fault:
                 said = str(fault.faultString)[:500]
-                raise RpcError(f"{self.uri} refuses {method}: {said}") from None
+                raise RpcError(
+                    f"{self.uri} refuses {method}: {said}",
+                    values={"uri": self.uri, "method": method, "reason": said},
+                ) from None
             except OSError as error:
                 self._proxy("close")()
                 raise UnreachableError(
@@ -201,7 +209,10 @@ class Peer:
             except Exception as error:  # noqa: BLE001
                 # Whatever the parsers of HTTP and XML meet in an answer that is none.
                 self._proxy("close")()
-                raise RpcError(f"{self.uri} sent an invalid answer to {method}: {error}") from None
+                raise RpcError(
+                    f"{self.uri} sent an invalid answer to {method}: {error}",
+                    values={"uri": self.uri, "method": method},
+                ) from None
 
 
 def value_of(answer: Any) -> Any:
@@ -211,10 +222,10 @@ def value_of(answer: Any) -> Any:
         RpcError: It is none, or no success.
     """
     if not isinstance(answer, list | tuple) or len(answer) != 3:
-        raise RpcError(f"an answer of ROS has three parts, not {str(answer)[:80]}")
+        raise RpcError(f"expected an answer of three parts, got {str(answer)[:80]}")
     code, message, value = answer
     if code != 1:
-        raise RpcError(str(message)[:500])
+        raise RpcError(str(message)[:500], values={"reason": str(message)[:500]})
     return value
 
 

@@ -5,13 +5,12 @@ from __future__ import annotations
 import struct
 import threading
 from collections.abc import Callable
-from concurrent.futures import CancelledError
 from typing import Any
 
 from cartwheel.bridges.loop import Loop
 from cartwheel.bridges.ros1.connection import Connection
 from cartwheel.bridges.ros1.header import encode_header
-from cartwheel.errors import CartwheelError
+from cartwheel.errors import one_line
 from cartwheel.messages.ros1 import Ros1Service, decode_ros1, encode_ros1
 
 _LENGTH = struct.Struct("<I")
@@ -118,10 +117,8 @@ class OfferedService:
             response = self._answer(decode_ros1(data, self.type.request, elements=_ELEMENTS))
             body = encode_ros1(response)
             reply = b"\1" + _LENGTH.pack(len(body)) + body
-        except (CartwheelError, CancelledError) as error:
-            reply = _failure(str(error))
-        except Exception as error:  # noqa: BLE001 - the caller is told, whatever it was
-            reply = _failure(f"{type(error).__name__}: {error}")
+        except Exception as error:  # noqa: BLE001 - the caller waits for an answer
+            reply = _failure(one_line(error))
 
         def done() -> None:
             self._running -= 1

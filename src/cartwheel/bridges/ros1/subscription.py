@@ -13,7 +13,13 @@ from cartwheel.bridges.ros1.attempts import Attempts
 from cartwheel.bridges.ros1.connection import Connection, Traffic
 from cartwheel.bridges.ros1.header import encode_header
 from cartwheel.bridges.ros1.rpc import TIMEOUT, Peer, connect
-from cartwheel.errors import CartwheelError
+from cartwheel.codes.wires import (
+    MALFORMED_MESSAGE,
+    PEER_ADDRESS_INVALID,
+    PEER_LIMIT,
+    PEER_TYPE_MISMATCH,
+)
+from cartwheel.errors import CartwheelError, Diagnostic
 from cartwheel.messages.ros1 import Ros1Type, decode_ros1
 
 _AGAIN = (0.2, 1.0, 2.0, 5.0)
@@ -67,7 +73,7 @@ class TopicSubscription:
         node: str,
         own_uri: str,
         deliver: Callable[[Any, int], None],
-        tell: Callable[[str], None],
+        tell: Callable[[Diagnostic], None],
     ) -> None:
         self._loop = loop
         self._traffic = traffic
@@ -102,15 +108,32 @@ class TopicSubscription:
 
     def _add(self, uri: str) -> None:
         if len(self._links) >= MOST:
-            self._tell(f"{self.topic} has more than {MOST} publishers: the rest are left out")
+            self._tell(
+                PEER_LIMIT.diagnostic(
+                    f"{self.topic} has more than {MOST} publishers: the rest are not connected",
+                    values={"topic": self.topic, "most": MOST},
+                )
+            )
             return
         try:
             host, _ = host_and_port(uri[: _LONGEST + 1])
         except CartwheelError as error:
-            self._tell(f"{self.topic}: {error}")
+            self._tell(
+                PEER_ADDRESS_INVALID.because(
+                    f"a publisher of {self.topic} cannot be reached",
+                    error,
+                    hint="",
+                    values={"topic": self.topic},
+                )
+            )
             return
         if len(uri) > _LONGEST or not uri.startswith("http://"):
-            self._tell(f"{self.topic}: {uri[:_LONGEST]} is not a publisher's address")
+            self._tell(
+                PEER_ADDRESS_INVALID.diagnostic(
+                    f"a publisher of {self.topic} has the invalid address {uri[:_LONGEST]}",
+                    values={"topic": self.topic, "uri": uri[:_LONGEST]},
+                )
+            )
             return
         link = self._links[uri] = _Link(uri, host)
         self._reach(link)
@@ -195,8 +218,16 @@ class TopicSubscription:
             refused = f"it sends {fields.get('type')} with md5 sum {theirs}"
         if refused is not None:
             self._tell(
-                f"{self.topic} is {self.type.name} ({self.type.md5}) here, and a publisher"
-                f" does not fit: {refused}"
+                PEER_TYPE_MISMATCH.diagnostic(
+                    f"{connection.peer} publishes {self.topic} with another type than "
+                    f"{self.type.name} ({self.type.md5}): {refused}",
+                    values={
+                        "peer": connection.peer,
+                        "topic": self.topic,
+                        "type": self.type.name,
+                        "reason": refused,
+                    },
+                )
             )
             connection.close()
 
@@ -204,7 +235,13 @@ class TopicSubscription:
         try:
             message = decode_ros1(data, self.type_name, elements=_ELEMENTS)
         except CartwheelError as error:
-            self._tell(f"{self.topic}: {connection.peer} sent a malformed message: {error}")
+            self._tell(
+                MALFORMED_MESSAGE.because(
+                    f"{connection.peer} sent a malformed message on {self.topic}",
+                    error,
+                    values={"peer": connection.peer, "topic": self.topic},
+                )
+            )
             connection.close()
             return
         self._deliver(message, len(data))

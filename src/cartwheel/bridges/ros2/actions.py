@@ -22,7 +22,8 @@ from cartwheel.bridges.ros2.middleware import (
     Reply,
     Served,
 )
-from cartwheel.errors import GraphError
+from cartwheel.codes.wires import CALL_LIMIT, GOAL_REJECTED, MALFORMED_MESSAGE
+from cartwheel.errors import Diagnostic, GraphError
 from cartwheel.graph import Goal, GoalState
 from cartwheel.messages import decode_cdr, encode_cdr, message_class, stamp, zero
 from cartwheel.messages.ros2_types import ros2_service, ros2_type
@@ -64,7 +65,7 @@ class OfferedAction:
         *,
         loop: Loop,
         middleware: Middleware,
-        tell: Callable[[str], None],
+        tell: Callable[[Diagnostic], None],
         node: str,
     ) -> None:
         self.action = action
@@ -130,7 +131,13 @@ class OfferedAction:
             try:
                 request = decode_cdr(data, ros2_service(self._types[name]).request)
             except GraphError as error:
-                self._tell(f"{self.action.name}/_action/{name} was called with nonsense: {error}")
+                self._tell(
+                    MALFORMED_MESSAGE.because(
+                        f"malformed request to {self.action.name}/_action/{name}",
+                        error,
+                        values={"service": f"{self.action.name}/_action/{name}"},
+                    )
+                )
                 return
             self._graph.post(lambda: handler(request, reply))
 
@@ -173,7 +180,12 @@ class OfferedAction:
         self._respond(reply, "send_goal", accepted=accepted, stamp=moment)
         if goal is not None and goal.state is GoalState.REJECTED:
             # ROS 2 has no field for it.
-            self._tell(f"{self.action.name}: a goal was rejected: {goal.text}")
+            self._tell(
+                GOAL_REJECTED.diagnostic(
+                    f"{self.action.name}: a goal was rejected: {goal.text}",
+                    values={"action": self.action.name, "reason": goal.text},
+                )
+            )
         elif goal is not None:
             self.goal_changed(goal)
 
@@ -204,7 +216,13 @@ class OfferedAction:
         elif sum(len(replies) for replies in self._waiting.values()) < _WAITING:
             self._waiting.setdefault(goal.id, []).append(reply)
         else:
-            self._tell(f"{self.action.name}: more than {_WAITING} wait for results")
+            self._tell(
+                CALL_LIMIT.diagnostic(
+                    f"more than {_WAITING} clients wait for results of {self.action.name}: one "
+                    "is not answered",
+                    values={"action": self.action.name, "most": _WAITING},
+                )
+            )
 
     def _known(self, identity: str) -> Goal | None:
         """A goal by what ROS 2 calls it, where another wire has made it as well."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import re
 from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
 from typing import Any, Literal
 
 from cartwheel.bridges.bridged import BridgedAction, BridgedGraph
@@ -26,13 +27,19 @@ from cartwheel.bridges.ros2.services import Services
 from cartwheel.bridges.ros2.type_descriptions import TYPE as DESCRIPTION
 from cartwheel.bridges.ros2.type_descriptions import get_type_description
 from cartwheel.bridges.tap import Tap
+from cartwheel.codes.wires import (
+    BRIDGE_FAULT,
+    MALFORMED_MESSAGE,
+    MESSAGE_NOT_SENT,
+    ROS_NODE_NAME_INVALID,
+    TYPE_UNSUPPORTED,
+)
 from cartwheel.errors import (
     CartwheelError,
     Diagnostic,
     GraphError,
     Once,
     UnknownNameError,
-    one_line,
 )
 from cartwheel.graph import Service, TopicInfo
 from cartwheel.messages import decode_cdr
@@ -83,8 +90,10 @@ class Ros2Bridge:
     ) -> None:
         if not _NAME.match(node):
             raise CartwheelError(
-                f'"{node}" is no name for a ROS 2 node',
-                hint="It holds letters, digits and _, and does not begin with a digit.",
+                f'"{node}" is not a valid name for a ROS 2 node',
+                code=ROS_NODE_NAME_INVALID,
+                hint="Names hold letters, digits and _, and do not begin with a digit.",
+                values={"name": node},
             )
         self._graph = graph
         self._report = report
@@ -290,7 +299,12 @@ class Ros2Bridge:
         try:
             ros2_type(info.type)
         except UnknownNameError:
-            self._warn(f"topic {info.name} has type {info.type}, which ROS 2 does not have")
+            self._warn(
+                TYPE_UNSUPPORTED.diagnostic(
+                    f"topic {info.name} is not offered: ROS 2 has no type {info.type}",
+                    values={"topic": info.name, "type": info.type},
+                )
+            )
             return False
         return True
 
@@ -300,17 +314,22 @@ class Ros2Bridge:
         try:
             ros2_service(service.type)
         except UnknownNameError:
-            self._warn(f"service {service.name} has type {service.type}, which ROS 2 does not have")
+            self._warn(
+                TYPE_UNSUPPORTED.diagnostic(
+                    f"service {service.name} is not offered: ROS 2 has no type {service.type}",
+                    values={"service": service.name, "type": service.type},
+                )
+            )
             return False
         return True
 
-    def _warn(self, text: str) -> None:
-        """Once for each text."""
-        if shown := self._once(text):
-            self._report(Diagnostic(severity="warning", message=f"ROS 2: {shown}"))
+    def _warn(self, diagnostic: Diagnostic) -> None:
+        """Reports a warning once."""
+        if shown := self._once(diagnostic):
+            self._report(replace(shown, message=f"ROS 2: {shown.message}"))
 
     def _fault(self, error: Exception) -> None:
-        self._warn(f"a fault of the bridge: {one_line(error)}")
+        self._warn(BRIDGE_FAULT.because("unexpected error in the bridge", error))
 
 
 class _Publication:
@@ -361,7 +380,13 @@ class _Publication:
         except Exception as error:  # noqa: BLE001 - rosbags lets whatever it meets through
             if not self._faulty:
                 self._faulty = True
-                self._bridge._warn(f"{self._name}: a message that is none: {error}")
+                self._bridge._warn(
+                    MESSAGE_NOT_SENT.because(
+                        f"a message of {self._name} cannot be sent",
+                        error,
+                        values={"topic": self._name},
+                    )
+                )
 
 
 class _Subscription:
@@ -380,7 +405,13 @@ class _Subscription:
         try:
             message = decode_cdr(data, self.type)
         except GraphError as error:
-            self._bridge._warn(f"{self._name}: received a malformed message: {error}")
+            self._bridge._warn(
+                MALFORMED_MESSAGE.because(
+                    f"a node sent a malformed message on {self._name}",
+                    error,
+                    values={"topic": self._name},
+                )
+            )
             return
         self._bridge._arrivals.deliver(self._name, self.type, message)
 
@@ -394,7 +425,7 @@ class _Offered:
         self.closable = closable
 
 
-def _middleware(rmw: Rmw, loop: Loop, node: str, tell: Callable[[str], None]) -> Middleware:
+def _middleware(rmw: Rmw, loop: Loop, node: str, tell: Callable[[Diagnostic], None]) -> Middleware:
     if rmw == "zenoh":
         from cartwheel.bridges.ros2.zenoh import Zenoh
 

@@ -22,6 +22,15 @@ from cartwheel.bridges.ros2.rtps.participant import Participant
 from cartwheel.bridges.ros2.rtps.reader import Reader, Taken
 from cartwheel.bridges.ros2.rtps.wire import Guid, Prefix
 from cartwheel.bridges.ros2.rtps.writer import ReaderProxy, Writer
+from cartwheel.codes.wires import (
+    CALL_LIMIT,
+    NETWORK_FULL,
+    PEER_TYPE_MISMATCH,
+    QOS_INCOMPATIBLE,
+    SLOW_SUBSCRIBER,
+    UNRESPONSIVE_SUBSCRIBER,
+)
+from cartwheel.errors import Diagnostic
 from cartwheel.messages import encode_cdr, message_class
 from cartwheel.messages.ros2_types import Ros2Type, ros2_type
 
@@ -54,7 +63,7 @@ class Dds:
     """
 
     def __init__(
-        self, loop: Loop, *, node: str, namespace: str, tell: Callable[[str], None]
+        self, loop: Loop, *, node: str, namespace: str, tell: Callable[[Diagnostic], None]
     ) -> None:
         self.loop = loop
         self._tell = tell
@@ -116,13 +125,22 @@ class Dds:
         )
         writer.on_readers = lambda: on_readers(bool(writer.proxies))
         writer.on_drop = lambda: self._tell(
-            f"a node reads {topic} too slowly: messages to it are dropped"
+            SLOW_SUBSCRIBER.diagnostic(
+                f"a node reads {topic} too slowly: messages to it are dropped",
+                values={"topic": topic},
+            )
         )
         writer.on_refusal = lambda: self._tell(
-            f"the network takes no more: messages of {topic} are dropped"
+            NETWORK_FULL.diagnostic(
+                f"the network takes no more packets: messages of {topic} are dropped",
+                values={"topic": topic},
+            )
         )
         writer.on_silence = lambda: self._tell(
-            f"a node that reads {topic} does not answer any more: messages to it are dropped"
+            UNRESPONSIVE_SUBSCRIBER.diagnostic(
+                f"a subscriber of {topic} no longer responds: messages to it are dropped",
+                values={"topic": topic},
+            )
         )
         if writer.proxies:
             on_readers(True)
@@ -186,7 +204,12 @@ class Dds:
             why = f"and asks for more than is offered ({policy})"
         else:
             why = f"and offers less than is asked for ({policy})"
-        self._tell(f"a node {does} {slash}{name} {why}: {then}")
+        self._tell(
+            (QOS_INCOMPATIBLE if policy else PEER_TYPE_MISMATCH).diagnostic(
+                f"a node {does} {slash}{name} {why}: {then}",
+                values={"name": f"{slash}{name}", "type": _plain(other.type), "policy": policy},
+            )
+        )
 
     def _add(self, node: str, *endpoints: Writer | Reader) -> None:
         self._endpoints.update(dict.fromkeys(endpoints, node or self._name))
@@ -340,7 +363,13 @@ class _Service:
     def _again(self, function: Callable[[], None]) -> None:
         """Tries it again soon, unless too many wait for that."""
         if self._pending >= _PENDING:
-            self._dds._tell(f"more than {_PENDING} calls of {self._name} wait for their caller")
+            self._dds._tell(
+                CALL_LIMIT.diagnostic(
+                    f"more than {_PENDING} responses of {self._name} wait for their callers: one "
+                    "is dropped",
+                    values={"service": self._name, "most": _PENDING},
+                )
+            )
             return
         self._pending += 1
 

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from cartwheel.bridges.ros2.middleware import Closable, Middleware, Outlet, profile_of
+from cartwheel.codes.wires import PARAMETER_REFUSED
 from cartwheel.errors import CartwheelError
 from cartwheel.messages import encode_cdr, message_class, service_classes, stamp, zero
 from cartwheel.messages.parameters import (
@@ -159,16 +160,28 @@ class NodeParameters:
     def _checked(self, given: Any) -> tuple[Parameter, Value]:
         known = self._parameters.get(given.name)
         if known is None:
-            raise CartwheelError(f'parameter "{given.name}" has not been declared')
+            raise CartwheelError(
+                f'parameter "{given.name}" has not been declared',
+                code=PARAMETER_REFUSED,
+                values={"parameter": given.name},
+            )
         if known.set is None:
-            raise CartwheelError(f'parameter "{given.name}" is read-only')
+            raise CartwheelError(
+                f'parameter "{given.name}" is read-only',
+                code=PARAMETER_REFUSED,
+                values={"parameter": given.name},
+            )
         wanted, found = parameter_type(known.get()), int(given.value.type)
         if found == wanted:
             return known, getattr(given.value, FIELDS[found])
         if (wanted, found) == (3, 2):
             # What a shell's 2 is meant to be.
             return known, float(given.value.integer_value)
-        raise CartwheelError(f'parameter "{given.name}" is of type {_NAMES[wanted]}')
+        raise CartwheelError(
+            f'parameter "{given.name}" is of type {_NAMES[wanted]}',
+            code=PARAMETER_REFUSED,
+            values={"parameter": given.name, "type": _NAMES[wanted]},
+        )
 
     def _tell(self, changed: Sequence[Any]) -> None:
         if self._events is None:

@@ -9,7 +9,9 @@ from typing import Any
 
 from cartwheel.bridges.loop import Loop
 from cartwheel.bridges.ros2.middleware import CALLS, Closable, Middleware, Reply, Served
-from cartwheel.errors import CartwheelError, GraphError
+from cartwheel.codes.graph import SERVICE_FAILED
+from cartwheel.codes.wires import CALL_LIMIT, MALFORMED_MESSAGE
+from cartwheel.errors import Diagnostic, GraphError, one_line
 from cartwheel.messages import decode_cdr, encode_cdr, zero
 from cartwheel.messages.ros2_types import Ros2Service, ros2_service
 from cartwheel.messages.versions import OlderService, older_versions
@@ -27,7 +29,9 @@ class Services:
         tell: Takes a warning.
     """
 
-    def __init__(self, loop: Loop, middleware: Middleware, tell: Callable[[str], None]) -> None:
+    def __init__(
+        self, loop: Loop, middleware: Middleware, tell: Callable[[Diagnostic], None]
+    ) -> None:
         self._loop = loop
         self._middleware = middleware
         self._tell = tell
@@ -75,7 +79,11 @@ class Services:
             try:
                 request = decode_cdr(data, type_.request)
             except GraphError as error:
-                self._tell(f"{name} was called with nonsense: {error}")
+                self._tell(
+                    MALFORMED_MESSAGE.because(
+                        f"malformed request to {name}", error, values={"service": name}
+                    )
+                )
                 return
             if threaded:
                 self._in_thread(lambda: respond(request, reply), name)
@@ -86,18 +94,21 @@ class Services:
             try:
                 response = handler(request)
                 data = encode_cdr(response)
-            except CartwheelError as error:
-                data = encode_cdr(self._failure(name, type_, str(error)))
             except Exception as error:  # noqa: BLE001 - who asks waits for an answer
-                text = f"{type(error).__name__}: {error}"
-                data = encode_cdr(self._failure(name, type_, text))
+                data = encode_cdr(self._failure(name, type_, error))
             self._loop.post(lambda: reply(data))
 
         return Served(type_, answer)
 
     def _in_thread(self, function: Callable[[], None], name: str) -> None:
         if self._calls >= _MOST_CALLS:
-            self._tell(f"more than {_MOST_CALLS} calls at a time: one of {name} is not answered")
+            self._tell(
+                CALL_LIMIT.diagnostic(
+                    f"more than {_MOST_CALLS} service calls at a time: one of {name} is not "
+                    "answered",
+                    values={"service": name, "most": _MOST_CALLS},
+                )
+            )
             return
         self._calls += 1
 
@@ -112,14 +123,14 @@ class Services:
 
         threading.Thread(target=run, name=f"ros2 call {name}", daemon=True).start()
 
-    def _failure(self, name: str, type_: Ros2Service, text: str) -> Any:
+    def _failure(self, name: str, type_: Ros2Service, error: Exception) -> Any:
         """ROS 2 knows no errors of services: where the response can say it, it does."""
         response = zero(type_.response)
         for field in ("status_message", "message"):
             if isinstance(getattr(response, field, None), str):
-                setattr(response, field, text)
+                setattr(response, field, one_line(error))
                 return response
-        self._tell(f"{name} failed: {text}")
+        self._tell(SERVICE_FAILED.because(f"{name} failed", error, values={"service": name}))
         return response
 
 

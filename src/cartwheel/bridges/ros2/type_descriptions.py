@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from cartwheel.codes.graph import MESSAGE_TYPE_UNKNOWN
 from cartwheel.errors import UnknownNameError
 from cartwheel.messages import zero
 from cartwheel.messages.ros2_types import ros2_hash_of
@@ -18,7 +19,9 @@ def get_type_description(request: Any) -> Any:
     try:
         known = ros2_hash_of(request.type_name)
         if request.type_hash != known:
-            raise UnknownNameError("hash of this type", request.type_hash, [known])
+            raise UnknownNameError(
+                "hash of this type", request.type_hash, [known], code=MESSAGE_TYPE_UNKNOWN
+            )
         response.type_description = type_description(request.type_name)
     except UnknownNameError as error:
         response.failure_reason = error.message

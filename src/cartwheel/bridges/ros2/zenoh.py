@@ -21,7 +21,8 @@ from cartwheel.bridges.loop import Loop
 from cartwheel.bridges.ros2.middleware import Answer, Profile, Served
 from cartwheel.bridges.ros2.rtps.network import Reach, domain_id
 from cartwheel.bridges.ros2.zenoh_tokens import NodeToken, Token, published
-from cartwheel.errors import CartwheelError
+from cartwheel.codes.wires import INCOMING_DROPPED, PACKAGE_MISSING, PEER_LIMIT, ZENOH_NOT_OPENED
+from cartwheel.errors import CartwheelError, Diagnostic
 from cartwheel.messages.ros2_types import Ros2Type
 
 PORT = 7447
@@ -55,14 +56,17 @@ class Zenoh:
     """
 
     def __init__(
-        self, loop: Loop, *, node: str, namespace: str, tell: Callable[[str], None]
+        self, loop: Loop, *, node: str, namespace: str, tell: Callable[[Diagnostic], None]
     ) -> None:
         try:
             import zenoh
             import zenoh.ext
         except ImportError:
             raise CartwheelError(
-                "--rmw zenoh needs Zenoh, which is not installed", hint=_INSTALL
+                "--rmw zenoh needs Zenoh, which is not installed",
+                code=PACKAGE_MISSING,
+                hint=_INSTALL,
+                values={"package": "eclipse-zenoh"},
             ) from None
         self._zenoh = zenoh
         self.loop = loop
@@ -103,7 +107,9 @@ class Zenoh:
         try:
             self._session = zenoh.open(self._configuration())
         except zenoh.ZError as error:
-            raise CartwheelError(f"no Zenoh session can be opened: {error}") from None
+            raise CartwheelError(
+                f"Zenoh cannot open a session: {error}", code=ZENOH_NOT_OPENED
+            ) from None
         self._zid = str(self._session.zid())
         self._lead = f"@ros2_lv/{self._domain}/{self._zid}"
         # It is there without any endpoint.
@@ -225,7 +231,13 @@ class Zenoh:
             elif len(self._others) < _TOKENS:
                 self._others[key] = topic
             else:
-                self._tell(f"more than {_TOKENS} publishers of peers: further ones are ignored")
+                self._tell(
+                    PEER_LIMIT.diagnostic(
+                        f"other nodes have more than {_TOKENS} publishers: further ones are "
+                        "ignored",
+                        values={"most": _TOKENS},
+                    )
+                )
             if not self._told_due:
                 self._told_due = True
                 self.loop.after(_GATHER, self._tell_of_others)
@@ -244,7 +256,11 @@ class Zenoh:
             try:
                 made = self._zenoh.Config.from_file(uri)
             except self._zenoh.ZError as error:
-                raise CartwheelError(f"ZENOH_SESSION_CONFIG_URI: {uri}: {error}") from None
+                raise CartwheelError(
+                    f"ZENOH_SESSION_CONFIG_URI names {uri}, which cannot be used: {error}",
+                    code=ZENOH_NOT_OPENED,
+                    values={"variable": "ZENOH_SESSION_CONFIG_URI", "value": uri},
+                ) from None
         else:
             made = self._own_configuration()
         for pair in os.environ.get("ZENOH_CONFIG_OVERRIDE", "").split(";"):
@@ -254,7 +270,11 @@ class Zenoh:
             try:
                 made.insert_json5(name.strip(), value.strip())
             except self._zenoh.ZError as error:
-                raise CartwheelError(f"ZENOH_CONFIG_OVERRIDE: {pair}: {error}") from None
+                raise CartwheelError(
+                    f"ZENOH_CONFIG_OVERRIDE holds {pair}, which cannot be used: {error}",
+                    code=ZENOH_NOT_OPENED,
+                    values={"variable": "ZENOH_CONFIG_OVERRIDE", "value": pair},
+                ) from None
         return made
 
     def _own_configuration(self) -> Any:
@@ -288,7 +308,7 @@ class Arrivals:
         tell: Takes a warning.
     """
 
-    def __init__(self, loop: Loop, tell: Callable[[str], None]) -> None:
+    def __init__(self, loop: Loop, tell: Callable[[Diagnostic], None]) -> None:
         self._loop = loop
         self._tell = tell
         self._lock = threading.Lock()
@@ -307,7 +327,11 @@ class Arrivals:
                 self._count += 1
                 self._bytes += size
         if full:
-            self._tell("messages come faster than they can be read: some are dropped")
+            self._tell(
+                INCOMING_DROPPED.diagnostic(
+                    "ROS nodes send messages faster than they can be read: some are dropped"
+                )
+            )
             return False
 
         def run() -> None:

@@ -8,7 +8,7 @@ from pathlib import Path
 from cartwheel.bridges.apart.process import BridgeProcess
 from cartwheel.cli.commands.bridges import log_all_on, log_on
 from cartwheel.cli.commands.report import Report
-from cartwheel.cli.console import print_warning
+from cartwheel.cli.showing import print_diagnostic
 from cartwheel.errors import Diagnostic
 from cartwheel.gazebo import GazeboApi
 from cartwheel.session import Session
@@ -75,8 +75,8 @@ class Ros1:
         """Leaves ROS."""
         self._process.close()
 
-    def _ended(self, reason: str) -> None:
-        print_warning(reason)
+    def _ended(self, diagnostic: Diagnostic) -> None:
+        print_diagnostic(diagnostic)
         simulation = self._session.simulation
-        log_on(self._process, simulation, Diagnostic(severity="warning", message=reason))
+        log_on(self._process, simulation, diagnostic)
         simulation.stop()

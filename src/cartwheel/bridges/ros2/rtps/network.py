@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from cartwheel.bridges.ros2.rtps.discovery import Address
+from cartwheel.codes.wires import DOMAIN_FULL, ROS_VARIABLE_INVALID
 from cartwheel.errors import CartwheelError
 
 GROUP = "239.255.0.1"
@@ -54,7 +55,12 @@ class Reach:
         only = environment.get("ROS_LOCALHOST_ONLY", "").strip()
         given = environment.get("ROS_AUTOMATIC_DISCOVERY_RANGE", "").upper()
         if only not in ("", "0", "1"):
-            raise CartwheelError(f'ROS_LOCALHOST_ONLY is "{only}"', hint="It can be 0 or 1.")
+            raise CartwheelError(
+                f'ROS_LOCALHOST_ONLY is "{only}"',
+                code=ROS_VARIABLE_INVALID,
+                hint="It can be 0 or 1.",
+                values={"variable": "ROS_LOCALHOST_ONLY", "value": only},
+            )
         if only == "1":
             return cls(range="LOCALHOST")
         if not given:
@@ -67,7 +73,9 @@ class Reach:
             return cls(range="SUBNET", peers=peers)
         raise CartwheelError(
             f'ROS_AUTOMATIC_DISCOVERY_RANGE is "{given}"',
+            code=ROS_VARIABLE_INVALID,
             hint="It can be OFF, LOCALHOST, SUBNET or SYSTEM_DEFAULT.",
+            values={"variable": "ROS_AUTOMATIC_DISCOVERY_RANGE", "value": given},
         )
 
 
@@ -80,7 +88,10 @@ def domain_id(environment: Mapping[str, str] = os.environ) -> int:
     given = environment.get("ROS_DOMAIN_ID", "").strip() or "0"
     if not given.isdecimal() or int(given) > _LAST_DOMAIN:
         raise CartwheelError(
-            f'ROS_DOMAIN_ID is "{given}"', hint=f"It is a number from 0 to {_LAST_DOMAIN}."
+            f'ROS_DOMAIN_ID is "{given}"',
+            code=ROS_VARIABLE_INVALID,
+            hint=f"It is a number from 0 to {_LAST_DOMAIN}.",
+            values={"variable": "ROS_DOMAIN_ID", "value": given},
         )
     return int(given)
 
@@ -179,7 +190,8 @@ class Network:
         sock.close()
         raise CartwheelError(
             "no port is free for another participant of this ROS domain",
-            hint="Choose another with ROS_DOMAIN_ID.",
+            code=DOMAIN_FULL,
+            hint="Choose another domain with ROS_DOMAIN_ID.",
         )
 
     def _join(self, port: int) -> socket.socket:
@@ -212,5 +224,9 @@ class Network:
             try:
                 found.append(socket.gethostbyname(peer))
             except OSError:
-                raise CartwheelError(f'ROS_STATIC_PEERS names "{peer}", which is no host') from None
+                raise CartwheelError(
+                    f'ROS_STATIC_PEERS names the unknown host "{peer}"',
+                    code=ROS_VARIABLE_INVALID,
+                    values={"variable": "ROS_STATIC_PEERS", "value": peer},
+                ) from None
         return found

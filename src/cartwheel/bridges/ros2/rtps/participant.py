@@ -27,6 +27,8 @@ from cartwheel.bridges.ros2.rtps.reader import Reader, Taken
 from cartwheel.bridges.ros2.rtps.room import Room
 from cartwheel.bridges.ros2.rtps.wire import Guid, MalformedError, Prefix, Received
 from cartwheel.bridges.ros2.rtps.writer import Writer
+from cartwheel.codes.wires import PEER_LIMIT
+from cartwheel.errors import Diagnostic
 
 _ANNOUNCE_FIRST, _ANNOUNCE = (0.0, 0.1, 0.3, 0.6, 1.0), 3.0
 """s after the start, and between further announcements."""
@@ -97,7 +99,7 @@ class Participant:
         reach: Reach,
         name: str,
         user_data: bytes,
-        tell: Callable[[str], None],
+        tell: Callable[[Diagnostic], None],
     ) -> None:
         self._loop = loop
         self._domain = domain
@@ -413,8 +415,11 @@ class Participant:
                 self._lose(oldest.data.prefix)
                 return True
         self._tell(
-            f"more than {PARTICIPANTS} participants on {host}, or {_PARTICIPANTS} in all: "
-            "not all are served"
+            PEER_LIMIT.diagnostic(
+                f"more than {PARTICIPANTS} participants on {host}, or {_PARTICIPANTS} in all: "
+                "not all are served",
+                values={"host": host, "most": PARTICIPANTS},
+            )
         )
         return False
 
@@ -523,8 +528,11 @@ class Participant:
         if endpoint.guid not in known:
             if len(known) >= _ENDPOINTS or self._count >= _ENDPOINTS_IN_ALL:
                 self._tell(
-                    f"more than {_ENDPOINTS} publishers or subscribers in one process, or "
-                    f"{_ENDPOINTS_IN_ALL} in all: not all are served"
+                    PEER_LIMIT.diagnostic(
+                        f"more than {_ENDPOINTS} publishers or subscribers in one process, or "
+                        f"{_ENDPOINTS_IN_ALL} in all: not all are served",
+                        values={"most": _ENDPOINTS},
+                    )
                 )
                 return
             self._count += 1
@@ -558,7 +566,13 @@ class Participant:
         if not ours.topic or ours.topic != other.topic:
             return False
         if len(connected) >= _MATCHES and other.guid not in connected:
-            self._tell(f"more than {_MATCHES} peers match {ours.topic}: not all are served")
+            self._tell(
+                PEER_LIMIT.diagnostic(
+                    f"more than {_MATCHES} publishers or subscribers match {ours.topic}: not all "
+                    "are served",
+                    values={"topic": ours.topic, "most": _MATCHES},
+                )
+            )
             return False
         if ours.type != other.type or policy:
             self.on_misfit(ours, other, policy)
