@@ -9,6 +9,7 @@ from typing import Any
 
 from cartwheel.bridges.recording.decoding import Decode, decoder
 from cartwheel.bridges.recording.reading import Recorded, RecordedTopic, Recording, span_of
+from cartwheel.codes.recording import PLAYBACK_READ_ONLY, RECORDED_TOPIC_LEFT_OUT, RECORDING_EMPTY
 from cartwheel.description.model import WorldDescription
 from cartwheel.errors import CartwheelError, Diagnostic, RecordingError
 from cartwheel.geometry import Pose, Vec3
@@ -55,7 +56,7 @@ class Player(Run):
         super().__init__()
         span = span_of(recording)
         if span is None:
-            raise RecordingError("the recording holds no messages")
+            raise RecordingError("the recording holds no messages", code=RECORDING_EMPTY)
         self.start_ns, self.end_ns = span
         self.time_ns = self.start_ns
         self.step_ns = _STEP_NS
@@ -121,7 +122,11 @@ class Player(Run):
         Raises:
             RecordingError: Always.
         """
-        raise RecordingError(f'"{name}" was recorded: it cannot be deleted')
+        raise RecordingError(
+            f'the recorded model "{name}" cannot be deleted',
+            code=PLAYBACK_READ_ONLY,
+            values={"model": name},
+        )
 
     def snapshot(self) -> Snapshot:
         """What is shown now."""
@@ -247,7 +252,9 @@ class Player(Run):
             try:
                 self._decoders[number] = decoder(topic)
             except RecordingError as error:
-                self._note(f"left out: {error.message}")
+                self._notes.append(
+                    RECORDED_TOPIC_LEFT_OUT.because(f"{topic.name} is not played", error)
+                )
         for number, messages in self._latched.items():
             # Robots first: the other topics belong to them.
             self._describe(topics[number], number, messages[-1])
@@ -263,7 +270,11 @@ class Player(Run):
                     qos="latched" if number in self._latched else "default",
                 )
             except CartwheelError as error:
-                self._note(f"left out: {error.message}")
+                self._notes.append(
+                    RECORDED_TOPIC_LEFT_OUT.because(
+                        f"{topic.name} is not played", error, values={"topic": topic.name}
+                    )
+                )
         return publishers
 
     def _describe(self, topic: RecordedTopic, number: int, message: Recorded) -> None:
@@ -298,12 +309,15 @@ class Player(Run):
             return decode(message.data)
         except CartwheelError as error:
             name = self._recording.topics[number].name
-            self._note(f"{name} is left out from {message.time_ns / 1e9:.3f} s on: {error.message}")
+            self._notes.append(
+                RECORDED_TOPIC_LEFT_OUT.because(
+                    f"{name} is not played from {message.time_ns / 1e9:.3f} s on",
+                    error,
+                    values={"topic": name, "time": message.time_ns / 1e9},
+                )
+            )
             del self._decoders[number]
             return None
-
-    def _note(self, text: str) -> None:
-        self._notes.append(Diagnostic(severity="warning", message=text))
 
 
 def _is_kept(topic: RecordedTopic) -> bool:

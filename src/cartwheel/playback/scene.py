@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from cartwheel.codes.recording import RECORDED_ROBOT_NOT_SHOWN
 from cartwheel.description import load_plain
 from cartwheel.description.kinematics import joint_positions, link_poses
 from cartwheel.description.model import RobotDescription, WorldDescription
@@ -81,10 +82,18 @@ class PlayedScene:
                 reach=Reach(folders=tuple(run_folders(())), hint=_FIX),
             )
         except CartwheelError as error:
-            self._note(f"the robot of {topic} is not shown: {error.message}")
+            self.diagnostics.append(
+                RECORDED_ROBOT_NOT_SHOWN.because(
+                    f"the robot of {topic} is not shown", error, values={"topic": topic}
+                )
+            )
             return
         if isinstance(found, WorldDescription):
-            self._note(f"{topic} describes a world, which is not shown")
+            self.diagnostics.append(
+                RECORDED_ROBOT_NOT_SHOWN.diagnostic(
+                    f"{topic} describes a world, which is not shown", values={"topic": topic}
+                )
+            )
             return
         self.diagnostics += [d for d in found.diagnostics if d.severity != "info"]
         namespace = topic.rpartition("/")[0]
@@ -207,6 +216,3 @@ class PlayedScene:
                 if joint.type != "fixed"
             ),
         )
-
-    def _note(self, text: str) -> None:
-        self.diagnostics.append(Diagnostic(severity="warning", message=text))

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from cartwheel.bridges.recording.reading import Recording
+from cartwheel.codes.recording import PLAYBACK_READ_ONLY
 from cartwheel.description.model import WorldDescription
 from cartwheel.errors import Diagnostic, RecordingError
 from cartwheel.graph import Graph
@@ -57,4 +58,4 @@ class PlaybackSession:
         Raises:
             RecordingError: Always.
         """
-        raise RecordingError("this is a recording, into which nothing can be put")
+        raise RecordingError("models cannot be spawned into a recording", code=PLAYBACK_READ_ONLY)

@@ -24,6 +24,7 @@ from cartwheel.bridges.recording.reading import (
     Recorded,
     RecordedTopic,
 )
+from cartwheel.codes.recording import RECORDING_DAMAGED, RECORDING_VERSION_UNKNOWN
 from cartwheel.errors import RecordingError
 from cartwheel.messages import type_name
 
@@ -96,7 +97,10 @@ def open_bag(path: Path) -> BagRecording:
         if magic != MAGIC:
             version = magic.decode(errors="replace").strip()
             raise RecordingError(
-                f'"{path}" is a bag of another version: {version}', hint="rosbag fix makes it 2.0."
+                f'"{path}" is a bag of the unsupported version {version}',
+                code=RECORDING_VERSION_UNKNOWN,
+                hint="rosbag fix converts it to 2.0.",
+                values={"path": str(path), "version": version},
             )
         try:
             unclear = _scan(file, recording)
@@ -106,7 +110,11 @@ def open_bag(path: Path) -> BagRecording:
             for block, times in unclear:
                 _clear_up(recording, block, times)
         except (ValueError, KeyError, struct.error) as error:
-            raise RecordingError(f'"{path}" is damaged near byte {file.tell()}: {error}') from error
+            raise RecordingError(
+                f'"{path}" is damaged near byte {file.tell()}: {error}',
+                code=RECORDING_DAMAGED,
+                values={"path": str(path), "byte": file.tell()},
+            ) from error
     # A bag of several publishers of a topic has a connection for each of them.
     return recording
 

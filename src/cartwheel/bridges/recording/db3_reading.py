@@ -8,6 +8,7 @@ from pathlib import Path
 
 from cartwheel.bridges.recording.compression import MOST_BYTES
 from cartwheel.bridges.recording.reading import Recorded, RecordedTopic, is_latched
+from cartwheel.codes.recording import NOT_A_RECORDING, RECORDING_DAMAGED
 from cartwheel.errors import RecordingError
 from cartwheel.messages import type_name
 
@@ -37,7 +38,11 @@ class Db3Recording:
             self._base = self._connect()
             self._survey()
         except (sqlite3.Error, ValueError, OverflowError) as error:
-            raise RecordingError(f'"{path}" is no bag of ROS 2: {error}') from error
+            raise RecordingError(
+                f'"{path}" is not a bag of ROS 2: {error}',
+                code=NOT_A_RECORDING,
+                values={"path": str(path)},
+            ) from error
 
     def messages(
         self, *, start_ns: int = 0, topics: Collection[int] | None = None
@@ -55,7 +60,11 @@ class Db3Recording:
                     raise ValueError("a message without time or data")
                 yield Recorded(time_ns, self._numbers[own], self._unpack(data))
         except (sqlite3.Error, ValueError, OverflowError) as error:
-            raise RecordingError(f'"{self.path}" is damaged: {error}') from error
+            raise RecordingError(
+                f'"{self.path}" is damaged: {error}',
+                code=RECORDING_DAMAGED,
+                values={"path": str(self.path)},
+            ) from error
 
     def close(self) -> None:
         self._base.close()

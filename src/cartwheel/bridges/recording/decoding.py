@@ -9,6 +9,7 @@ from typing import Any
 from rosbags.interfaces import Nodetype
 
 from cartwheel.bridges.recording.reading import RecordedTopic
+from cartwheel.codes.recording import RECORDED_TYPE_UNUSABLE
 from cartwheel.errors import CartwheelError, RecordingError
 from cartwheel.messages import decode_cdr, store
 from cartwheel.messages.fields import FILLER
@@ -36,26 +37,42 @@ def decoder(topic: RecordedTopic) -> Decode:
             other fields.
     """
     if topic.encoding not in ("cdr", "ros1"):
-        raise RecordingError(f"{topic.name} holds {topic.encoding or 'bytes'}, not ROS's messages")
+        raise RecordingError(
+            f"{topic.name} holds {topic.encoding or 'bytes'}, not ROS messages",
+            code=RECORDED_TYPE_UNUSABLE,
+            values={"topic": topic.name, "encoding": topic.encoding, "why": "encoding"},
+        )
     kind = topic.type
     try:
         _learn(topic)
         if topic.encoding == "ros1":
             known = ros1_type(kind)
             if topic.md5 not in ("", "*", known.md5):
-                raise RecordingError(f"{topic.name}: {kind} has other fields than the one known")
+                raise _other_fields(topic, kind)
             return lambda data: decode_ros1(data, kind)
         kind = _in_graph(kind, topic)
         if kind not in store().types:
-            raise RecordingError(f"{topic.name}: the type {kind} is neither known nor defined")
+            raise RecordingError(
+                f"the type {kind} of {topic.name} is neither known nor defined",
+                code=RECORDED_TYPE_UNUSABLE,
+                values={"topic": topic.name, "type": kind, "why": "unknown"},
+            )
     except RecordingError:
         raise
     except CartwheelError as error:
-        raise RecordingError(f"{topic.name}: {error.message}") from error
+        raise RecordingError(
+            f"the type of {topic.name} cannot be used: {error.message}",
+            code=RECORDED_TYPE_UNUSABLE,
+            values={**error.values, "topic": topic.name, "why": error.code.number},
+        ) from error
     except MemoryError:
         raise
     except Exception as error:  # rosbags makes code of definitions, and finds faults only there
-        raise RecordingError(f"{topic.name}: its definition cannot be used: {error}") from error
+        raise RecordingError(
+            f"the definition of {topic.name} cannot be used: {error}",
+            code=RECORDED_TYPE_UNUSABLE,
+            values={"topic": topic.name, "why": "definition"},
+        ) from error
     return lambda data: decode_cdr(data, kind)
 
 
@@ -73,7 +90,7 @@ def _learn(topic: RecordedTopic) -> None:
             if twin_name(name) in ours.fielddefs:
                 continue
             if name in ours.fielddefs and _plain(ours.fielddefs[name][1]) != _plain(fields):
-                raise RecordingError(f"{topic.name}: {name} has other fields than the one known")
+                raise _other_fields(topic, name)
     new = {name: fields for name, fields in types.items() if name not in ours.fielddefs}
     if new:
         ours.register(new)
@@ -92,7 +109,7 @@ def _in_graph(kind: str, topic: RecordedTopic) -> str:
         return twin
     if kind in known and _plain(stated[1]) == _plain(known[kind][1]):
         return kind
-    raise RecordingError(f"{topic.name}: {kind} has other fields than the one known")
+    raise _other_fields(topic, kind)
 
 
 def _parsed(topic: RecordedTopic) -> dict[str, Any]:
@@ -100,17 +117,27 @@ def _parsed(topic: RecordedTopic) -> dict[str, Any]:
 
     if len(topic.definition) > _LONGEST:
         raise RecordingError(
-            f"{topic.name}: its definition has {len(topic.definition)} characters,"
-            f" at most {_LONGEST} are read"
+            f"the definition of {topic.name} has {len(topic.definition)} characters, but at most "
+            f"{_LONGEST} are read",
+            code=RECORDED_TYPE_UNUSABLE,
+            values={"topic": topic.name, "why": "length"},
         )
     if topic.schema == "ros2idl" and _has_nested_parentheses(topic.definition):
-        raise RecordingError(f"{topic.name}: its definition has parentheses within parentheses")
+        raise RecordingError(
+            f"the definition of {topic.name} has nested parentheses",
+            code=RECORDED_TYPE_UNUSABLE,
+            values={"topic": topic.name, "why": "parentheses"},
+        )
     try:
         if topic.schema == "ros2idl":
             return dict(get_types_from_idl(topic.definition))
         return dict(get_types_from_msg(topic.definition, topic.type))
     except Exception as error:  # whatever the parser meets
-        raise RecordingError(f"{topic.name}: its definition cannot be read: {error}") from error
+        raise RecordingError(
+            f"the definition of {topic.name} cannot be read: {error}",
+            code=RECORDED_TYPE_UNUSABLE,
+            values={"topic": topic.name, "why": "definition"},
+        ) from error
 
 
 def _has_nested_parentheses(idl: str) -> bool:
@@ -128,7 +155,9 @@ def _check_names(topic: RecordedTopic, name: str, fields: Any) -> None:
     words = [*name.split("/"), *(field[0] for field in fields)]
     if not all(word.isidentifier() for word in words):
         raise RecordingError(
-            f"{topic.name}: {name} is not a valid type name, or has an invalid field name"
+            f"{topic.name}: {name} is not a valid type name, or has an invalid field name",
+            code=RECORDED_TYPE_UNUSABLE,
+            values={"topic": topic.name, "type": name, "why": "name"},
         )
 
 
@@ -142,7 +171,9 @@ def _check_arrays(topic: RecordedTopic, name: str, fields: Any) -> None:
         most = _MOST_NUMBERS if is_plain else _LONGEST_ARRAY
         if not 0 <= size <= most:
             raise RecordingError(
-                f"{topic.name}: {name}.{field} has {size} elements, 0 to {most} are read"
+                f"{topic.name}: {name}.{field} has {size} elements, but 0 to {most} are read",
+                code=RECORDED_TYPE_UNUSABLE,
+                values={"topic": topic.name, "type": name, "field": field, "why": "size"},
             )
 
 
@@ -155,7 +186,11 @@ def _check_depth(topic: RecordedTopic, types: dict[str, Any]) -> None:
     while inner:
         flat = {name for name, others in inner.items() if not others & inner.keys()}
         if not flat:
-            raise RecordingError(f"{topic.name}: {min(inner)} contains itself")
+            raise RecordingError(
+                f"{topic.name}: the type {min(inner)} contains itself",
+                code=RECORDED_TYPE_UNUSABLE,
+                values={"topic": topic.name, "type": min(inner), "why": "recursive"},
+            )
         inner = {name: others for name, others in inner.items() if name not in flat}
 
 
@@ -175,3 +210,12 @@ def _plain(fields: Any) -> Any:
 
 def _nested(value: Any) -> Any:
     return [_nested(item) for item in value] if isinstance(value, list | tuple) else value
+
+
+def _other_fields(topic: RecordedTopic, kind: str) -> RecordingError:
+    return RecordingError(
+        f"the type {kind} of {topic.name} has other fields than the one that is known",
+        code=RECORDED_TYPE_UNUSABLE,
+        hint="The recording was made with another version of this type.",
+        values={"topic": topic.name, "type": kind, "why": "fields"},
+    )

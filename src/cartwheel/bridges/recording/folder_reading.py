@@ -11,6 +11,7 @@ from cartwheel import yaml_text
 from cartwheel.bridges.recording.compression import decompress
 from cartwheel.bridges.recording.db3_reading import Db3Recording
 from cartwheel.bridges.recording.reading import Recorded, RecordedTopic, Recording
+from cartwheel.codes.recording import NOT_A_RECORDING, RECORDING_DAMAGED, RECORDING_UNREADABLE
 from cartwheel.errors import RecordingError
 
 _MOST_METADATA = 1 << 24
@@ -87,10 +88,18 @@ def open_folder(path: Path, open_file: Callable[[Path], Recording]) -> Recording
     files = [path / name for name in names if name]
     for file in files:
         if not file.is_file():
-            raise RecordingError(f'"{path}" names a file that does not exist: "{file.name}"')
+            raise RecordingError(
+                f'"{path}" names a file that does not exist: "{file.name}"',
+                code=RECORDING_UNREADABLE,
+                values={"path": str(path), "file": file.name},
+            )
     files = files or sorted([*path.glob("*.mcap"), *path.glob("*.db3")])
     if not files:
-        raise RecordingError(f'"{path}" is no recording: it holds neither .mcap nor .db3')
+        raise RecordingError(
+            f'"{path}" is not a recording: it holds neither .mcap nor .db3',
+            code=NOT_A_RECORDING,
+            values={"path": str(path)},
+        )
     unpack: Callable[[bytes], bytes] = lambda data: data  # noqa: E731
     mode, kind = about.get("compression_mode"), about.get("compression_format", "zstd")
     if isinstance(mode, str) and mode.upper() == "MESSAGE" and isinstance(kind, str):
@@ -112,6 +121,8 @@ def _metadata(path: Path) -> dict[str, Any]:
         read = yaml_text.load(yaml_text.read(file, _MOST_METADATA))
     except (yaml.YAMLError, ValueError, OSError) as error:
         what = " ".join(str(error).split())
-        raise RecordingError(f'"{file}" cannot be read: {what}') from error
+        raise RecordingError(
+            f'"{file}" cannot be read: {what}', code=RECORDING_DAMAGED, values={"path": str(file)}
+        ) from error
     about = read.get("rosbag2_bagfile_information") if isinstance(read, dict) else None
     return about if isinstance(about, dict) else {}

@@ -6,6 +6,12 @@ import os
 from pathlib import Path
 from typing import Literal
 
+from cartwheel.codes.recording import (
+    ENCODING_UNFIT,
+    RECORDING_EXISTS,
+    RECORDING_NAME_INVALID,
+    RECORDING_NOT_WRITABLE,
+)
 from cartwheel.errors import RecordingError
 
 Encoding = Literal["ros1", "ros2"]
@@ -26,7 +32,12 @@ def form_of(path: Path) -> Literal["mcap", "bag", "db3", "folder"]:
     if suffix in (".mcap", ".bag", ".db3"):
         return suffix[1:]  # type: ignore[return-value]
     if suffix and not suffix[1:].isdecimal() and not path.is_dir():
-        raise RecordingError(f'"{path.name}" names no form of recording', hint=_NAMES)
+        raise RecordingError(
+            f'"{path.name}" is not the name of a recording format',
+            code=RECORDING_NAME_INVALID,
+            hint=_NAMES,
+            values={"name": path.name},
+        )
     return "folder"
 
 
@@ -42,7 +53,10 @@ def encoding_for(path: Path, wanted: Encoding | None) -> Encoding:
     if (form == "bag") != (wanted == "ros1") and form != "mcap":
         other = "ROS 2" if form == "bag" else "ROS 1"
         raise RecordingError(
-            f'"{path.name}" cannot hold messages of {other}', hint="A .mcap holds either."
+            f'"{path.name}" cannot hold messages of {other}',
+            code=ENCODING_UNFIT,
+            hint="A .mcap holds either.",
+            values={"name": path.name, "encoding": wanted},
         )
     return wanted
 
@@ -54,25 +68,52 @@ def check_writable(path: Path, *, overwrite: bool) -> None:
         RecordingError: Something is there already, or the folder takes no file.
     """
     if not path.name:
-        raise RecordingError("a recording needs a name", hint="Such as drive.mcap.")
+        raise RecordingError(
+            "a recording needs a name",
+            code=RECORDING_NAME_INVALID,
+            hint="Such as drive.mcap.",
+            values={"name": ""},
+        )
     form_of(path)
     folder = path.parent
     if not folder.is_dir():
-        raise RecordingError(f'there is no folder "{folder}"', hint=f"mkdir -p {folder}")
+        raise RecordingError(
+            f'the folder "{folder}" does not exist',
+            code=RECORDING_NOT_WRITABLE,
+            hint=f"mkdir -p {folder}",
+            values={"path": str(folder)},
+        )
     if path.exists() or path.is_symlink():
         if not overwrite:
             raise exists(path)
         if path.is_dir() and not _is_bag2(path):
-            raise RecordingError(f'"{path}" is a folder and no recording: it is not replaced')
+            raise RecordingError(
+                f'"{path}" is a folder and not a recording: it is not replaced',
+                code=RECORDING_NOT_WRITABLE,
+                values={"path": str(path)},
+            )
         if path.is_dir() and form_of(path) != "folder":
-            raise RecordingError(f'"{path}" is a folder: it is not replaced by a file')
+            raise RecordingError(
+                f'"{path}" is a folder: it is not replaced by a file',
+                code=RECORDING_NOT_WRITABLE,
+                values={"path": str(path)},
+            )
     if not os.access(folder, os.W_OK | os.X_OK):
-        raise RecordingError(f'the folder "{folder}" takes no file: it is not writable')
+        raise RecordingError(
+            f'the folder "{folder}" is not writable',
+            code=RECORDING_NOT_WRITABLE,
+            values={"path": str(folder)},
+        )
 
 
 def exists(path: Path) -> RecordingError:
     """That something is there already, as an error."""
-    return RecordingError(f'"{path}" exists', hint="--overwrite replaces it.")
+    return RecordingError(
+        f'"{path}" exists',
+        code=RECORDING_EXISTS,
+        hint="--overwrite replaces it.",
+        values={"path": str(path)},
+    )
 
 
 def reason_of(error: OSError) -> str:

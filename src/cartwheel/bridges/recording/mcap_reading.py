@@ -17,6 +17,7 @@ from cartwheel.bridges.recording.reading import (
     RecordedTopic,
     is_latched,
 )
+from cartwheel.codes.recording import RECORDING_DAMAGED, RECORDING_VERSION_UNKNOWN
 from cartwheel.errors import RecordingError
 from cartwheel.messages import type_name
 
@@ -116,11 +117,19 @@ def open_mcap(path: Path) -> McapRecording:
     scan = _Scan(recording)
     with path.open("rb") as file:
         if file.read(len(MAGIC)) != MAGIC:
-            raise RecordingError(f'"{path}" is an MCAP of a version that is not known')
+            raise RecordingError(
+                f'"{path}" is an MCAP of an unsupported version',
+                code=RECORDING_VERSION_UNKNOWN,
+                values={"path": str(path)},
+            )
         try:
             _scan(file, scan)
         except ValueError as error:
-            raise RecordingError(f'"{path}" is damaged near byte {file.tell()}: {error}') from error
+            raise RecordingError(
+                f'"{path}" is damaged near byte {file.tell()}: {error}',
+                code=RECORDING_DAMAGED,
+                values={"path": str(path), "byte": file.tell()},
+            ) from error
     if scan.unclear and not recording.complete:
         # Its index may be cut off.
         block, _ = scan.unclear[-1]
@@ -136,7 +145,9 @@ def _clear_up(recording: McapRecording, block: Block, channels: set[int]) -> Non
         messages = [] if channels and channels <= set(recording.numbers) else recording.load(block)
     except ValueError as error:
         raise RecordingError(
-            f'"{recording.path}" is damaged at byte {block.position}: {error}'
+            f'"{recording.path}" is damaged at byte {block.position}: {error}',
+            code=RECORDING_DAMAGED,
+            values={"path": str(recording.path), "byte": block.position},
         ) from error
     if channels:
         block.topics = frozenset(recording.numbers[c] for c in channels if c in recording.numbers)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from cartwheel.bridges.recording.reading import Recording
+from cartwheel.codes.recording import NOT_A_RECORDING, RECORDING_UNREADABLE
 from cartwheel.errors import RecordingError
 
 
@@ -24,7 +25,11 @@ def open_recording(path: Path | str) -> Recording:
             begin = file.read(16)
         return _opened(path, begin)
     except OSError as error:
-        raise RecordingError(f'"{path}" cannot be read: {error.strerror or error}') from error
+        raise RecordingError(
+            f'"{path}" cannot be read: {error.strerror or error}',
+            code=RECORDING_UNREADABLE,
+            values={"path": str(path)},
+        ) from error
 
 
 def _opened(path: Path, begin: bytes) -> Recording:
@@ -41,9 +46,16 @@ def _opened(path: Path, begin: bytes) -> Recording:
 
         return Db3Recording(path)
     if not begin:
-        raise RecordingError(f'"{path}" is no recording: it is empty')
+        raise RecordingError(
+            f'"{path}" is not a recording: it is empty',
+            code=NOT_A_RECORDING,
+            values={"path": str(path)},
+        )
     packed = path.suffix == ".zstd"
     hint = "It is compressed as a whole: unzstd it first." if packed else None
     raise RecordingError(
-        f'"{path}" is no recording: it begins neither as MCAP nor as a bag', hint=hint
+        f'"{path}" is not a recording: it begins neither as MCAP nor as a bag',
+        code=NOT_A_RECORDING,
+        hint=hint,
+        values={"path": str(path)},
     )

@@ -6,6 +6,7 @@ import fnmatch
 import re
 from collections.abc import Sequence
 
+from cartwheel.codes.recording import TOPIC_PATTERN_INVALID
 from cartwheel.errors import RecordingError
 
 _REGULAR = "re:"
@@ -54,8 +55,14 @@ def _compiled(pattern: str) -> re.Pattern[str]:
         try:
             return re.compile(pattern.removeprefix(_REGULAR))
         except re.error as error:
-            raise RecordingError(f'"{pattern}" is no regular expression: {error}') from None
+            raise RecordingError(
+                f'"{pattern}" is not a regular expression: {error}',
+                code=TOPIC_PATTERN_INVALID,
+                values={"pattern": pattern},
+            ) from None
     if not pattern:
-        raise RecordingError("an empty pattern matches no topic")
+        raise RecordingError(
+            "an empty pattern matches no topic", code=TOPIC_PATTERN_INVALID, values={"pattern": ""}
+        )
     name = pattern if pattern[0] in "/*?[" else f"/{pattern}"
     return re.compile(fnmatch.translate(name))

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any, NamedTuple, Protocol
 
 from cartwheel import yaml_text
+from cartwheel.codes.recording import RECORDING_DAMAGED
 from cartwheel.errors import RecordingError
 
 _MOST_WAITING = 1 << 30
@@ -142,14 +143,18 @@ class BlockRecording:
                 yield message
             if size > _MOST_WAITING:
                 raise RecordingError(
-                    f'"{self.path}" cannot be read: its chunks overlap in time,'
-                    f" {size >> 20} MiB of them at byte {block.position}"
+                    f'"{self.path}" cannot be read: its chunks overlap in time, {size >> 20} MiB '
+                    f"of them at byte {block.position}",
+                    code=RECORDING_DAMAGED,
+                    values={"path": str(self.path), "byte": block.position, "overlap": size},
                 )
             try:
                 loaded = self.load(block)
             except ValueError as error:
                 raise RecordingError(
-                    f'"{self.path}" is damaged at byte {block.position}: {error}'
+                    f'"{self.path}" is damaged at byte {block.position}: {error}',
+                    code=RECORDING_DAMAGED,
+                    values={"path": str(self.path), "byte": block.position},
                 ) from error
             for message in loaded:
                 if message.time_ns >= start_ns and (wanted is None or message.number in wanted):

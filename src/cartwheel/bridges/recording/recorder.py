@@ -6,7 +6,7 @@ import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +22,13 @@ from cartwheel.bridges.recording.formats import (
 )
 from cartwheel.bridges.recording.patterns import Patterns
 from cartwheel.bridges.recording.writing import Writer, open_writer
+from cartwheel.codes.recording import (
+    DISK_SLOW,
+    MESSAGE_NOT_RECORDED,
+    RECORDING_BROKE_OFF,
+    RECORDING_SPLIT,
+    TOPIC_PATTERN_UNMATCHED,
+)
 from cartwheel.errors import (
     CartwheelError,
     Diagnostic,
@@ -170,7 +177,11 @@ class Recorder:
         if self.failure is not None:
             raise self.failure
         for pattern in self._patterns.unmatched:
-            self._warn(f'no topic matched "{pattern}"')
+            self._warn(
+                TOPIC_PATTERN_UNMATCHED.diagnostic(
+                    f'no topic matched "{pattern}"', values={"pattern": pattern}
+                )
+            )
         return self.summary
 
     @property
@@ -203,7 +214,9 @@ class Recorder:
         if self._backlog.waited > _TELLING and not self._told_wait:
             self._told_wait = True
             self._warn(
-                "the disk is slower than the simulation, which waits for it: nothing is lost"
+                DISK_SLOW.diagnostic(
+                    "the disk is slower than the simulation, which waits for it: nothing is lost"
+                )
             )
 
     def _changed(self) -> None:
@@ -272,7 +285,7 @@ class Recorder:
         except OSError as error:
             self._fail(reason_of(error), hint=_HINT)
         except CartwheelError as error:
-            self._fail(str(error))
+            self._fail(error.message, hint=error.hint)
         except Exception as error:  # noqa: BLE001 - the simulation must not wait for ever
             self._fail(one_line(error))
 
@@ -284,7 +297,10 @@ class Recorder:
             # Its last chunk may have made room for the file's end.
             kept = self._writer.kept_ns
         self.failure = RecordingError(
-            f'the recording "{self._files[-1]}" broke off at {kept / 1e9:.3f} s: {why}', hint=hint
+            f'the recording "{self._files[-1]}" broke off at {kept / 1e9:.3f} s: {why}',
+            code=RECORDING_BROKE_OFF,
+            hint=hint,
+            values={"path": str(self._files[-1]), "time": kept / 1e9, "reason": why},
         )
         self._backlog.close()
         self._on_failure(self.failure)
@@ -306,7 +322,13 @@ class Recorder:
         except GraphError as error:
             if item.topic not in self._refused:
                 self._refused.add(item.topic)
-                self._warn(f"messages of {item.topic} are left out: {error}")
+                self._warn(
+                    MESSAGE_NOT_RECORDED.because(
+                        f"messages of {item.topic} are not recorded",
+                        error,
+                        values={"topic": item.topic},
+                    )
+                )
             return
         self._messages += 1
         self._size += size
@@ -325,7 +347,12 @@ class Recorder:
             made = writer.add(item.topic, item.type, latched=item.latched)
         except UnknownNameError:
             self._refused.add(key)
-            self._warn(f"{item.topic} is left out: ROS 1 has no type {item.type}")
+            self._warn(
+                MESSAGE_NOT_RECORDED.diagnostic(
+                    f"{item.topic} is not recorded: ROS 1 has no type {item.type}",
+                    values={"topic": item.topic, "type": item.type},
+                )
+            )
             return None
         self._channels[key] = made
         return made
@@ -342,10 +369,10 @@ class Recorder:
                 break
             number += 1
         self._begin(path)
-        self._report(
-            Diagnostic(
-                severity="info",
-                message=f'recording: time went back to {self._time / 1e9:.3f} s: on in "{path}"',
+        self._warn(
+            RECORDING_SPLIT.diagnostic(
+                f'time went back to {self._time / 1e9:.3f} s: the recording continues in "{path}"',
+                values={"path": str(path), "time": self._time / 1e9},
             )
         )
 
@@ -360,8 +387,8 @@ class Recorder:
         )
         self._files.append(path)
 
-    def _warn(self, text: str) -> None:
-        self._report(Diagnostic(severity="warning", message=f"recording: {text}"))
+    def _warn(self, diagnostic: Diagnostic) -> None:
+        self._report(replace(diagnostic, message=f"recording: {diagnostic.message}"))
 
 
 _HINT = "What was written before can be read; cartwheel info shows it."

@@ -15,6 +15,7 @@ from cartwheel.bridges.recording.formats import (
     reason_of,
 )
 from cartwheel.bridges.recording.sink import is_being_written
+from cartwheel.codes.recording import RECORDING_EXISTS, RECORDING_NOT_WRITABLE
 from cartwheel.errors import RecordingError
 
 
@@ -92,7 +93,11 @@ def open_writer(
         # Somebody else began to write it just now.
         raise exists(path) from error
     except OSError as error:
-        raise RecordingError(f'"{path}" cannot be written: {reason_of(error)}') from error
+        raise RecordingError(
+            f'"{path}" cannot be written: {reason_of(error)}',
+            code=RECORDING_NOT_WRITABLE,
+            values={"path": str(path), "reason": reason_of(error)},
+        ) from error
 
 
 def _remove(path: Path) -> None:
@@ -106,7 +111,11 @@ def _remove(path: Path) -> None:
     # A .db3 is SQLite's, which has locks of its own and forbids us to open it.
     written = [one for one in (path.iterdir() if folder else (path,)) if one.suffix != ".db3"]
     if any(one.is_file() and is_being_written(one) for one in written):
-        raise RecordingError(f'"{path}" is being recorded: it is not replaced')
+        raise RecordingError(
+            f'"{path}" is being recorded: it is not replaced',
+            code=RECORDING_EXISTS,
+            values={"path": str(path), "recording": True},
+        )
     if folder:
         shutil.rmtree(path)
     else:
