@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import contextlib
+from collections.abc import Iterable, Iterator
 from typing import Any
 
-from cartwheel.errors import Code, Diagnostic
+import pytest
+
+from cartwheel.errors import CartwheelError, Code, Diagnostic, Value
 
 
 def coded(source: Any, code: Code, **values: object) -> list[Diagnostic]:
@@ -19,6 +22,21 @@ def coded(source: Any, code: Code, **values: object) -> list[Diagnostic]:
     diagnostics: Iterable[Diagnostic] = getattr(source, "diagnostics", source)
     return [
         each
-        for each in diagnostics
+        for each in list(diagnostics)
         if each.code is code and all(each.values.get(key) == one for key, one in values.items())
     ]
+
+
+@contextlib.contextmanager
+def raises(
+    code: Code, kind: type[CartwheelError] = CartwheelError, **values: Value
+) -> Iterator[pytest.ExceptionInfo[CartwheelError]]:
+    """Expects an error with a code and, among others, these values."""
+    with pytest.raises(kind) as caught:
+        yield caught
+    assert caught.value.code is code, repr(caught.value)
+    found = {name: caught.value.values.get(name) for name in values}
+    assert found == values
+
+
+of_code = coded

@@ -8,8 +8,10 @@ from collections.abc import Callable, Iterator
 import pytest
 from tests.bridges.ros1_peers import REASON, Master, wait_for
 from tests.bridges.running import Running
+from tests.coded import of_code
 
 from cartwheel.bridges.ros1 import Ros1Bridge
+from cartwheel.errors import Code, Diagnostic, Value
 
 
 @pytest.fixture(scope="module")
@@ -29,7 +31,7 @@ class Bridged(Running):
 
     def __init__(self, robot: bool, node: str, arguments: tuple[str, ...]) -> None:
         super().__init__(robot=robot)
-        self.ended: list[str] = []
+        self.ended: list[Diagnostic] = []
         self.bridge = Ros1Bridge(
             self.graph,
             node=node,
@@ -43,9 +45,9 @@ class Bridged(Running):
         """Whether the simulation would publish on a topic."""
         return any(p.wanted for p in self.graph._topics[topic].publishers)
 
-    def told(self, text: str) -> int:
-        """How often a report with this text was made."""
-        return sum(text in report.message for report in self.reports)
+    def reported(self, code: Code, **values: Value) -> int:
+        """How often something with this code and these values was reported."""
+        return len(of_code(self.reports, code, **values))
 
 
 Bridge = Callable[..., Bridged]

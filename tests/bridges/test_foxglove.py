@@ -16,14 +16,21 @@ from typing import Any
 import pytest
 from tests.bridges.foxglove_client import Client, modules, unreadable
 from tests.bridges.running import Running
+from tests.coded import of_code, raises
 from websockets.sync.client import connect
 
 from cartwheel.bridges.foxglove import FoxgloveBridge
 from cartwheel.bridges.foxglove.forms import encoding_of, packed, schema_of
 from cartwheel.cli.commands.assets import Assets
 from cartwheel.cli.commands.foxglove import SimulationControls
+from cartwheel.codes.wires import (
+    ADDRESS_UNAVAILABLE,
+    MALFORMED_MESSAGE,
+    MESSAGE_UNREAD,
+    SLOW_SUBSCRIBER,
+)
 from cartwheel.description import load_robot, load_text, load_world
-from cartwheel.errors import CartwheelError, Diagnostic, Origin
+from cartwheel.errors import CartwheelError, Code, Diagnostic, Origin
 from cartwheel.graph import Graph
 from cartwheel.messages import decode_cdr, encode_cdr, from_dict, service_classes, zero
 from cartwheel.messages.ros1 import decode_ros1, encode_ros1
@@ -253,19 +260,24 @@ def test_a_client_that_knows_twist_alone_drives_what_wants_a_stamp(
 @pytest.mark.parametrize(
     ("topic", "kind", "data", "words"),
     [
-        (CMD, "geometry_msgs/Twist", b"junk", "no geometry_msgs"),
-        (CMD, "sensor_msgs/Imu", encode_cdr(from_dict("sensor_msgs/msg/Imu", {})), "has type"),
-        (CMD, "none_msgs/None", b"\0\1\0\0", "does not exist"),
-        ("/nowhere", "geometry_msgs/Twist", b"\0\1\0\0", "nobody reads"),
+        (CMD, "geometry_msgs/Twist", b"junk", MALFORMED_MESSAGE),
+        (
+            CMD,
+            "sensor_msgs/Imu",
+            encode_cdr(from_dict("sensor_msgs/msg/Imu", {})),
+            MALFORMED_MESSAGE,
+        ),
+        (CMD, "none_msgs/None", b"\0\1\0\0", MALFORMED_MESSAGE),
+        ("/nowhere", "geometry_msgs/Twist", b"\0\1\0\0", MESSAGE_UNREAD),
     ],
 )
 def test_what_cannot_be_taken_is_told(
-    *, served: Served, client: Client, topic: str, kind: str, data: bytes, words: str
+    *, served: Served, client: Client, topic: str, kind: str, data: bytes, code: Code
 ) -> None:
     client.wait("advertise")
     client.send("publish", data, topic=topic, type=kind, encoding="cdr")
-    client.wait("status", lambda e: words in e["status"]["message"])
-    assert any(words in report.message for report in served.reports)
+    client.wait("status", lambda e: f"[{code.number}]" in e["status"]["message"])
+    assert of_code(served.reports, code, topic=topic)
 
 
 def test_services(served: Served, client: Client) -> None:
@@ -492,7 +504,7 @@ def test_a_frozen_client_stalls_nobody(served: Served, folder: Path) -> None:
     assert time.monotonic() - wall < 100
     awake.wait("message", lambda e: e["topic"] == "/clock" and e["time"] > begin + 4 * 10**9)
     assert len(awake.of("message")) > count + 200
-    until(lambda: any("too slow" in each.message for each in served.reports), "the report")
+    until(lambda: of_code(served.reports, SLOW_SUBSCRIBER), "the report")
     frozen.close()
     awake.close()
 
@@ -514,7 +526,7 @@ def test_a_taken_port_is_told() -> None:
         bridge = FoxgloveBridge(
             session.graph, name="a", port=port, controls=SimulationControls(session.simulation)
         )
-        with pytest.raises(CartwheelError, match=str(port)):
+        with raises(ADDRESS_UNAVAILABLE, port=port):
             bridge.start()
         session.close()
 

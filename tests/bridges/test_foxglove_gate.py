@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import pytest
 from tests.bridges.test_foxglove import serving
+from tests.coded import of_code
 from websockets.exceptions import ConnectionClosedOK, InvalidStatus
 from websockets.sync.client import connect
 
 from cartwheel.bridges.foxglove.bridge import APPS
+from cartwheel.codes.wires import PAGE_REFUSED
 from cartwheel.gate.access import Access
 
 PROTOCOL = "foxglove.sdk.v1"
@@ -31,8 +33,7 @@ def test_its_own_programs_pass_and_foreign_pages_do_not() -> None:
             assert caught.value.response.status_code == 403
         with pytest.raises(InvalidStatus):
             greeting(url, additional_headers={"Host": "evil.example"})
-        reported = [each.message for each in served.reports]
-        assert any("refused a web page of the origin http://evil.example" in e for e in reported)
+        assert of_code(served.reports, PAGE_REFUSED, origin="http://evil.example")
 
 
 def test_elsewhere_it_wants_the_token_in_its_address() -> None:

@@ -22,6 +22,7 @@ import pytest
 from mcap.reader import NonSeekingReader, make_reader
 from mcap_ros2.decoder import DecoderFactory
 from rosbags.highlevel import AnyReader
+from tests.coded import of_code, raises
 
 import cartwheel as cw
 from cartwheel.bridges.recording import Recorder, writing
@@ -31,7 +32,16 @@ from cartwheel.bridges.recording.opening import open_recording
 from cartwheel.bridges.recording.patterns import Patterns
 from cartwheel.bridges.recording.sink import Sink
 from cartwheel.bridges.recording.writing import open_writer
-from cartwheel.errors import RecordingError
+from cartwheel.codes.recording import (
+    DISK_SLOW,
+    ENCODING_UNFIT,
+    MESSAGE_NOT_RECORDED,
+    RECORDING_EXISTS,
+    RECORDING_NAME_INVALID,
+    RECORDING_NOT_WRITABLE,
+    TOPIC_PATTERN_UNMATCHED,
+)
+from cartwheel.errors import Code, Diagnostic, RecordingError
 from cartwheel.graph import Graph
 from cartwheel.messages import encode_cdr, from_dict, message_class, ros1_writing, ros2
 from cartwheel.messages.ros1 import encode_ros1, ros1_type
@@ -274,9 +284,8 @@ def test_a_pattern_without_topics_is_told(tmp_path: Path) -> None:
     with cw.World("empty") as world:
         with world.record(tmp_path / "a.mcap", topics=["/clok", "/clock"]):
             world.run(0.1)
-        assert [d.message for d in world.diagnostics if d.severity == "warning"] == [
-            'recording: no topic matched "/clok"'
-        ]
+        (warning,) = (d for d in world.diagnostics if d.severity == "warning")
+        assert (warning.code, warning.values) == (TOPIC_PATTERN_UNMATCHED, {"pattern": "/clok"})
 
 
 def test_a_robot_that_comes_later_is_recorded_from_its_first_message_on(tmp_path: Path) -> None:
@@ -322,21 +331,21 @@ def test_a_reset_overwrites_nothing(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "words"),
+    ("name", "code"),
     [
-        ("drive.avi", "no form of recording"),
-        ("nowhere/drive.mcap", "there is no folder"),
-        ("there.mcap", "exists"),
-        ("folder", "exists"),
+        ("drive.avi", RECORDING_NAME_INVALID),
+        ("nowhere/drive.mcap", RECORDING_NOT_WRITABLE),
+        ("there.mcap", RECORDING_EXISTS),
+        ("folder", RECORDING_EXISTS),
     ],
 )
-def test_a_place_that_takes_no_recording(tmp_path: Path, name: str, words: str) -> None:
+def test_a_place_that_takes_no_recording(tmp_path: Path, name: str, code: Code) -> None:
     (tmp_path / "there.mcap").write_text("mine")
     (tmp_path / "folder").mkdir()
     (tmp_path / "folder" / "letter.txt").write_text("mine")
     with (
         cw.World("empty") as world,
-        pytest.raises(RecordingError, match=words),
+        raises(code, RecordingError),
         world.record(tmp_path / name),
     ):
         pass
@@ -348,7 +357,7 @@ def test_a_recording_without_a_name(tmp_path: Path, monkeypatch: Any, overwrite:
     monkeypatch.chdir(tmp_path)
     with (
         cw.World("empty") as world,
-        pytest.raises(RecordingError, match="needs a name"),
+        raises(RECORDING_NAME_INVALID, name=""),
         world.record("", overwrite=overwrite),
     ):
         pass
@@ -359,7 +368,7 @@ def test_overwriting_takes_recordings_alone(tmp_path: Path) -> None:
     (tmp_path / "folder" / "letter.txt").write_text("mine")
     with cw.World("empty") as world:
         with (
-            pytest.raises(RecordingError, match="no recording"),
+            raises(RECORDING_NOT_WRITABLE),
             world.record(tmp_path / "folder", overwrite=True),
         ):
             pass
@@ -377,7 +386,7 @@ def test_overwriting_takes_recordings_alone(tmp_path: Path) -> None:
 def test_an_encoding_that_a_form_cannot_hold(tmp_path: Path, name: str, encoding: Any) -> None:
     with (
         cw.World("empty") as world,
-        pytest.raises(RecordingError, match="cannot hold"),
+        raises(ENCODING_UNFIT),
         world.record(tmp_path / name, encoding=encoding),
     ):
         pass
@@ -387,7 +396,7 @@ def test_an_encoding_that_a_form_cannot_hold(tmp_path: Path, name: str, encoding
 def test_a_file_that_the_system_refuses(tmp_path: Path) -> None:
     with (
         cw.World("empty") as world,
-        pytest.raises(RecordingError, match="cannot be written"),
+        raises(RECORDING_NOT_WRITABLE),
         world.record("/proc/drive.mcap"),
     ):
         pass
@@ -412,11 +421,11 @@ def test_a_slow_disk_holds_the_simulation_and_loses_nothing(
     with cw.World("empty") as world:
         with world.record(path, topics=["/clock"]) as recorder:
             world.run(5.0)
-        told = [d.message for d in world.diagnostics if "slower" in d.message]
+        slow_disk = of_code(world.diagnostics, DISK_SLOW)
     assert [t for t, _ in read_with_mcap(path)["/clock"]] == [i * 10_000_000 for i in range(500)]
     # At most five wait, so there were at least a hundred turns of 20 ms.
     assert recorder.summary.waited > 1.0
-    assert len(told) == 1
+    assert len(slow_disk) == 1
 
 
 def test_a_backlog_counts_bytes(tmp_path: Path) -> None:
@@ -443,10 +452,8 @@ def test_a_backlog_counts_bytes(tmp_path: Path) -> None:
 
 def test_a_message_that_cannot_be_encoded_costs_itself_alone(tmp_path: Path) -> None:
     graph = Graph()
-    told: list[str] = []
-    recorder = Recorder(
-        graph, tmp_path / "a.bag", time_ns=lambda: 5, report=lambda d: told.append(d.message)
-    )
+    reports: list[Diagnostic] = []
+    recorder = Recorder(graph, tmp_path / "a.bag", time_ns=lambda: 5, report=reports.append)
     publisher = graph.advertise("/a", "std_msgs/msg/UInt8")
     made = message_class("std_msgs/msg/UInt8")
     recorder.start()
@@ -454,7 +461,7 @@ def test_a_message_that_cannot_be_encoded_costs_itself_alone(tmp_path: Path) -> 
         publisher.publish(made(value))
     assert recorder.close().messages == 2
     assert read_with_rosbags(tmp_path / "a.bag") == {"/a": [(5, b"\1"), (5, b"\2")]}
-    assert len(told) == 1 and "/a" in told[0]
+    assert len(reports) == 1 and of_code(reports, MESSAGE_NOT_RECORDED, topic="/a")
 
 
 _RUN = ["run", "--headless", "--speed", "max", "--for", "100000", "--record"]
@@ -791,7 +798,7 @@ def test_of_two_that_begin_at_once_one_records(
     with cw.World("empty") as world, cw.World("empty") as other:
         with world.record(path, topics=["/clock"]):
             world.run(0.1)
-            with pytest.raises(RecordingError, match="exists"), other.record(path):
+            with raises(RECORDING_EXISTS), other.record(path):
                 pytest.fail("it began")
             world.run(0.1)
         assert len(read_with_rosbags(path)["/clock"]) == 20
@@ -804,7 +811,7 @@ def test_what_is_being_recorded_is_not_replaced(tmp_path: Path, name: str) -> No
         with world.record(path, topics=["/clock"]):
             world.run(0.1)
             refused = other.record(path, overwrite=True)
-            with pytest.raises(RecordingError, match="is being recorded"), refused:
+            with raises(RECORDING_EXISTS, recording=True), refused:
                 pytest.fail("it began")
             world.run(0.1)
         assert len(read_with_rosbags(path)["/clock"]) == 20

@@ -24,11 +24,13 @@ from tests.bridges.test_recording import (
     read_with_mcap,
     run_program,
 )
+from tests.coded import raises
 
 from cartwheel.bridges.recording.decoding import decoder
 from cartwheel.bridges.recording.encoding import codec
 from cartwheel.bridges.recording.opening import open_recording
 from cartwheel.bridges.recording.reading import RecordedTopic
+from cartwheel.codes.recording import RECORDED_TYPE_UNUSABLE
 from cartwheel.errors import RecordingError
 from cartwheel.messages import decode_cdr, encode_cdr, zero
 
@@ -174,7 +176,7 @@ def test_bytes_that_are_no_messages_are_listed_and_not_decoded(tmp_path: Path) -
     recording = open_recording(tmp_path / "a.mcap")
     (topic,) = (topic for topic in recording.topics if topic.name == "/json")
     assert (topic.encoding, topic.count) == ("json", 1)
-    with pytest.raises(RecordingError, match="json"):
+    with raises(RECORDED_TYPE_UNUSABLE, encoding="json"):
         decoder(topic)
 
 
@@ -187,7 +189,7 @@ def test_another_type_of_a_known_name_is_not_taken_for_it(tmp_path: Path) -> Non
         writer.add_message(channel, 1, b"\0\1\0\0\5\0\0\0", 1)
         writer.finish()
     (topic,) = open_recording(tmp_path / "a.mcap").topics
-    with pytest.raises(RecordingError, match="other fields"):
+    with raises(RECORDED_TYPE_UNUSABLE, why="fields"):
         decoder(topic)
 
 

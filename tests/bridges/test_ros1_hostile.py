@@ -23,6 +23,7 @@ from cartwheel.bridges.ros1.master import MasterParameters
 from cartwheel.bridges.ros1.registrar import Registrar
 from cartwheel.bridges.ros1.rpc import Peer, RpcError
 from cartwheel.bridges.ros1.subscription import MOST
+from cartwheel.codes.wires import BRIDGE_FAULT, MALFORMED_MESSAGE, PEER_LIMIT, PEER_TYPE_MISMATCH
 
 pytestmark = pytest.mark.timeout(300)
 
@@ -84,7 +85,7 @@ def test_nonsense_on_the_stream_port(bridge: Bridge, master: Master) -> None:
                 sock.sendall(head)
     serves(master)
     assert memory() - before < 20 << 20
-    assert not run.told("a fault of the bridge")
+    assert not run.reported(BRIDGE_FAULT)
     wait_for(lambda: not run.bridge._node._unknown, "their ends")
 
 
@@ -108,7 +109,7 @@ def test_nonsense_on_the_call_port(bridge: Bridge, master: Master) -> None:
     assert node.getPid("/test") == [1, "", os.getpid()]
     serves(master)
     assert memory() - before < 20 << 20
-    assert not run.told("a fault of the bridge")
+    assert not run.reported(BRIDGE_FAULT)
 
 
 def test_connections_that_say_nothing_are_limited(bridge: Bridge, master: Master) -> None:
@@ -129,7 +130,7 @@ def test_a_publisher_of_nonsense_is_left(bridge: Bridge, master: Master) -> None
             read_block(connection)
             send_header(connection, {"md5sum": "9f195f881246fdfa2798d1d3eebca84a"})
             connection.sendall(struct.pack("<I", 5) + b"short")
-            wait_for(lambda: run.told("sent a malformed message"), "the report")
+            wait_for(lambda: run.reported(MALFORMED_MESSAGE), "the report")
             connection.settimeout(60)
             assert connection.recv(1) == b""
             connection.close()
@@ -268,7 +269,7 @@ def test_thousands_of_publishers_take_few_threads(bridge: Bridge, master: Master
         threads = threading.active_count()
         assert node.publisherUpdate("/test", "/part2_cmr/cmd_vel", dead)[0] == 1
         assert len(topic._links) == MOST
-        assert run.told(f"more than {MOST} publishers") == 1
+        assert run.reported(PEER_LIMIT, most=MOST) == 1
         # Duplicates count once, and an update takes the place of the one before.
         assert node.publisherUpdate("/test", "/part2_cmr/cmd_vel", [*dead[:200], *dead[:200]])[0]
         assert set(topic._links) == set(dead[:200])
@@ -408,19 +409,22 @@ def test_all_connections_share_their_bounds(bridge: Bridge, master: Master) -> N
             read_block(sock)
         late = stack.enter_context(socket.create_connection(address(run), timeout=60))
         assert late.recv(1) == b""
-        wait_for(lambda: run.told("the most there can be"), "the report")
+        wait_for(lambda: run.reported(PEER_LIMIT), "the report")
     wait_for(lambda: not traffic.connections, "their ends")
     serves(master)
 
 
+@pytest.mark.wording
 def test_what_strangers_call_themselves_moves_no_cursor(bridge: Bridge) -> None:
     run = bridge()
     with socket.create_connection(address(run), timeout=60) as sock:
         send_header(sock, {"topic": "/odom", "md5sum": "1", "type": "a", "callerid": "/\x1b[2J"})
         assert b"has type" in read_block(sock)
-    wait_for(lambda: run.told("expects a (1) on /odom"), "the report")
-    assert not run.told("\x1b")
-    assert run.told("/?[2J expects")
+    wait_for(
+        lambda: run.reported(PEER_TYPE_MISMATCH, topic="/odom", type="a", md5="1"), "the report"
+    )
+    assert not [report for report in run.reports if "\x1b" in report.message]
+    assert [report for report in run.reports if "/?[2J" in report.message]
 
 
 def test_a_master_that_answers_nonsense_takes_no_name(monkeypatch: pytest.MonkeyPatch) -> None:

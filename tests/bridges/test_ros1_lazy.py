@@ -10,6 +10,7 @@ import pytest
 from tests.bridges.conftest import Bridge
 from tests.bridges.ros1_peers import Master, Subscriber, wait_for
 
+from cartwheel.codes.wires import PEER_TYPE_MISMATCH, SLOW_SUBSCRIBER, TYPE_UNSUPPORTED
 from cartwheel.messages import from_dict, message_class, zero
 
 pytestmark = pytest.mark.timeout(300)
@@ -122,14 +123,17 @@ def test_a_wrong_type_is_refused_and_told(bridge: Bridge, master: Master) -> Non
     assert "rosgraph_msgs/Clock" in subscriber.header["error"]
     with pytest.raises(ConnectionError):
         subscriber.read()
-    wait_for(lambda: run.told("expects std_msgs/String") == 1, "the report")
+    wait_for(lambda: run.reported(PEER_TYPE_MISMATCH, type="std_msgs/String") == 1, "the report")
     assert not run.wanted("/clock")
 
 
 def test_types_that_ros1_lacks_are_told_and_left_out(bridge: Bridge, master: Master) -> None:
     run = bridge(robot=False)
     run.graph.advertise("/parameter_events", "rcl_interfaces/msg/ParameterEvent")
-    wait_for(lambda: run.told("rcl_interfaces/msg/ParameterEvent"), "the report")
+    wait_for(
+        lambda: run.reported(TYPE_UNSUPPORTED, type="rcl_interfaces/msg/ParameterEvent"),
+        "the report",
+    )
     assert "/parameter_events" not in master.types()
 
 
@@ -155,10 +159,10 @@ def test_a_reader_that_fails_disturbs_nobody(bridge: Bridge, master: Master, end
             assert len(other.read()) > 1 << 20
         other.close()
         if end == "stops":
-            wait_for(lambda: run.told("reads /big too slowly"), "the report")
+            wait_for(lambda: run.reported(SLOW_SUBSCRIBER, topic="/big"), "the report")
             publication = run.bridge._node.publications["/big"]
             assert sum(link._queued for link in publication.links) < 20 << 20
-            assert run.told("too slowly") == 1
+            assert run.reported(SLOW_SUBSCRIBER) == 1
             (count,) = run.graph.topic("/big").dropped
             assert count > 0
     finally:

@@ -7,9 +7,10 @@ import threading
 from collections.abc import Iterator
 
 import pytest
+from tests.coded import raises
 from tests.gate.behind import PAGE, Gated, eventually, gated, rest, status
 
-from cartwheel.errors import ControlError
+from cartwheel.codes.wires import ADDRESS_UNAVAILABLE, ORIGIN_INVALID
 from cartwheel.gate import gate as gate_module
 from cartwheel.gate.access import Access
 from cartwheel.gate.listening import hidden_host
@@ -236,7 +237,7 @@ def test_an_allowed_origin_passes_and_so_does_its_name() -> None:
     "origin", ["null", "*", "example.org", "http://", "https://a/b", "a b", ""]
 )
 def test_an_origin_that_is_malformed_is_refused(origin: str) -> None:
-    with pytest.raises(ControlError, match="--allow-origin"):
+    with raises(ORIGIN_INVALID):
         Access.of("127.0.0.1", [origin])
 
 
@@ -359,7 +360,7 @@ def test_a_taken_port_is_an_error_with_the_option() -> None:
 
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = taken.getsockname()[1]
-        with pytest.raises(ControlError, match=f"the page cannot listen on 127.0.0.1:{port}"):
+        with raises(ADDRESS_UNAVAILABLE, server="the page", port=port):
             listen("127.0.0.1", port, title="the page", option="--port")
 
 

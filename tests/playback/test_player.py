@@ -14,11 +14,12 @@ from typing import Any
 import numpy as np
 import pytest
 from tests.bridges.test_recording_reading import COUNT, WRITERS
+from tests.coded import raises
 
 import cartwheel as cw
 from cartwheel.bridges.recording.opening import open_recording
+from cartwheel.codes.recording import RECORDING_EMPTY
 from cartwheel.description import load_robot, load_world
-from cartwheel.errors import RecordingError
 from cartwheel.messages import encode_cdr
 from cartwheel.playback import PlaybackSession
 from cartwheel.simulation.snapshot import RunState
@@ -209,7 +210,7 @@ def test_a_world_around_the_robot(drives: Callable[[str], Drive]) -> None:
 def test_an_empty_recording_is_told(tmp_path: Path) -> None:
     with cw.World("empty") as world, world.record(tmp_path / "a.mcap", topics=["/nothing"]):
         world.run(0.1)
-    with pytest.raises(RecordingError, match="no messages"):
+    with raises(RECORDING_EMPTY):
         PlaybackSession(open_recording(tmp_path / "a.mcap"))
 
 

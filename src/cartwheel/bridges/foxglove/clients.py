@@ -65,7 +65,7 @@ class JoinedClient:
         except _FullError as error:
             self._warn(
                 CLIENT_REQUEST_IGNORED.diagnostic(
-                    f"{error}: further ones are ignored", values={"limit": str(error)}
+                    f"{error}: further ones are ignored", values={"limit": error.limit}
                 )
             )
             return False
@@ -92,6 +92,10 @@ class JoinedClient:
 
 class _FullError(Exception):
     """There are too many entries."""
+
+    def __init__(self, limit: str, text: str) -> None:
+        super().__init__(text)
+        self.limit = limit
 
 
 class _Total:
@@ -124,12 +128,14 @@ class _Share:
         total, size = self._total, sum(new.values())
         if len(self._sizes) + len(new) > _MOST or sum(self._sizes.values()) + size > _MOST_BYTES:
             raise _FullError(
-                f"a client has at most {_MOST} {total.title}, with {_MOST_BYTES >> 20} MiB of text"
+                f"{total.title} of a client",
+                f"a client has at most {_MOST} {total.title}, with {_MOST_BYTES >> 20} MiB of text",
             )
         if total.count + len(new) > _ALL or total.size + size > _ALL_BYTES:
             raise _FullError(
+                f"{total.title} of all clients",
                 f"all clients together have at most {_ALL} {total.title}, "
-                f"with {_ALL_BYTES >> 20} MiB of text"
+                f"with {_ALL_BYTES >> 20} MiB of text",
             )
         self._sizes.update(new)
         total.count += len(new)
