@@ -258,7 +258,7 @@ def test_a_client_that_knows_twist_alone_drives_what_wants_a_stamp(
 
 
 @pytest.mark.parametrize(
-    ("topic", "kind", "data", "words"),
+    ("topic", "kind", "data", "code"),
     [
         (CMD, "geometry_msgs/Twist", b"junk", MALFORMED_MESSAGE),
         (
