@@ -174,12 +174,14 @@ class Session:
             return
         for diagnostic in self.simulation.diagnostics[start:]:
             if diagnostic.severity != "info":
+                hint = f"{diagnostic.hint} " if diagnostic.hint else ""
                 raise CartwheelError(
                     diagnostic.message,
                     code=diagnostic.code,
                     origin=diagnostic.origin,
-                    hint=f"{diagnostic.hint} --strict makes every warning an error.".strip(),
+                    hint=f"{hint}--strict makes every warning an error.",
                     values=diagnostic.values,
+                    mark=diagnostic.mark,
                 )
 
     def _schedule_clock(self, rate: float) -> Task:

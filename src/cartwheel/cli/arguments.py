@@ -10,6 +10,7 @@ from typing import Annotated, Any, Literal
 import typer
 
 from cartwheel.cli import help
+from cartwheel.codes.command import OPTION_INVALID, USAGE
 from cartwheel.control.registry import VARIABLE
 from cartwheel.errors import CartwheelError
 
@@ -133,7 +134,9 @@ def split(words: Sequence[str] | None) -> tuple[str | None, dict[str, str]]:
         else:
             raise CartwheelError(
                 f'"{word}" is one file too many after "{file}"',
-                hint=f"An argument of a xacro file is written {word.partition('=')[0]}:=value.",
+                code=USAGE,
+                hint=f"Write an argument of a xacro file as {word.partition('=')[0]}:=value.",
+                values={"argument": word},
             )
     return file, values
 
@@ -160,7 +163,11 @@ def rmw(name: str) -> Literal["dds", "zenoh"]:
         return "dds"
     if name in ("zenoh", "rmw_zenoh_cpp"):
         return "zenoh"
-    raise CartwheelError(f"--rmw {name} is no middleware", hint="It can be dds or zenoh.")
+    raise CartwheelError(
+        f"--rmw must be dds or zenoh (got {name})",
+        code=OPTION_INVALID,
+        values={"option": "--rmw", "value": name},
+    )
 
 
 def needed(file: str | None) -> str:
@@ -170,7 +177,9 @@ def needed(file: str | None) -> str:
         CartwheelError: There is none.
     """
     if file is None:
-        raise CartwheelError("which file?", hint="Name a xacro, URDF or SDF file.")
+        raise CartwheelError(
+            "a file is missing", code=USAGE, hint="Name a xacro, URDF or SDF file."
+        )
     return file
 
 

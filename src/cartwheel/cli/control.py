@@ -8,6 +8,7 @@ import typer
 
 from cartwheel.cli import help
 from cartwheel.cli.arguments import Sim
+from cartwheel.codes.command import OPTION_INVALID
 from cartwheel.errors import CartwheelError
 
 
@@ -32,8 +33,10 @@ def parse_speed(text: str) -> float | None:
     # How large it may be is the simulation's to say: its rooms would take long to import.
     if not value > 0:
         raise CartwheelError(
-            f'a speed of "{text}" is neither a number above 0 nor "max"',
-            hint="1 is real time, 2 twice as fast; max is as fast as it can.",
+            f'the speed must be a number above 0, or max (got "{text}")',
+            code=OPTION_INVALID,
+            hint="1 is real time, 2 is twice as fast; max is as fast as possible.",
+            values={"option": "speed", "value": text},
         )
     return value
 

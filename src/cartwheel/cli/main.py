@@ -12,8 +12,8 @@ import sys
 import traceback
 
 from cartwheel.cli import gazebo, interrupts
-from cartwheel.cli.console import print_error
-from cartwheel.errors import CartwheelError
+from cartwheel.codes.command import FILE_TOO_DEEP, INTERNAL_FAULT, SYSTEM_LIMIT
+from cartwheel.errors import CartwheelError, Diagnostic
 
 
 def main() -> None:
@@ -36,14 +36,12 @@ def run() -> int:
         # The rest is imported only now, so that a signal meanwhile finds its handler.
         from cartwheel.cli.app import app
 
-        app(prog_name="cartwheel")
+        return _status(app(prog_name="cartwheel", standalone_mode=False))
     except interrupts.Interrupted as interrupted:
         return 128 + interrupted.number
     except CartwheelError as error:
         if not interrupts.came():
-            from cartwheel.cli.showing import print_diagnostic
-
-            print_diagnostic(error.diagnostic())
+            _print(error.diagnostic())
         return 2
     except BrokenPipeError:
         # Whoever read our output has seen enough, as `head` does.
@@ -52,17 +50,20 @@ def run() -> int:
     except SystemExit as done:
         return done.code if isinstance(done.code, int) else 0
     except RecursionError:
-        print_error("the file is nested too deeply")
+        _print(FILE_TOO_DEEP.diagnostic("the file is nested too deeply"))
         return 2
     except Exception as error:  # noqa: BLE001 - the last resort
+        from cartwheel.cli import usage
+
+        if usage.is_wrong(error):
+            return usage.report(error)
         remedy = _remedy(error)
         if remedy:
-            print_error(f"{error}\n  {remedy}")
+            _print(SYSTEM_LIMIT.diagnostic(str(error), hint=remedy))
             return 2
         if not interrupts.came():
             _report(error)
         return 1
-    return 0
 
 
 _REMEDIES = {
@@ -99,10 +100,23 @@ def _open_streams() -> None:
 def _report(error: Exception) -> None:
     if "--verbose" in sys.argv:
         traceback.print_exc()
-    print_error(
-        f"Cartwheel has a fault: {type(error).__name__}: {error}\n"
-        "  Please report it, with the output of the same command and --verbose."
+    _print(
+        INTERNAL_FAULT.because(
+            "unexpected error in Cartwheel",
+            error,
+            hint="Please report it, with the output of the same command and --verbose.",
+        )
     )
+
+
+def _print(diagnostic: Diagnostic) -> None:
+    from cartwheel.cli.showing import print_diagnostic
+
+    print_diagnostic(diagnostic)
+
+
+def _status(result: object) -> int:
+    return result if isinstance(result, int) else 0
 
 
 def _drop_output() -> None:

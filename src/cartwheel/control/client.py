@@ -9,6 +9,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from cartwheel.codes.command import SIMULATION_ENDED, SIMULATION_SILENT
+from cartwheel.control.faults import refused
 from cartwheel.control.protocol import PATIENCE, Connection, Frame
 from cartwheel.control.registry import Running, find
 from cartwheel.errors import ControlError
@@ -176,7 +178,11 @@ def _connect(simulation: Running) -> Connection:
             if isinstance(error, BlockingIOError) and time.monotonic() < deadline:
                 time.sleep(0.01)
                 continue
-            raise ControlError(f"simulation {simulation.pid} does not answer: {error}") from error
+            raise ControlError(
+                f"simulation {simulation.pid} does not answer: {error}",
+                code=SIMULATION_SILENT,
+                values={"pid": simulation.pid},
+            ) from error
         return Connection(sock)
 
 
@@ -189,12 +195,12 @@ def _ask(
         # Longer than the simulation itself waits, so that its own words arrive.
         frame: Frame | None = connection.receive(None if name == "step" else PATIENCE + 60)
     except TimeoutError as error:
-        raise ControlError("the simulation does not answer") from error
+        raise ControlError("the simulation does not answer", code=SIMULATION_SILENT) from error
     except OSError as error:
-        raise ControlError(_HUNG_UP) from error
+        raise ControlError(_HUNG_UP, code=SIMULATION_ENDED) from error
     if frame is None:
-        raise ControlError(_HUNG_UP)
+        raise ControlError(_HUNG_UP, code=SIMULATION_ENDED)
     if "error" in frame.header:
-        raise ControlError(str(frame.header["error"]))
+        raise refused(frame.header)
     answer: dict[str, Any] = frame.header["ok"]
     return answer

@@ -13,6 +13,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar
 
+from cartwheel.codes.command import CONTROL_REQUEST_INVALID, NO_PAGE, SIMULATION_SILENT
+from cartwheel.control.faults import packed
 from cartwheel.control.parameters import Parameters
 from cartwheel.control.place import AXES, placed
 from cartwheel.control.protocol import PATIENCE
@@ -78,7 +80,7 @@ class Operations:
             CartwheelError: It cannot be done.
         """
         if name not in self._by_name:
-            raise UnknownNameError("request", name, self._by_name)
+            raise UnknownNameError("request", name, self._by_name, code=CONTROL_REQUEST_INVALID)
         return self._by_name[name](parameters, payload)
 
     # -- time
@@ -158,7 +160,11 @@ class Operations:
         """Reads the file here, so that the simulation goes on meanwhile."""
         path = Path(parameters.text("file"))
         if not path.is_absolute():
-            raise ControlError(f'"{path}" is no absolute path')
+            raise ControlError(
+                f'"{path}" must be an absolute path',
+                code=CONTROL_REQUEST_INVALID,
+                values={"parameter": "file"},
+            )
         given = {
             axis: parameters.number(axis) for axis in AXES if parameters.value(axis) is not None
         }
@@ -173,17 +179,12 @@ class Operations:
         def spawn() -> Answer:
             before = len(self._session.diagnostics)
             name = self._session.spawn(description, name=wanted, pose=pose)
-            told = [
-                {
-                    "severity": each.severity,
-                    "message": each.text,
-                    "file": each.origin.file if each.origin else "",
-                    "line": each.origin.line if each.origin else 0,
-                }
+            reports = [
+                packed(each)
                 for each in self._session.diagnostics[before:]
                 if each.severity != "info"
             ]
-            return {"name": name, "mass": description.mass, "diagnostics": told}
+            return {"name": name, "mass": description.mass, "diagnostics": reports}
 
         return self._on_simulation(spawn)
 
@@ -237,7 +238,9 @@ class Operations:
         """The URL of the viewer, which is brought up where it is not, and its browsers."""
         offer = _in_time(self._page, cancel=False)
         if offer is None:
-            raise ControlError("this simulation has no page to show")
+            raise ControlError(
+                "this simulation has no page: it runs without a viewer", code=NO_PAGE
+            )
         return {"url": offer.show(), "browsers": offer.browsers()}
 
     def offer_page(self, offer: PageOffer | None) -> None:
@@ -264,7 +267,9 @@ def _in_time(future: Future[T], *, cancel: bool = True) -> T:
     except TimeoutError as error:
         if cancel:
             future.cancel()
-        raise ControlError(f"the simulation did not answer in {PATIENCE:.0f} s") from error
+        raise ControlError(
+            f"the simulation did not answer within {PATIENCE:.0f} s", code=SIMULATION_SILENT
+        ) from error
 
 
 def _described(topic: TopicInfo) -> Answer:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from cartwheel.codes.command import CONTROL_REQUEST_INVALID
 from cartwheel.errors import ControlError
 
 
@@ -20,7 +21,9 @@ class Parameters:
 
     def __init__(self, values: Any) -> None:
         if not isinstance(values, dict):
-            raise ControlError("the request's parameters are no mapping")
+            raise ControlError(
+                "the request's parameters must be a JSON object", code=CONTROL_REQUEST_INVALID
+            )
         self._values: dict[str, Any] = values
 
     def __contains__(self, name: str) -> bool:
@@ -32,34 +35,54 @@ class Parameters:
         if value is None and default is not None:
             return default
         if not isinstance(value, str):
-            raise ControlError(f'the request\'s "{name}" is no text')
+            raise ControlError(
+                f'the request\'s "{name}" must be a string',
+                code=CONTROL_REQUEST_INVALID,
+                values={"parameter": name},
+            )
         return value
 
     def texts(self, name: str) -> dict[str, str]:
         """Texts by text."""
         value = self._values.get(name) or {}
         if not isinstance(value, dict) or not all(isinstance(v, str) for v in value.values()):
-            raise ControlError(f'the request\'s "{name}" is no mapping of texts')
+            raise ControlError(
+                f'the request\'s "{name}" must be an object of strings',
+                code=CONTROL_REQUEST_INVALID,
+                values={"parameter": name},
+            )
         return value
 
     def list_of_texts(self, name: str) -> list[str]:
         """Texts in order."""
         value = self._values.get(name) or []
         if not isinstance(value, list) or not all(isinstance(v, str) for v in value):
-            raise ControlError(f'the request\'s "{name}" is no list of texts')
+            raise ControlError(
+                f'the request\'s "{name}" must be a list of strings',
+                code=CONTROL_REQUEST_INVALID,
+                values={"parameter": name},
+            )
         return value
 
     def number(self, name: str, default: float | None = None) -> float:
         """A finite number; needed where there is no default."""
         value = self._values.get(name, default)
         if isinstance(value, bool) or not isinstance(value, int | float):
-            raise ControlError(f'the request\'s "{name}" is no number')
+            raise ControlError(
+                f'the request\'s "{name}" must be a number',
+                code=CONTROL_REQUEST_INVALID,
+                values={"parameter": name},
+            )
         try:
             number = float(value)
         except OverflowError:
             number = math.inf
         if not math.isfinite(number):
-            raise ControlError(f'the request\'s "{name}" is {number}, but must be a finite number')
+            raise ControlError(
+                f'the request\'s "{name}" must be finite (got {number})',
+                code=CONTROL_REQUEST_INVALID,
+                values={"parameter": name},
+            )
         return number
 
     def whole(self, name: str, default: int, low: int, high: int) -> int:
@@ -67,7 +90,10 @@ class Parameters:
         value = self.number(name, default)
         if value != int(value) or not low <= value <= high:
             raise ControlError(
-                f'the request\'s "{name}" is {value:g}, not a whole number of {low} to {high}'
+                f'the request\'s "{name}" must be a whole number from {low} to {high} (got '
+                f"{value:g})",
+                code=CONTROL_REQUEST_INVALID,
+                values={"parameter": name, "value": value},
             )
         return int(value)
 
@@ -75,7 +101,11 @@ class Parameters:
         """True or false."""
         value = self._values.get(name, default)
         if not isinstance(value, bool):
-            raise ControlError(f'the request\'s "{name}" is neither true nor false')
+            raise ControlError(
+                f'the request\'s "{name}" must be true or false',
+                code=CONTROL_REQUEST_INVALID,
+                values={"parameter": name},
+            )
         return value
 
     def value(self, name: str) -> Any:

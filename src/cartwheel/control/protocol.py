@@ -15,6 +15,8 @@ import time
 from dataclasses import dataclass
 from typing import Any
 
+from cartwheel.codes.command import CONTROL_LIMIT, CONTROL_MISMATCH
+from cartwheel.control.faults import refusal
 from cartwheel.errors import ControlError
 
 VERSION = 1
@@ -49,7 +51,9 @@ def pack(header: dict[str, Any], payload: bytes = b"") -> bytes:
     text = json.dumps(header, separators=(",", ":")).encode()
     if len(text) > MAX_HEADER or len(payload) > MAX_PAYLOAD:
         raise ControlError(
-            f"{max(len(text), len(payload)) / 1e6:.0f} MB are too much for one message"
+            f"{max(len(text), len(payload)) / 1e6:.0f} MB are too much for one message",
+            code=CONTROL_LIMIT,
+            values={"bytes": max(len(text), len(payload))},
         )
     return _START.pack(_MAGIC, VERSION, len(text), len(payload)) + text + payload
 
@@ -76,10 +80,10 @@ class Connection:
         while left:
             left = left[self.sock.send(left) :]
 
-    def refuse(self, why: str) -> None:
+    def refuse(self, error: ControlError) -> None:
         """Sends an error if there is room for it at once, and ends the connection."""
         with contextlib.suppress(OSError):
-            self.sock.send(pack({"error": why}), socket.MSG_DONTWAIT)
+            self.sock.send(pack(refusal(error)), socket.MSG_DONTWAIT)
         self.close()
 
     def receive(self, timeout: float | None = None) -> Frame | None:
@@ -101,22 +105,28 @@ class Connection:
         start += self._read(_START.size - 1, deadline)
         magic, version, header_size, payload_size = _START.unpack(start)
         if magic != _MAGIC:
-            raise ControlError("these bytes are not of Cartwheel")
+            raise ControlError(
+                "the bytes on the control socket are not Cartwheel's protocol",
+                code=CONTROL_MISMATCH,
+            )
         if version != VERSION:
             raise ControlError(
-                f"version {version} of the protocol is spoken there, {VERSION} here",
+                f"the other side uses version {version} of the protocol, this one version "
+                f"{VERSION}",
+                code=CONTROL_MISMATCH,
                 hint="The simulation and the command come from different releases of Cartwheel.",
+                values={"version": version},
             )
         if header_size > MAX_HEADER or payload_size > MAX_PAYLOAD:
-            raise ControlError("a frame is larger than a frame may be")
+            raise ControlError("a frame exceeds the maximum size", code=CONTROL_LIMIT)
         text = self._read(header_size, deadline)
         payload = self._read(payload_size, deadline)
         try:
             header = json.loads(text)
         except (ValueError, RecursionError) as error:
-            raise ControlError("a frame's header is no JSON") from error
+            raise ControlError("a frame's header is not JSON", code=CONTROL_MISMATCH) from error
         if not isinstance(header, dict):
-            raise ControlError("a frame's header is no mapping")
+            raise ControlError("a frame's header is not a JSON object", code=CONTROL_MISMATCH)
         return Frame(header=header, payload=bytes(payload))
 
     def has_ended(self) -> bool:

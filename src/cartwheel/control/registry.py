@@ -15,6 +15,12 @@ from collections.abc import Iterable
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
+from cartwheel.codes.command import (
+    CONTROL_FOLDER_UNUSABLE,
+    OPTION_INVALID,
+    SIMULATION_AMBIGUOUS,
+    SIMULATION_NOT_RUNNING,
+)
 from cartwheel.errors import ControlError
 
 VARIABLE = "CARTWHEEL_SIM"
@@ -63,9 +69,18 @@ def folder() -> Path:
         chosen.mkdir(mode=0o700, exist_ok=True)
         found = chosen.lstat()
     except OSError as error:
-        raise ControlError(f"{chosen} cannot be used: {error.strerror}") from error
+        raise ControlError(
+            f"{chosen} cannot be used: {error.strerror}",
+            code=CONTROL_FOLDER_UNUSABLE,
+            values={"path": str(chosen)},
+        ) from error
     if not stat.S_ISDIR(found.st_mode) or found.st_uid != os.getuid():
-        raise ControlError(f"{chosen} belongs to somebody else", hint="Set XDG_RUNTIME_DIR.")
+        raise ControlError(
+            f"{chosen} belongs to another user",
+            code=CONTROL_FOLDER_UNUSABLE,
+            hint="Set XDG_RUNTIME_DIR to a folder of your own.",
+            values={"path": str(chosen)},
+        )
     if found.st_mode & 0o077:
         chosen.chmod(0o700)
     return chosen
@@ -100,12 +115,24 @@ def find(pid: int | None = None) -> Running:
         for entry in known:
             if entry.pid == pid:
                 return entry
-        raise ControlError(f"no simulation runs as process {pid}", hint=_listing(known))
+        raise ControlError(
+            f"no simulation runs as process {pid}",
+            code=SIMULATION_NOT_RUNNING,
+            hint=_listing(known),
+            values={"pid": pid},
+        )
     if not known:
-        raise ControlError("no simulation is running; start one with: cartwheel run")
+        raise ControlError(
+            "no simulation is running",
+            code=SIMULATION_NOT_RUNNING,
+            hint="Start one with: cartwheel run",
+        )
     if len(known) > 1:
         raise ControlError(
-            f"{len(known)} simulations are running; name one with --sim PID", hint=_listing(known)
+            f"{len(known)} simulations are running; name one with --sim PID",
+            code=SIMULATION_AMBIGUOUS,
+            hint=_listing(known),
+            values={"count": len(known)},
         )
     return known[0]
 
@@ -127,7 +154,9 @@ def listen() -> tuple[socket.socket, Path]:
             continue
         server.listen(128)
         return server, path
-    raise ControlError(f"no socket can be made in {base}")
+    raise ControlError(
+        f"no socket can be made in {base}", code=CONTROL_FOLDER_UNUSABLE, values={"path": str(base)}
+    )
 
 
 def announce(entry: Running) -> None:
@@ -172,7 +201,11 @@ def _pid_of_environment() -> int | None:
     if not text:
         return None
     if not text.isdecimal():
-        raise ControlError(f'{VARIABLE} is "{text}", which is no process number')
+        raise ControlError(
+            f'{VARIABLE} must be a process number (got "{text}")',
+            code=OPTION_INVALID,
+            values={"option": VARIABLE, "value": text},
+        )
     return int(text)
 
 

@@ -10,7 +10,9 @@ import time
 from dataclasses import dataclass, field, replace
 from typing import Any
 
+from cartwheel.codes.command import CONTROL_LIMIT
 from cartwheel.control import registry
+from cartwheel.control.faults import refusal
 from cartwheel.control.operations import Load, Operations, PageOffer
 from cartwheel.control.parameters import Parameters
 from cartwheel.control.protocol import Connection, Frame
@@ -117,7 +119,9 @@ class ControlServer:
                 continue  # Out of file descriptors, perhaps: others may free some.
             client = Connection(sock)
             if not self._admit(client):
-                client.refuse("the simulation serves too many clients")
+                client.refuse(
+                    ControlError("the simulation serves too many clients", code=CONTROL_LIMIT)
+                )
                 continue
             if self._closed.is_set():
                 client.close()
@@ -160,7 +164,7 @@ class ControlServer:
         except ControlError as error:
             # No frame: what follows cannot be understood either.
             with contextlib.suppress(OSError):
-                client.send({"error": str(error)})
+                client.send(refusal(error))
         except OSError:
             pass  # It is gone, or took too long; nobody is left to be told.
         finally:
@@ -184,7 +188,7 @@ class ControlServer:
             topic = self._session.graph.topic(resolve_name(parameters.text("topic")))
             self._streams.serve(client, topic, parameters)
         except CartwheelError as error:
-            client.send({"error": str(error)})
+            client.send(refusal(error))
             return False
         return True
 
@@ -197,10 +201,10 @@ class ControlServer:
                 wills.take(parameters)
             answer = self._operations.run(name, parameters, frame.payload)
         except CartwheelError as error:
-            return {"error": str(error)}
+            return refusal(error)
         except Exception as error:  # noqa: BLE001 - a fault of ours must not end the simulation
             _log.debug("a request failed", exc_info=True)
-            return {"error": f"the simulation could not do this: {error!r}"}
+            return refusal(error)
         return {"ok": answer}
 
 

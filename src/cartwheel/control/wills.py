@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from cartwheel.codes.command import CONTROL_LIMIT
 from cartwheel.control.parameters import Parameters
 from cartwheel.errors import ControlError
 from cartwheel.graph import Graph, resolve_name
@@ -38,7 +39,11 @@ class Wills:
         wanted = type_name(parameters.text("type"))
         message = from_dict(wanted, content)
         if name not in self._messages and len(self._messages) >= MOST:
-            raise ControlError(f"one connection may leave messages for {MOST} topics")
+            raise ControlError(
+                f"one connection may leave messages for at most {MOST} topics",
+                code=CONTROL_LIMIT,
+                values={"most": MOST},
+            )
         self._messages[name] = (wanted, message)
 
     def execute(self) -> None:

@@ -13,7 +13,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
 
-from cartwheel.errors import CartwheelError
+from cartwheel.errors import UNCLASSIFIED, CartwheelError
 from cartwheel.gate.access import Access
 from cartwheel.gate.listening import hidden_host
 from cartwheel.viewer.every import Every
@@ -215,7 +215,12 @@ class Page:
 
     def show_error(self, error: CartwheelError) -> None:
         """Tells whoever asked what went wrong."""
-        self.notify("Error", str(error), color="red", seconds=12.0)
+        self.notify(
+            f"Error {error.code.number}" if error.code is not UNCLASSIFIED else "Error",
+            str(error),
+            color="red",
+            seconds=12.0,
+        )
 
     def notify(
         self,

@@ -6,6 +6,7 @@ import threading
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
+from cartwheel.codes.recording import VIEWER_NOT_STARTED
 from cartwheel.errors import ControlError
 from cartwheel.gate.access import Access
 from cartwheel.gate.listening import listen
@@ -75,10 +76,12 @@ class Viewer:
             ControlError: It did not come up.
         """
         if not self._thread.is_alive() and not self._ready.is_set():
-            raise ControlError("the viewer has not been started")
+            raise ControlError("the viewer has not been started", code=VIEWER_NOT_STARTED)
         self._ready.wait()
         if self._failure is not None:
-            raise ControlError(f"the viewer did not start: {self._failure}") from self._failure
+            raise ControlError(
+                f"the viewer did not start: {self._failure}", code=VIEWER_NOT_STARTED
+            ) from self._failure
         assert self._page is not None
         return self._page.url
 

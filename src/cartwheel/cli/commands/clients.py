@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from cartwheel import yaml_text
+from cartwheel.codes.graph import MESSAGE_TEXT_INVALID
 from cartwheel.control import ControlClient, find
 from cartwheel.errors import CartwheelError
 
@@ -31,7 +32,8 @@ def parse_yaml(words: Sequence[str]) -> Any:
         values = [yaml_text.load(word) for word in words]
     except yaml.YAMLError as error:
         raise CartwheelError(
-            f"the message is no YAML: {str(error).splitlines()[0]}",
+            f"the message is not YAML: {str(error).splitlines()[0]}",
+            code=MESSAGE_TEXT_INVALID,
             hint="Write it as '{linear: {x: 0.5}}', with a blank after each colon.",
         ) from None
     if not values:

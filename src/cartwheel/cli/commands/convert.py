@@ -9,6 +9,7 @@ from pathlib import Path
 from cartwheel.cli.commands.grouping import grouped
 from cartwheel.cli.console import note
 from cartwheel.cli.showing import print_diagnostic
+from cartwheel.codes.command import OUTPUT_NOT_WRITTEN
 from cartwheel.errors import CartwheelError
 
 
@@ -36,7 +37,11 @@ def convert(
     try:
         output.write_text(text)
     except OSError as error:
-        raise CartwheelError(f"{output} cannot be written: {error.strerror}") from error
+        raise CartwheelError(
+            f"{output} cannot be written: {error.strerror}",
+            code=OUTPUT_NOT_WRITTEN,
+            values={"path": str(output)},
+        ) from error
     note(f"wrote {output}")
 
 

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from cartwheel.cli.console import note, paint, say, table
+from cartwheel.codes.command import NO_ROBOTS
 from cartwheel.corpus import Verdict, robots_in, try_robot
 from cartwheel.description.xml import shown_path
 from cartwheel.errors import CartwheelError
@@ -99,12 +100,16 @@ def as_mapping(verdict: Verdict) -> dict[str, Any]:
 
 def _robots(folder: Path, package_path: Sequence[Path]) -> list[Path]:
     if not folder.exists():
-        raise CartwheelError(f"{folder} does not exist")
+        raise CartwheelError(
+            f"{folder} does not exist", code=NO_ROBOTS, values={"folder": str(folder)}
+        )
     found = robots_in(folder, package_path=package_path)
     if not found:
         raise CartwheelError(
-            f"{folder} contains no robots",
-            hint="Expected .xacro, .urdf or .sdf files in it or its subfolders.",
+            f"{folder} holds no robot",
+            code=NO_ROBOTS,
+            hint="Expected are .xacro, .urdf or .sdf files below it.",
+            values={"folder": str(folder)},
         )
     return found
 

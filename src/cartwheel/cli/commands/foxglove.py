@@ -11,6 +11,7 @@ from cartwheel.cli.commands.assets import Assets
 from cartwheel.cli.commands.bridges import log_all_on
 from cartwheel.cli.commands.options import Options
 from cartwheel.cli.commands.report import Report
+from cartwheel.codes.wires import SEEK_UNSUPPORTED
 from cartwheel.errors import CartwheelError
 from cartwheel.gate.access import Access
 from cartwheel.simulation import RunState
@@ -112,7 +113,9 @@ class SimulationControls:
             CartwheelError: It is asked to go elsewhere.
         """
         if time_ns > 0:
-            raise CartwheelError("a simulation cannot jump in time, but to its start")
+            raise CartwheelError(
+                "a simulation cannot jump in time, except to its start", code=SEEK_UNSUPPORTED
+            )
         self._do(self._simulation.reset)
 
     def _do(self, function: Callable[[], None]) -> None:

@@ -12,7 +12,9 @@ from dataclasses import dataclass
 from pathlib import Path, PurePath
 from typing import NoReturn
 
-from cartwheel.cli.console import print_warning, say, say_version
+from cartwheel.cli.console import say, say_version
+from cartwheel.cli.showing import print_diagnostic
+from cartwheel.codes.command import GAZEBO_OPTION_UNSUPPORTED, OPTION_INVALID, USAGE
 from cartwheel.errors import CartwheelError
 
 WORLD = "worlds/empty.world"
@@ -46,7 +48,7 @@ class ClientArguments:
             say_version()
         else:
             for note in self.notes:
-                print_warning(note)
+                print_diagnostic(GAZEBO_OPTION_UNSUPPORTED.diagnostic(note))
         return bool(self.help or self.version)
 
 
@@ -65,7 +67,12 @@ class ServerArguments(ClientArguments):
 
 class _Parser(argparse.ArgumentParser):
     def error(self, message: str) -> NoReturn:
-        raise CartwheelError(f"{self.prog}: {message}", hint=f"See: {self.prog} --help")
+        raise CartwheelError(
+            f"{self.prog}: {message}",
+            code=USAGE,
+            hint=f"See: {self.prog} --help",
+            values={"program": self.prog},
+        )
 
 
 def parse_server(program: str, words: Sequence[str]) -> ServerArguments:
@@ -111,10 +118,16 @@ def parse_server(program: str, words: Sequence[str]) -> ServerArguments:
     if given.play is not None:
         raise CartwheelError(
             f"{program} -p {given.play}: Gazebo's state logs cannot be played here",
+            code=GAZEBO_OPTION_UNSUPPORTED,
             hint="Record topics with rosbag record, and play them with rosbag play.",
+            values={"option": "-p"},
         )
     if given.iters is not None and given.iters < 1:
-        raise CartwheelError(f"{program} --iters {given.iters}: it takes a number above 0")
+        raise CartwheelError(
+            f"{program} --iters must be above 0 (got {given.iters})",
+            code=OPTION_INVALID,
+            values={"option": "--iters", "value": given.iters},
+        )
     return ServerArguments(
         world=given.world[0] if given.world else WORLD,
         paused=given.pause,
@@ -209,7 +222,7 @@ def _stem(plugin: str) -> str:
 def _whole(text: str) -> int:
     value = _number(text)
     if value != math.floor(value):
-        raise argparse.ArgumentTypeError(f"{text} is no whole number")
+        raise argparse.ArgumentTypeError(f"expected a whole number, got {text}")
     return int(value)
 
 
@@ -219,5 +232,5 @@ def _number(text: str) -> float:
     except ValueError:
         value = math.nan
     if not math.isfinite(value):
-        raise argparse.ArgumentTypeError(f"{text} is no number")
+        raise argparse.ArgumentTypeError(f"expected a number, got {text}")
     return value

@@ -10,6 +10,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from xml.etree import ElementTree
 
+from cartwheel.codes.command import WORLD_NOT_FOUND
 from cartwheel.description.packages import share
 from cartwheel.errors import CartwheelError, likely
 
@@ -43,14 +44,20 @@ def find_world(name: str, environment: Mapping[str, str] | None = None) -> Path:
         if (folder / given).is_file():
             return folder / given
     if given.is_absolute():
-        raise CartwheelError(f"the world {name} does not exist")
+        raise CartwheelError(
+            f"the world {name} does not exist", code=WORLD_NOT_FOUND, values={"world": name}
+        )
     shipped = sorted(f"worlds/{path.name}" for path in (share() / "worlds").glob("*.world"))
     near = likely(name, shipped)
     searched = ", ".join(str(folder) for folder in folders[:-1])
     raise CartwheelError(
         f'the world "{name}" was not found',
-        hint=f"{near or 'Those that come with Cartwheel: ' + ', '.join(shipped) + '.'} "
-        f"Searched: {searched}. Add its folder to GAZEBO_RESOURCE_PATH, or give its whole path.",
+        code=WORLD_NOT_FOUND,
+        hint=(
+            f"{near or 'Cartwheel includes: ' + ', '.join(shipped) + '.'} Searched: {searched}. "
+            "Add its folder to GAZEBO_RESOURCE_PATH, or give its whole path."
+        ),
+        values={"world": name},
     )
 
 

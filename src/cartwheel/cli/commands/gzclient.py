@@ -15,6 +15,7 @@ from cartwheel.cli import interrupts
 from cartwheel.cli.commands.desktop import has_display
 from cartwheel.cli.commands.gazebo_arguments import parse_client
 from cartwheel.cli.console import note, paint, say
+from cartwheel.codes.command import SIMULATION_AMBIGUOUS, SIMULATION_ENDED, SIMULATION_NOT_RUNNING
 from cartwheel.control import ControlClient, Running, find, running
 from cartwheel.control.registry import VARIABLE
 from cartwheel.errors import ControlError
@@ -63,7 +64,7 @@ def wait_for_simulation(master: str | None) -> Running:
         if master is None and not any(entry.ros_master == "" for entry in known):
             return _without_ros(known)
         if os.getppid() != parent:
-            raise ControlError("the process that started this one has ended")
+            raise ControlError("the process that started this one has ended", code=SIMULATION_ENDED)
         if time.monotonic() - began > _TELL and not told:
             told = True
             note(f"waiting for a simulation of the ROS master {master or MASTER_URI}")
@@ -79,14 +80,20 @@ def _without_ros(known: Sequence[Running]) -> Running:
     if len(found) == 1:
         return found[0]
     if not known:
-        raise ControlError("no simulation is running; start one with: cartwheel run")
+        raise ControlError(
+            "no simulation is running",
+            code=SIMULATION_NOT_RUNNING,
+            hint="Start one with: cartwheel run",
+        )
     problem = (
         f"{len(found)} simulations without ROS are running"
         if found
         else f"no simulation of the ROS master {MASTER_URI} is running, and none without ROS"
     )
     raise ControlError(
-        problem, hint=f"Name one with {VARIABLE}=PID. Running are:\n{_listing(known)}"
+        problem,
+        code=SIMULATION_AMBIGUOUS if found else SIMULATION_NOT_RUNNING,
+        hint=f"Name one with {VARIABLE}=PID. Running are:\n{_listing(known)}",
     )
 
 

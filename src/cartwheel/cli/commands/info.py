@@ -9,7 +9,9 @@ from typing import Any
 from cartwheel.bridges.recording.opening import open_recording
 from cartwheel.bridges.recording.reading import Recording, span_of
 from cartwheel.cli.commands.report import size_text
-from cartwheel.cli.console import paint, print_warning, say, say_table
+from cartwheel.cli.console import paint, say, say_table
+from cartwheel.cli.showing import print_diagnostic
+from cartwheel.codes.command import RECORDING_UNFINISHED
 
 _SINCE_1970 = 10**17
 """ns; recordings that begin later have stamps of a wall clock."""
@@ -81,9 +83,11 @@ def _print(path: Path, recording: Recording) -> None:
     say()
     say_table(rows)
     if not recording.complete:
-        print_warning(
-            "the recording is incomplete: its writer was interrupted."
-            " The listed messages are readable"
+        print_diagnostic(
+            RECORDING_UNFINISHED.diagnostic(
+                "the recording has no end: its writer was interrupted",
+                hint="What is listed can be read.",
+            )
         )
 
 

@@ -11,7 +11,7 @@ from cartwheel.cli.commands.clients import connect
 from cartwheel.cli.commands.grouping import grouped
 from cartwheel.cli.console import note, say, say_table
 from cartwheel.cli.showing import print_diagnostic
-from cartwheel.errors import Diagnostic, Origin
+from cartwheel.control.faults import unpacked
 
 
 def spawn(
@@ -37,15 +37,7 @@ def spawn(
             model=model or "",
             **dict[str, Any](place),
         )
-    told = [
-        Diagnostic(
-            severity=each["severity"],
-            message=each["message"],
-            origin=Origin(file=each["file"], line=each["line"]) if each["file"] else None,
-        )
-        for each in answer["diagnostics"]
-    ]
-    for diagnostic in grouped(told):
+    for diagnostic in grouped(unpacked(each) for each in answer["diagnostics"]):
         print_diagnostic(diagnostic)
     say(answer["name"])
 

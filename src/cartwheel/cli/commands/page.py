@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from cartwheel.cli.commands.desktop import is_desktop
 from cartwheel.cli.commands.report import Report
+from cartwheel.codes.recording import VIEWER_NOT_STARTED
 from cartwheel.control.operations import PageOffer
 from cartwheel.control.protocol import PATIENCE
 from cartwheel.control.server import ControlServer
@@ -74,7 +75,9 @@ class Page:
     def _url(self) -> str:
         """Where the page is, once it is up."""
         if not self._started.wait(PATIENCE):
-            raise ControlError(f"the page is not up after {PATIENCE:g} s")
+            raise ControlError(
+                f"the page is not ready after {PATIENCE:g} s", code=VIEWER_NOT_STARTED
+            )
         return self._viewer.url
 
     def _announce(self) -> None:

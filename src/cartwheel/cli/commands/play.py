@@ -12,6 +12,8 @@ from cartwheel.cli import interrupts
 from cartwheel.cli.commands.ports import refuse_taken
 from cartwheel.cli.commands.report import Report
 from cartwheel.cli.console import say
+from cartwheel.codes.command import OPTION_INVALID
+from cartwheel.codes.recording import PLAYBACK_READ_ONLY
 from cartwheel.errors import CartwheelError, RecordingError
 from cartwheel.gate.access import Access
 
@@ -46,7 +48,11 @@ def play(options: Options) -> None:
         CartwheelError: The recording cannot be played.
     """
     if not 0 <= options.start < math.inf:
-        raise CartwheelError(f"--start {options.start:g} is no time to start at")
+        raise CartwheelError(
+            f"--start must be finite and not negative (got {options.start:g})",
+            code=OPTION_INVALID,
+            values={"option": "--start", "value": options.start},
+        )
     from cartwheel.bridges.recording.opening import open_recording
 
     recording = open_recording(options.file)
@@ -107,4 +113,4 @@ def play(options: Options) -> None:
 
 
 def _refuse(_: Path, __: Mapping[str, str], ___: Sequence[Path]) -> NoReturn:
-    raise RecordingError("this is a recording, into which nothing can be put")
+    raise RecordingError("models cannot be spawned into a recording", code=PLAYBACK_READ_ONLY)

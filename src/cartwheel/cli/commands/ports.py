@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import errno
 
+from cartwheel.codes.command import PORT_TAKEN
+from cartwheel.codes.wires import ADDRESS_UNAVAILABLE
 from cartwheel.control import running
 from cartwheel.errors import CartwheelError, ControlError
 from cartwheel.gate.listening import bound
@@ -21,16 +23,27 @@ def refuse_taken(host: str, port: int) -> None:
     if problem is None:
         return
     if problem.errno not in (errno.EADDRINUSE, None):
-        raise CartwheelError(f"the viewer cannot listen on {host}:{port}: {problem.strerror}")
+        raise CartwheelError(
+            f"the viewer cannot listen on {host}:{port}: {problem.strerror}",
+            code=ADDRESS_UNAVAILABLE,
+            values={"host": host, "port": port},
+        )
     free = next((p for p in range(port + 1, min(port + _NEAR, 65536)) if not _problem(host, p)), 0)
     other = f"Use another one: --port {free}"
     for entry in running():
         if entry.port == port:
             raise CartwheelError(
                 f"port {port} is used by simulation {entry.pid} ({entry.title})",
+                code=PORT_TAKEN,
                 hint=f"{other}; or end that one: kill {entry.pid}",
+                values={"port": port, "pid": entry.pid},
             )
-    raise CartwheelError(f"port {port} is used by another program", hint=f"{other}.")
+    raise CartwheelError(
+        f"port {port} is used by another program",
+        code=PORT_TAKEN,
+        hint=f"{other}.",
+        values={"port": port},
+    )
 
 
 def free_port(host: str, port: int) -> int:
@@ -42,7 +55,11 @@ def free_port(host: str, port: int) -> int:
     for candidate in range(port, min(port + _NEAR, 65536)):
         if not _problem(host, candidate):
             return candidate
-    raise ControlError(f"the ports {port} to {port + _NEAR - 1} of {host} are all taken")
+    raise ControlError(
+        f"the ports {port} to {port + _NEAR - 1} of {host} are all taken",
+        code=PORT_TAKEN,
+        values={"port": port},
+    )
 
 
 def _problem(host: str, port: int) -> OSError | None:

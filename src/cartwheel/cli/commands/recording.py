@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING
 from cartwheel.cli import interrupts
 from cartwheel.cli.commands.options import Options
 from cartwheel.cli.commands.report import Report
+from cartwheel.codes.command import OPTION_INVALID, OPTIONS_CONFLICT
+from cartwheel.codes.recording import RECORDING_BROKE_OFF
 from cartwheel.errors import CartwheelError, ControlError, RecordingError, UnknownNameError
 
 if TYPE_CHECKING:
@@ -34,7 +36,9 @@ def check_recording(options: Options) -> None:
         check_writable(path, overwrite=options.overwrite)
         place = path.absolute()
         if place in found:
-            raise RecordingError(f'--record names "{path}" twice')
+            raise RecordingError(
+                f'--record names "{path}" twice', code=OPTIONS_CONFLICT, values={"path": str(path)}
+            )
         found.add(place)
 
 
@@ -121,7 +125,9 @@ class _Ending:
             except ControlError:
                 self.failure = RecordingError(
                     f'the recording "{self._path}" broke off: its process was ended',
+                    code=RECORDING_BROKE_OFF,
                     hint="What was written before can be read; cartwheel info shows it.",
+                    values={"path": str(self._path)},
                 )
             except CartwheelError as error:
                 self.failure = error
@@ -136,4 +142,4 @@ def _encoding(options: Options) -> Encoding | None:
     for known in ENCODINGS:
         if known == options.record_encoding:
             return known
-    raise UnknownNameError("encoding", options.record_encoding, ENCODINGS)
+    raise UnknownNameError("encoding", options.record_encoding, ENCODINGS, code=OPTION_INVALID)

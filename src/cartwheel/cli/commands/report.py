@@ -13,11 +13,11 @@ from cartwheel.cli.console import (
     is_terminal,
     note,
     paint,
-    print_warning,
     say,
     table,
 )
 from cartwheel.cli.showing import print_diagnostic
+from cartwheel.codes.command import OTHER_SIMULATION_RUNNING
 from cartwheel.control.registry import Running
 from cartwheel.gate.access import Access, refused_page
 from cartwheel.plugins.control.files import ControllerFiles
@@ -59,10 +59,12 @@ class Report:
         self._decorated = is_terminal(sys.stdout) and sys.stdin.isatty()
 
     def others(self, others: Sequence[Running]) -> None:
-        """Warns that other simulations are running."""
-        print_warning(
-            "another simulation is running; commands need --sim PID:\n"
-            + "\n".join(f"    {entry}" for entry in others)
+        """Says that this is not the only simulation."""
+        print_diagnostic(
+            OTHER_SIMULATION_RUNNING.diagnostic(
+                "another simulation is running, so commands need --sim PID",
+                hint="\n".join(["Running are:", *(f"    {entry}" for entry in others)]),
+            )
         )
 
     def loaded(self, session: Session, name: str | None, *, ros: bool = False) -> None:

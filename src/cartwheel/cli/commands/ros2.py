@@ -10,6 +10,7 @@ from cartwheel.bridges.apart.process import BridgeProcess
 from cartwheel.bridges.ros2 import Parameter, Rmw
 from cartwheel.cli.commands.bridges import log_all_on
 from cartwheel.cli.commands.report import Report
+from cartwheel.codes.wires import PARAMETER_REFUSED
 from cartwheel.errors import CartwheelError
 from cartwheel.gazebo.robot_states import RobotStates
 from cartwheel.gazebo.ros2_api import Ros2Api
@@ -128,7 +129,11 @@ def node_parameters(session: Session) -> list[Parameter]:
 
     def set_rate(hertz: float) -> None:
         if not 0 <= hertz <= _FASTEST:
-            raise CartwheelError(f"publish_rate is {hertz:g}, but must be from 0 to {_FASTEST:g}")
+            raise CartwheelError(
+                f"publish_rate must be from 0 to {_FASTEST:g} (got {hertz:g})",
+                code=PARAMETER_REFUSED,
+                values={"parameter": "publish_rate", "value": hertz},
+            )
         rate[0] = hertz
         simulation.post(lambda: session.set_clock_rate(hertz))
 

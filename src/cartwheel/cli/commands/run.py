@@ -15,6 +15,7 @@ from cartwheel.cli.commands.options import Options
 from cartwheel.cli.commands.ports import refuse_taken
 from cartwheel.cli.commands.recording import check_recording, recorded
 from cartwheel.cli.commands.report import Report, world_title
+from cartwheel.codes.command import OPTION_INVALID, OPTIONS_CONFLICT
 from cartwheel.control import running
 from cartwheel.description.reach import run_folders
 from cartwheel.errors import CartwheelError
@@ -40,7 +41,11 @@ def simulate(options: Options) -> None:
         CartwheelError: Whatever is wrong with the files or the options.
     """
     if options.seconds is not None and not 0 < options.seconds < 1e9:
-        raise CartwheelError(f"--for {options.seconds:g} is no time to run")
+        raise CartwheelError(
+            f"--for must be positive and below 1e9 s (got {options.seconds:g})",
+            code=OPTION_INVALID,
+            values={"option": "--for", "value": options.seconds},
+        )
     if options.record:
         check_recording(options)
     if options.foxglove_port is not None:
@@ -78,7 +83,10 @@ def _simulate(options: Options, access: Access, bridges: Bridges) -> None:
     name = None
     if robot is None and options.controllers:
         raise CartwheelError(
-            "--controllers is for a robot, and this is a world", hint="Name the robot's file."
+            "--controllers needs a robot, but the file describes a world",
+            code=OPTIONS_CONFLICT,
+            hint="Name the robot's file.",
+            values={"option": "--controllers"},
         )
     if robot is not None:
         pose = placed(robot.pose, options.place)
@@ -222,11 +230,17 @@ def _read(
     found = load(file, arguments=values, package_path=options.package_path)
     if isinstance(found, WorldDescription):
         if named:
-            raise CartwheelError(f'"{file}" is a world, and so is "{named}"')
+            raise CartwheelError(
+                f'two worlds are given: "{file}" and "{named}"',
+                code=OPTIONS_CONFLICT,
+                values={"file": str(file), "world": str(named)},
+            )
         if options.place or options.model:
             raise CartwheelError(
-                f'"{file}" is a world, which has no place and no name',
+                f'"{file}" is a world, which has neither a place nor a name',
+                code=OPTIONS_CONFLICT,
                 hint="Name a robot, and the world with --world.",
+                values={"file": str(file)},
             )
         remappings: tuple[str, ...] = ()
         if options.ros1_node is not None and values:

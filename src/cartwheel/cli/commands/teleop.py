@@ -15,6 +15,7 @@ from cartwheel.cli import interrupts
 from cartwheel.cli.commands.clients import connect
 from cartwheel.cli.console import note, paint
 from cartwheel.cli.teleop_keys import HELP, Driver
+from cartwheel.codes.command import DRIVE_AMBIGUOUS, NOTHING_TO_DRIVE
 from cartwheel.control import ControlClient
 from cartwheel.errors import CartwheelError
 
@@ -30,7 +31,12 @@ def drive(sim: int | None, topic: str | None, *, speed: float, turn: float) -> N
         kind = read.get(topic, TWIST)
         driver = Driver(speed, turn)
         if not client.publish(topic, kind, _message(driver, kind)):
-            raise CartwheelError(f"{topic} has no subscribers", hint="See: cartwheel topic list -v")
+            raise CartwheelError(
+                f"{topic} has no subscribers",
+                code=NOTHING_TO_DRIVE,
+                hint="See: cartwheel topic list -v",
+                values={"topic": topic},
+            )
         try:
             with single_keys() as terminal, Suspension(terminal) as suspension:
                 note(f"driving {paint(topic, 'bold', stream=sys.stderr)}\n\n{HELP}\n")
@@ -66,12 +72,16 @@ def the_topic(found: Iterable[str]) -> str:
     driven = [name for name in found if name.rsplit("/", 1)[-1] == "cmd_vel"] or found
     if not driven:
         raise CartwheelError(
-            "no robot subscribes to a Twist", hint="It needs a plugin such as diff_drive."
+            "no robot subscribes to velocity commands (Twist)",
+            code=NOTHING_TO_DRIVE,
+            hint="It needs a plugin such as diff_drive.",
         )
     if len(driven) > 1:
         raise CartwheelError(
             f"{len(driven)} robots can be driven; name one with --topic",
+            code=DRIVE_AMBIGUOUS,
             hint=f"They are: {', '.join(driven)}.",
+            values={"topics": tuple(driven)},
         )
     return driven[0]
 

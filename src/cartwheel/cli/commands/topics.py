@@ -11,7 +11,11 @@ from typing import Any
 
 from cartwheel.cli import interrupts
 from cartwheel.cli.commands.clients import connect, parse_yaml
-from cartwheel.cli.console import note, print_warning, say, say_table
+from cartwheel.cli.console import note, say, say_table
+from cartwheel.cli.showing import print_diagnostic
+from cartwheel.codes.command import OPTION_INVALID, OUTPUT_SLOW, SIMULATION_ENDED
+from cartwheel.codes.graph import FIELD_UNKNOWN
+from cartwheel.codes.wires import MESSAGE_UNREAD
 from cartwheel.control import ControlClient, Sample
 from cartwheel.errors import CartwheelError, GraphError, suggestion
 
@@ -75,16 +79,23 @@ def echo(
 
 def _tell_dropped(sample: Sample, before: int) -> int:
     if sample.dropped > before:
-        print_warning(
-            f"{sample.dropped - before} messages were dropped:"
-            " they arrive faster than they are printed"
+        print_diagnostic(
+            OUTPUT_SLOW.diagnostic(
+                f"{sample.dropped - before} messages were lost: they arrive faster than they are "
+                "printed",
+                values={"topic": sample.topic, "dropped": sample.dropped - before},
+            )
         )
     return sample.dropped
 
 
 def _ended(shown: int, count: int | None) -> None:
     if count is not None:
-        raise CartwheelError(f"the simulation ended after {shown} of {count} messages")
+        raise CartwheelError(
+            f"the simulation ended after {shown} of {count} messages",
+            code=SIMULATION_ENDED,
+            values={"messages": shown, "wanted": count},
+        )
     note("the simulation has ended")
 
 
@@ -106,17 +117,26 @@ def pick(message: Any, path: str) -> Any:
     for part in re.findall(r"[^.\[\]]+", path):
         if part.isdecimal() and hasattr(value, "__len__") and not isinstance(value, str):
             if int(part) >= len(value):
-                raise GraphError(f'"{done}" has {len(value)} items, so no "{path}"')
+                raise GraphError(
+                    f'"{done}" has {len(value)} items, so "{path}" does not exist',
+                    code=FIELD_UNKNOWN,
+                    values={"field": path},
+                )
             value = value[int(part)]
         elif hasattr(value, "__msgtype__"):
             names = [name for name in value.__dataclass_fields__ if not name.startswith("__")]
             if part not in names:
                 raise GraphError(
-                    f'{value.__msgtype__} has no field "{part}"', hint=suggestion(part, names)
+                    f'{value.__msgtype__} has no field "{part}"',
+                    code=FIELD_UNKNOWN,
+                    hint=suggestion(part, names),
+                    values={"field": part, "type": value.__msgtype__},
                 )
             value = getattr(value, part)
         else:
-            raise GraphError(f'"{done}" has no field "{part}"')
+            raise GraphError(
+                f'"{done}" has no field "{part}"', code=FIELD_UNKNOWN, values={"field": part}
+            )
         done = f"{done}.{part}".lstrip(".")
     return value
 
@@ -132,7 +152,11 @@ def publish(
 ) -> None:
     """Publishes once, or at a rate of wall time."""
     if rate is not None and not 0 < rate <= 10_000:
-        raise CartwheelError(f"a rate of {rate:g} is not between 0 and 10000 Hz")
+        raise CartwheelError(
+            f"--rate must be above 0 and at most 10000 Hz (got {rate:g})",
+            code=OPTION_INVALID,
+            values={"option": "--rate", "value": rate},
+        )
     message = parse_yaml(words)
     with connect(sim) as client:
         readers = _publish_once(client, topic, type_name, message)
@@ -154,7 +178,11 @@ def _publish_once(client: ControlClient, topic: str, type_name: str, message: An
     answer = client.request("publish", topic=topic, type=type_name, message=message)
     if not answer["subscribers"]:
         hint = suggestion(topic, answer["topics"]) if answer["topics"] else ""
-        print_warning(f"{topic} has no subscribers. {hint}".rstrip())
+        print_diagnostic(
+            MESSAGE_UNREAD.diagnostic(
+                f"{topic} has no subscribers", hint=hint, values={"topic": topic}
+            )
+        )
     return int(answer["subscribers"])
 
 

@@ -10,10 +10,11 @@ from typing import Any
 
 import numpy as np
 
+from cartwheel.codes.recording import UPLOAD_REFUSED
 from cartwheel.description.model import RobotDescription
 from cartwheel.description.packages import share
 from cartwheel.description.reach import Reach
-from cartwheel.errors import CartwheelError, DescriptionError
+from cartwheel.errors import CartwheelError, DescriptionError, Origin
 from cartwheel.geometry import Pose, quat_from_rpy
 from cartwheel.simulation.naming import free_name
 from cartwheel.simulation.space import Space
@@ -95,7 +96,7 @@ class UploadPanel(Panel):
     def _upload(self, file: Any) -> None:
         name = Path(file.name.replace("\\", "/")).name
         if not file.content:
-            raise DescriptionError(f'"{name}" is empty')
+            raise DescriptionError(f'"{name}" is empty', code=UPLOAD_REFUSED, values={"file": name})
         with tempfile.TemporaryDirectory(prefix="cartwheel-") as folder:
             path = Path(folder) / (name or "upload.urdf")
             path.write_bytes(file.content)
@@ -106,7 +107,7 @@ class UploadPanel(Panel):
                 )
             except CartwheelError as error:
                 # The folder is nothing to the user, who knows the file by its name.
-                raise DescriptionError(str(error).replace(f"{folder}/", "")) from error
+                raise _without_folder(error, folder) from error
 
 
 def palette(folder: Path) -> dict[str, Path]:
@@ -162,3 +163,18 @@ def free_place(start: Pose, space: Space, size: Size) -> Pose:
     furthest = np.maximum((low - here) * ahead, (high - here) * ahead).sum(axis=1).max(initial=0.0)
     spot = here + ahead * (furthest + size.reach + 2 * _GAP)
     return Pose((float(spot[0]), float(spot[1]), height), turn)
+
+
+def _without_folder(error: CartwheelError, folder: str) -> DescriptionError:
+    def cut(text: str) -> str:
+        return text.replace(f"{folder}/", "")
+
+    origin = error.origin
+    return DescriptionError(
+        cut(error.message),
+        code=error.code,
+        origin=origin
+        and Origin(file=cut(origin.file), line=origin.line, stack=tuple(map(cut, origin.stack))),
+        hint=cut(error.hint or "") or None,
+        values=error.values,
+    )
