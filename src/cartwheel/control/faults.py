@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any, get_args
 
 from cartwheel.codes import all_codes
@@ -40,13 +41,19 @@ def packed(diagnostic: Diagnostic) -> Packed:
         "mark": diagnostic.mark,
         "instead": diagnostic.instead,
         "place": diagnostic.place,
-        "also": list(diagnostic.also),
+        "also": [packed(each) for each in diagnostic.also],
         "values": dict(diagnostic.values),
     }
 
 
 def unpacked(given: Mapping[str, Any]) -> Diagnostic:
     """The diagnostic that `packed` or an earlier release sent; what is malformed is empty."""
+    also = given.get("also")
+    alike = [each for each in also if isinstance(each, dict)] if isinstance(also, list) else []
+    return replace(_alone(given), also=tuple(_alone(each) for each in alike))
+
+
+def _alone(given: Mapping[str, Any]) -> Diagnostic:
     severity = _one_of(given, "severity", Severity, "error")
     file = _text(given, "file")
     line = given.get("line")
@@ -63,7 +70,6 @@ def unpacked(given: Mapping[str, Any]) -> Diagnostic:
         mark=_text(given, "mark"),
         instead=_text(given, "instead"),
         place=_one_of(given, "place", Place, ""),
-        also=_texts(given, "also"),
         values=_values(given.get("values")),
     )
 
