@@ -141,10 +141,10 @@ def _shape(asked: Any) -> tuple[Floats, float]:
     """Points in the world whose convex hull is meant, and how far beyond it reaches."""
     needed = {BOX: "two points", SPHERE: "two points", CONVEX_HULL: "three points or more"}
     if asked.type not in needed:
-        raise Refusal(UNSUPPORTED, f"there are no bounds of type {asked.type}")
+        raise Refusal(UNSUPPORTED, f"bounds of type {asked.type} are not supported")
     given = [vector(point, f"points[{index}]") for index, point in enumerate(asked.points)]
     if len(given) < 3 if asked.type == CONVEX_HULL else len(given) != 2:
-        raise Refusal(FAILED, f"bounds of type {asked.type} have {needed[asked.type]}")
+        raise Refusal(FAILED, f"bounds of type {asked.type} need {needed[asked.type]}")
     points = np.array(given)
     if asked.type == SPHERE:
         radius = float(points[1, 0])

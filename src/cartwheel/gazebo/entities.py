@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from cartwheel.codes.graph import ENTITY_AMBIGUOUS, ENTITY_UNKNOWN
 from cartwheel.description.model import Joint, Light, Link, RobotDescription
 from cartwheel.errors import GraphError, UnknownNameError, suggestion
 from cartwheel.geometry import Pose, Vec3, quat_conjugate, rotate
@@ -73,7 +74,9 @@ class Entities:
         for placed in self.placed:
             if placed.name == name:
                 return placed.description
-        raise UnknownNameError("model", name, [placed.name for placed in self.placed])
+        raise UnknownNameError(
+            "model", name, [placed.name for placed in self.placed], code=ENTITY_UNKNOWN
+        )
 
     def link(self, name: str) -> tuple[str, Link]:
         """A link and the name of its model.
@@ -104,7 +107,7 @@ class Entities:
         for light in lights:
             if light.name == name:
                 return light
-        raise UnknownNameError("light", name, [light.name for light in lights])
+        raise UnknownNameError("light", name, [light.name for light in lights], code=ENTITY_UNKNOWN)
 
     def _find(
         self,
@@ -121,11 +124,21 @@ class Entities:
             return alike[0]
         if alike:
             names = ", ".join(scoped(model, part.name) for model, part in alike)
-            raise GraphError(f'several models have a {kind} "{name}"', hint=f"Name one: {names}.")
+            raise GraphError(
+                f'several models have a {kind} "{name}"',
+                code=ENTITY_AMBIGUOUS,
+                hint=f"Name one: {names}.",
+                values={"kind": kind, "name": name},
+            )
         if name in by_model:
             parts = [scoped(name, part.name) for model, part in every if model == name]
-            raise GraphError(f'"{name}" is a model, not a {kind}', hint=suggestion("", parts))
-        raise UnknownNameError(kind, name, _spelled_alike(name, every))
+            raise GraphError(
+                f'"{name}" is a model, not a {kind}',
+                code=ENTITY_AMBIGUOUS,
+                hint=suggestion("", parts),
+                values={"kind": kind, "name": name},
+            )
+        raise UnknownNameError(kind, name, _spelled_alike(name, every), code=ENTITY_UNKNOWN)
 
     def frame(self, name: str) -> Motion:
         """The frame of the world, a model or a link, as of the last forward pass.
@@ -142,7 +155,7 @@ class Entities:
         except UnknownNameError as error:
             names = [placed.name for placed in self.placed]
             names += [scoped(*pair) for pair in self._simulation.scene.links]
-            raise UnknownNameError("reference frame", name, names) from error
+            raise UnknownNameError("reference frame", name, names, code=ENTITY_UNKNOWN) from error
         return self.link_motion(model, link.name)
 
     def link_motion(self, model: str, link: str) -> Motion:

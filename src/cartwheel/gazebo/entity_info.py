@@ -74,10 +74,12 @@ class EntityInfos:
         try:
             pattern = re.compile(filters.filter)
         except re.error as error:
-            raise Refusal(FAILED, f'"{filters.filter}" is no regular expression: {error}') from None
+            raise Refusal(
+                FAILED, f'"{filters.filter}" is not a regular expression: {error}'
+            ) from None
         wanted = {each.category for each in filters.categories}
         if wanted - set(_CATEGORIES):
-            raise Refusal(FAILED, f"there is no category {min(wanted - set(_CATEGORIES))}")
+            raise Refusal(FAILED, f"category {min(wanted - set(_CATEGORIES))} does not exist")
         self._simulation.refresh()
         within = self._rooms.within(filters.bounds)
         return [
@@ -104,7 +106,7 @@ class EntityInfos:
     def _set(self, request: Any, _: Any) -> None:
         description = self._entities.model(request.entity)
         if request.info.category.category not in _CATEGORIES:
-            raise Refusal(FAILED, f"there is no category {request.info.category.category}")
+            raise Refusal(FAILED, f"category {request.info.category.category} does not exist")
         self._said[request.entity] = description.origin, request.info
 
     def _get_bounds(self, request: Any, response: Any) -> None:

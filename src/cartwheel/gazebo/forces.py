@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from cartwheel.errors import CartwheelError, GraphError, one_line
+from cartwheel.codes.graph import ENTITY_FIXED, SERVICE_FAILED
+from cartwheel.errors import CartwheelError, Diagnostic, GraphError
 from cartwheel.gazebo.entities import INERTIAL, Entities
 from cartwheel.gazebo.requests import Answer, Offer, vector
 from cartwheel.geometry import rotate
@@ -26,7 +27,7 @@ class Pushes:
     """
 
     def __init__(
-        self, simulation: Simulation, entities: Entities, report: Callable[[str], None]
+        self, simulation: Simulation, entities: Entities, report: Callable[[Diagnostic], None]
     ) -> None:
         self._simulation = simulation
         self._entities = entities
@@ -69,7 +70,11 @@ class Pushes:
         simulation.refresh()
         body = simulation.engine.body_id(model, link.name)
         if simulation.model.body_treeid[body] < 0:
-            raise GraphError(f'link "{link.name}" of "{model}" is fixed in the world')
+            raise GraphError(
+                f'link "{link.name}" of "{model}" is fixed in the world',
+                code=ENTITY_FIXED,
+                values={"model": model, "link": link.name},
+            )
         frame = self._entities.frame(request.reference_frame).pose
         own = self._entities.link_motion(model, link.name).pose
         turned = rotate(frame.orientation, force)
@@ -88,7 +93,13 @@ class Pushes:
         try:
             model, link = self._entities.link(request.body_name)
         except CartwheelError as error:
-            self._report(f"/gazebo/clear_body_wrenches: {one_line(error)}")
+            self._report(
+                SERVICE_FAILED.because(
+                    "/gazebo/clear_body_wrenches failed",
+                    error,
+                    values={"service": "/gazebo/clear_body_wrenches"},
+                )
+            )
         else:
             self._simulation.forces.clear_wrenches(model, link.name)
         return Answer()
@@ -103,8 +114,10 @@ class Pushes:
         effort = number(request.effort, "effort", most=STRONGEST)
         if (model, joint.name) not in self._simulation.scene.joints:
             raise GraphError(
-                f'joint "{joint.name}" of "{model}" is {joint.type} or its model is static: '
-                "no effort moves it"
+                f'joint "{joint.name}" of "{model}" cannot be moved by an effort: it is '
+                f"{joint.type}, or its model is static",
+                code=ENTITY_FIXED,
+                values={"model": model, "joint": joint.name},
             )
         notes: tuple[str, ...] = ()
         limit = joint.axis.effort
@@ -121,7 +134,13 @@ class Pushes:
         try:
             model, joint = self._entities.joint(request.joint_name)
         except CartwheelError as error:
-            self._report(f"/gazebo/clear_joint_forces: {one_line(error)}")
+            self._report(
+                SERVICE_FAILED.because(
+                    "/gazebo/clear_joint_forces failed",
+                    error,
+                    values={"service": "/gazebo/clear_joint_forces"},
+                )
+            )
         else:
             self._simulation.forces.clear_efforts(model, joint.name)
         return Answer()

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from cartwheel.codes.graph import PROPERTY_INVALID
 from cartwheel.description.inertia import impossibility, principal_moments
 from cartwheel.description.model import Inertial, Joint, Light, RobotDescription
 from cartwheel.errors import GraphError, WorldError
@@ -159,13 +160,19 @@ class Properties:
         inertial = None
         if link.inertial is not None or any(values.values()):
             if values["mass"] <= 0:
-                raise GraphError(f"the mass must be above 0, but is {values['mass']:g}")
+                raise GraphError(
+                    f"the mass must be above 0 (got {values['mass']:g})",
+                    code=PROPERTY_INVALID,
+                    values={"property": "mass", "value": values["mass"]},
+                )
             moments = principal_moments(
                 (values["ixx"], values["iyy"], values["izz"]),
                 (values["ixy"], values["ixz"], values["iyz"]),
             )
             if (reason := impossibility(moments)) is not None:
-                raise GraphError(reason[0], hint=reason[1])
+                raise GraphError(
+                    reason[0], code=PROPERTY_INVALID, hint=reason[1], values={"property": "inertia"}
+                )
             inertial = Inertial(pose=com, origin=link.origin, **values)
         changed = dataclasses.replace(link, inertial=inertial, gravity=bool(request.gravity_mode))
         description = self._entities.model(model)
@@ -207,7 +214,11 @@ class Properties:
         for field, value in driven.items():
             number(value, f"ode_joint_config.{field}", most=STRONGEST)
         if driven.get("fmax", 0.0) < 0:
-            raise GraphError(f"fmax is {driven['fmax']:g}, but must not be below 0")
+            raise GraphError(
+                f"fmax must not be negative (got {driven['fmax']:g})",
+                code=PROPERTY_INVALID,
+                values={"property": "fmax", "value": driven["fmax"]},
+            )
         if changed != joint:
             description = self._entities.model(model)
             joints = tuple(changed if each is joint else each for each in description.joints)
@@ -305,7 +316,11 @@ def _joint_with(joint: Joint, given: Mapping[str, Sequence[float]]) -> tuple[Joi
         if index < len(given["damping"]):
             damping = given["damping"][index]
             if damping < 0 or damping > _HEAVIEST:
-                raise GraphError(f"damping is {damping:g}, but must be from 0 to {_HEAVIEST:g}")
+                raise GraphError(
+                    f"damping must be from 0 to {_HEAVIEST:g} (got {damping:g})",
+                    code=PROPERTY_INVALID,
+                    values={"property": "damping", "value": damping},
+                )
             changes["damping"] = damping
         for field, bound in (("hiStop", "upper"), ("loStop", "lower")):
             if index < len(given[field]):
@@ -315,7 +330,11 @@ def _joint_with(joint: Joint, given: Mapping[str, Sequence[float]]) -> tuple[Joi
         axes[index] = dataclasses.replace(axis, **changes)  # type: ignore[arg-type]
         lower, upper = axes[index].lower, axes[index].upper
         if lower is not None and upper is not None and lower > upper:
-            raise GraphError(f"loStop {lower:g} is above hiStop {upper:g}")
+            raise GraphError(
+                f"loStop {lower:g} is above hiStop {upper:g}",
+                code=PROPERTY_INVALID,
+                values={"property": "loStop", "lower": lower, "upper": upper},
+            )
     if joint.type == "continuous" and (given["hiStop"] or given["loStop"]):
         notes.append("a continuous joint has no stops: hiStop and loStop have no effect")
     without = [

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from cartwheel.errors import CartwheelError
+from cartwheel.codes.graph import SERVICE_FAILED
+from cartwheel.errors import CartwheelError, Diagnostic
 from cartwheel.gazebo.physics import Physics
 from cartwheel.graph import Graph
 from cartwheel.graph.reconfigure import ReconfigureParameter, ReconfigureServer, Value
@@ -74,7 +75,7 @@ class PhysicsReconfigure:
     """
 
     def __init__(
-        self, physics: Physics, graph: Graph, node: str, report: Callable[[str], None]
+        self, physics: Physics, graph: Graph, node: str, report: Callable[[Diagnostic], None]
     ) -> None:
         self._physics = physics
         self._report = report
@@ -116,5 +117,11 @@ class PhysicsReconfigure:
                 tell=False,
             )
         except CartwheelError as error:
-            self._report(f"/gazebo/set_parameters: {error.message}")
+            self._report(
+                SERVICE_FAILED.because(
+                    "/gazebo/set_parameters failed",
+                    error,
+                    values={"service": "/gazebo/set_parameters"},
+                )
+            )
         return self._present()

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
+from cartwheel.codes.graph import SERVICE_FAILED
 from cartwheel.errors import CartwheelError, Diagnostic, Once, one_line
 from cartwheel.geometry import IDENTITY, Pose, Vec3
 from cartwheel.messages import message_class, zero
@@ -41,7 +42,7 @@ class Offer:
 
 
 def answering(
-    offer: Offer, tell: Callable[[str], None], *, title: str = ""
+    offer: Offer, tell: Callable[[Diagnostic], None], *, title: str = ""
 ) -> Callable[[Any], Any]:
     """A handler for the graph that answers in any case.
 
@@ -65,7 +66,11 @@ def answering(
             if says:
                 response.status_message = f"{title}: {text}" if title else text
             if not says or not isinstance(error, CartwheelError):
-                tell(f"{title or offer.name}: {text}")
+                tell(
+                    SERVICE_FAILED.because(
+                        f"{title or offer.name} failed", error, values={"service": offer.name}
+                    )
+                )
             return response
         for name, value in answer.fields.items():
             setattr(response, name, value)
@@ -89,8 +94,8 @@ class Teller:
         self._simulation = simulation
         self._once = Once(_REMEMBERED)
 
-    def __call__(self, text: str) -> None:
-        if shown := self._once(Diagnostic(severity="warning", message=text)):
+    def __call__(self, diagnostic: Diagnostic) -> None:
+        if shown := self._once(diagnostic):
             self._simulation.report(shown)
 
 

@@ -80,8 +80,8 @@ class Resources:
 
     def _place_bounds(self, request: Any, _: Any) -> None:
         if request.name not in dict(self._simulation.world.places):
-            raise Refusal(NOT_FOUND, f'the world has no place "{request.name}"')
-        raise Refusal(UNSUPPORTED, "places have no bounds")
+            raise Refusal(NOT_FOUND, f'the world has no named pose "{request.name}"')
+        raise Refusal(UNSUPPORTED, "named poses have no bounds")
 
     def _folders(self, sources: Iterable[str]) -> tuple[list[str], list[Path]]:
         """What is wrong with some of the sources, and the folders that the others are."""
@@ -100,7 +100,7 @@ class Resources:
         return wrong, found
 
     def _load(self, _: Any, __: Any) -> None:
-        raise Refusal(UNSUPPORTED, "the world stays what it is: start another simulation")
+        raise Refusal(UNSUPPORTED, "another world cannot be loaded: start another simulation")
 
 
 def _world(name: str, *, uri: str) -> Any:

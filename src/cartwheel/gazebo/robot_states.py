@@ -6,9 +6,9 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from cartwheel.codes.graph import FRAMES_SHARED
 from cartwheel.description.kinematics import link_poses
 from cartwheel.description.model import Joint, RobotDescription
-from cartwheel.errors import Diagnostic
 from cartwheel.geometry import Pose
 from cartwheel.graph import Graph, Publisher, StaticTransforms, resolve_frame
 from cartwheel.messages import header, message_class
@@ -139,10 +139,10 @@ class RobotStates:
             if name not in self._warned:
                 self._warned.add(name)
                 self._simulation.engine.report(
-                    Diagnostic(
-                        severity="warning",
-                        message=f'"{name}" has frames of the same names as "{other}", such as'
-                        f" {shared[0]}: its links are left out of /tf",
+                    FRAMES_SHARED.diagnostic(
+                        f'"{name}" has frames of the same names as "{other}", such as '
+                        f"{shared[0]}: its links are left out of /tf",
+                        values={"model": name, "other": other, "frame": shared[0]},
                     )
                 )
             return True

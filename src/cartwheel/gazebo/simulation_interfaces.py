@@ -195,7 +195,7 @@ class SimulationInterfaces:
         wanted = name or description.name
         taken = self._spawning.on_owner(lambda: wanted in self._simulation.models)
         if taken and not request.allow_renaming:
-            raise Refusal(_NAME_NOT_UNIQUE, f'an entity "{wanted}" is there already')
+            raise Refusal(_NAME_NOT_UNIQUE, f'an entity "{wanted}" already exists')
         response.entity_name = self._spawning.spawn(
             description,
             name=name,
@@ -224,7 +224,7 @@ class SimulationInterfaces:
             elif resource.resource_string:
                 found = self._spawning.read(name, resource.resource_string)
             else:
-                raise Refusal(_NO_RESOURCE, "neither uri nor resource_string says what to spawn")
+                raise Refusal(_NO_RESOURCE, "neither uri nor resource_string is set")
         except DescriptionError as error:
             raise Refusal(_PARSE_ERROR, one_line(error)) from None
         if not isinstance(found, RobotDescription):
@@ -255,7 +255,7 @@ class SimulationInterfaces:
     def _set_run_state(self, request: Any, _: Any) -> None:
         wanted, simulation = request.state.state, self._simulation
         if wanted == self._run_state():
-            raise Refusal(_ALREADY, "it is in that state already")
+            raise Refusal(_ALREADY, "the simulation is in that state already")
         self._stopped = wanted == _STOPPED
         if wanted == _PLAYING:
             simulation.resume()
@@ -277,7 +277,7 @@ class SimulationInterfaces:
         if scope & ~(_TIME | _STATE | _SPAWNED):
             raise Refusal(UNSUPPORTED, f"there is no scope {scope}")
         if scope & _TIME and not scope & _STATE:
-            raise Refusal(UNSUPPORTED, "time is not reset without the state")
+            raise Refusal(UNSUPPORTED, "time cannot be reset without the state")
         if scope & _SPAWNED:
             self._delete_spawned()
         if scope & _STATE:

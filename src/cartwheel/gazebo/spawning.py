@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 from urllib.parse import unquote
 
+from cartwheel.codes.graph import ENTITY_NAME_TAKEN, GRAPH_CLOSED, SPAWN_INVALID
 from cartwheel.description import load, load_plain
 from cartwheel.description.model import Light, RobotDescription, WorldDescription
 from cartwheel.description.packages import Packages
@@ -128,7 +129,9 @@ class Spawning:
                 if not rename:
                     raise WorldError(
                         f'Failure - model name "{wanted}" already exists',
-                        hint=f'Delete that model first, or give another name, such as "{free}".',
+                        code=ENTITY_NAME_TAKEN,
+                        hint=f'Delete that model first, or choose another name, such as "{free}".',
+                        values={"name": wanted, "free": free},
                     )
                 wanted = free
             self._simulation.refresh()
@@ -154,7 +157,10 @@ class Spawning:
             world = self._simulation.world
             if any(other.name == wanted for other in world.lights):
                 raise WorldError(
-                    f'Failure - light "{wanted}" already exists', hint="Delete that light first."
+                    f'Failure - light "{wanted}" already exists',
+                    code=ENTITY_NAME_TAKEN,
+                    hint="Delete that light first.",
+                    values={"name": wanted},
                 )
             self._simulation.refresh()
             placed = self._entities.frame(reference).pose @ where @ light.pose
@@ -170,7 +176,7 @@ class Spawning:
             DescriptionError: It is no model and no light.
         """
         if not text.strip():
-            raise DescriptionError("Failure - model_xml is empty")
+            raise DescriptionError("Failure - model_xml is empty", code=SPAWN_INVALID)
         alone = _LIGHT.match(text)
         if alone is not None:
             # SDF knows lights in worlds and links; the lines stay what they are.
@@ -189,7 +195,9 @@ class Spawning:
                 return found.models[0]
             raise DescriptionError(
                 f'Failure - model_xml describes the world "{found.name}", not a model',
-                hint="Start the simulation with it, and spawn models into it.",
+                code=SPAWN_INVALID,
+                hint="Start the simulation with that world, and spawn models into it.",
+                values={"world": found.name},
             )
         return found
 
@@ -219,7 +227,7 @@ class Spawning:
             except NotYet:
                 ended = self._simulation.run_state is RunState.STOPPED
                 if not future.done() and ended and future.cancel():
-                    raise CartwheelError("the simulation has ended") from None
+                    raise CartwheelError("the simulation has ended", code=GRAPH_CLOSED) from None
 
     def delete_model(self, request: Any) -> Answer:
         self._simulation.delete(request.model_name)

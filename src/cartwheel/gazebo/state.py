@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from cartwheel.errors import CartwheelError, one_line
+from cartwheel.codes.graph import REQUEST_INVALID, SERVICE_FAILED
+from cartwheel.errors import CartwheelError, Diagnostic
 from cartwheel.gazebo.entities import Entities, Motion
 from cartwheel.gazebo.requests import Answer, Offer, pose, pose_message, twist_message, vector
 from cartwheel.geometry import Pose, from_wxyz, rotate
@@ -132,8 +133,10 @@ class States:
         names, positions = list(request.joint_names), list(request.joint_positions)
         if len(names) != len(positions):
             raise CartwheelError(
-                f"joint name and position list have different lengths: {len(names)} names, "
-                f"{len(positions)} positions"
+                f"joint names and positions differ in number: {len(names)} names, "
+                f"{len(positions)} positions",
+                code=REQUEST_INVALID,
+                values={"names": len(names), "positions": len(positions)},
             )
         wanted: dict[str, float] = {}
         notes = []
@@ -252,7 +255,7 @@ class StateCommands:
     """``set_model_state`` and ``set_link_state`` as topics."""
 
     def __init__(
-        self, states: States, graph: Graph, node: str, report: Callable[[str], None]
+        self, states: States, graph: Graph, node: str, report: Callable[[Diagnostic], None]
     ) -> None:
         self._report = report
         self._subscriptions: list[Subscription] = []
@@ -282,6 +285,10 @@ class StateCommands:
             try:
                 handler(request(**{field: message}))
             except CartwheelError as error:
-                self._report(f"/gazebo/{name}: {one_line(error)}")
+                self._report(
+                    SERVICE_FAILED.because(
+                        f"/gazebo/{name} failed", error, values={"service": f"/gazebo/{name}"}
+                    )
+                )
 
         return take

@@ -64,7 +64,7 @@ class Stepping:
 
         def begin() -> int:
             if simulation.run_state is not RunState.PAUSED:
-                raise Refusal(INCORRECT_STATE, "steps are made while the simulation is paused")
+                raise Refusal(INCORRECT_STATE, "the simulation must be paused to make steps")
             simulation.step(steps)
             return simulation.current_step + steps
 

@@ -6,6 +6,12 @@ import dataclasses
 import re
 from typing import Any
 
+from cartwheel.codes.graph import (
+    REQUEST_INVALID,
+    REQUEST_UNSUPPORTED,
+    SERVICE_FAILED,
+    SPAWN_INVALID,
+)
 from cartwheel.description.model import Light, RobotDescription
 from cartwheel.errors import GraphError
 from cartwheel.gazebo.entities import Entities
@@ -74,13 +80,15 @@ class WorldServices:
         """What a request describes, in the one of three ways that it uses."""
         ways = [way for way in ("sdf", "sdf_filename", "clone_name") if getattr(asked, way)]
         if len(ways) != 1:
-            raise GraphError("one of sdf, sdf_filename and clone_name says what to create")
+            raise GraphError(
+                "exactly one of sdf, sdf_filename and clone_name must be set", code=REQUEST_INVALID
+            )
         if asked.sdf:
             return self._spawning.read(name, asked.sdf)
         if asked.sdf_filename:
             found = self._spawning.load(asked.sdf_filename)
             if not isinstance(found, RobotDescription):
-                raise GraphError("sdf_filename names a world, not a model")
+                raise GraphError("sdf_filename names a world, not a model", code=SPAWN_INVALID)
             return found
         return self._spawning.on_owner(lambda: self._entities.model(asked.clone_name))
 
@@ -107,14 +115,22 @@ class WorldServices:
     @staticmethod
     def _require_model(kind: int, done: str) -> None:
         if kind not in (_ANY, _MODEL):
-            raise GraphError(f"an entity of type {kind} cannot be {done}: models can")
+            raise GraphError(
+                f"only models can be {done}, not entities of type {kind}",
+                code=REQUEST_UNSUPPORTED,
+                values={"type": kind},
+            )
 
     def _control(self, request: Any) -> Answer:
         asked, simulation = request.world_control, self._simulation
         if asked.reset.time_only:
-            raise GraphError("time alone cannot be reset")
+            raise GraphError("time cannot be reset without the state", code=REQUEST_UNSUPPORTED)
         if asked.seed:
-            self._tell("control: the seed is that of the start; another has no effect")
+            self._tell(
+                SERVICE_FAILED.diagnostic(
+                    "control: a new seed has no effect; the seed of the start stays"
+                )
+            )
         if asked.pause:
             simulation.pause()
         else:

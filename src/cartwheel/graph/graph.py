@@ -14,6 +14,14 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from cartwheel.calls import Post, answered
+from cartwheel.codes.graph import (
+    GRAPH_CLOSED,
+    SERVICE_TAKEN,
+    SERVICE_TIMED_OUT,
+    SERVICE_UNKNOWN,
+    TOPIC_TYPE_MISMATCH,
+    TOPIC_UNKNOWN,
+)
 from cartwheel.errors import GraphError, UnknownNameError
 from cartwheel.graph.action import Action
 from cartwheel.graph.joint_inputs import JointInputs
@@ -272,7 +280,7 @@ class Graph:
         with self._lock:
             if type_name is None:
                 if name not in self._topics:
-                    raise UnknownNameError("topic", name, self._topics)
+                    raise UnknownNameError("topic", name, self._topics, code=TOPIC_UNKNOWN)
                 type_name = self._topics[name].type
             topic = self._topic(name, type_name)
             subscription = Subscription(self, topic, callback, node=node)
@@ -323,7 +331,9 @@ class Graph:
         with self._lock:
             if name in self._services:
                 raise GraphError(
-                    f'service "{name}" is offered already by {self._services[name].node}'
+                    f'service "{name}" is already offered by {self._services[name].node}',
+                    code=SERVICE_TAKEN,
+                    values={"name": name, "node": self._services[name].node},
                 )
             service = Service(
                 name=name, type=type_name, handler=handler, node=node, threaded=threaded
@@ -347,8 +357,10 @@ class Graph:
         with self._lock:
             if action.name in self._actions:
                 raise GraphError(
-                    f'action "{action.name}" is offered already by '
-                    f"{self._actions[action.name].node}"
+                    f'action "{action.name}" is already offered by '
+                    f"{self._actions[action.name].node}",
+                    code=SERVICE_TAKEN,
+                    values={"name": action.name, "node": self._actions[action.name].node},
                 )
             self._actions[action.name] = action
             self._tell_change()
@@ -373,7 +385,7 @@ class Graph:
         """
         with self._lock:
             if name not in self._services:
-                raise UnknownNameError("service", name, self._services)
+                raise UnknownNameError("service", name, self._services, code=SERVICE_UNKNOWN)
             return self._services[name]
 
     def call(self, name: str, request: Any) -> Future[Any]:
@@ -390,7 +402,11 @@ class Graph:
         def run() -> Any:
             response = service.handler(request)
             if response is None:
-                raise GraphError(f'service "{service.name}" gave no answer')
+                raise GraphError(
+                    f'service "{service.name}" gave no answer',
+                    code=SERVICE_TIMED_OUT,
+                    values={"service": service.name},
+                )
             return response
 
         return answered(_at_once if service.threaded else self.post, run)
@@ -419,7 +435,7 @@ class Graph:
         with self._lock:
             live = {topic.name: topic for topic in self._live()}
             if name not in live:
-                raise UnknownNameError("topic", name, live)
+                raise UnknownNameError("topic", name, live, code=TOPIC_UNKNOWN)
             return self._info(live[name])
 
     def _live(self) -> Iterator[Topic]:
@@ -448,7 +464,11 @@ class Graph:
         ):
             topic = self._topics[name] = Topic(name, type_name, self._failed)
         elif topic.type != type_name:
-            raise GraphError(f'topic "{name}" has type {topic.type}, not {type_name}')
+            raise GraphError(
+                f'topic "{name}" has type {topic.type}, not {type_name}',
+                code=TOPIC_TYPE_MISMATCH,
+                values={"topic": name, "type": topic.type, "given": type_name},
+            )
         return topic
 
     def _remove_publisher(self, topic: Topic, publisher: Publisher) -> None:
@@ -501,4 +521,4 @@ def _fail(_topic: Topic, _callback: Callback, error: Exception) -> None:
 
 
 def _refuse(_: Callable[[], None]) -> None:
-    raise GraphError("the simulation is closed")
+    raise GraphError("the simulation is closed", code=GRAPH_CLOSED)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 
+from cartwheel.codes.graph import GRAPH_NAME_INVALID
 from cartwheel.errors import GraphError
 
 _NAME = re.compile(r"/[A-Za-z_~][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*\Z")
@@ -19,8 +20,10 @@ def resolve_name(name: str, namespace: str = "") -> str:
     full = "/" + "/".join(part for part in full.split("/") if part)
     if not _NAME.match(full):
         raise GraphError(
-            f'"{name}" is no valid name',
+            f'"{name}" is not a valid name',
+            code=GRAPH_NAME_INVALID,
             hint="Names hold letters, digits, _ and /, and no part begins with a digit.",
+            values={"name": name},
         )
     return full
 

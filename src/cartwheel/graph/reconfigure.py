@@ -8,6 +8,7 @@ from contextlib import ExitStack
 from dataclasses import dataclass
 from typing import Any, Literal
 
+from cartwheel.codes.graph import PARAMETER_UNKNOWN, PARAMETER_VALUE_INVALID
 from cartwheel.errors import GraphError, UnknownNameError
 from cartwheel.graph.graph import Graph, Publisher
 from cartwheel.messages import message_class, service_classes
@@ -150,7 +151,9 @@ class ReconfigureServer:
 
     def _known(self, name: str) -> ReconfigureParameter:
         if name not in self._parameters:
-            raise UnknownNameError(f"parameter of {self._name}", name, self._parameters)
+            raise UnknownNameError(
+                f"parameter of {self._name}", name, self._parameters, code=PARAMETER_UNKNOWN
+            )
         return self._parameters[name]
 
     def _preset(self) -> dict[str, Value]:
@@ -224,7 +227,11 @@ def _typed(parameter: ReconfigureParameter, value: Any) -> Value:
         return float(value)
     if kind == "int" and plain and -_INT32 <= value < _INT32 and value == int(value):
         return int(value)
-    raise GraphError(f'{value!r} is no {kind}, which parameter "{parameter.name}" needs')
+    raise GraphError(
+        f'parameter "{parameter.name}" must be of type {kind} (got {value!r})',
+        code=PARAMETER_VALUE_INVALID,
+        values={"parameter": parameter.name, "type": kind},
+    )
 
 
 def _clamped(parameter: ReconfigureParameter, value: Value) -> Value:
@@ -233,5 +240,9 @@ def _clamped(parameter: ReconfigureParameter, value: Value) -> Value:
             if isinstance(stated, int | float):
                 value = choose(value, stated)
         if math.isinf(value):
-            raise GraphError(f'parameter "{parameter.name}" must be finite, but is {value}')
+            raise GraphError(
+                f'parameter "{parameter.name}" must be finite (got {value})',
+                code=PARAMETER_VALUE_INVALID,
+                values={"parameter": parameter.name},
+            )
     return _typed(parameter, value)

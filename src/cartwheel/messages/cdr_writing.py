@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from cartwheel.codes.graph import MESSAGE_NOT_ENCODABLE
 from cartwheel.errors import GraphError
 from cartwheel.messages.fields import CODES, FILLER, Field, field_of
 from cartwheel.messages.store import loaded, message_class
@@ -43,7 +44,11 @@ def encode_cdr(message: Any) -> bytes:
     try:
         _plan(message.__msgtype__)(message, parts, 0)
     except (struct.error, TypeError, AttributeError, ValueError, OverflowError) as error:
-        raise GraphError(f"a {message.__msgtype__} that ROS 2 cannot hold: {error}") from error
+        raise GraphError(
+            f"ROS 2 cannot represent this {message.__msgtype__}: {error}",
+            code=MESSAGE_NOT_ENCODABLE,
+            values={"type": message.__msgtype__},
+        ) from error
     return b"".join(parts)
 
 

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from cartwheel.codes.graph import FIELD_UNKNOWN, FIELD_VALUE_INVALID
 from cartwheel.errors import GraphError, suggestion
 from cartwheel.messages.fields import FILLER, Field, fields
 from cartwheel.messages.store import message_class
@@ -85,8 +86,10 @@ def _split(type_name: str, name: str, outer: tuple[str, ...] = ()) -> tuple[str,
         return _split(longest.type, rest, (*outer, longest.name))
     written = f'"{"_".join((*outer, name))}": ' if outer else ""
     raise GraphError(
-        f'{written}{type_name} has no field "{".".join((*outer, name))}"',
+        f"""{written}{type_name} has no field "{".".join((*outer, name))}\"""",
+        code=FIELD_UNKNOWN,
         hint=suggestion(name, [field.name for field in known]),
+        values={"type": type_name, "field": ".".join((*outer, name))},
     )
 
 
@@ -118,7 +121,11 @@ def recast(message: Any, type_name: str) -> Any:
 def _of(message: Any) -> tuple[Field, ...]:
     name = getattr(message, "__msgtype__", None)
     if name is None:
-        raise GraphError(f"{type(message).__name__} is no message")
+        raise GraphError(
+            f"{type(message).__name__} is not a message",
+            code=FIELD_VALUE_INVALID,
+            values={"type": type(message).__name__},
+        )
     return fields(name)
 
 
@@ -164,23 +171,30 @@ def _by_name(type_name: str, given: Any, path: str) -> dict[str, Any]:
                 continue
             if name not in names:
                 raise GraphError(
-                    f'{type_name} has no field "{path}{key}"', hint=suggestion(str(key), names)
+                    f'{type_name} has no field "{path}{key}"',
+                    code=FIELD_UNKNOWN,
+                    hint=suggestion(str(key), names),
+                    values={"type": type_name, "field": f"{path}{key}"},
                 )
             result[name] = value
         return result
     if isinstance(given, Sequence) and not isinstance(given, str | bytes):
         if len(given) != len(names):
             raise GraphError(
-                f"{_where(path)} {len(given)} values do not fill the {len(names)} fields "
-                f"of {type_name}",
+                f"{_where(path)} {len(given)} values do not fill the {len(names)} fields of "
+                f"{type_name}",
+                code=FIELD_VALUE_INVALID,
                 hint=f"They are: {', '.join(names) or 'none'}.",
+                values={"type": type_name, "field": path.rstrip("."), "count": len(given)},
             )
         return dict(zip(names, given, strict=True))
     if given is None:
         return {}
     raise GraphError(
-        f"{_where(path)} {_shown(given)} is no {type_name}",
+        f"{_where(path)} {_shown(given)} is not a {type_name}",
+        code=FIELD_VALUE_INVALID,
         hint=f"Write it as {{{', '.join(f'{name}: …' for name in names)}}}.",
+        values={"type": type_name, "field": path.rstrip("."), "value": _shown(given)},
     )
 
 
@@ -193,12 +207,16 @@ def _value(field: Field, value: Any, path: str) -> Any:
         value = np.frombuffer(value, dtype=np.uint8)
     if isinstance(value, str | Mapping) or not isinstance(value, Sequence | np.ndarray):
         raise GraphError(
-            f"{path}: {_shown(value)} is no list, which {field.described} needs",
+            f"{path}: expected a list for {field.described}, got {_shown(value)}",
+            code=FIELD_VALUE_INVALID,
             hint="Write it as [a, b, …].",
+            values={"field": path.rstrip("."), "value": _shown(value)},
         )
     if field.length is not None and len(value) != field.length:
         raise GraphError(
-            f"{path}: {len(value)} values do not fill {field.described}: it needs {field.length}"
+            f"{path}: {field.described} needs {field.length} values, got {len(value)}",
+            code=FIELD_VALUE_INVALID,
+            values={"field": path, "count": len(value)},
         )
     if field.kind in ("message", "string"):
         return [_one(field, item, f"{path}[{index}]") for index, item in enumerate(value)]
@@ -229,13 +247,19 @@ def _one(field: Field, value: Any, path: str) -> Any:
         if isinstance(value, str):
             return value
         raise GraphError(
-            f"{path}: {_shown(value)} is no text",
+            f"{path}: expected a string, got {_shown(value)}",
+            code=FIELD_VALUE_INVALID,
             hint=f'Put it into quotes: "{value}".' if isinstance(value, int | float) else None,
+            values={"field": path.rstrip("."), "value": _shown(value)},
         )
     if field.kind == "bool":
         if isinstance(value, bool) or (isinstance(value, int) and value in (0, 1)):
             return bool(value)
-        raise GraphError(f"{path}: {_shown(value)} is neither true nor false")
+        raise GraphError(
+            f"{path}: expected true or false, got {_shown(value)}",
+            code=FIELD_VALUE_INVALID,
+            values={"field": path.rstrip("."), "value": _shown(value)},
+        )
     if field.kind == "float":
         return _float(value, path)
     return _int(field, value, path)
@@ -246,25 +270,39 @@ def _float(value: Any, path: str) -> float:
         try:
             return float(value)
         except OverflowError:
-            raise GraphError(f"{path}: {_shown(value)} is too large") from None
+            raise GraphError(
+                f"{path}: {_shown(value)} is too large",
+                code=FIELD_VALUE_INVALID,
+                values={"field": path.rstrip("."), "value": _shown(value)},
+            ) from None
     if isinstance(value, str):
         # YAML 1.1 takes 1e-3 and nan for texts.
         try:
             return float(value.strip().replace(".inf", "inf").replace(".nan", "nan"))
         except ValueError:
             pass
-    raise GraphError(f"{path}: {_shown(value)} is no number")
+    raise GraphError(
+        f"{path}: expected a number, got {_shown(value)}",
+        code=FIELD_VALUE_INVALID,
+        values={"field": path.rstrip("."), "value": _shown(value)},
+    )
 
 
 def _int(field: Field, value: Any, path: str) -> int:
     if isinstance(value, float) and math.isfinite(value) and value == int(value):
         value = int(value)
     if not isinstance(value, int):
-        raise GraphError(f"{path}: {_shown(value)} is no whole number, which {field.type} needs")
+        raise GraphError(
+            f"{path}: {field.type} needs a whole number, got {_shown(value)}",
+            code=FIELD_VALUE_INVALID,
+            values={"field": path.rstrip("."), "value": _shown(value)},
+        )
     limits = np.iinfo(field.type)
     if not limits.min <= int(value) <= limits.max:
         raise GraphError(
-            f"{path}: {value} does not fit {field.type}, which holds {limits.min} to {limits.max}"
+            f"{path}: {value} is out of range for {field.type}: {limits.min} to {limits.max}",
+            code=FIELD_VALUE_INVALID,
+            values={"field": path.rstrip("."), "value": _shown(value)},
         )
     return int(value)
 

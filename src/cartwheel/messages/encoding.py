@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 from typing import Any
 
+from cartwheel.codes.graph import MESSAGE_NOT_DECODABLE
 from cartwheel.errors import GraphError
 from cartwheel.messages.cdr_writing import encode_cdr
 from cartwheel.messages.store import loaded, message_class
@@ -28,7 +29,11 @@ def decode_cdr(data: bytes | memoryview, type_name: str, *, padded: bool = False
             data = memoryview(data)[: _size(data, full)]
         return loaded().deserialize_cdr(data, full)
     except Exception as error:  # rosbags lets whatever its generated code meets through
-        raise GraphError(f"{len(data)} bytes are no {full}: {error}") from error
+        raise GraphError(
+            f"{len(data)} bytes are not a {full}: {error}",
+            code=MESSAGE_NOT_DECODABLE,
+            values={"type": full, "bytes": len(data)},
+        ) from error
 
 
 def _size(data: bytes | memoryview, full: str) -> int:

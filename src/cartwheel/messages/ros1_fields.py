@@ -10,6 +10,7 @@ import functools
 from dataclasses import dataclass
 from typing import Literal
 
+from cartwheel.codes.graph import MESSAGE_TYPE_UNKNOWN
 from cartwheel.errors import UnknownNameError
 from cartwheel.messages.fields import FILLER, Field, field_of, fields
 from cartwheel.messages.ros1_types import ros1_store
@@ -45,7 +46,7 @@ def pairs(name: str) -> tuple[Pair, ...]:
     full = type_name(name)
     known = ros1_store().fielddefs
     if full not in known:
-        raise UnknownNameError("ROS 1 message type", full, known)
+        raise UnknownNameError("ROS 1 message type", full, known, code=MESSAGE_TYPE_UNKNOWN)
     ours = {field.name: field for field in fields(full)}
     found = []
     for ros1, description in known[full][1]:

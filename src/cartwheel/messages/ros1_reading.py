@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from cartwheel.codes.graph import MESSAGE_NOT_DECODABLE
 from cartwheel.errors import GraphError
 from cartwheel.messages.convert import zero
 from cartwheel.messages.fields import CODES, FILLER, Field
@@ -67,10 +68,18 @@ def decode_ros1(data: bytes | memoryview, type_name: str, *, elements: int | Non
     try:
         message = read(source)
     except (ValueError, struct.error) as error:
-        raise GraphError(f"{len(data)} bytes are no {type_name}: {error}") from error
+        raise GraphError(
+            f"{len(data)} bytes are not a {type_name}: {error}",
+            code=MESSAGE_NOT_DECODABLE,
+            values={"type": type_name, "bytes": len(data)},
+        ) from error
     if source.offset != len(source.data):
         left = len(source.data) - source.offset
-        raise GraphError(f"{len(data)} bytes are no {type_name}: {left} are too many")
+        raise GraphError(
+            f"{len(data)} bytes are not a {type_name}: {left} are left over",
+            code=MESSAGE_NOT_DECODABLE,
+            values={"type": type_name, "bytes": len(data)},
+        )
     return message
 
 

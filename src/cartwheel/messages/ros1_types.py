@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
+from cartwheel.codes.graph import MESSAGE_TYPE_UNKNOWN
 from cartwheel.errors import UnknownNameError
 from cartwheel.messages.fields import FILLER
 from cartwheel.messages.store import parsed_definitions, service_name, type_name
@@ -85,7 +86,10 @@ def ros1_service(name: str) -> Ros1Service:
     if request not in ros1_store().fielddefs:
         services = [key for key in ros1_store().fielddefs if key.endswith("_Request")]
         raise UnknownNameError(
-            "ROS 1 service type", name, [key.removesuffix("_Request") for key in services]
+            "ROS 1 service type",
+            name,
+            [key.removesuffix("_Request") for key in services],
+            code=MESSAGE_TYPE_UNKNOWN,
         )
     text = _hashed_text(request) + _hashed_text(response)
     return Ros1Service(name=ros1_name(full), md5=_md5(text), request=request, response=response)
@@ -93,7 +97,9 @@ def ros1_service(name: str) -> Ros1Service:
 
 def _known(full: str) -> str:
     if full not in ros1_store().fielddefs:
-        raise UnknownNameError("ROS 1 message type", full, ros1_store().fielddefs)
+        raise UnknownNameError(
+            "ROS 1 message type", full, ros1_store().fielddefs, code=MESSAGE_TYPE_UNKNOWN
+        )
     return full
 
 

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from cartwheel.codes.graph import MESSAGE_NOT_ENCODABLE
 from cartwheel.errors import GraphError
 from cartwheel.messages.fields import CODES, Field
 from cartwheel.messages.ros1_fields import HEADER, pairs
@@ -39,7 +40,11 @@ def write_ros1(message: Any, *, seq: int = 0) -> Parts:
     try:
         _plan(message.__msgtype__)(message, parts, seq)
     except (struct.error, TypeError, AttributeError, ValueError) as error:
-        raise GraphError(f"a {message.__msgtype__} that ROS 1 cannot hold: {error}") from error
+        raise GraphError(
+            f"ROS 1 cannot represent this {message.__msgtype__}: {error}",
+            code=MESSAGE_NOT_ENCODABLE,
+            values={"type": message.__msgtype__},
+        ) from error
     return parts
 
 

@@ -7,6 +7,7 @@ import re
 from dataclasses import dataclass
 from typing import Any
 
+from cartwheel.codes.graph import MESSAGE_TYPE_UNKNOWN
 from cartwheel.errors import UnknownNameError
 from cartwheel.messages.store import FIRST, TWIN, service_classes, service_name, store, type_name
 
@@ -79,7 +80,7 @@ def ros2_type(name: str) -> Ros2Type:
     full = type_name(name)
     known = store().fielddefs
     if full not in known or is_ros1_only(full):
-        raise UnknownNameError("ROS 2 message type", full, known)
+        raise UnknownNameError("ROS 2 message type", full, known, code=MESSAGE_TYPE_UNKNOWN)
     real = ros2_name(full)
     return Ros2Type(name=real, dds=dds_name(real), hash=_hash_store().hash_rihs01(real))
 
@@ -95,7 +96,7 @@ def ros2_service(name: str) -> Ros2Service:
     """
     full = service_name(name)
     if is_ros1_only(full):
-        raise UnknownNameError("ROS 2 service type", name, ())
+        raise UnknownNameError("ROS 2 service type", name, (), code=MESSAGE_TYPE_UNKNOWN)
     request, response = (each.__msgtype__ for each in service_classes(full))
     real = ros2_name(full)
     made = _hash_store(first=_is_first(full))
@@ -134,7 +135,7 @@ def fields_of(name: str) -> list[tuple[str, Any]]:
         twin = twin_name(service)
         ros2_service(twin if f"{twin}_Request" in store().fielddefs else service)
     if name not in known:
-        raise UnknownNameError("ROS 2 type", name, known)
+        raise UnknownNameError("ROS 2 type", name, known, code=MESSAGE_TYPE_UNKNOWN)
     from rosbags.interfaces import Nodetype
 
     # What rosidl puts into a type without fields.

@@ -15,6 +15,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+from cartwheel.codes.graph import MESSAGE_TYPE_UNKNOWN
 from cartwheel.errors import UnknownNameError
 
 DEFINITIONS = Path(__file__).parent / "definitions"
@@ -166,7 +167,7 @@ def message_class(name: str) -> Any:
     full = type_name(name)
     types = loaded().types
     if full not in types and not _learn(full):
-        raise UnknownNameError("message type", name, store().types)
+        raise UnknownNameError("message type", name, store().types, code=MESSAGE_TYPE_UNKNOWN)
     return types[full]
 
 
@@ -179,5 +180,5 @@ def service_classes(name: str) -> tuple[Any, Any]:
     full = service_name(name)
     if not _learn(f"{full}_Request"):
         known = [key.removesuffix("_Request") for key in store().types if key.endswith("_Request")]
-        raise UnknownNameError("service type", name, known)
+        raise UnknownNameError("service type", name, known, code=MESSAGE_TYPE_UNKNOWN)
     return message_class(f"{full}_Request"), message_class(f"{full}_Response")
