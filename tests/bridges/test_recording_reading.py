@@ -30,7 +30,14 @@ from cartwheel.bridges.recording.decoding import decoder
 from cartwheel.bridges.recording.encoding import codec
 from cartwheel.bridges.recording.opening import open_recording
 from cartwheel.bridges.recording.reading import RecordedTopic
-from cartwheel.codes.recording import RECORDED_TYPE_UNUSABLE
+from cartwheel.codes.command import RECORDING_UNFINISHED
+from cartwheel.codes.recording import (
+    NOT_A_RECORDING,
+    RECORDED_TYPE_UNUSABLE,
+    RECORDING_DAMAGED,
+    RECORDING_UNREADABLE,
+    RECORDING_VERSION_UNKNOWN,
+)
 from cartwheel.errors import RecordingError
 from cartwheel.messages import decode_cdr, encode_cdr, zero
 
@@ -258,7 +265,12 @@ def test_damage_is_told_and_is_no_fault(name: str, tmp_path: Path) -> None:
             list(recording.messages())
             recording.close()
         except RecordingError as error:
-            assert path.name in str(error) or "/" in str(error)
+            assert error.code in (
+                RECORDING_DAMAGED,
+                RECORDED_TYPE_UNUSABLE,
+                NOT_A_RECORDING,
+                RECORDING_VERSION_UNKNOWN,
+            )
             told += 1
     assert told > 0 or name != "a.mcap"
 
@@ -287,15 +299,17 @@ def test_info_of_what_is_no_recording(content: bytes, tmp_path: Path) -> None:
     )
     assert "Traceback" not in done.stderr
     if content.startswith(b"\x89"):
-        assert "its end is missing" in done.stderr
+        assert f"[{RECORDING_UNFINISHED}]" in done.stderr
     else:
-        assert done.returncode == 2 and "a.mcap" in done.stderr
+        assert done.returncode == 2 and f"[{NOT_A_RECORDING}]" in done.stderr
 
 
 def test_info_of_nothing(tmp_path: Path) -> None:
-    assert "cannot be read" in run_program("info", "nowhere.bag", folder=tmp_path, status=2)
+    assert f"[{RECORDING_UNREADABLE}]" in run_program(
+        "info", "nowhere.bag", folder=tmp_path, status=2
+    )
     (tmp_path / "empty").mkdir()
-    assert "holds neither" in run_program("info", "empty", folder=tmp_path, status=2)
+    assert f"[{NOT_A_RECORDING}]" in run_program("info", "empty", folder=tmp_path, status=2)
 
 
 def test_a_type_that_ros1_and_ros2_have_differently_is_read_as_each_has_it() -> None:

@@ -18,7 +18,7 @@ from tests.coded import raises
 
 import cartwheel as cw
 from cartwheel.bridges.recording.opening import open_recording
-from cartwheel.codes.recording import RECORDING_EMPTY
+from cartwheel.codes.recording import PLAYBACK_READ_ONLY, RECORDING_EMPTY
 from cartwheel.description import load_robot, load_world
 from cartwheel.messages import encode_cdr
 from cartwheel.playback import PlaybackSession
@@ -237,7 +237,7 @@ def test_clients_reach_it(drives: Callable[[str], Drive], tmp_path: Path) -> Non
         assert "playing" in process.stdout.readline()
         assert "frame_id" in command("topic", "echo", "-n", "1", "/imu/data")
         assert "rosbots" in command("models")
-        assert "cannot be deleted" in command("delete", "rosbots")
+        assert f"[{PLAYBACK_READ_ONLY}]" in command("delete", "rosbots")
     finally:
         process.terminate()
         process.wait(120)
