@@ -13,6 +13,19 @@ import time
 import pytest
 import yaml
 
+from cartwheel.codes.command import OPTION_INVALID, USAGE
+from cartwheel.codes.graph import (
+    FIELD_UNKNOWN,
+    FIELD_VALUE_INVALID,
+    GRAPH_NAME_INVALID,
+    MESSAGE_TEXT_INVALID,
+    MESSAGE_TYPE_UNKNOWN,
+    SERVICE_UNKNOWN,
+    TOPIC_TYPE_MISMATCH,
+    TOPIC_UNKNOWN,
+)
+from cartwheel.codes.wires import MESSAGE_UNREAD
+
 from .conftest import CART_TOPIC, PROGRAM
 
 
@@ -34,7 +47,7 @@ def test_topic_list_and_info(cart):
     assert info.startswith("Type: geometry_msgs/msg/Twist\n")
     assert "Publishers: None" in info
     done = cart("topic", "info", "/odm", status=2)
-    assert 'topic "/odm" does not exist\n  Did you mean "/odom"?' in done.stderr
+    assert f"[{TOPIC_UNKNOWN}]" in done.stderr
 
 
 def test_echo(cart):
@@ -47,9 +60,9 @@ def test_echo(cart):
     name = cart("topic", "echo", "/tf", "-n1", "--field", "transforms[0].child_frame_id").stdout
     assert name == '"base_footprint"\n---\n'
     done = cart("topic", "echo", "/odom", "-n1", "--field", "pose.psoe", status=2)
-    assert 'Did you mean "pose"' in done.stderr
+    assert f"[{FIELD_UNKNOWN}]" in done.stderr
     done = cart("topic", "echo", "/tf", "-n1", "--field", "transforms[9]", status=2)
-    assert 'has 3 items, so no "transforms[9]"' in done.stderr
+    assert f"[{FIELD_UNKNOWN}]" in done.stderr
 
 
 def test_echo_ends_with_ctrl_c_and_with_its_reader(cart, ends):
@@ -110,24 +123,24 @@ def test_pub_at_a_rate(cart):
 
 
 @pytest.mark.parametrize(
-    ("arguments", "text"),
+    ("arguments", "code"),
     [
-        ((CART_TOPIC, "geometry_msgs/Twits", "{}"), 'Did you mean "geometry_msgs/msg/Twist"'),
-        ((CART_TOPIC, "geometry_msgs/Twist", "{linar: {}}"), 'no field "linar"\n  Did you mean'),
-        ((CART_TOPIC, "geometry_msgs/Twist", "{linear: {x: a}}"), 'linear.x: "a" is no number'),
-        ((CART_TOPIC, "geometry_msgs/Twist", "{linear: [}"), "the message is no YAML"),
-        ((CART_TOPIC, "std_msgs/Empty", "{}"), "has type geometry_msgs/msg/Twist"),
-        (("/1x", "std_msgs/Empty", "{}"), '"/1x" is no valid name'),
-        ((CART_TOPIC, "geometry_msgs/Twist", "{}", "-r", "0"), "a rate of 0"),
+        ((CART_TOPIC, "geometry_msgs/Twits", "{}"), MESSAGE_TYPE_UNKNOWN),
+        ((CART_TOPIC, "geometry_msgs/Twist", "{linar: {}}"), FIELD_UNKNOWN),
+        ((CART_TOPIC, "geometry_msgs/Twist", "{linear: {x: a}}"), FIELD_VALUE_INVALID),
+        ((CART_TOPIC, "geometry_msgs/Twist", "{linear: [}"), MESSAGE_TEXT_INVALID),
+        ((CART_TOPIC, "std_msgs/Empty", "{}"), TOPIC_TYPE_MISMATCH),
+        (("/1x", "std_msgs/Empty", "{}"), GRAPH_NAME_INVALID),
+        ((CART_TOPIC, "geometry_msgs/Twist", "{}", "-r", "0"), OPTION_INVALID),
     ],
 )
-def test_wrong_messages(cart, arguments, text):
-    assert text in cart("topic", "pub", *arguments, status=2).stderr
+def test_wrong_messages(cart, arguments, code):
+    assert f"[{code}]" in cart("topic", "pub", *arguments, status=2).stderr
 
 
 def test_pub_to_nobody_is_said(cart):
     done = cart("topic", "pub", "/cmd_vel", "geometry_msgs/Twist", "{}")
-    assert f'/cmd_vel has no subscribers. Did you mean "{CART_TOPIC}"?' in done.stderr
+    assert f"[{MESSAGE_UNREAD}]" in done.stderr
 
 
 def test_services(cart):
@@ -136,9 +149,9 @@ def test_services(cart):
     assert listed == sorted(listed)
     assert "std_srvs/srv/Empty" in cart("service", "list", "-v").stdout
     assert cart("service", "call", "/imu/service").stdout == ""
-    assert "Did you mean" in cart("service", "call", "/imu/servce", status=2).stderr
+    assert f"[{SERVICE_UNKNOWN}]" in cart("service", "call", "/imu/servce", status=2).stderr
     done = cart("service", "call", "/imu/service", "{x: 1}", status=2)
-    assert 'has no field "x"' in done.stderr
+    assert f"[{FIELD_UNKNOWN}]" in done.stderr
 
 
 def test_what_is_told_of_a_spawned_file_has_its_place(cart, tmp_path):
@@ -163,7 +176,7 @@ def test_spawn_and_delete(cart):
     cart("delete", "barrel")
     assert not {"my_box", "barrel"} & models(cart)
     assert "does not exist" in cart("delete", "my_box", status=2).stderr
-    assert "which file?" in cart("spawn", status=2).stderr
+    assert f"[{USAGE}]" in cart("spawn", status=2).stderr
 
 
 def test_time(cart):

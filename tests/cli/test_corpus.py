@@ -2,6 +2,8 @@
 
 import json
 
+from cartwheel.codes.command import NO_ROBOTS
+
 BOX = """<robot name="box"><link name="box">
 <inertial><mass value="3"/><inertia ixx="0.5" iyy="0.5" izz="0.5"/></inertial>
 <collision><geometry><box size="1 1 1"/></geometry></collision></link>
@@ -37,5 +39,5 @@ def test_json_has_the_same(program, tmp_path):
 
 
 def test_a_folder_without_robots_is_an_error(program, tmp_path):
-    assert "contains no robots" in program("corpus", tmp_path, status=2).stderr
-    assert "does not exist" in program("corpus", tmp_path / "no", status=2).stderr
+    assert f"[{NO_ROBOTS}]" in program("corpus", tmp_path, status=2).stderr
+    assert f"[{NO_ROBOTS}]" in program("corpus", tmp_path / "no", status=2).stderr

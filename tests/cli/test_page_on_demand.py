@@ -9,6 +9,7 @@ import urllib.request
 
 import pytest
 
+from cartwheel.codes.command import NO_PAGE, SIMULATION_NOT_RUNNING, USAGE
 from cartwheel.control import ControlClient, running
 
 
@@ -122,7 +123,7 @@ def test_a_recording_without_a_page_is_refused(program, monkeypatch):
     process = program.start("play", "a.mcap", "--headless", "--speed", "0.001")
     try:
         program.wait_until_up(process)
-        assert "has no page to show" in program("gzclient", status=2).stderr
+        assert f"[{NO_PAGE}]" in program("gzclient", status=2).stderr
     finally:
         process.kill()
         process.communicate()
@@ -167,7 +168,7 @@ def test_shown_is_said_where_a_browser_has_come(program, headless, monkeypatch, 
 def test_without_a_simulation_there_is_nothing_to_show(program):
     program.environment.pop("ROS_MASTER_URI", None)
     done = program("gzclient", status=2)
-    assert "no simulation is running" in done.stderr
+    assert f"[{SIMULATION_NOT_RUNNING}]" in done.stderr
 
 
 @pytest.mark.parametrize("command", ["gzserver", "gzclient", "gazebo", "debug", "perf"])
@@ -178,4 +179,4 @@ def test_help_and_version(program, command):
 
 def test_a_wrong_option_is_refused(program):
     done = program("gzserver", "--nonsense", status=2)
-    assert "--nonsense" in done.stderr
+    assert f"[{USAGE}]" in done.stderr

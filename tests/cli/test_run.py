@@ -10,6 +10,15 @@ import time
 
 import pytest
 
+from cartwheel.codes.command import (
+    OPTION_INVALID,
+    OPTIONS_CONFLICT,
+    OTHER_SIMULATION_RUNNING,
+    PORT_TAKEN,
+    SIMULATION_AMBIGUOUS,
+    USAGE,
+)
+
 AT_ONCE = 100.0
 """s that ending may take on a busy machine; what would go on goes on for longer."""
 
@@ -52,9 +61,9 @@ def test_a_world_is_the_world(program):
     done = program("run", "walls", "--headless", "--for", "0.1", "--speed", "max")
     assert "robot" not in done.stdout
     done = program("run", "walls", "--world", "empty", "--headless", status=2)
-    assert '"walls" is a world, and so is "empty"' in done.stderr
+    assert f"[{OPTIONS_CONFLICT}]" in done.stderr
     done = program("run", "walls", "-x", "1", "--headless", status=2)
-    assert "has no place" in done.stderr
+    assert f"[{OPTIONS_CONFLICT}]" in done.stderr
 
 
 @pytest.mark.parametrize("order", [("size:=2", "box.xacro"), ("box.xacro", "size:=2")])
@@ -167,7 +176,7 @@ def test_the_viewer_is_announced(program, ends):
     assert url in program("status").stdout
     port = url.rsplit(":", 1)[1]
     done = program("run", "--port", port, status=2)
-    assert f"port {port} is used by simulation {process.pid} (rosbots in" in done.stderr
+    assert f"[{PORT_TAKEN}]" in done.stderr
     assert f"kill {process.pid}" in done.stderr
     assert ends(process, signal.SIGINT) < AT_ONCE
     assert process.returncode == 0
@@ -178,7 +187,7 @@ def test_a_port_of_another_program_is_said(program):
     with socket.create_server(("127.0.0.1", 0)) as other:
         port = other.getsockname()[1]
         done = program("run", "--port", port, status=2)
-    assert f"port {port} is used by another program\n  Use another one: --port " in done.stderr
+    assert f"[{PORT_TAKEN}]\n  Use another one: --port " in done.stderr
 
 
 def test_two_simulations_are_told_apart(program, ends):
@@ -187,7 +196,7 @@ def test_two_simulations_are_told_apart(program, ends):
     second = program.start("run", "--headless", "empty")
     program.wait_until_up(second)
     done = program("topic", "list", status=2)
-    assert "2 simulations are running; name one with --sim PID" in done.stderr
+    assert f"[{SIMULATION_AMBIGUOUS}]" in done.stderr
     assert f"{first.pid}: rosbots in" in done.stderr
     assert "/odom" in program("topic", "list", "--sim", first.pid).stdout
     assert "/odom" not in program("topic", "list", "--sim", second.pid).stdout
@@ -195,7 +204,7 @@ def test_two_simulations_are_told_apart(program, ends):
     assert "/odom" in program("topic", "list").stdout
     for process in (first, second):
         ends(process, signal.SIGTERM)
-    assert "another simulation is running" in second.stderr.read()
+    assert f"[{OTHER_SIMULATION_RUNNING}]" in second.stderr.read()
 
 
 def test_a_terminal_gets_colours_and_something_to_try(program):
@@ -212,21 +221,21 @@ def test_a_terminal_gets_colours_and_something_to_try(program):
 
 
 @pytest.mark.parametrize(
-    ("arguments", "text"),
+    ("arguments", "code"),
     [
-        (["--wrold", "empty"], "--world"),
-        (["--speed", "fast"], 'a speed of "fast" is neither'),
-        (["--speed", "0"], 'a speed of "0" is neither'),
-        (["--for", "-1"], "--for -1 is no time to run"),
-        (["--for", "nan"], "--for nan is no time to run"),
-        (["--seed", "x"], "--seed"),
-        (["--port", "70000"], "--port"),
-        (["a.urdf", "b.urdf"], '"b.urdf" is one file too many after "a.urdf"'),
-        (["--world", "nowhere"], "nowhere: error: no such file"),
+        (["--wrold", "empty"], USAGE),
+        (["--speed", "fast"], OPTION_INVALID),
+        (["--speed", "0"], OPTION_INVALID),
+        (["--for", "-1"], OPTION_INVALID),
+        (["--for", "nan"], OPTION_INVALID),
+        (["--seed", "x"], OPTION_INVALID),
+        (["--port", "70000"], OPTION_INVALID),
+        (["a.urdf", "b.urdf"], USAGE),
+        (["--world", "nowhere"], "CW101"),
     ],
 )
-def test_wrong_options(program, arguments, text):
-    assert text in program("run", "--headless", *arguments, status=2).stderr
+def test_wrong_options(program, arguments, code):
+    assert f"[{code}" in program("run", "--headless", *arguments, status=2).stderr
 
 
 def test_the_same_seed_gives_the_same_run(program):

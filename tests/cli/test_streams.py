@@ -39,4 +39,4 @@ def test_a_limit_of_the_system_is_named_with_its_remedy(program):
     _, said = process.communicate(timeout=200)
     assert process.returncode == 2
     assert "ulimit -n" in said
-    assert "fault" not in said
+    assert "CW033" not in said

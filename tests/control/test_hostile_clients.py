@@ -7,11 +7,12 @@ import struct
 import tracemalloc
 
 import pytest
+from tests.coded import raises
 
+from cartwheel.codes.command import CONTROL_LIMIT
 from cartwheel.control import ControlClient, protocol
 from cartwheel.control.protocol import pack
 from cartwheel.control.server import MAX_CLIENTS
-from cartwheel.errors import ControlError
 
 
 def connect(server):
@@ -157,7 +158,7 @@ def test_too_many_readers_are_sent_away_and_room_comes_back(server, session, eve
     for sock in crowd:
         sock.sendall(ask)
         assert sock.recv(1)
-    with pytest.raises(ControlError, match="too many clients"), ControlClient() as client:
+    with raises(CONTROL_LIMIT), ControlClient() as client:
         client.request("status")
     for sock in crowd:
         sock.close()

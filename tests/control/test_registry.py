@@ -6,7 +6,14 @@ import socket
 import stat
 
 import pytest
+from tests.coded import raises
 
+from cartwheel.codes.command import (
+    CONTROL_FOLDER_UNUSABLE,
+    OPTION_INVALID,
+    SIMULATION_AMBIGUOUS,
+    SIMULATION_NOT_RUNNING,
+)
 from cartwheel.control import ControlClient, find, registry, running
 from cartwheel.control.server import ControlServer
 from cartwheel.errors import ControlError
@@ -27,7 +34,7 @@ def test_one_is_found_by_itself(server):
     server.announce(url="http://127.0.0.1:8080", port=8080)
     assert find().url == "http://127.0.0.1:8080"
     assert find().title == "nothing in test_world"
-    with pytest.raises(ControlError, match=r"no simulation runs as process 1\n  Running are:\n"):
+    with raises(SIMULATION_NOT_RUNNING, pid=1):
         find(1)
 
 
@@ -35,7 +42,7 @@ def test_of_several_one_must_be_named(server, session, monkeypatch):
     second = ControlServer(session, title="second", load=load)
     entry = json.loads(second.entry.path.with_suffix(".json").read_text())
     second.entry.path.with_suffix(".json").write_text(json.dumps({**entry, "pid": 17}))
-    with pytest.raises(ControlError, match="--sim PID") as caught:
+    with raises(SIMULATION_AMBIGUOUS) as caught:
         find()
     assert f"{os.getpid()}: nothing in test_world" in str(caught.value)
     assert "17: second" in str(caught.value)
@@ -43,7 +50,7 @@ def test_of_several_one_must_be_named(server, session, monkeypatch):
     monkeypatch.setenv("CARTWHEEL_SIM", "17")
     assert find().title == "second"
     monkeypatch.setenv("CARTWHEEL_SIM", "x")
-    with pytest.raises(ControlError, match='CARTWHEEL_SIM is "x"'):
+    with raises(OPTION_INVALID, option="CARTWHEEL_SIM", value="x"):
         find()
     second.close()
 
@@ -81,7 +88,7 @@ def test_nothing_is_left_after_the_end(server, runtime_folder):
 def test_a_folder_that_is_a_link_is_refused(tmp_path, runtime_folder):
     (tmp_path / "elsewhere").mkdir()
     runtime_folder.symlink_to(tmp_path / "elsewhere")
-    with pytest.raises(ControlError, match="belongs to somebody else"):
+    with raises(CONTROL_FOLDER_UNUSABLE):
         running()
 
 

@@ -4,7 +4,9 @@ import subprocess
 import sys
 
 import pytest
+from tests.coded import raises
 
+from cartwheel.codes.command import CONTROL_LIMIT
 from cartwheel.control import ControlClient
 from cartwheel.control.wills import MOST
 from cartwheel.errors import ControlError
@@ -76,7 +78,7 @@ def test_wrong_and_too_many_are_refused(server, commands, session):
             client.publish("/cmd_vel", TWIST, GO, at_end={"linear": 5})
         for index in range(MOST):
             client.publish(f"/other_{index}", TWIST, GO, at_end=STOP)
-        with pytest.raises(ControlError, match=f"{MOST} topics"):
+        with raises(CONTROL_LIMIT, most=MOST):
             client.publish("/cmd_vel", TWIST, GO, at_end=STOP)
         # A refused one has not moved anything.
         assert len(commands) == MOST

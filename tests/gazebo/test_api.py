@@ -3,8 +3,9 @@
 import threading
 
 import pytest
+from tests.coded import raises
 
-from cartwheel.errors import GraphError
+from cartwheel.codes.graph import SERVICE_TAKEN
 from cartwheel.gazebo import GazeboApi
 from cartwheel.messages import zero
 
@@ -56,7 +57,7 @@ def test_a_second_one_on_a_session_is_refused_and_harms_nothing(make, gazebo):
     world = make.world()
     gazebo(world)
     before = offered(world)
-    with pytest.raises(GraphError, match="/gazebo/spawn_urdf_model"):
+    with raises(SERVICE_TAKEN, name="/gazebo/spawn_urdf_model"):
         GazeboApi(world.session).start()
     assert offered(world) == before
 

@@ -4,7 +4,9 @@ import math
 
 import numpy as np
 import pytest
+from tests.coded import of_code
 
+from cartwheel.codes.graph import SERVICE_FAILED
 from cartwheel.geometry import Pose, quat_from_rpy, rotate
 from cartwheel.simulation.engine import Engine
 
@@ -503,5 +505,6 @@ def test_a_topics_failure_is_reported_once(space):
     for _ in range(5):
         space.world.publish("/gazebo/set_model_state", {"model_name": "cubee"})
         space.world.run(0.01)
-    told = [each.message for each in space.world.diagnostics if "set_model_state" in each.message]
-    assert told == ['/gazebo/set_model_state: model "cubee" does not exist. Did you mean "cube"?']
+    (failed,) = of_code(space.world.diagnostics, SERVICE_FAILED)
+    assert failed.values["service"] == "/gazebo/set_model_state"
+    assert (failed.values["name"], failed.values["meant"]) == ("cubee", "cube")

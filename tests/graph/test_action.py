@@ -1,8 +1,9 @@
 """Actions in process: names, what a cancellation means, how long goals are known."""
 
 import pytest
+from tests.coded import raises
 
-from cartwheel.errors import GraphError
+from cartwheel.codes.graph import SERVICE_TAKEN
 from cartwheel.graph import Action, ActionTopics, GoalState, Graph
 from cartwheel.messages import from_dict, message_class
 
@@ -40,7 +41,7 @@ def worker():
 
 def test_a_name_is_offered_once(worker):
     assert worker.action.name == "/grip"
-    with pytest.raises(GraphError, match='"/grip" is offered already by hand'):
+    with raises(SERVICE_TAKEN, name="/grip", node="hand"):
         Action(
             worker.graph, "/grip", KIND, node="other", time_ns=lambda: 0, on_goal=print,
             on_cancel=print,

@@ -4,8 +4,16 @@ import threading
 import time
 
 import pytest
+from tests.coded import raises
 
-from cartwheel.errors import GraphError, UnknownNameError
+from cartwheel.codes.graph import (
+    GRAPH_NAME_INVALID,
+    SERVICE_TAKEN,
+    SERVICE_UNKNOWN,
+    TOPIC_TYPE_MISMATCH,
+    TOPIC_UNKNOWN,
+)
+from cartwheel.errors import UnknownNameError
 from cartwheel.graph import Graph, Mailbox, resolve_name
 
 TWIST, TEXT = "geometry_msgs/msg/Twist", "std_msgs/msg/String"
@@ -28,7 +36,7 @@ def test_names_resolve_as_in_ros(name, namespace, expected):
 
 @pytest.mark.parametrize("name", ["", "/", "a b", "3d", "a/4b", "a-b", "é", "a\n"])
 def test_names_that_ros_refuses(name):
-    with pytest.raises(GraphError, match="no valid name"):
+    with raises(GRAPH_NAME_INVALID):
         resolve_name(name)
 
 
@@ -59,11 +67,11 @@ def test_wanted_is_whether_somebody_reads():
 def test_a_topic_has_one_type():
     graph = Graph()
     publisher = graph.advertise("/a", TWIST)
-    with pytest.raises(GraphError, match=f"has type {TWIST}, not {TEXT}"):
+    with raises(TOPIC_TYPE_MISMATCH, type=TWIST, given=TEXT):
         graph.advertise("/a", TEXT)
-    with pytest.raises(GraphError, match="has type"):
+    with raises(TOPIC_TYPE_MISMATCH):
         graph.subscribe("/a", print, type_name=TEXT)
-    with pytest.raises(GraphError, match="has type"):
+    with raises(TOPIC_TYPE_MISMATCH):
         graph.publish("/a", TEXT, None)
     # One that nobody has any more is free for another type.
     publisher.close()
@@ -72,7 +80,7 @@ def test_a_topic_has_one_type():
 
 def test_a_reader_may_come_first_if_it_says_the_type():
     graph, got = Graph(), []
-    with pytest.raises(UnknownNameError, match='topic "/b" does not exist'):
+    with raises(TOPIC_UNKNOWN, name="/b"):
         graph.subscribe("/b", got.append)
     graph.subscribe("/b", got.append, type_name=TWIST)
     graph.advertise("/b", TWIST).publish("x")
@@ -84,7 +92,7 @@ def test_an_unknown_topic_names_the_likely_one():
     graph.advertise("/imu/data", TWIST)
     with pytest.raises(UnknownNameError) as caught:
         graph.subscribe("/imu/dta", print)
-    assert 'Did you mean "/imu/data"?' in str(caught.value)
+    assert caught.value.values["meant"] == "/imu/data"
 
 
 def test_a_latched_topic_keeps_its_last_message_for_who_comes_late():
@@ -169,10 +177,10 @@ def test_services():
     graph = Graph()
     service = graph.serve("/reset", "std_srvs/srv/Empty", lambda request: request * 2, node="sim")
     assert graph.service("/reset").handler(21) == 42
-    with pytest.raises(GraphError, match="is offered already by sim"):
+    with raises(SERVICE_TAKEN, node="sim"):
         graph.serve("/reset", "std_srvs/srv/Empty", print)
     assert [s.name for s in graph.services()] == ["/reset"]
-    with pytest.raises(UnknownNameError, match="service"):
+    with raises(SERVICE_UNKNOWN):
         graph.service("/rest")
     graph.withdraw(service)
     assert graph.services() == []
@@ -181,7 +189,7 @@ def test_services():
 def test_a_service_is_one_by_any_spelling_of_its_name():
     graph = Graph()
     graph.serve("reset", "std_srvs/srv/Empty", print)
-    with pytest.raises(GraphError, match="is offered already"):
+    with raises(SERVICE_TAKEN):
         graph.serve("/reset", "std_srvs/srv/Empty", print)
 
 

@@ -9,8 +9,10 @@ import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as npst
+from tests.coded import raises
 
-from cartwheel.errors import GraphError, UnknownNameError
+from cartwheel.codes.graph import FIELD_UNKNOWN, FIELD_VALUE_INVALID, MESSAGE_NOT_DECODABLE
+from cartwheel.errors import Code, GraphError, UnknownNameError
 from cartwheel.messages import (
     CdrCache,
     decode_cdr,
@@ -115,9 +117,9 @@ def test_joined_names_reach_inner_fields() -> None:
     assert (imu.orientation.w, list(imu.orientation_covariance)) == (1.0, list(range(9)))
     goal = from_flat("control_msgs/GripperCommandActionGoal", {"goal_id_id": "a"})
     assert goal.goal_id.id == "a"
-    with pytest.raises(GraphError, match=r'no field "linear\.w"'):
+    with raises(FIELD_UNKNOWN, field="linear.w"):
         from_flat("geometry_msgs/Twist", {"linear_w": 0.5})
-    with pytest.raises(GraphError, match='no field "speed"'):
+    with raises(FIELD_UNKNOWN, field="speed"):
         from_flat("geometry_msgs/Twist", {"speed": 0.5})
 
 
@@ -149,58 +151,69 @@ def test_numbers_that_yaml_takes_for_texts_are_numbers() -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "mapping", "text"),
+    ("name", "mapping", "code", "field"),
     [
-        ("Twist", {"linar": {}}, 'has no field "linar"\n  Did you mean "linear"?'),
-        ("Twist", {"linear": {"X": 1}}, 'geometry_msgs/msg/Vector3 has no field "linear.X"'),
-        ("Twist", {"linear": {"x": "fast"}}, 'linear.x: "fast" is no number'),
-        ("Twist", {"linear": {"x": True}}, "linear.x: True is no number"),
-        ("Twist", {"linear": {"x": [1]}}, "linear.x: [1] is no number"),
-        ("Twist", {"linear": {"x": 10**400}}, "is too large"),
-        ("Twist", {"linear": 3}, "linear: 3 is no geometry_msgs/msg/Vector3"),
-        ("Twist", [1, 2, 3], "3 values do not fill the 2 fields"),
-        ("Twist", "go", 'the message: "go" is no geometry_msgs/msg/Twist'),
-        ("PoseWithCovariance", {"covariance": [1.0] * 35}, "35 values do not fill float64[36]"),
-        ("PoseWithCovariance", {"covariance": 1.0}, "covariance: 1.0 is no list"),
-        ("PoseWithCovariance", {"covariance": [0.0] * 35 + ["a"]}, 'covariance[35]: "a" is no'),
-        ("PoseWithCovariance", {"covariance": [[1.0]] * 36}, "covariance[0]: [1.0] is no number"),
+        ("Twist", {"linar": {}}, FIELD_UNKNOWN, "linar"),
+        ("Twist", {"linear": {"X": 1}}, FIELD_UNKNOWN, "linear.X"),
+        ("Twist", {"linear": {"x": "fast"}}, FIELD_VALUE_INVALID, "linear.x"),
+        ("Twist", {"linear": {"x": True}}, FIELD_VALUE_INVALID, "linear.x"),
+        ("Twist", {"linear": {"x": [1]}}, FIELD_VALUE_INVALID, "linear.x"),
+        ("Twist", {"linear": {"x": 10**400}}, FIELD_VALUE_INVALID, "linear.x"),
+        ("Twist", {"linear": 3}, FIELD_VALUE_INVALID, "linear"),
+        ("Twist", [1, 2, 3], FIELD_VALUE_INVALID, ""),
+        ("Twist", "go", FIELD_VALUE_INVALID, ""),
+        ("PoseWithCovariance", {"covariance": [1.0] * 35}, FIELD_VALUE_INVALID, "covariance"),
+        ("PoseWithCovariance", {"covariance": 1.0}, FIELD_VALUE_INVALID, "covariance"),
+        (
+            "PoseWithCovariance",
+            {"covariance": [0.0] * 35 + ["a"]},
+            FIELD_VALUE_INVALID,
+            "covariance[35]",
+        ),
+        ("PoseWithCovariance", {"covariance": [[1.0]] * 36}, FIELD_VALUE_INVALID, "covariance[0]"),
     ],
 )
-def test_what_does_not_fit_is_named(name: str, mapping: Any, text: str) -> None:
-    with pytest.raises(GraphError) as caught:
+def test_what_does_not_fit_is_named(name: str, mapping: Any, code: Code, field: str) -> None:
+    with raises(code, GraphError, field=field):
         from_dict(f"geometry_msgs/{name}", mapping)
-    assert text in str(caught.value)
 
 
 @pytest.mark.parametrize(
-    ("name", "mapping", "text"),
+    ("name", "mapping", "code", "field"),
     [
-        ("sensor_msgs/Image", {"height": -1}, "height: -1 does not fit uint32"),
-        ("sensor_msgs/Image", {"height": 1.5}, "height: 1.5 is no whole number"),
-        ("sensor_msgs/Image", {"data": [1, 256]}, "data[1]: 256 does not fit uint8"),
-        ("sensor_msgs/Image", {"data": "ab"}, 'data: "ab" is no list'),
+        ("sensor_msgs/Image", {"height": -1}, FIELD_VALUE_INVALID, "height"),
+        ("sensor_msgs/Image", {"height": 1.5}, FIELD_VALUE_INVALID, "height"),
+        ("sensor_msgs/Image", {"data": [1, 256]}, FIELD_VALUE_INVALID, "data[1]"),
+        ("sensor_msgs/Image", {"data": "ab"}, FIELD_VALUE_INVALID, "data"),
         (
             "sensor_msgs/Image",
             {"encoding": 8},
-            'encoding: 8 is no text\n  Put it into quotes: "8".',
+            FIELD_VALUE_INVALID,
+            "encoding",
         ),
-        ("sensor_msgs/JointState", {"name": ["a", 1]}, "name[1]: 1 is no text"),
-        ("tf2_msgs/TFMessage", {"transforms": [{"child": ""}]}, '"transforms[0].child"'),
-        ("std_msgs/Bool", {"data": "yes"}, 'data: "yes" is neither true nor false'),
+        ("sensor_msgs/JointState", {"name": ["a", 1]}, FIELD_VALUE_INVALID, "name[1]"),
+        (
+            "tf2_msgs/TFMessage",
+            {"transforms": [{"child": ""}]},
+            FIELD_UNKNOWN,
+            "transforms[0].child",
+        ),
+        ("std_msgs/Bool", {"data": "yes"}, FIELD_VALUE_INVALID, "data"),
     ],
 )
-def test_what_does_not_fit_is_named_in_other_types(name: str, mapping: Any, text: str) -> None:
-    with pytest.raises(GraphError) as caught:
+def test_what_does_not_fit_is_named_in_other_types(
+    name: str, mapping: Any, code: Code, field: str
+) -> None:
+    with raises(code, GraphError, field=field):
         from_dict(name, mapping)
-    assert text in str(caught.value)
 
 
 def test_unknown_types_and_bytes_are_refused() -> None:
     with pytest.raises(UnknownNameError):
         from_dict("geometry_msgs/Twits", {})
-    with pytest.raises(GraphError, match="5 bytes are no geometry_msgs/msg/Twist"):
+    with raises(MESSAGE_NOT_DECODABLE, bytes=5):
         decode_cdr(b"\0\1\0\0\0", "geometry_msgs/Twist")
-    with pytest.raises(GraphError, match="int is no message"):
+    with raises(FIELD_VALUE_INVALID, type="int"):
         to_dict(3)
 
 

@@ -13,9 +13,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from rosbags.typesys import Stores, get_typestore
+from tests.coded import raises
 from tests.messages.test_definitions import MESSAGES, SERVICES
 
-from cartwheel.errors import GraphError, UnknownNameError
+from cartwheel.codes.graph import MESSAGE_NOT_DECODABLE, MESSAGE_NOT_ENCODABLE, MESSAGE_TYPE_UNKNOWN
+from cartwheel.errors import GraphError
 from cartwheel.messages import from_dict, message_class, store, zero
 from cartwheel.messages.fields import fields
 from cartwheel.messages.ros1 import (
@@ -78,9 +80,9 @@ def test_names_lose_their_middle() -> None:
 
 
 def test_what_ros1_lacks_is_refused() -> None:
-    with pytest.raises(UnknownNameError, match="rcl_interfaces"):
+    with raises(MESSAGE_TYPE_UNKNOWN):
         ros1_type("rcl_interfaces/msg/Parameter")
-    with pytest.raises(UnknownNameError, match="nav_msgs/srv/Nonsense"):
+    with raises(MESSAGE_TYPE_UNKNOWN, name="nav_msgs/srv/Nonsense"):
         ros1_service("nav_msgs/srv/Nonsense")
 
 
@@ -173,26 +175,26 @@ def test_lists_and_other_number_types_are_taken_as_arrays() -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "field", "value", "reason"),
+    ("name", "field", "value"),
     [
-        ("sensor_msgs/Image", "width", -1, "argument"),
-        ("sensor_msgs/Image", "width", "wide", "required argument"),
-        ("sensor_msgs/CameraInfo", "k", np.zeros(8), "K holds 8 values, not 9"),
+        ("sensor_msgs/Image", "width", -1),
+        ("sensor_msgs/Image", "width", "wide"),
+        ("sensor_msgs/CameraInfo", "k", np.zeros(8)),
     ],
 )
-def test_values_that_do_not_fit_are_told(name: str, field: str, value: Any, reason: str) -> None:
+def test_values_that_do_not_fit_are_told(name: str, field: str, value: Any) -> None:
     message = zero(name)
     setattr(message, field, value)
-    with pytest.raises(GraphError, match=reason):
+    with raises(MESSAGE_NOT_ENCODABLE, type=message.__msgtype__):
         encode_ros1(message)
 
 
 def test_cut_and_padded_bytes_are_refused() -> None:
     data = encode_ros1(filled("nav_msgs/Odometry"))
     for length in range(len(data)):
-        with pytest.raises(GraphError, match="are no nav_msgs/Odometry"):
+        with raises(MESSAGE_NOT_DECODABLE):
             decode_ros1(data[:length], "nav_msgs/Odometry")
-    with pytest.raises(GraphError, match="1 are too many"):
+    with raises(MESSAGE_NOT_DECODABLE):
         decode_ros1(data + b"\0", "nav_msgs/Odometry")
 
 

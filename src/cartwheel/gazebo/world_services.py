@@ -128,7 +128,8 @@ class WorldServices:
         if asked.seed:
             self._tell(
                 SERVICE_FAILED.diagnostic(
-                    "control: a new seed has no effect; the seed of the start stays"
+                    "control: a new seed has no effect; the seed of the start stays",
+                    values={"field": "seed"},
                 )
             )
         if asked.pause:
