@@ -44,6 +44,10 @@ with the same indentation. Empty: the text shows what to write, but no exact pla
 """
 
 
+_CODES: dict[str, Code] = {}
+"""The codes of this process by number."""
+
+
 @dataclass(frozen=True, slots=True)
 class Code:
     """One kind of diagnostic. `cartwheel.codes` holds all of them and their explanations.
@@ -60,8 +64,15 @@ class Code:
     severity: Severity
     summary: str
 
+    def __post_init__(self) -> None:
+        _CODES.setdefault(self.number, self)
+
     def __str__(self) -> str:
         return f"{self.number} {self.name}"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """For other processes: each code is there once, so that it can be compared by ``is``."""
+        return _same_code, (self.number, self.name, self.severity, self.summary)
 
     def diagnostic(
         self,
@@ -126,13 +137,21 @@ class Code:
                 severity=severity,
                 values={**(values or {}), "cause": cause},
             )
+        # An error without a code of its own is another one if its message is.
+        cause = error.message if error.code is UNCLASSIFIED else error.code.number
         return self.diagnostic(
             f"{message}: {error.message}",
             origin=error.origin,
             hint=(error.hint or "") if hint is None else hint,
             severity=severity,
-            values={**error.values, **(values or {}), "cause": error.code.number},
+            values={**error.values, **(values or {}), "cause": cause},
         )
+
+
+def _same_code(number: str, name: str, severity: Severity, summary: str) -> Code:
+    code = Code(number, name, severity, summary)
+    known = _CODES[number]
+    return known if known == code else code
 
 
 UNCLASSIFIED = Code("CW000", "unclassified", "error", "a diagnostic without a code of its own")

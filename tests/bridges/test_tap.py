@@ -5,6 +5,8 @@ from collections.abc import Callable
 from typing import Any
 
 from cartwheel.bridges.tap import Tap
+from cartwheel.codes.wires import PUBLISHED_TOO_FAST
+from cartwheel.errors import Diagnostic
 from cartwheel.graph import Graph, Publisher
 from cartwheel.messages import message_class
 
@@ -31,7 +33,7 @@ class Tapped:
         self.publisher: Publisher = self.graph.advertise("/topic", kind)
         self.loop = Hand()
         self.taken: list[Any] = []
-        self.told: list[str] = []
+        self.reports: list[Diagnostic] = []
 
     def open(self) -> Tap:
         made = Tap(
@@ -42,7 +44,7 @@ class Tapped:
             reader="test",
             ignored=lambda _: False,
             take=self.taken.append,
-            tell=self.told.append,
+            tell=self.reports.append,
         )
         made.open()
         return made
@@ -56,4 +58,5 @@ def test_what_is_too_much_is_counted() -> None:
     tapped.loop.turn()
     assert [message.data for message in tapped.taken] == [str(n) for n in range(30, 230)]
     assert made.dropped == 30
-    assert tapped.told == ["/topic is published faster than it can be sent: messages are dropped"]
+    (report,) = tapped.reports
+    assert (report.code, report.values) == (PUBLISHED_TOO_FAST, {"topic": "/topic"})

@@ -5,7 +5,6 @@ import os
 import socket
 import stat
 
-import pytest
 from tests.coded import raises
 
 from cartwheel.codes.command import (
@@ -16,16 +15,15 @@ from cartwheel.codes.command import (
 )
 from cartwheel.control import ControlClient, find, registry, running
 from cartwheel.control.server import ControlServer
-from cartwheel.errors import ControlError
 
 from .conftest import load
 
 
 def test_none(runtime_folder):
     assert running() == []
-    with pytest.raises(ControlError) as caught:
+    with raises(SIMULATION_NOT_RUNNING) as caught:
         find()
-    assert str(caught.value) == "no simulation is running; start one with: cartwheel run"
+    assert "cartwheel run" in caught.value.hint
     assert stat.S_IMODE(runtime_folder.stat().st_mode) == 0o700
 
 
