@@ -37,6 +37,3 @@ def raises(
     assert caught.value.code is code, repr(caught.value)
     found = {name: caught.value.values.get(name) for name in values}
     assert found == values
-
-
-of_code = coded

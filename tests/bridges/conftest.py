@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator
 import pytest
 from tests.bridges.ros1_peers import REASON, Master, wait_for
 from tests.bridges.running import Running
-from tests.coded import of_code
+from tests.coded import coded
 
 from cartwheel.bridges.ros1 import Ros1Bridge
 from cartwheel.errors import Code, Diagnostic, Value
@@ -47,7 +47,7 @@ class Bridged(Running):
 
     def reported(self, code: Code, **values: Value) -> int:
         """How often something with this code and these values was reported."""
-        return len(of_code(self.reports, code, **values))
+        return len(coded(self.reports, code, **values))
 
 
 Bridge = Callable[..., Bridged]

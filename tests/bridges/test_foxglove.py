@@ -16,7 +16,7 @@ from typing import Any
 import pytest
 from tests.bridges.foxglove_client import Client, modules, unreadable
 from tests.bridges.running import Running
-from tests.coded import of_code, raises
+from tests.coded import coded, raises
 from websockets.sync.client import connect
 
 from cartwheel.bridges.foxglove import FoxgloveBridge
@@ -279,7 +279,7 @@ def test_what_cannot_be_taken_is_told(
     client.wait("advertise")
     client.send("publish", data, topic=topic, type=kind, encoding="cdr")
     client.wait("status", lambda e: f"[{code.number}]" in e["status"]["message"])
-    assert of_code(served.reports, code, topic=topic)
+    assert coded(served.reports, code, topic=topic)
 
 
 def test_services(served: Served, client: Client) -> None:
@@ -508,7 +508,7 @@ def test_a_frozen_client_stalls_nobody(served: Served, folder: Path) -> None:
     assert time.monotonic() - wall < 100
     awake.wait("message", lambda e: e["topic"] == "/clock" and e["time"] > begin + 4 * 10**9)
     assert len(awake.of("message")) > count + 200
-    until(lambda: of_code(served.reports, SLOW_SUBSCRIBER), "the report")
+    until(lambda: coded(served.reports, SLOW_SUBSCRIBER), "the report")
     frozen.close()
     awake.close()
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 from tests.bridges.test_foxglove import serving
-from tests.coded import of_code
+from tests.coded import coded
 from websockets.exceptions import ConnectionClosedOK, InvalidStatus
 from websockets.sync.client import connect
 
@@ -33,7 +33,7 @@ def test_its_own_programs_pass_and_foreign_pages_do_not() -> None:
             assert caught.value.response.status_code == 403
         with pytest.raises(InvalidStatus):
             greeting(url, additional_headers={"Host": "evil.example"})
-        assert of_code(served.reports, PAGE_REFUSED, origin="http://evil.example")
+        assert coded(served.reports, PAGE_REFUSED, origin="http://evil.example")
 
 
 def test_elsewhere_it_wants_the_token_in_its_address() -> None:

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator
 
 import pytest
 from tests.bridges.test_foxglove import Served, serving
-from tests.coded import of_code
+from tests.coded import coded
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection, connect
 
@@ -201,7 +201,7 @@ def test_a_text_that_is_not_json_or_too_large_reaches_no_server(
         for text in ("garbage", '{"op": "advertise", "n": ' + "9" * 5000 + "}", "[" * 100_000):
             other.send(text)
         answered(other)
-        assert of_code(served.reports, CLIENT_REQUEST_IGNORED)
+        assert coded(served.reports, CLIENT_REQUEST_IGNORED)
         # In fragments, and with one of another kind between them.
         parts = json.dumps({"op": "advertise", "channels": [
             {"id": 7, "topic": "/t", "encoding": "json", "schemaName": "std_msgs/msg/String"},

@@ -22,7 +22,7 @@ import pytest
 from mcap.reader import NonSeekingReader, make_reader
 from mcap_ros2.decoder import DecoderFactory
 from rosbags.highlevel import AnyReader
-from tests.coded import of_code, raises
+from tests.coded import coded, raises
 
 import cartwheel as cw
 from cartwheel.bridges.recording import Recorder, writing
@@ -423,7 +423,7 @@ def test_a_slow_disk_holds_the_simulation_and_loses_nothing(
     with cw.World("empty") as world:
         with world.record(path, topics=["/clock"]) as recorder:
             world.run(5.0)
-        slow_disk = of_code(world.diagnostics, DISK_SLOW)
+        slow_disk = coded(world.diagnostics, DISK_SLOW)
     assert [t for t, _ in read_with_mcap(path)["/clock"]] == [i * 10_000_000 for i in range(500)]
     # At most five wait, so there were at least a hundred turns of 20 ms.
     assert recorder.summary.waited > 1.0
@@ -463,7 +463,7 @@ def test_a_message_that_cannot_be_encoded_costs_itself_alone(tmp_path: Path) -> 
         publisher.publish(made(value))
     assert recorder.close().messages == 2
     assert read_with_rosbags(tmp_path / "a.bag") == {"/a": [(5, b"\1"), (5, b"\2")]}
-    assert len(reports) == 1 and of_code(reports, MESSAGE_NOT_RECORDED, topic="/a")
+    assert len(reports) == 1 and coded(reports, MESSAGE_NOT_RECORDED, topic="/a")
 
 
 _RUN = ["run", "--headless", "--speed", "max", "--for", "100000", "--record"]

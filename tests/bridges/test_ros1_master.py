@@ -22,7 +22,7 @@ from tests.bridges.ros1_peers import (
     simulation,
     wait_for,
 )
-from tests.coded import of_code, raises
+from tests.coded import coded, raises
 from tests.reserved import free_port
 
 from cartwheel.bridges.ros1 import Ros1Bridge
@@ -133,7 +133,7 @@ def test_a_node_of_the_same_name_takes_over(bridge: Bridge, master: Master) -> N
     other = master.python("import rospy; rospy.init_node('gazebo'); rospy.spin()")
     try:
         wait_for(lambda: run.ended, "the end")
-        assert of_code(run.ended, ROS_NODE_ENDED, node="/gazebo")
+        assert coded(run.ended, ROS_NODE_ENDED, node="/gazebo")
     finally:
         other.kill()
         other.communicate()

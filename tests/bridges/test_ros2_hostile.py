@@ -14,7 +14,7 @@ from collections.abc import Iterator
 import pytest
 from tests.bridges.ros1_peers import wait_for
 from tests.bridges.ros2_peers import DOMAIN, REASON, Peer, Ros2Bridged
-from tests.coded import of_code, raises
+from tests.coded import coded, raises
 
 from cartwheel.bridges.ros2 import Ros2Bridge
 from cartwheel.bridges.ros2.dds import Dds
@@ -107,7 +107,7 @@ def test_noise_is_counted_and_passed_over(bridged: Ros2Bridged, sender: socket.s
         sender.send(data)
     settle(bridged)
     assert participant.malformed > before
-    assert not of_code(bridged.reports, BRIDGE_FAULT)
+    assert not coded(bridged.reports, BRIDGE_FAULT)
 
 
 def test_who_may_not_have_listened_yet_is_told_again_until_it_answers(
@@ -174,7 +174,7 @@ def test_participants_without_number_are_bounded(
     # As many as there are ports for on this computer.
     assert len(participant._remotes) == 120
     wait_for(
-        lambda: of_code(bridged.reports, PEER_LIMIT),
+        lambda: coded(bridged.reports, PEER_LIMIT),
         "the warning",
     )
     lose_all(bridged)
@@ -446,7 +446,7 @@ def test_a_heartbeat_of_astronomical_numbers_costs_nothing(
     settle(bridged)
     assert memory() - before < 20 << 20
     bridged.bridge._loop.call(lambda: participant._lose(prefix)).result(120)
-    assert not of_code(bridged.reports, BRIDGE_FAULT)
+    assert not coded(bridged.reports, BRIDGE_FAULT)
 
 
 @pytest.mark.skipif(bool(REASON), reason=REASON)

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 from tests.bridges.ros1_peers import wait_for
 from tests.bridges.ros2_peers import DOMAIN, REASON, Peer, Ros2Bridged
-from tests.coded import of_code
+from tests.coded import coded
 
 from cartwheel.cli.commands.ros2 import node_parameters
 from cartwheel.codes.wires import MALFORMED_MESSAGE
@@ -426,5 +426,5 @@ def test_a_request_that_is_none_harms_nobody(bridged: Ros2Bridged, peer: Peer) -
         "pub", "rq/get_model_listRequest", "gazebo_msgs::srv::dds_::GetModelList_Request_",
         "00010000ffffffffffffffff",
     )  # fmt: skip
-    wait_for(lambda: of_code(bridged.reports, MALFORMED_MESSAGE), "the warning")
+    wait_for(lambda: coded(bridged.reports, MALFORMED_MESSAGE), "the warning")
     assert peer.call("/get_model_list", "gazebo_msgs/srv/GetModelList", {}).success

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from tests.bridges.ros1_peers import wait_for
 from tests.bridges.ros2_peers import DOMAIN, REASON, Peer, Ros2Bridged
-from tests.coded import of_code
+from tests.coded import coded
 
 from cartwheel.codes.wires import PEER_TYPE_MISMATCH, QOS_INCOMPATIBLE, UNRESPONSIVE_SUBSCRIBER
 from cartwheel.messages import decode_cdr, encode_cdr, from_dict
@@ -162,7 +162,7 @@ def test_who_asks_for_more_than_is_offered_gets_nothing(bridged: Ros2Bridged, pe
     peer.subscribe("/clock", CLOCK)
     wait_for(lambda: len(peer.received("/clock")) > 50, "the clock")
     assert not peer.received(CAMERA)
-    assert of_code(bridged.reports, QOS_INCOMPATIBLE, name=CAMERA, policy="RELIABILITY")
+    assert coded(bridged.reports, QOS_INCOMPATIBLE, name=CAMERA, policy="RELIABILITY")
 
 
 def test_who_takes_a_topic_for_another_type_is_told(bridged: Ros2Bridged, peer: Peer) -> None:
@@ -174,7 +174,7 @@ def test_who_takes_a_topic_for_another_type_is_told(bridged: Ros2Bridged, peer: 
 
 def mismatched(bridged: Ros2Bridged, topic: str) -> bool:
     """Whether another type of a topic was reported."""
-    return bool(of_code(bridged.reports, PEER_TYPE_MISMATCH, name=topic, type=CLOCK))
+    return bool(coded(bridged.reports, PEER_TYPE_MISMATCH, name=topic, type=CLOCK))
 
 
 def test_static_transforms_reach_who_comes_late(bridged: Ros2Bridged, peer: Peer) -> None:
@@ -231,7 +231,7 @@ def test_a_frozen_reader_holds_nobody_up(bridged: Ros2Bridged) -> None:
         ]
         assert np.diff(stamps).max() == np.diff(stamps).min()
         wait_for(
-            lambda: of_code(bridged.reports, UNRESPONSIVE_SUBSCRIBER),
+            lambda: coded(bridged.reports, UNRESPONSIVE_SUBSCRIBER),
             "the report of who is frozen",
         )
         (missed,) = bridged.graph.topic("/odom").dropped

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from tests.coded import of_code
+from tests.coded import coded
 
 from cartwheel.codes.graph import SERVICE_FAILED
 from cartwheel.geometry import Pose, quat_from_rpy, rotate
@@ -314,5 +314,5 @@ def test_clearing_what_does_not_exist_is_reported_once(make, gazebo):
     for _ in range(3):
         api("clear_body_wrenches", body_name="nobody")
         api("clear_joint_forces", joint_name="nothing")
-    failed = of_code(api.world.diagnostics, SERVICE_FAILED)
+    failed = coded(api.world.diagnostics, SERVICE_FAILED)
     assert [each.values["name"] for each in failed] == ["nobody", "nothing"]

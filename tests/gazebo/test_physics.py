@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from tests.coded import of_code
+from tests.coded import coded
 
 from cartwheel.codes.graph import SERVICE_FAILED
 from cartwheel.geometry import Pose
@@ -401,4 +401,4 @@ def test_a_parameter_leaves_what_was_changed_elsewhere(falling):
 def test_a_parameter_that_cannot_be_is_answered_with_what_is(falling):
     answer = configure(falling, time_step=0.0)
     assert answer["time_step"] == 0.005
-    assert of_code(falling.world.diagnostics, SERVICE_FAILED, property="time_step")
+    assert coded(falling.world.diagnostics, SERVICE_FAILED, property="time_step")

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tests.coded import of_code
+from tests.coded import coded
 
 from cartwheel.codes.graph import FRAMES_SHARED
 from cartwheel.description import load_robot, load_text, load_world
@@ -153,7 +153,7 @@ def test_a_second_robot_of_the_same_frames_is_left_out_and_told_of() -> None:
     arm = load_text(ARM, file="arm.urdf")
     session = session_with(("one", arm), ("two", arm))
     states_of(session)
-    (shared,) = of_code(session.diagnostics, FRAMES_SHARED)
+    (shared,) = coded(session.diagnostics, FRAMES_SHARED)
     assert shared.values["model"] == "two"
     session.close()
 

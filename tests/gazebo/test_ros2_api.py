@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from tests.coded import of_code
+from tests.coded import coded
 from tests.gazebo.conftest import Gazebo
 
 import cartwheel as cw
@@ -128,7 +128,7 @@ def test_a_wrench_acts_until_it_is_cleared(make):
     refused = api.refused("apply_link_wrench", link_name="cube::lnk", wrench={"force": {"x": 1.0}})
     assert 'Did you mean "cube::link"?' in refused
     api("clear_link_wrenches", link_name="nobody")
-    assert of_code(api.world.diagnostics, SERVICE_FAILED, name="nobody")
+    assert coded(api.world.diagnostics, SERVICE_FAILED, name="nobody")
 
 
 def test_an_effort_acts_until_it_is_cleared(make):

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from tests.coded import of_code
+from tests.coded import coded
 
 from cartwheel.codes.graph import SERVICE_FAILED
 from cartwheel.geometry import Pose, quat_from_rpy, rotate
@@ -505,6 +505,6 @@ def test_a_topics_failure_is_reported_once(space):
     for _ in range(5):
         space.world.publish("/gazebo/set_model_state", {"model_name": "cubee"})
         space.world.run(0.01)
-    (failed,) = of_code(space.world.diagnostics, SERVICE_FAILED)
+    (failed,) = coded(space.world.diagnostics, SERVICE_FAILED)
     assert failed.values["service"] == "/gazebo/set_model_state"
     assert (failed.values["name"], failed.values["meant"]) == ("cubee", "cube")

@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from tests.coded import of_code
+from tests.coded import coded
 from tests.gazebo.conftest import CHAIN, SDF, Gazebo
 
 import cartwheel as cw
@@ -67,7 +67,7 @@ def test_models_and_lights_are_created_moved_and_removed(make):
     assert api("remove", entity={"name": "copy", "type": 2}).success
     assert "copy" not in simulation.models
     # The answers have no room for the reasons.
-    assert of_code(api.world.diagnostics, SERVICE_FAILED, meant="brick")
+    assert coded(api.world.diagnostics, SERVICE_FAILED, meant="brick")
 
 
 def test_control_holds_steps_and_resets(make):
@@ -99,7 +99,7 @@ def test_control_holds_steps_and_resets(make):
     assert simulation.time_ns == until
     assert control(reset={"all": True}, seed=4)
     assert (simulation.time_ns, simulation.run_state) == (0, RunState.RUNNING)
-    assert of_code(api.world.diagnostics, SERVICE_FAILED, field="seed")
+    assert coded(api.world.diagnostics, SERVICE_FAILED, field="seed")
 
 
 def test_a_name_that_ros_does_not_take_is_spelled_so_that_it_does():
