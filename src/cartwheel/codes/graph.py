@@ -8,7 +8,7 @@ TOPIC_TYPE_MISMATCH = Code(
 )
 SERVICE_UNKNOWN = Code("CW703", "service-unknown", "error", "a service that does not exist")
 SERVICE_TAKEN = Code(
-    "CW704", "service-taken", "error", "a service or action whose name is offered already"
+    "CW704", "service-name-taken", "error", "a service or action whose name is offered already"
 )
 SERVICE_TIMED_OUT = Code(
     "CW705", "service-timed-out", "error", "a service that does not answer in time"
