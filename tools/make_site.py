@@ -24,7 +24,7 @@ from collections.abc import Mapping
 from pathlib import Path, PurePosixPath
 
 import site_pages
-from cartwheel.codes import MODULES
+from cartwheel.codes import MODULES, all_codes
 
 ROOT = Path(__file__).resolve().parent.parent
 DOCS = ROOT / "docs"
@@ -114,6 +114,8 @@ _LINK = re.compile(r"(?<!!)\[([^\[\]]*)\]\(([^)\s]+)\)")
 _TARGET = re.compile(
     r"(?<=\]\()[^)\s]+(?=\))|(?<= src=\")[^\"]+|(?<= srcset=\")[^\"]+|(?<= href=\")[^\"]+"
 )
+_CODE_NAME = re.compile(r"(?<!\[)`(CW\d{3})(?: [a-z0-9-]+)?`(?!\])")
+"""A diagnostic code, which has a page of its own on the site."""
 _COMMENT = re.compile(r"^<!--.*?-->\n", re.MULTILINE | re.DOTALL)
 
 
@@ -217,10 +219,16 @@ def site_places() -> dict[str, str]:
 
 
 def moved(source: str, places: dict[str, str]) -> str:
-    """The text of a page, with links that hold at its place on the site."""
+    """The text of a page, with links that hold at its place on the site, and links from codes."""
+    place = places[source]
+    known = {code.number: code for code in all_codes()}
 
     def whole(match: re.Match[str]) -> str:
         return match[0] if link(match[2], source, places) else match[1]
+
+    def explained(match: re.Match[str]) -> str:
+        code = known.get(match[1])
+        return f"[{match[0]}]({relative(site_pages.code_page(code), place)})" if code else match[0]
 
     def target(match: re.Match[str]) -> str:
         return link(match[0], source, places)
@@ -229,7 +237,7 @@ def moved(source: str, places: dict[str, str]) -> str:
     for index in range(0, len(parts), 2):
         # In code the generator keeps the backslash, which other readers of tables need.
         part = _CODE.sub(lambda match: match[0].replace("\\|", "|"), _COMMENT.sub("", parts[index]))
-        parts[index] = _TARGET.sub(target, _LINK.sub(whole, part))
+        parts[index] = _CODE_NAME.sub(explained, _TARGET.sub(target, _LINK.sub(whole, part)))
     return "".join(parts)
 
 
@@ -251,10 +259,15 @@ def link(target: str, source: str, places: dict[str, str]) -> str:
     inside = path.relative_to(ROOT).as_posix()
     if inside in places or (path.is_file() and path.is_relative_to(DOCS)):
         place = places.get(inside, inside.removeprefix("docs/"))
-        return f"{os.path.relpath(place, PurePosixPath(places[source]).parent)}{mark}{anchor}"
+        return f"{relative(place, places[source])}{mark}{anchor}"
     if not REPOSITORY:
         return ""
     return f"{REPOSITORY}/{'tree' if path.is_dir() else 'blob'}/main/{inside}{mark}{anchor}"
+
+
+def relative(place: str, start: str) -> str:
+    """The link from one page of the site to another."""
+    return os.path.relpath(place, PurePosixPath(start).parent)
 
 
 def navigation(pages: Mapping[str, str]) -> str:

@@ -80,6 +80,12 @@ def test_links_to_other_files_lead_to_the_repository(monkeypatch: pytest.MonkeyP
     assert link == "https://example.org/cartwheel/tree/main/examples"
 
 
+def test_codes_in_pages_link_to_their_pages() -> None:
+    text = make_site.moved("docs/how-to/troubleshooting.md", make_site.site_places())
+    assert "[`CW101 file-missing`](../codes/CW101.md)" in text
+    assert "$ cartwheel explain CW101" in text
+
+
 def commands(program: object, words: tuple[str, ...] = ()) -> dict[tuple[str, ...], object]:
     found = {}
     for name, command in program.commands.items():
