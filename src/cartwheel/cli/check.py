@@ -1,4 +1,4 @@
-"""``cartwheel check``: what is wrong with a description, where, and what to write instead."""
+"""``cartwheel check``: mistakes in a description, with suggested fixes."""
 
 from __future__ import annotations
 

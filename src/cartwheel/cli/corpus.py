@@ -1,4 +1,4 @@
-"""``cartwheel corpus``: robots that others wrote, tried one by one."""
+"""``cartwheel corpus``: try many robots, one by one."""
 
 from __future__ import annotations
 

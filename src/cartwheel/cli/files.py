@@ -1,4 +1,4 @@
-"""``cartwheel view``, ``convert`` and ``version``: what needs no simulation."""
+"""``cartwheel view``, ``convert`` and ``version``: commands without a simulation."""
 
 from __future__ import annotations
 

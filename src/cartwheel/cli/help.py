@@ -33,7 +33,7 @@ class Command(TyperCommand):
     """A command whose help has a section for each group of options."""
 
     def collect_usage_pieces(self, ctx: Any) -> list[str]:
-        """The words of the usage line; the metavar of an argument states what is optional."""
+        """The words of the usage line; brackets in an argument's metavar mark optional words."""
         return [str(self.options_metavar), *(a.metavar or a.name for a in arguments(self, ctx))]
 
     def format_options(self, ctx: Any, formatter: Any) -> None:

@@ -1,4 +1,4 @@
-"""``cartwheel info``: what a recording holds."""
+"""``cartwheel info``: the contents of a recording."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``cartwheel spawn``, ``delete`` and ``models``: what stands in the world."""
+"""``cartwheel spawn``, ``delete`` and ``models``: the models in the world."""
 
 from __future__ import annotations
 

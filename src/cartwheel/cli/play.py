@@ -1,4 +1,4 @@
-"""``cartwheel play``: a recording in a simulation's place."""
+"""``cartwheel play``: a recording in place of a simulation."""
 
 from __future__ import annotations
 

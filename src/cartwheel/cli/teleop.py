@@ -1,4 +1,4 @@
-"""``cartwheel teleop``: driving by keys."""
+"""``cartwheel teleop``: drive a robot with keys."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``cartwheel topic``: what is published, and who reads it."""
+"""``cartwheel topic``: topics with their publishers and subscribers."""
 
 from __future__ import annotations
 
