@@ -467,6 +467,12 @@ def meant_one(name: str, existing: Iterable[str], *, cutoff: float = 0.75) -> st
     return close[0] if close else ""
 
 
+def meant(name: str, existing: Iterable[str]) -> str:
+    """The likely meant one of `existing`, which `suggestion` names; empty where none is alike."""
+    close = _close(name, list(existing), _SIMILAR)
+    return close[0] if close else ""
+
+
 def suggestion(name: str, existing: Iterable[str]) -> str:
     """A sentence that names the likely meant one of `existing`, or lists them."""
     known = list(existing)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from cartwheel.codes.files import WRONG_KIND
 from cartwheel.description.loading import open_description
 from cartwheel.description.xml_text import write_xml
 from cartwheel.errors import DescriptionError
@@ -32,6 +33,9 @@ def to_urdf(
     read = open_description(path, arguments or {}, package_path)
     if read.root.tag != "robot":
         raise DescriptionError(
-            f"is no URDF: it begins with <{read.root.tag}>", origin=read.root.origin
+            f"the file is not a URDF: its root is <{read.root.tag}>",
+            code=WRONG_KIND,
+            origin=read.root.origin,
+            values={"kind": read.root.tag},
         )
     return write_xml(read.root, read.packages if absolute else None)

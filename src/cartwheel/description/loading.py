@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+from cartwheel.codes import files as codes
 from cartwheel.description import xml
 from cartwheel.description.model import RobotDescription, WorldDescription
 from cartwheel.description.packages import Packages
@@ -17,13 +18,14 @@ from cartwheel.description.xml_text import write_xml
 from cartwheel.errors import DescriptionError, Diagnostic, Origin
 
 _OTHER_KINDS = {
-    "launch": "a launch file: name the description that it loads",
-    "package": "a package manifest: name a description of the package",
-    "COLLADA": "a mesh: name the description that uses it",
-    "model": "a model.config, or a <model> without the <sdf> around it",
-    "world": "a <world> without the <sdf> around it",
-    "mujoco": "a MuJoCo model, not a ROS or Gazebo description",
+    "launch": ("a launch file", "Name the description that it loads."),
+    "package": ("a package manifest", "Name a description of the package."),
+    "COLLADA": ("a mesh", "Name the description that uses it."),
+    "model": ("a model.config, or a <model> without <sdf> around it", ""),
+    "world": ("a <world> without <sdf> around it", ""),
+    "mujoco": ("a MuJoCo model, not a ROS or Gazebo description", ""),
 }
+"""What a file of another root is, and what to do."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -72,7 +74,9 @@ def load_robot(
     found = load(path, arguments=arguments, package_path=package_path, reach=reach)
     if isinstance(found, WorldDescription):
         raise DescriptionError(
-            f'describes the world "{found.name}", not a robot',
+            f'the file describes the world "{found.name}", not a robot',
+            code=codes.WRONG_KIND,
+            values={"kind": "world", "name": found.name},
             origin=found.origin,
             hint="Load it as the world, and spawn robots into it.",
         )
@@ -89,9 +93,11 @@ def load_world(
     found = load(path, arguments=arguments, package_path=package_path)
     if isinstance(found, RobotDescription):
         raise DescriptionError(
-            f'describes the model "{found.name}", not a world',
+            f'the file describes the model "{found.name}", not a world',
+            code=codes.WRONG_KIND,
+            values={"kind": "model", "name": found.name},
             origin=found.origin,
-            hint="Spawn it into a world, such as the shipped one, empty.",
+            hint='Spawn it into a world, such as the shipped "empty".',
         )
     return found
 
@@ -112,7 +118,9 @@ def load_text(
         package_path: As for `load`.
     """
     if not text.strip():
-        raise DescriptionError("the description is empty", origin=Origin(file=file))
+        raise DescriptionError(
+            "the description is empty", code=codes.FILE_UNREADABLE, origin=Origin(file=file)
+        )
     near = None if file.startswith("<") else Path(file)
     values = arguments or {}
     packages = Packages(near, package_path, arguments=values.values())
@@ -134,7 +142,9 @@ def load_plain(
         DescriptionError: it cannot be used, or it has to be expanded first.
     """
     if not text.strip():
-        raise DescriptionError("the description is empty", origin=Origin(file=file))
+        raise DescriptionError(
+            "the description is empty", code=codes.FILE_UNREADABLE, origin=Origin(file=file)
+        )
     packages = Packages(None, package_path, reach=reach or Reach())
     root = xml.parse(text, file)
     changed = refuse_xacro(root, packages)
@@ -178,15 +188,15 @@ def _expand(
             arguments=expansion.arguments,
         )
     text = content if isinstance(content, str) else content.decode("utf-8", "replace")
-    told = tuple(
-        Diagnostic(
-            severity="warning",
-            message=f'the argument "{name}" has no effect: the file is no xacro',
+    unused = tuple(
+        codes.ARGUMENT_UNKNOWN.diagnostic(
+            f'the argument "{name}" has no effect: the file does not use xacro',
             origin=Origin(file=file),
+            values={"name": name, "meant": ""},
         )
         for name in arguments
     )
-    return Opened(root=root, packages=packages, text=text, diagnostics=told, files=(file,))
+    return Opened(root=root, packages=packages, text=text, diagnostics=unused, files=(file,))
 
 
 def understand(opened: Opened) -> RobotDescription | WorldDescription:
@@ -213,8 +223,9 @@ def understand(opened: Opened) -> RobotDescription | WorldDescription:
 
         found = read_sdf(root, opened.packages, text=opened.text)
         return replace(found, diagnostics=(*opened.diagnostics, *found.diagnostics))
-    kind = _OTHER_KINDS.get(root.tag)
+    kind, hint = _OTHER_KINDS.get(root.tag, ("", ""))
     raise root.fail(
-        f"is {kind}" if kind else f"begins with <{root.tag}>, which is no description",
-        "A description begins with <robot> (xacro, URDF) or <sdf> (SDF, world).",
+        f"the file is {kind}" if kind else f"the root <{root.tag}> is not a description's",
+        hint or "The root of a description is <robot> (xacro, URDF) or <sdf> (SDF, world).",
+        code=codes.NOT_A_DESCRIPTION,
     )

@@ -1,4 +1,4 @@
-"""The colours behind Gazebo's material names, and what to answer for a name that is none.
+"""The colours behind Gazebo's material names, and the warning for other names.
 
 The names and diffuse colours are those of Gazebo Classic 11's own scripts. Where Gazebo has a
 picture, the picture's mean colour stands for it: the pictures belong to Gazebo.
@@ -6,8 +6,10 @@ picture, the picture's mean colour stands for it: the pictures belong to Gazebo.
 
 from __future__ import annotations
 
+from cartwheel.codes.tags import MATERIAL_UNKNOWN
 from cartwheel.description import numbers
 from cartwheel.description.model import Material, Rgba
+from cartwheel.errors import Diagnostic, Origin
 
 _PREFIX = "Gazebo/"
 
@@ -119,10 +121,15 @@ def material_names() -> tuple[str, ...]:
     return tuple(sorted(_PREFIX + name for name in known))
 
 
-def unknown_material(name: str) -> str:
-    """What to tell of a name that `gazebo_material` does not know."""
+def unknown_material(name: str, origin: Origin) -> Diagnostic:
+    """The warning for a name that `gazebo_material` does not know."""
     # The prefix that all share would make any two of them look alike.
     short = [each.removeprefix(_PREFIX) for each in material_names()]
     near = numbers.likely(name.rpartition("/")[2], short)
-    meant = f' Did you mean "{_PREFIX}{near}"?' if near else ""
-    return f'the material "{name}" is none of Gazebo\'s: the colour stays as it is.{meant}'
+    meant = f"{_PREFIX}{near}" if near else ""
+    return MATERIAL_UNKNOWN.diagnostic(
+        f'Gazebo has no material "{name}": the colour stays as it is',
+        origin=origin,
+        hint=f'Did you mean "{meant}"?' if meant else "",
+        values={"name": name, "meant": meant},
+    )

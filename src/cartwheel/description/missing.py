@@ -64,7 +64,7 @@ def advice(
     text = ""
     if rest:
         more = f" and {len(rest) - _SHOWN} more" if len(rest) > _SHOWN else ""
-        text = f"Also named and not there: {', '.join(rest[:_SHOWN])}{more}. "
+        text = f"Also missing: {', '.join(rest[:_SHOWN])}{more}. "
     names = [package, *rest[: _SHOWN - 1]]
     if distribution:
         debian = " ".join(f"ros-{distribution}-{name.replace('_', '-')}" for name in names)

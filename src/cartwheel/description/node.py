@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 
+from cartwheel.codes import tags as codes
 from cartwheel.description import numbers
 from cartwheel.description.model import Element
-from cartwheel.errors import DescriptionError, Diagnostic, Origin
+from cartwheel.errors import Code, DescriptionError, Diagnostic, Origin, Value
 from cartwheel.geometry import Pose, Vec3
 
 
@@ -45,8 +46,8 @@ class Node:
         self._read = False
         self._asked_attributes: set[str] = set()
         self._asked_children: set[str] = set()
-        self.notes: tuple[str, ...] = ()
-        """What its reader took otherwise than it is written; `unread` warns of them."""
+        self.notes: tuple[Diagnostic, ...] = ()
+        """Warnings of its reader; `unread` reports them."""
 
     def __repr__(self) -> str:
         return f"<{self.tag}> at {self.origin}"
@@ -60,9 +61,22 @@ class Node:
         """Puts others in the place of all attributes."""
         self._attributes = dict(values)
 
-    def fail(self, message: str, hint: str | None = None) -> DescriptionError:
+    def fail(
+        self,
+        message: str,
+        hint: str | None = None,
+        *,
+        code: Code = codes.VALUE_INVALID,
+        values: Mapping[str, Value] | None = None,
+    ) -> DescriptionError:
         """An error at this place, to be raised by the caller."""
-        return DescriptionError(message, origin=self.origin, hint=hint)
+        return DescriptionError(
+            message,
+            code=code,
+            origin=self.origin,
+            hint=hint,
+            values={"tag": self.tag, **(values or {})},
+        )
 
     # Children.
 
@@ -79,7 +93,12 @@ class Node:
         """The first child of that tag."""
         found = self.child(tag)
         if found is None:
-            raise self.fail(f"{self._label()} has no <{tag}>", self._near_tag(tag))
+            raise self.fail(
+                f"{self._label()} has no <{tag}>",
+                self._near_tag(tag),
+                code=codes.TAG_MISSING,
+                values={"missing": tag},
+            )
         return found
 
     def all(self, tag: str) -> list[Node]:
@@ -124,10 +143,16 @@ class Node:
             hint = numbers.likely(name, others)
             raise self.fail(
                 f'{self._label()} has no attribute "{name}"',
-                f'Is "{hint}" meant for it?' if hint else None,
+                f'Is "{hint}" a misspelling of "{name}"?' if hint else None,
+                code=codes.TAG_MISSING,
+                values={"missing": name, "meant": hint or ""},
             )
         if not value.strip():
-            raise self.fail(f'the attribute "{name}" of <{self.tag}> is empty')
+            raise self.fail(
+                f'the attribute "{name}" of <{self.tag}> is empty',
+                code=codes.TAG_MISSING,
+                values={"missing": name},
+            )
         return value
 
     def number_of(
@@ -242,10 +267,15 @@ class Node:
         node = self.find(path)
         if node is None or node.text.strip() or node.children:
             return node
-        node.notes = (*node.notes, f"<{node.tag}> is empty: the default counts")
+        empty = codes.TAG_EMPTY.diagnostic(
+            f"<{node.tag}> is empty, so its default is used",
+            origin=node.origin,
+            values={"tag": node.tag},
+        )
+        node.notes = (*node.notes, empty)
         return None
 
-    # What is told about it.
+    # Messages about it.
 
     def _label(self) -> str:
         name = self._attributes.get("name")
@@ -256,11 +286,11 @@ class Node:
 
     def _near_tag(self, tag: str) -> str | None:
         near = numbers.likely(tag, [child.tag for child in self.children])
-        return f"Is <{near}> meant for it?" if near else None
+        return f"Is <{near}> a misspelling of <{tag}>?" if near else None
 
 
 def to_element(node: Node) -> Element:
-    """The subtree as parameters for its owner, who reports what it does not know of them."""
+    """The subtree as parameters for its owner, which reports unknown ones."""
     node.mark()
     return copied(node)
 
@@ -283,12 +313,11 @@ def unread(
 
     Args:
         node: A root.
-        harmless: Why it is none that a part is ignored, by the element's tag and the child's
-            tag, or the attribute's name after an ``@``: these are told for information only.
+        harmless: Reasons for parts without an effect, by the element's tag and the child's tag,
+            or the attribute's name after an ``@``: these are reported as info.
     """
     known = harmless or {}
-    for note in node.notes:
-        yield Diagnostic(severity="warning", message=note, origin=node.origin)
+    yield from node.notes
     for name, value in node.attributes.items():
         if name in node._asked_attributes or name.startswith("xmlns"):
             continue
@@ -297,18 +326,13 @@ def unread(
         if ":" in name:
             yield _foreign(name, node.origin)
             continue
-        what = f'the attribute "{name}" of <{node.tag}>'
-        reason = known.get((node.tag, f"@{name}"))
-        if reason is not None:
-            yield Diagnostic(
-                severity="info", message=f"{what} has no effect: {reason}", origin=node.origin
-            )
-            continue
-        yield Diagnostic(
-            severity="warning",
-            message=f"{what} is not understood and is ignored"
-            + _meant(name, node._asked_attributes, '"{}"'),
-            origin=node.origin,
+        yield _ignored(
+            f'attribute "{name}" of <{node.tag}>',
+            node.origin,
+            reason=known.get((node.tag, f"@{name}")),
+            meant=numbers.likely(name, node._asked_attributes),
+            form='"{}"',
+            values={"tag": node.tag, "attribute": name},
         )
     for child in node.children:
         if child._read:
@@ -318,29 +342,51 @@ def unread(
             yield _foreign(child.tag, child.origin)
             continue
         reason = known.get((node.tag, child.tag))
-        if reason is not None:
-            yield Diagnostic(
-                severity="info",
-                message=f"<{child.tag}> in <{node.tag}> has no effect: {reason}",
+        values = {"tag": child.tag, "parent": node.tag}
+        if reason is None and child.tag in node._asked_children:
+            yield codes.TAG_REPEATED.diagnostic(
+                f"<{child.tag}> is repeated in <{node.tag}>: only the first one counts",
                 origin=child.origin,
+                values=values,
             )
             continue
-        if child.tag in node._asked_children:
-            message = f"a further <{child.tag}> in <{node.tag}> is ignored: only the first counts"
-        else:
-            message = f"<{child.tag}> in <{node.tag}> is not understood and is ignored"
-            message += _meant(child.tag, node._asked_children, "<{}>")
-        yield Diagnostic(severity="warning", message=message, origin=child.origin)
+        yield _ignored(
+            f"<{child.tag}> in <{node.tag}>",
+            child.origin,
+            reason=reason,
+            meant=numbers.likely(child.tag, node._asked_children),
+            form="<{}>",
+            values=values,
+        )
+
+
+def _ignored(
+    what: str,
+    origin: Origin,
+    *,
+    reason: str | None,
+    meant: str | None,
+    form: str,
+    values: Mapping[str, Value],
+) -> Diagnostic:
+    """A part that has no effect; with a reason, it is a known one."""
+    if reason is not None:
+        return codes.TAG_IGNORED.diagnostic(
+            f"{what} has no effect: {reason}", origin=origin, severity="info", values=values
+        )
+    return codes.TAG_IGNORED.diagnostic(
+        f"{what} is unknown and ignored",
+        origin=origin,
+        hint=f"Did you mean {form.format(meant)}?" if meant else "",
+        values={**values, "meant": meant or ""},
+    )
 
 
 def _foreign(name: str, origin: Origin) -> Diagnostic:
     """Names with a prefix are left to whichever program knows them, as SDF says."""
-    return Diagnostic(severity="info", message=f"{name} is for other programs", origin=origin)
-
-
-def _meant(name: str, known: Iterable[str], form: str) -> str:
-    near = numbers.likely(name, known)
-    return f". Did you mean {form.format(near)}?" if near else ""
+    return codes.NOT_SIMULATED.diagnostic(
+        f"{name} is for other programs", origin=origin, values={"tag": name}
+    )
 
 
 def needs_xacro(root: Node) -> bool:

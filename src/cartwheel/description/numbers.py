@@ -8,6 +8,7 @@ import math
 import re
 from collections.abc import Iterable, Sequence
 
+from cartwheel.codes.tags import VALUE_INVALID
 from cartwheel.errors import DescriptionError, Origin
 from cartwheel.geometry import Vec3
 
@@ -25,6 +26,22 @@ _LONGEST_NAME = 200
 _MOST_NAMES = 2000
 """Names, and their letters, among which the one that was meant is looked for: the time grows with
 their number, and with the square of their length."""
+
+
+class _InvalidError(DescriptionError):
+    """A value that is malformed or out of range; `label` says what it is of."""
+
+    code = VALUE_INVALID
+
+    def __init__(
+        self, label: str, rest: str, stated: str | float, origin: Origin, hint: str | None = None
+    ) -> None:
+        shown = stated if isinstance(stated, float) else stated[:_LONGEST_NAME]
+        super().__init__(
+            f"{label} {rest}", origin=origin, hint=hint, values={"name": label, "stated": shown}
+        )
+
+
 _TRUE = frozenset({"true", "1", "yes", "on"})
 _FALSE = frozenset({"false", "0", "no", "off"})
 
@@ -43,17 +60,17 @@ def number(text: str, label: str, origin: Origin, *, infinite: bool = False) -> 
         result = float(value)
         if math.isfinite(result) or infinite:
             return result
-        raise DescriptionError(f"{label} {_quoted(value)} is too large", origin=origin)
+        raise _InvalidError(label, f"{_quoted(value)} is too large", value, origin)
     if _INFINITE.match(value):
         if infinite:
             return float(value)
-        raise DescriptionError(f"{label} {_quoted(value)} is not a finite number", origin=origin)
+        raise _InvalidError(label, f"{_quoted(value)} is not a finite number", value, origin)
     if value.lower().lstrip("+-") == "nan":
-        raise DescriptionError(f"{label} {_quoted(value)} is not a finite number", origin=origin)
+        raise _InvalidError(label, f"{_quoted(value)} is not a finite number", value, origin)
     if not value:
-        raise DescriptionError(f"{label} is empty where a number is needed", origin=origin)
-    raise DescriptionError(
-        f"{label} {_quoted(value)} is not a number", origin=origin, hint=_number_hint(value)
+        raise _InvalidError(label, "is empty, but must be a number", value, origin)
+    raise _InvalidError(
+        label, f"{_quoted(value)} is not a number", value, origin, _number_hint(value)
     )
 
 
@@ -61,31 +78,32 @@ def integer(text: str, label: str, origin: Origin) -> int:
     """A whole number; ``10.0`` is one."""
     value = number(text, label, origin)
     if value != int(value):
-        raise DescriptionError(
-            f"{label} {_quoted(text.strip())} is not a whole number", origin=origin
-        )
+        raise _InvalidError(label, f"{_quoted(text.strip())} is not an integer", text, origin)
     return int(value)
 
 
 def vector(text: str, size: int, label: str, origin: Origin) -> tuple[float, ...]:
     """`size` finite numbers with white space between."""
     if "," in text:
-        raise DescriptionError(
-            f"{label} {_quoted(text.strip())} is no list of numbers",
-            origin=origin,
-            hint="Numbers are separated by spaces, and decimals are written with a point.",
+        raise _InvalidError(
+            label,
+            f"{_quoted(text.strip())} is not a list of numbers",
+            text,
+            origin,
+            "Separate numbers with spaces, and write decimals with a point.",
         )
     parts = text.split()
     values = tuple(number(part, label, origin) for part in parts)
     if len(values) != size:
-        raise DescriptionError(
-            f"{label} {_quoted(text.strip())} has {len(values)} numbers, {size} are needed",
-            origin=origin,
+        raise _InvalidError(
+            label,
+            f"{_quoted(text.strip())} must have {size} numbers (got {len(values)})",
+            text,
+            origin,
         )
     if max(map(abs, values), default=0.0) > LARGEST:
-        raise DescriptionError(
-            f"{label} {_quoted(text.strip())} has a number above {LARGEST:g}, which is too large",
-            origin=origin,
+        raise _InvalidError(
+            label, f"{_quoted(text.strip())} has a number above {LARGEST:g}", text, origin
         )
     return values
 
@@ -98,10 +116,11 @@ def position(values: Sequence[float], label: str, origin: Origin) -> Vec3:
     """
     x, y, z = values
     if max(abs(x), abs(y), abs(z)) > FARTHEST:
-        raise DescriptionError(
-            f"{label} must be at most {FARTHEST:g} m away along each axis, but is "
-            f"{x:g} {y:g} {z:g}",
-            origin=origin,
+        raise _InvalidError(
+            label,
+            f"must be at most {FARTHEST:g} m away along each axis (got {x:g} {y:g} {z:g})",
+            max(values, key=abs),
+            origin,
         )
     return (x, y, z)
 
@@ -113,8 +132,8 @@ def within(value: float, most: float, label: str, origin: Origin) -> float:
         DescriptionError: It is larger.
     """
     if abs(value) > most:
-        raise DescriptionError(
-            f"{label} must be from {-most:g} to {most:g}, but is {value:g}", origin=origin
+        raise _InvalidError(
+            label, f"must be from {-most:g} to {most:g} (got {value:g})", value, origin
         )
     return value
 
@@ -126,10 +145,12 @@ def boolean(text: str, label: str, origin: Origin) -> bool:
         return True
     if value in _FALSE:
         return False
-    raise DescriptionError(
-        f"{label} {_quoted(text.strip())} is neither true nor false",
-        origin=origin,
-        hint="Allowed are true, false, 1 and 0.",
+    raise _InvalidError(
+        label,
+        f"{_quoted(text.strip())} is neither true nor false",
+        text,
+        origin,
+        "Write true, false, 1 or 0.",
     )
 
 
@@ -150,9 +171,9 @@ def _quoted(value: str) -> str:
 def _number_hint(value: str) -> str | None:
     if "${" in value or "$(" in value:
         return (
-            "It is a xacro expression, which a plain URDF does not evaluate. Is "
-            'xmlns:xacro="http://www.ros.org/wiki/xacro" missing in <robot>?'
+            "A plain URDF does not evaluate xacro expressions. Declare xacro in <robot>: "
+            'xmlns:xacro="http://www.ros.org/wiki/xacro".'
         )
     if _NUMBER.match(value.replace(",", ".", 1)):
-        return f'Decimals are written with a point: "{value.replace(",", ".", 1)}".'
+        return f'Write decimals with a point: "{value.replace(",", ".", 1)}".'
     return None

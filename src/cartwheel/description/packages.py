@@ -14,6 +14,8 @@ from pathlib import Path
 from typing import NoReturn
 from urllib.parse import unquote
 
+from cartwheel.codes import files as codes
+from cartwheel.codes.tags import VALUE_INVALID
 from cartwheel.description import fuel, numbers
 from cartwheel.description.installed import source_of
 from cartwheel.description.missing import advice, also_missing
@@ -84,9 +86,9 @@ class Packages:
         self.package_path = tuple(Path(path).expanduser().absolute() for path in package_path)
         self._environment = os.environ if environment is None else environment
         self._found: dict[str, Path | None] = {}
-        self._lacking: dict[str, str] = {}
-        """What was said of models that are not there: a world may ask for one a hundred times."""
-        self._hints: dict[str, str] = {}
+        self._lacking: dict[str, tuple[str, str]] = {}
+        """The likely meant model and the hint, by model: a world may ask for one many times."""
+        self._hints: dict[str, tuple[str, str]] = {}
         """The same of packages."""
 
     @property
@@ -102,8 +104,8 @@ class Packages:
         """
         found = self._known(name)
         if found is None:
-            raise DescriptionError(
-                f'the package "{name}" was not found', origin=origin, hint=self._missing(name)
+            raise _missing(
+                "package", name, f'the package "{name}" was not found', origin, self._missing(name)
             )
         return found
 
@@ -121,8 +123,9 @@ class Packages:
                 return found
         if name not in self._lacking:
             self._lacking[name] = self._without_model(name)
-        hint = self._lacking[name]
-        raise DescriptionError(f'the model "{name}" was not found', origin=origin, hint=hint)
+        raise _missing(
+            "model", name, f'the model "{name}" was not found', origin, self._lacking[name]
+        )
 
     def resolve(
         self, uri: str, origin: Origin | None = None, *, what: str = "file", folder: bool = False
@@ -151,10 +154,13 @@ class Packages:
             self._refuse(f'the {what} "{uri}"', origin)
         allowed = (each for each in candidates if self.reach is None or self.may_read(each))
         if any(map(_is_special, allowed)):
-            raise DescriptionError(f'the {what} "{uri}" is not a regular file', origin=origin)
-        raise DescriptionError(
-            f'the {what} "{uri}" does not exist', origin=origin, hint=_absent(candidates)
-        )
+            raise DescriptionError(
+                f'the {what} "{uri}" is not a regular file',
+                code=codes.FILE_UNREADABLE,
+                origin=origin,
+                values={"kind": what, "name": uri},
+            )
+        raise _missing(what, uri, f'the {what} "{uri}" does not exist', origin, _absent(candidates))
 
     def model_folders(self) -> list[Path]:
         """The folders in which Gazebo models are looked for, in this order."""
@@ -197,7 +203,9 @@ class Packages:
 
     def _refuse(self, what: str, origin: Origin | None) -> NoReturn:
         raise DescriptionError(
-            f"{what} is outside of the folders that the description may read",
+            f"{what} is outside the folders that the description may read",
+            code=codes.FILE_NOT_ALLOWED,
+            values={"name": what},
             origin=origin,
             hint=self.reach.hint if self.reach is not None else NAME_IT,
         )
@@ -245,7 +253,9 @@ class Packages:
                 yield downloaded
                 return
             raise DescriptionError(
-                f'"{uri}" is on the network; nothing is downloaded',
+                f'"{uri}" is on the network, and nothing is downloaded',
+                code=codes.FILE_ON_NETWORK,
+                values={"kind": "file", "name": uri},
                 origin=origin,
                 hint="Download it, and name it by model:// or package://.",
             )
@@ -256,11 +266,18 @@ class Packages:
         if scheme not in ("package", "model"):
             raise DescriptionError(
                 f'"{uri}" has the unknown scheme "{scheme}"',
+                code=VALUE_INVALID,
+                values={"name": uri},
                 origin=origin,
-                hint="Known are package://, model:// and file://.",
+                hint="Write package://, model:// or file://.",
             )
         if not name:
-            raise DescriptionError(f'"{uri}" names no {scheme}', origin=origin)
+            raise DescriptionError(
+                f'"{uri}" does not name a {scheme}',
+                code=VALUE_INVALID,
+                values={"name": uri},
+                origin=origin,
+            )
         found = self.find(name, origin) if scheme == "package" else self.find_model(name, origin)
         yield found / path
         if path:
@@ -268,7 +285,7 @@ class Packages:
 
     def _relative(self, path: str, origin: Origin | None) -> Iterator[Path]:
         if not path:
-            raise DescriptionError("a file name is empty", origin=origin)
+            raise DescriptionError("the file name is empty", code=VALUE_INVALID, origin=origin)
         given = Path(path)
         if given.is_absolute():
             yield given
@@ -354,29 +371,31 @@ class Packages:
     def _workspaces(self) -> Iterator[Path]:
         yield from self._ancestors()
 
-    def _missing(self, name: str) -> str:
+    def _missing(self, name: str) -> tuple[str, str]:
+        """The package that was likely meant, or empty, and the hint."""
         if name not in self._hints:
             self._hints[name] = self._hint(name)
         return self._hints[name]
 
-    def _hint(self, name: str) -> str:
+    def _hint(self, name: str) -> tuple[str, str]:
         roots = [*self.package_path, *self._ancestors(), *self._environment_roots()]
         known = {found for root in (*roots, share() / "robots") for found in _names_in(root)}
         near = numbers.likely(name, known, 0.85)
         hint = f'Did you mean "{near}"? ' if near else ""
         others = () if near else also_missing([self.file] if self.file else [], name, self._known)
-        return (
+        return near or "", (
             f"{hint}Searched: {_listed([*roots, share() / 'robots'])}. "
             f"Source its workspace, or add its folder to the package path."
             f" {advice(name, others, self._environment)}"
         )
 
-    def _without_model(self, name: str) -> str:
+    def _without_model(self, name: str) -> tuple[str, str]:
         folders = self.model_folders()
         near = numbers.likely(name, {entry.name for each in folders for entry in _folders(each)})
         hint = f'Did you mean "{near}"? ' if near else ""
         hint += "Searched: " + _listed(folders)
-        return hint + ". Add its folder to GAZEBO_MODEL_PATH or to the package path."
+        hint += ". Add its folder to GAZEBO_MODEL_PATH or to the package path."
+        return near or "", hint
 
     def _known(self, name: str) -> Path | None:
         if name not in self._found:
@@ -523,8 +542,30 @@ def _is_special(path: Path) -> bool:
         return False
 
 
-def _absent(candidates: Sequence[Path]) -> str:
-    """Where a file was looked for, and which one there was likely meant."""
+def _missing(
+    kind: str, name: str, message: str, origin: Origin | None, advice: tuple[str, str]
+) -> DescriptionError:
+    """The error for a file, package or model that does not exist.
+
+    Args:
+        kind: What it is.
+        name: As written.
+        message: For the error.
+        origin: The element that names it.
+        advice: The name that was likely meant, or empty, and the hint.
+    """
+    meant, hint = advice
+    return DescriptionError(
+        message,
+        code=codes.FILE_MISSING,
+        origin=origin,
+        hint=hint,
+        values={"kind": kind, "name": name, "meant": meant},
+    )
+
+
+def _absent(candidates: Sequence[Path]) -> tuple[str, str]:
+    """The name of a file that was likely meant, or empty; and a hint with the places searched."""
     for path in candidates:
         try:
             names = [
@@ -534,8 +575,8 @@ def _absent(candidates: Sequence[Path]) -> str:
             continue
         near = numbers.likely(path.name, names)
         if near:
-            return f'Did you mean "{near}"? Looked for {_listed(candidates)}.'
-    return f"Looked for {_listed(candidates)}."
+            return near, f'Did you mean "{near}"? Searched: {_listed(candidates)}.'
+    return "", f"Searched: {_listed(candidates)}."
 
 
 def _listed(paths: Iterable[Path]) -> str:

@@ -9,8 +9,9 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+from cartwheel.codes.files import FILE_MISSING, PICTURE_UNREADABLE
 from cartwheel.description.regular import read_regular
-from cartwheel.errors import DescriptionError
+from cartwheel.errors import Code, DescriptionError
 
 FORMATS = ("PNG", "JPEG", "BMP", "GIF", "TGA", "TIFF", "WEBP", "DDS", "PPM")
 """Pillow knows more, and starts other programs for some of them."""
@@ -28,11 +29,21 @@ class PictureError(DescriptionError):
         name: What users call it.
         reason: What is wrong with it.
         hint: The likely fix.
+        code: Where it is not `PICTURE_UNREADABLE`.
     """
 
-    def __init__(self, name: str, reason: str, hint: str | None = None) -> None:
+    code = PICTURE_UNREADABLE
+
+    def __init__(
+        self, name: str, reason: str, hint: str | None = None, *, code: Code | None = None
+    ) -> None:
         self.name, self.reason = name, reason
-        super().__init__(f'the picture "{name}" cannot be read: {reason}', hint=hint)
+        super().__init__(
+            f'the picture "{name}" cannot be read: {reason}',
+            code=code,
+            hint=hint,
+            values={"kind": "picture", "name": name},
+        )
 
 
 @contextmanager
@@ -47,7 +58,7 @@ def open_picture(source: Path | bytes) -> Iterator[Any]:
 
     name = "in the mesh" if isinstance(source, bytes) else source.name
     if isinstance(source, Path) and not source.is_file():
-        raise PictureError(name, "there is no such file")
+        raise PictureError(name, "the file does not exist", code=FILE_MISSING)
     try:
         # Not opened by name: some of Pillow's readers ask a file for as much as it says it has.
         content = source if isinstance(source, bytes) else _content(source)
@@ -61,7 +72,9 @@ def open_picture(source: Path | bytes) -> Iterator[Any]:
         raise
     except UnidentifiedImageError:
         known = ", ".join(FORMATS)
-        raise PictureError(name, "unknown format", f"Supported are {known}.") from None
+        raise PictureError(
+            name, "its format is not supported", f"Convert it to one of: {known}."
+        ) from None
     except Image.DecompressionBombError:
         raise _too_large(name, "") from None
     except Exception as error:  # Pillow's readers raise whatever they meet
@@ -70,9 +83,7 @@ def open_picture(source: Path | bytes) -> Iterator[Any]:
 
 def _content(path: Path) -> bytes:
     if path.stat().st_size > MOST_BYTES:
-        raise PictureError(
-            path.name, "it is too large", f"At most {MOST_BYTES >> 20} MiB are read."
-        )
+        raise PictureError(path.name, "it is too large", f"The limit is {MOST_BYTES >> 20} MiB.")
     return read_regular(path, MOST_BYTES)
 
 
@@ -93,7 +104,7 @@ def _too_large(name: str, size: str) -> PictureError:
     return PictureError(
         name,
         f"it is too large{f': {size}' if size else ''}",
-        f"At most {MOST_PIXELS // 1_000_000} million pixels are read: scale it down.",
+        f"The limit is {MOST_PIXELS // 1_000_000} million pixels: scale it down.",
     )
 
 

@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterator
 from typing import NoReturn
 
+from cartwheel.codes.files import XACRO_NOT_EXPANDED
 from cartwheel.description.packages import FIND, Packages
 from cartwheel.description.xml import Node
 from cartwheel.errors import DescriptionError, Origin
@@ -84,7 +85,9 @@ def _found(text: str, node: Node, packages: Packages) -> str:
 
 def _refuse(what: str, origin: Origin) -> NoReturn:
     raise DescriptionError(
-        f"the text has {what}: xacro in text that comes over a wire is not expanded",
+        f"the text contains {what}, but xacro in text from a network is not expanded",
+        code=XACRO_NOT_EXPANDED,
+        values={"name": what},
         origin=origin,
         hint="Expand the file first, xacro FILE, or spawn the file: cartwheel spawn FILE.xacro.",
     )

@@ -6,6 +6,7 @@ import os
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+from cartwheel.codes import files as codes
 from cartwheel.description import numbers, xml
 from cartwheel.description.packages import Packages, share
 from cartwheel.errors import DescriptionError, Origin
@@ -50,7 +51,13 @@ def find_description(path: Path | str, package_path: Sequence[Path] = ()) -> Pat
         found_shipped = _shipped(given.name)
         if found_shipped is not None:
             return found_shipped
-    raise DescriptionError("no such file", origin=Origin(file=text), hint=_meant(given))
+    raise DescriptionError(
+        "the file does not exist",
+        code=codes.FILE_MISSING,
+        origin=Origin(file=text),
+        hint=_meant(given),
+        values={"kind": "file", "name": text},
+    )
 
 
 def shipped_descriptions() -> Iterator[Path]:
@@ -103,7 +110,10 @@ def _in_folder(folder: Path) -> Path:
                 return folder / name
         if sdfs:
             raise DescriptionError(
-                f'model.config names "{sdfs[-1]}", which does not exist', origin=origin
+                f'model.config names "{sdfs[-1]}", which does not exist',
+                code=codes.FILE_MISSING,
+                origin=origin,
+                values={"kind": "model", "name": sdfs[-1]},
             )
     if (folder / "model.sdf").is_file():
         return folder / "model.sdf"
@@ -119,9 +129,10 @@ def _in_folder(folder: Path) -> Path:
         return (same or found)[0]
     names = ", ".join(str(path.relative_to(folder)) for path in found[:8])
     raise DescriptionError(
-        "is a folder with several descriptions" if found else "is a folder without a description",
+        f"the folder contains {'several descriptions' if found else 'no description'}",
+        code=codes.NOT_A_DESCRIPTION,
         origin=origin,
-        hint=f"Name one of: {names}." if found else "Expected is model.sdf or a .urdf in it.",
+        hint=f"Name one of: {names}." if found else "Put a model.sdf or a .urdf into it.",
     )
 
 

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from cartwheel.codes.files import PICTURE_UNREADABLE
 from cartwheel.description.model import Heightmap
 from cartwheel.description.pictures import PictureError, open_picture
 from cartwheel.errors import CartwheelError, Origin
@@ -25,6 +26,8 @@ ELEVATION_MODELS = (".dem", ".tif", ".tiff", ".hgt", ".asc", ".nc", ".adf")
 
 class TerrainError(CartwheelError):
     """An image that cannot be used as a heightmap."""
+
+    code = PICTURE_UNREADABLE
 
 
 def heights_of(
@@ -49,6 +52,7 @@ def heights_of(
         raise TerrainError(
             f'the heightmap "{shape.path.name}" cannot be read: {reason}',
             origin=origin,
+            values={"kind": "heightmap", "name": str(shape.path)},
             hint=hint or "Save the heights as a PNG in grey.",
         ) from None
     return grey * shape.size[2] if shape.size[2] >= 0 else (1.0 - grey) * -shape.size[2]

@@ -24,11 +24,12 @@ from typing import Any
 from xml.dom import minidom
 
 from cartwheel import yaml_text
+from cartwheel.codes import files as codes
 from cartwheel.description import xml
 from cartwheel.description.expressions import Budget, Evaluator, ExpressionError
 from cartwheel.description.installed import source_of
 from cartwheel.description.packages import Packages
-from cartwheel.description.xacro_errors import Failure, explain
+from cartwheel.description.xacro_errors import Failure, code_of, explain
 from cartwheel.description.xacro_module import fresh_xacro
 from cartwheel.description.xacro_symbols import eval_extension_of, read_yaml, symbols_of
 from cartwheel.description.xacro_unprefixed import PREFIX, call_prefixed, prefixed
@@ -38,7 +39,7 @@ from cartwheel.errors import (
     DescriptionError,
     Diagnostic,
     Origin,
-    Severity,
+    meant,
     suggestion,
 )
 
@@ -57,6 +58,7 @@ MAX_PARAMETERS = 10_000
 
 _TOKEN = re.compile(r"(\$\$+)(?=[{(])|\$\{([^}]*)\}|\$\(([^)]*)\)|([^$]+|\$[^{($]+|\$\Z)")
 """An escaped ``$$``; an expression; an extension; text."""
+NAMESPACE = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
 _NOT_XML = re.compile(r"[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 _PARAMETER = re.compile(
     r"""\s*([^\s:=]+?)\s*:?=\s*(\^\|?)?"""
@@ -112,11 +114,12 @@ def expand(
 def _unknown_arguments(run: _Run, arguments: Mapping[str, str]) -> Iterator[Diagnostic]:
     for name in arguments:
         if name not in run.declared:
-            yield Diagnostic(
-                severity="warning",
-                message=f'the argument "{name}" is not declared there and has no effect. '
-                + suggestion(name, sorted(run.declared)),
+            known = sorted(run.declared)
+            yield codes.ARGUMENT_UNKNOWN.diagnostic(
+                f'the argument "{name}" is not declared and has no effect',
                 origin=Origin(file=run.file),
+                hint=suggestion(name, known),
+                values={"name": name, "meant": meant(name, known)},
             )
 
 
@@ -193,17 +196,36 @@ class _Run:
 
     def warn(self, message: str) -> None:
         """Takes a message of xacro's, once for each place."""
-        # What is deprecated works; nobody is to write it anew, and few can change it.
-        severity: Severity = "info" if "deprecated" in message else "warning"
-        diagnostic = Diagnostic(severity=severity, message=message, origin=self.origin())
+        diagnostic = code_of(message).diagnostic(message, origin=self.origin())
         if diagnostic not in self.seen:
             self.seen.add(diagnostic)
             self.diagnostics.append(diagnostic)
 
-    def warn_at(self, message: str, element: _Element) -> None:
-        """Takes a warning of one element."""
+    def warn_of_prefix(self, element: _Element, tag: str, number: int = 1) -> None:
+        """Warns of a tag without its prefix, once for each file.
+
+        Args:
+            element: The first of them.
+            tag: As written.
+            number: How many of them the file has.
+        """
+        values = {"tag": tag, "meant": PREFIX + tag}
+        if any(
+            each.code is codes.XACRO_PREFIX
+            and each.values == values
+            and each.origin is not None
+            and each.origin.file == element.origin.file
+            for each in self.diagnostics
+        ):
+            return
+        more = f" (and {number - 1} more in this file)" if number > 1 else ""
         self.diagnostics.append(
-            Diagnostic(severity="warning", message=message, origin=element.origin)
+            codes.XACRO_PREFIX.diagnostic(
+                f"<{tag}> is read as <{PREFIX}{tag}>, but ROS ignores it since Noetic{more}",
+                origin=element.origin,
+                hint=f"Write <{PREFIX}{tag}>.",
+                values=values,
+            )
         )
 
     def copy_body(self, body: _Element) -> _Element:
@@ -217,6 +239,7 @@ class _Run:
         if self.called > MAX_CALLS:
             raise DescriptionError(
                 f"there are more than {MAX_CALLS:,} macro calls; the last is <{call.tagName}>",
+                code=codes.EXPANSION_TOO_LARGE,
                 origin=replace(call.origin, stack=call.origin.stack[:MAX_SHOWN]),
                 hint="Does a macro call itself, or another one, more often than needed?",
             )
@@ -236,7 +259,9 @@ class _Run:
         self.budget.make(characters)
         if self.made > MAX_ELEMENTS:
             raise DescriptionError(
-                f"the macros make more than {MAX_ELEMENTS} elements", origin=self.origin()
+                f"the macros make more than {MAX_ELEMENTS} elements",
+                code=codes.EXPANSION_TOO_LARGE,
+                origin=self.origin(),
             )
 
     def _placed(self, error: CartwheelError) -> CartwheelError:
@@ -297,15 +322,14 @@ def _parse(content: bytes | str, file: str, run: _Run) -> _Document:
     if not root.hasAttribute("xmlns:xacro") and any(
         element.tagName.startswith(PREFIX) for element in root.getElementsByTagName("*")
     ):
-        message = 'xmlns:xacro="http://www.ros.org/wiki/xacro" is missing in the root element'
         run.diagnostics.append(
-            Diagnostic(
-                severity="warning",
-                message=f"{message}: ROS's own xacro refuses the file",
+            codes.XACRO_NAMESPACE.diagnostic(
+                "the root element does not declare xmlns:xacro: ROS's own xacro refuses the file",
                 origin=root.origin,
+                hint=f"Add {NAMESPACE} to it.",
             )
         )
-    prefixed(root, run.warn_at)
+    prefixed(root, run.warn_of_prefix)
     return builder.document
 
 
@@ -392,6 +416,7 @@ def _to_node(element: Any) -> Node:
         if found := _NOT_XML.search(each):
             raise DescriptionError(
                 f"the expanded text has the character {found[0]!a}, which XML does not allow",
+                code=codes.XACRO_INVALID,
                 origin=element.origin,
             )
     return Node(element.tagName, values, element.origin, children, text)
@@ -442,7 +467,12 @@ def _bind(module: ModuleType, run: _Run) -> None:
         run.packages.require(path, "the included file", run.origin())
         if not path.is_file():
             what = "is a folder" if path.is_dir() else "is not a regular file"
-            raise DescriptionError(f'the included file "{filename}" {what}', origin=run.origin())
+            raise DescriptionError(
+                f'the included file "{filename}" {what}',
+                code=codes.FILE_UNREADABLE,
+                origin=run.origin(),
+                values={"name": filename},
+            )
         return _parse(xml.read_bytes(path), xml.shown_path(path), run)
 
     def abs_filename_spec(given: str) -> str:
@@ -452,7 +482,9 @@ def _bind(module: ModuleType, run: _Run) -> None:
     def matching(pattern: str) -> list[str]:
         fixed = Path(re.split(r"[][*?]", pattern)[0] + "_").parent
         if ".." in Path(pattern[len(str(fixed)) :]).parts:
-            raise DescriptionError(f'"{pattern}" has .. after a wildcard')
+            raise DescriptionError(
+                f'"{pattern}" has .. after a wildcard', code=codes.FILE_NOT_ALLOWED
+            )
         if fixed.exists():
             run.packages.require(fixed, "the folder", run.origin())
         return list(itertools.islice(glob.iglob(pattern), MAX_MATCHES))  # noqa: PTH207
@@ -501,11 +533,15 @@ def _bind(module: ModuleType, run: _Run) -> None:
         try:
             return evaluator.evaluate(str(eval_text(text, symbols)), symbols)
         except ExpressionError as error:
-            message = error.message
-            if ", when evaluating" not in message:
-                shown = text.strip() if len(text) < 200 else f"{text[:200].strip()} …"
-                message = f"{message}, when evaluating ${{{shown}}}"
-            raise ExpressionError(message, hint=error.hint) from error
+            if "expression" in error.values:
+                raise
+            shown = text.strip() if len(text) < 200 else f"{text[:200].strip()} …"
+            raise ExpressionError(
+                f"{error.message}, when evaluating ${{{shown}}}",
+                code=error.code,
+                hint=error.hint,
+                values={**error.values, "expression": shown},
+            ) from error
         except Exception as error:
             raise space.XacroException(
                 exc=error, suffix=f"\nwhen evaluating expression '{text}'"
@@ -535,8 +571,10 @@ def _bind(module: ModuleType, run: _Run) -> None:
         except FileNotFoundError:
             raise
         except (OSError, UnicodeDecodeError) as error:
-            reason = error if isinstance(error, OSError) else "it is no text"
-            raise DescriptionError(f'"{xml.shown_path(path)}" cannot be read: {reason}') from None
+            reason = error if isinstance(error, OSError) else "it is not UTF-8"
+            raise DescriptionError(
+                f'"{xml.shown_path(path)}" cannot be read: {reason}', code=codes.FILE_UNREADABLE
+            ) from None
         run.budget.make(len(content))
         run.budget.look()
         space.filestack.append(str(path))
@@ -567,11 +605,10 @@ def _bind(module: ModuleType, run: _Run) -> None:
 
     def handle_macro_call(node: _Element, macros: object, symbols: object) -> object:
         if not node.tagName.startswith(PREFIX):
-            said = call_prefixed(node, macros, (call.tagName for call in run.calls))
-            if not said:
+            tag = node.tagName
+            if not call_prefixed(node, macros, (call.tagName for call in run.calls)):
                 return original.handle_macro_call(node, macros, symbols)
-            if all(said != each.message for each in run.diagnostics):
-                run.warn_at(said, node)
+            run.warn_of_prefix(node, tag)
         run.place, run.macros, run.symbols = node, macros, symbols
         if node.tagName == "xacro:call":
             return original.handle_macro_call(node, macros, symbols)

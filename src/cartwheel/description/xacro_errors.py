@@ -1,4 +1,7 @@
-"""What xacro complains about, said with its place, what is allowed, and the likely typo."""
+"""The errors and warnings of the package xacro, as ours: with codes, places and likely typos.
+
+This is the only place that looks at the texts of that package.
+"""
 
 from __future__ import annotations
 
@@ -6,9 +9,10 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
+from cartwheel.codes import files as codes
 from cartwheel.description import numbers
 from cartwheel.description.xml import near_files
-from cartwheel.errors import DescriptionError, Origin, suggestion
+from cartwheel.errors import Code, DescriptionError, Origin, Value, meant, suggestion
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -50,66 +54,93 @@ def explain(failure: Failure) -> DescriptionError:
     inner = _innermost(failure.error)
     origin = failure.origin
     message, hint = text.splitlines()[0], None
+    code: Code = codes.XACRO_INVALID
+    values: dict[str, Value] = {}
 
     if isinstance(inner, RecursionError):
         return DescriptionError(
             "macros, includes or properties use each other without end",
+            code=codes.EXPANSION_TOO_LARGE,
             origin=Origin(file=origin.file, line=origin.line, stack=origin.stack[:6]),
         )
     if isinstance(inner, FileNotFoundError):
         message = f'the included file "{inner.filename}" does not exist'
         hint = near_files(Path(str(inner.filename)))
+        code, values = codes.FILE_MISSING, {"kind": "file", "name": str(inner.filename)}
     elif match := _MACRO.search(text):
-        message = f"unknown macro name: xacro:{match[1]}"
-        hint = _meant(f"xacro:{match[1]}", [f"xacro:{name}" for name in failure.macros])
+        message = f'the macro "xacro:{match[1]}" is not defined'
+        hint, near = _meant(f"xacro:{match[1]}", [f"xacro:{name}" for name in failure.macros])
         if not failure.macros:
             hint = "No macro is defined here. Is a xacro:include missing?"
+        code, values = _unknown("macro", f"xacro:{match[1]}", near)
     elif match := _UNDEFINED.search(text):
         message = f'the property "{match[1]}" is not defined' + _expression(text)
-        hint = _meant(match[1], [*failure.properties, *_FUNCTIONS])
+        hint, near = _meant(match[1], [*failure.properties, *_FUNCTIONS])
         if match[1] in failure.arguments:
             hint = f"It is an argument: write $(arg {match[1]})."
+        code, values = _unknown("property", match[1], near)
     elif match := _ARGUMENT.search(text):
-        hint = _meant(match[1], failure.arguments)
+        hint, near = _meant(match[1], failure.arguments)
         message = f'the argument "{match[1]}" {"is not declared" if hint else "has no value"}'
         hint = hint or (
             f"Give it one on the command line, {match[1]}:=…, or in the file: "
             f'<xacro:arg name="{match[1]}" default="…"/>.'
         )
+        code, values = _unknown("argument", match[1], near)
     elif match := _BLOCK.search(text):
         message = f'the block "{match[1]}" is not defined'
-        hint = _meant(match[1], failure.properties)
+        hint, near = _meant(match[1], failure.properties)
+        code, values = _unknown("block", match[1], near)
     elif match := _PARAMETER.search(text):
         message = f'{failure.call_tag} has no parameter "{match[1]}"'
         hint = suggestion(match[1], failure.parameters)
         origin = failure.call or origin
+        code = codes.MACRO_CALL_INVALID
+        values = {"name": match[1], "meant": meant(match[1], failure.parameters)}
     elif match := _MISSING.search(text):
-        names = ", ".join(f'"{name}"' for name in match[1].split(","))
+        missing = match[1].split(",")
+        names = ", ".join(f'"{name}"' for name in missing)
         message = f"{failure.call_tag} is called without its parameter {names}"
         origin = failure.call or origin
+        code, values = codes.MACRO_CALL_INVALID, {"missing": tuple(missing)}
     elif text.startswith(("Not enough blocks", "Unused block")):
         message = f"{failure.call_tag}: {message[0].lower()}{message[1:]}"
         hint = "A macro takes one element in the call for each of its parameters with a *."
         origin = failure.call or origin
+        code = codes.MACRO_CALL_INVALID
     elif match := _CONDITION.search(text):
         message = f'the condition "{match[1]}" is "{match[2]}", which is neither true nor false'
     elif match := _ATTRIBUTE.search(text):
         message = f'<{match[1]}> has no attribute "{match[2]}"'
+        values = {"tag": match[1], "missing": match[2]}
     elif match := _COMMAND.search(text):
-        message = f"$({match[1]} …) is not known"
-        hint = suggestion(match[1], ["arg", "find", "env", "optenv", "dirname", "eval", "cwd"])
+        message = f"$({match[1]} …) is not a command of xacro"
+        hint = suggestion(match[1], _COMMANDS)
+        code, values = _unknown("command", match[1], meant(match[1], _COMMANDS))
     elif match := _ENVIRONMENT.search(text):
         message = f'the environment variable "{match[1]}" is not set'
-        hint = f"$(optenv {match[1]} default) takes a default where it is not."
+        hint = f"Write $(optenv {match[1]} default) to use a default where it is not set."
+        code, values = _unknown("environment variable", match[1], "")
     elif _EXPRESSION.search(text):
         reason = str(inner).splitlines()[0] if str(inner) else type(inner).__name__
         reason = reason.replace("(<expression>, line 1)", "").strip()
         message = f"{reason}{_expression(text)}"
+        code = codes.EXPRESSION_INVALID
     elif isinstance(inner, IndexError | KeyError | AttributeError | AssertionError):
         message = f"xacro fails at this element: {type(inner).__name__}: {inner}"
-    return DescriptionError(message, origin=origin, hint=hint)
+    return DescriptionError(message, code=code, origin=origin, hint=hint, values=values)
 
 
+def code_of(message: str) -> Code:
+    """The code of a warning of xacro's, or of a message that the description prints."""
+    return codes.XACRO_DEPRECATED if "deprecated" in message else codes.XACRO_MESSAGE
+
+
+def _unknown(kind: str, name: str, near: str) -> tuple[Code, dict[str, Value]]:
+    return codes.XACRO_NAME_UNKNOWN, {"kind": kind, "name": name, "meant": near}
+
+
+_COMMANDS = ("arg", "find", "env", "optenv", "dirname", "eval", "cwd")
 _FUNCTIONS = ("pi", "sin", "cos", "tan", "sqrt", "radians", "degrees", "atan2", "abs", "load_yaml")
 
 
@@ -127,6 +158,7 @@ def _expression(text: str) -> str:
     return f", when evaluating ${{{match[1].strip()}}}" if match else ""
 
 
-def _meant(name: str, known: list[str] | tuple[str, ...]) -> str | None:
+def _meant(name: str, known: list[str] | tuple[str, ...]) -> tuple[str | None, str]:
+    """A hint with the name that was likely meant, and that name."""
     near = numbers.likely(name, known)
-    return f'Did you mean "{near}"?' if near else None
+    return (f'Did you mean "{near}"?', near) if near else (None, "")

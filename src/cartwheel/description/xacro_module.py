@@ -9,6 +9,7 @@ from importlib.machinery import SourceFileLoader
 from pathlib import Path
 from types import CodeType, ModuleType
 
+from cartwheel.codes.files import XACRO_NOT_INSTALLED
 from cartwheel.errors import DescriptionError
 
 _NAME = "_cartwheel_xacro"
@@ -55,7 +56,8 @@ def _folder() -> Path:
         if (folder / "substitution_args.py").is_file():
             return folder
     raise DescriptionError(
-        "the Python package xacro 2 is missing",
+        "the Python package xacro 2 is not installed",
+        code=XACRO_NOT_INSTALLED,
         hint="pip install 'xacro>=2.1', or install Cartwheel again.",
     )
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from cartwheel import yaml_text
+from cartwheel.codes.files import YAML_MALFORMED
 from cartwheel.description import xml
 from cartwheel.description.expressions import BUILTINS, MATH, Evaluator, Function
 from cartwheel.errors import DescriptionError, Origin
@@ -36,7 +37,7 @@ def symbols_of(module: Any, functions: Mapping[str, Callable[..., Any]]) -> dict
         current = spaces[space][name]
 
         def run(evaluator: Evaluator, *args: Any, **named: Any) -> Any:
-            module.warning(f"Using {name}() directly is deprecated. Use {space}.{name}() instead.")
+            module.warning(f"{name}() without its namespace is deprecated: use {space}.{name}()")
             return current.run(evaluator, *args, **named)
 
         return Function(name, run)
@@ -121,5 +122,6 @@ def read_yaml(text: str, path: Path, number: Callable[[str], float]) -> object:
         mark = getattr(error, "problem_mark", None)
         raise DescriptionError(
             f"the file is not valid YAML: {getattr(error, 'problem', None) or error}",
+            code=YAML_MALFORMED,
             origin=Origin(file=xml.shown_path(path), line=mark.line + 1 if mark else 0),
         ) from None

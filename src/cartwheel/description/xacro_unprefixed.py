@@ -34,24 +34,22 @@ _OTHERS = frozenset(
 """What stands in a description in its own right, whatever macros are called."""
 
 
-def prefixed(root: Any, tell: Callable[[str, Any], None]) -> None:
+def prefixed(root: Any, report: Callable[[Any, str, int], None]) -> None:
     """Gives xacro's own elements below a file's root their prefix.
 
     Args:
         root: The DOM's root element; changed.
-        tell: Takes a warning, with the element it is about: one for each tag.
+        report: Takes, once for each tag, its first element, the tag and how many there are.
     """
     found = [element for element in root.getElementsByTagName("*") if _is_xacro(element)]
     count = Counter(element.tagName for element in found)
     for tag, number in count.items():
-        first = next(element for element in found if element.tagName == tag)
-        more = f" (and {number - 1} more in this file)" if number > 1 else ""
-        tell(f"{_taken(tag)}{more}", first)
+        report(next(element for element in found if element.tagName == tag), tag, number)
     for element in found:
         _rename(element)
 
 
-def call_prefixed(element: Any, macros: Any, within: Iterable[str]) -> str:
+def call_prefixed(element: Any, macros: Any, within: Iterable[str]) -> bool:
     """Gives a call of a macro its prefix where an element without one can be nothing else.
 
     Args:
@@ -60,25 +58,25 @@ def call_prefixed(element: Any, macros: Any, within: Iterable[str]) -> str:
         within: The tags of the calls in progress: what a macro makes may have its own name.
 
     Returns:
-        What to warn of; empty where it is no call, and nothing has changed.
+        Whether it is a call. Otherwise nothing has changed.
     """
     tag = element.tagName
     inside_of = {re.split(r"[:.]", call)[-1] for call in within}
     if tag in _OTHERS or tag in inside_of or ":" in tag:
-        return ""
+        return False
     try:
         macro = macros[tag]
         given = set(element.attributes.keys())
         needed = {name for name in macro.params if name not in macro.defaultmap}
     except (KeyError, AttributeError):
-        return ""
+        return False
     blocks = sum(name.startswith("*") for name in needed)
     needed = {name for name in needed if not name.startswith("*")}
     inside = [child for child in element.childNodes if child.nodeType == child.ELEMENT_NODE]
     if not needed <= given <= set(macro.params) or len(inside) != blocks:
-        return ""
+        return False
     _rename(element)
-    return _taken(tag)
+    return True
 
 
 def _is_xacro(element: Any) -> bool:
@@ -92,10 +90,3 @@ def _is_xacro(element: Any) -> bool:
 
 def _rename(element: Any) -> None:
     element.nodeName = element.tagName = PREFIX + element.tagName
-
-
-def _taken(tag: str) -> str:
-    return (
-        f"<{tag}> is taken as <{PREFIX}{tag}>, which ROS did until Melodic: "
-        f"since Noetic it does not. Write <{PREFIX}{tag}>"
-    )

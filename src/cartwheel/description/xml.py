@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Protocol
 from xml.parsers import expat
 
+from cartwheel.codes import files as codes
 from cartwheel.description import numbers
 from cartwheel.description.node import Node, copied, needs_xacro, to_element, unread
 from cartwheel.errors import DescriptionError, Origin
@@ -47,26 +48,36 @@ def read_bytes(path: Path) -> bytes:
     origin = Origin(file=shown_path(path))
     try:
         if path.is_dir():
-            raise DescriptionError("is a folder, not a file", origin=origin)
+            raise _unreadable("is a folder, not a file", origin)
         if path.exists() and not path.is_file():
-            raise DescriptionError("is not a regular file", origin=origin)
+            raise _unreadable("is not a regular file", origin)
         if path.stat().st_size > MAX_BYTES:
-            raise DescriptionError("is too large for a description", origin=origin)
+            raise _unreadable(f"is larger than {MAX_BYTES >> 20} MiB", origin)
         content = path.read_bytes()
     except FileNotFoundError:
-        raise DescriptionError("no such file", origin=origin, hint=near_files(path)) from None
+        raise DescriptionError(
+            "the file does not exist",
+            code=codes.FILE_MISSING,
+            origin=origin,
+            hint=near_files(path),
+            values={"kind": "file", "name": str(path)},
+        ) from None
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
-        raise DescriptionError(f"cannot be read: {reason}", origin=origin) from error
+        raise _unreadable(f"cannot be read: {reason}", origin) from error
     if not content.strip():
-        raise DescriptionError("the file is empty", origin=origin)
+        raise _unreadable("the file is empty", origin)
     if b"\0" in content[:1024] and not content.startswith((b"\xff\xfe", b"\xfe\xff")):
-        raise DescriptionError(
+        raise _unreadable(
             "is a binary file, not a description",
-            origin=origin,
-            hint="Expected is a xacro, URDF, SDF or world file, which is XML text.",
+            origin,
+            "Name a xacro, URDF, SDF or world file, which is XML text.",
         )
     return content
+
+
+def _unreadable(message: str, origin: Origin, hint: str | None = None) -> DescriptionError:
+    return DescriptionError(message, code=codes.FILE_UNREADABLE, origin=origin, hint=hint)
 
 
 def near_files(path: Path) -> str | None:
@@ -159,6 +170,7 @@ def run_expat(text: str | bytes, file: str, handler: Handler) -> None:
         if len(still_open) >= MAX_DEPTH:
             raise DescriptionError(
                 f"elements are nested more than {MAX_DEPTH} deep",
+                code=codes.XML_MALFORMED,
                 origin=Origin(file=file, line=line),
             )
         still_open.append((tag, line))
@@ -170,9 +182,11 @@ def run_expat(text: str | bytes, file: str, handler: Handler) -> None:
 
     def entity(name: str, *_: object) -> None:
         raise DescriptionError(
-            f'the entity "{name}" is declared; entities are not allowed in a description',
+            f'the entity "{name}" is declared, but descriptions may not declare entities',
+            code=codes.XML_ENTITY,
             origin=Origin(file=file, line=parser.CurrentLineNumber),
             hint="Use a xacro property instead.",
+            values={"name": name},
         )
 
     parser.StartElementHandler = start
@@ -189,11 +203,13 @@ def run_expat(text: str | bytes, file: str, handler: Handler) -> None:
             reason = f"the byte 0x{byte.hex()} at column {error.offset + 1} is not UTF-8"
             hint = f"Save the file as UTF-8, or state its encoding in line 1: {_DECLARATION}"
         raise DescriptionError(
-            reason, origin=Origin(file=file, line=error.lineno), hint=hint
+            reason, code=codes.XML_MALFORMED, origin=Origin(file=file, line=error.lineno), hint=hint
         ) from error
     except (ValueError, LookupError) as error:  # encodings that expat or Python do not know
         raise DescriptionError(
-            f"the text cannot be decoded: {error}", origin=Origin(file=file, line=1)
+            f"the text cannot be decoded: {error}",
+            code=codes.XML_MALFORMED,
+            origin=Origin(file=file, line=1),
         ) from error
     finally:
         # The handlers refer to the parser: all that was read would wait for Python's collector.
@@ -234,11 +250,11 @@ def _explain(error: expat.ExpatError, still_open: list[tuple[str, int]]) -> tupl
     column = error.offset + 1
     inner = f"<{still_open[-1][0]}> of line {still_open[-1][1]}" if still_open else ""
     if error.code == codes[expat.errors.XML_ERROR_TAG_MISMATCH]:
-        return f"a closing tag that does not fit: {inner} is still open", None
+        return f"the closing tag does not match: {inner} is still open", None
     if error.code == codes[expat.errors.XML_ERROR_NO_ELEMENTS]:
         if inner:
             return f"the file ends while {inner} is still open", None
-        return "is not XML: there is no element in it", None
+        return "is not XML: it contains no element", None
     if error.code == codes[expat.errors.XML_ERROR_SYNTAX] and not still_open:
         return "is not XML", "A description begins with <robot> or <sdf>."
     if error.code in (
@@ -247,14 +263,14 @@ def _explain(error: expat.ExpatError, still_open: list[tuple[str, int]]) -> tupl
     ):
         return (
             f"malformed XML at column {column}: {text}",
-            "In text and attribute values, & is written &amp; and < is written &lt;.",
+            "In text and attribute values, write & as &amp; and < as &lt;.",
         )
     if error.code == codes[expat.errors.XML_ERROR_MISPLACED_XML_PI]:
-        return "<?xml …?> must be the very first thing in the file", (
-            "Delete what stands before it, blank lines included."
+        return "<?xml …?> must come first in the file", (
+            "Delete everything before it, including blank lines."
         )
     if error.code == codes[expat.errors.XML_ERROR_JUNK_AFTER_DOC_ELEMENT]:
-        return "there is something after the end of the root element", None
+        return "the file continues after the end of the root element", None
     if error.code == codes[expat.errors.XML_ERROR_DUPLICATE_ATTRIBUTE]:
-        return "an attribute is given twice in one element", None
+        return "an attribute occurs twice in one element", None
     return f"malformed XML at column {column}: {text}", None

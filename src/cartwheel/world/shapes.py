@@ -161,7 +161,7 @@ def _pixels(image: Path | bytes, _changed: int) -> Any:
         small = thumbnail(image, _LARGEST_TEXTURE)
     except PictureError as error:
         # Made anew: the one that was raised refers to frames that hold the picture.
-        return PictureError(error.name, error.reason, error.hint)
+        return PictureError(error.name, error.reason, error.hint, code=error.code)
     return np.ascontiguousarray(np.asarray(small)[::-1])
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from typing import Any
 
+from cartwheel.codes.files import EXPANSION_TOO_LARGE, EXPRESSION_INVALID
 from cartwheel.errors import DescriptionError
 
 MAX_CHARACTERS = 1_000_000
@@ -28,6 +29,14 @@ _LOOK = 1000
 
 class ExpressionError(DescriptionError):
     """An expression that is not allowed, or a value that is too large."""
+
+    code = EXPRESSION_INVALID
+
+
+class TooLargeError(ExpressionError):
+    """An expansion or a value that exceeds a limit."""
+
+    code = EXPANSION_TOO_LARGE
 
 
 class Budget:
@@ -64,9 +73,9 @@ class Budget:
             ExpressionError: As `spend`.
         """
         if self._operations > MAX_OPERATIONS:
-            raise ExpressionError(f"the xacro needs more than {MAX_OPERATIONS:,} operations")
+            raise TooLargeError(f"the xacro needs more than {MAX_OPERATIONS:,} operations")
         if time.thread_time() > self._end:
-            raise ExpressionError(f"the xacro takes more than {self._seconds:g} s to expand")
+            raise TooLargeError(f"the xacro takes more than {self._seconds:g} s to expand")
 
     def make(self, size: int) -> None:
         """Counts characters that were made.
@@ -76,7 +85,7 @@ class Budget:
         """
         self._total += size
         if self._total > MAX_TOTAL:
-            raise ExpressionError(f"the xacro makes more than {MAX_TOTAL:,} characters")
+            raise TooLargeError(f"the xacro makes more than {MAX_TOTAL:,} characters")
 
     def text(self, length: int) -> None:
         """Counts a text before it is made.
@@ -85,7 +94,7 @@ class Budget:
             ExpressionError: It is too long.
         """
         if length > MAX_CHARACTERS:
-            raise ExpressionError(f"the text has more than {MAX_CHARACTERS:,} characters")
+            raise TooLargeError(f"the text has more than {MAX_CHARACTERS:,} characters")
         self.make(length)
 
     def items(self, count: int) -> None:
@@ -152,7 +161,7 @@ class Budget:
             if isinstance(each, str):
                 characters += len(each)
                 if characters > MAX_CHARACTERS:
-                    raise ExpressionError(f"the value has more than {MAX_CHARACTERS:,} characters")
+                    raise TooLargeError(f"the value has more than {MAX_CHARACTERS:,} characters")
                 continue
             if isinstance(each, self.opaque):
                 raise ExpressionError("a namespace is not a value")
@@ -163,7 +172,7 @@ class Budget:
             else:
                 continue
             if count > MAX_ITEMS:
-                raise ExpressionError(f"the value has more than {MAX_ITEMS:,} items")
+                raise TooLargeError(f"the value has more than {MAX_ITEMS:,} items")
             if isinstance(each, dict):
                 left.extend(dict.keys(each))
                 left.extend(dict.values(each))
@@ -181,7 +190,7 @@ def room(count: int) -> None:
         ExpressionError: They are too many.
     """
     if count > MAX_ITEMS:
-        raise ExpressionError(f"the list has more than {MAX_ITEMS:,} items")
+        raise TooLargeError(f"the list has more than {MAX_ITEMS:,} items")
 
 
 def bits(count: int) -> None:
@@ -191,4 +200,4 @@ def bits(count: int) -> None:
         ExpressionError: They are too many.
     """
     if count > MAX_BITS:
-        raise ExpressionError(f"the number has more than {MAX_BITS} bits")
+        raise TooLargeError(f"the number has more than {MAX_BITS} bits")

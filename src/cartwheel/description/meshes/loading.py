@@ -17,6 +17,7 @@ from pathlib import Path
 
 import numpy as np
 
+from cartwheel.codes.files import FILE_MISSING
 from cartwheel.description import model
 from cartwheel.description.meshes.dae import read_dae
 from cartwheel.description.meshes.generic import read_with_trimesh
@@ -34,7 +35,7 @@ from cartwheel.description.meshes.submesh import (
     unique_rows,
 )
 from cartwheel.description.regular import read_regular
-from cartwheel.errors import Origin, suggestion
+from cartwheel.errors import Origin, meant, suggestion
 
 __all__ = ["MeshError", "Submesh", "convex_hull_input", "load_mesh", "mesh_notes", "standing_parts"]
 
@@ -61,7 +62,7 @@ def load_mesh(mesh: model.Mesh, *, origin: Origin | None = None) -> tuple[Submes
     """
     # Below and above these a single-precision coordinate is nothing, or without an end.
     if not all(1e-30 < abs(factor) < 1e30 for factor in mesh.scale):
-        raise MeshError(mesh.path, f"scale {mesh.scale} leaves nothing of it", origin=origin)
+        raise MeshError(mesh.path, f"the scale {mesh.scale} makes it vanish", origin=origin)
     submeshes = _loaded(mesh.path, origin).submeshes
     if mesh.submesh is not None:
         submeshes = _select(mesh, submeshes, origin)
@@ -116,14 +117,14 @@ def _select(
         part for part in submeshes if part.geometry == mesh.submesh
     )
     if not chosen:
+        assert mesh.submesh is not None
+        known = sorted({name for part in submeshes for name in (part.name, part.geometry)} - {""})
         raise MeshError(
             mesh.path,
             f'has no submesh "{mesh.submesh}"',
             origin=origin,
-            hint=suggestion(
-                mesh.submesh or "",
-                {name for part in submeshes for name in (part.name, part.geometry)} - {""},
-            ),
+            hint=suggestion(mesh.submesh, known),
+            meant=meant(mesh.submesh, known),
         )
     if not mesh.center_submesh:
         return chosen
@@ -137,9 +138,11 @@ def _loaded(path: Path, origin: Origin | None) -> _Loaded:
         status = path.stat()
         return _read(path, status.st_mtime_ns, status.st_size)
     except MeshError as error:
-        raise MeshError(path, error.reason, origin=origin, hint=error.hint) from error
+        raise MeshError(
+            path, error.reason, code=error.code, origin=origin, hint=error.hint, meant=error.meant
+        ) from error
     except FileNotFoundError:
-        raise MeshError(path, "does not exist", origin=origin) from None
+        raise MeshError(path, "does not exist", code=FILE_MISSING, origin=origin) from None
     except OSError as error:
         raise MeshError(path, f"cannot be read: {error.strerror}", origin=origin) from error
 
@@ -152,13 +155,13 @@ def _read(path: Path, _mtime_ns: int, size: int) -> _Loaded:
     if reader is None:
         known = ", ".join(sorted(_READERS))
         raise MeshError(
-            path, f'format "{kind}" is not known', hint=f"Convert it to one of: {known}."
+            path, f'the format "{kind}" is not supported', hint=f"Convert it to one of: {known}."
         )
     if not size:
         raise MeshError(path, "is empty")
     if size > MOST_BYTES:
         raise MeshError(
-            path, f"has {size >> 20} MiB, at most {MOST_BYTES >> 20} are read", hint=_COARSER
+            path, f"is {size >> 20} MiB large; the limit is {MOST_BYTES >> 20} MiB", hint=_COARSER
         )
     notes: list[str] = []
     try:
@@ -172,7 +175,7 @@ def _read(path: Path, _mtime_ns: int, size: int) -> _Loaded:
     count = sum(len(part.faces) for part in submeshes)
     if count > MOST_TRIANGLES:
         raise MeshError(
-            path, f"has {count} triangles, at most {MOST_TRIANGLES} are read", hint=_COARSER
+            path, f"has {count} triangles; the limit is {MOST_TRIANGLES}", hint=_COARSER
         )
     return _Loaded(tuple(submeshes), tuple(notes))
 

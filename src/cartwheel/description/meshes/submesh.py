@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cartwheel.errors import DescriptionError, Origin
+from cartwheel.codes.files import MESH_UNREADABLE
+from cartwheel.errors import Code, DescriptionError, Origin
 
 if TYPE_CHECKING:
     from cartwheel.description.model import Rgba
@@ -29,16 +30,34 @@ class MeshError(DescriptionError):
     Args:
         path: The file.
         reason: What is wrong with it, without its name.
-        origin: The element that asks for it.
+        code: Where it is not `MESH_UNREADABLE`.
+        origin: The element that names it.
         hint: The likely fix.
+        meant: The submesh that was likely meant, where one is unknown.
     """
 
+    code = MESH_UNREADABLE
+
     def __init__(
-        self, path: Path, reason: str, *, origin: Origin | None = None, hint: str | None = None
+        self,
+        path: Path,
+        reason: str,
+        *,
+        code: Code | None = None,
+        origin: Origin | None = None,
+        hint: str | None = None,
+        meant: str = "",
     ) -> None:
         self.path = path
         self.reason = reason
-        super().__init__(f"mesh {path}: {reason}", origin=origin, hint=hint)
+        self.meant = meant
+        super().__init__(
+            f"mesh {path}: {reason}",
+            code=code,
+            origin=origin,
+            hint=hint,
+            values={"kind": "mesh", "name": str(path), "meant": meant},
+        )
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

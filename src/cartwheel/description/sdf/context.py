@@ -1,4 +1,4 @@
-"""What all readers of one SDF document share: its version, where its files lie, what is told."""
+"""What all readers of one SDF document share: its version, its files, its diagnostics."""
 
 from __future__ import annotations
 
@@ -8,8 +8,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from cartwheel.codes import tags as codes
+from cartwheel.codes.files import SDF_VERSION
 from cartwheel.description.numbers import LARGEST, position
-from cartwheel.errors import DescriptionError, Diagnostic, Origin, Severity, suggestion
+from cartwheel.errors import DescriptionError, Diagnostic, Origin, meant, suggestion
 from cartwheel.geometry import Pose, Quat, quat_normalize
 
 if TYPE_CHECKING:
@@ -37,27 +39,32 @@ class Context:
     including: tuple[Path, ...] = ()
     """The files whose ``<include>`` led here, outermost first."""
 
-    def tell(self, severity: Severity, message: str, origin: Origin | None) -> None:
+    def report(self, diagnostic: Diagnostic) -> None:
         """Adds a diagnostic."""
-        self.diagnostics.append(Diagnostic(severity=severity, message=message, origin=origin))
+        self.diagnostics.append(diagnostic)
 
 
 def read_version(root: Node) -> Version:
     """The version of an ``<sdf>`` root.
 
     Raises:
-        DescriptionError: there is none, or one whose spelling is another.
+        DescriptionError: It is missing, malformed or too old.
     """
     text = root.get("version") or ""
     match = re.fullmatch(r"\s*(\d+)\.(\d+)\s*", text)
     if match and (int(match[1]), int(match[2])) < OLDEST:
         raise root.fail(
-            f'SDF version "{text}" of <{root.tag}> is too old: 1.0 to 1.11 are understood',
+            f'the SDF version "{text}" is too old: 1.0 to 1.12 are supported',
             'Convert it with "gz sdf -c" of Gazebo Classic.',
+            code=SDF_VERSION,
+            values={"stated": text},
         )
     if not match:
         raise root.fail(
-            f'<sdf> has no usable version, but "{text}"', 'Write version="1.6", for example.'
+            f'<sdf> has the invalid version "{text}"' if text else "<sdf> has no version",
+            'Write version="1.6", for example.',
+            code=SDF_VERSION,
+            values={"stated": text},
         )
     return (int(match[1]), int(match[2]))
 
@@ -71,10 +78,13 @@ def read_pose(node: Node | None) -> Pose:
     in_degrees = node.boolean_of("degrees", False)
     if notation not in _NOTATIONS:
         raise node.fail(
-            f'rotation_format "{notation}" is not known', suggestion(notation, _NOTATIONS)
+            f'the rotation_format "{notation}" is unknown',
+            suggestion(notation, _NOTATIONS),
+            code=codes.TYPE_UNKNOWN,
+            values={"name": notation, "meant": meant(notation, _NOTATIONS)},
         )
     if quaternion and in_degrees:
-        raise node.fail("a quaternion has no degrees", 'Leave degrees="true" out.')
+        raise node.fail("a quaternion has no degrees", 'Remove degrees="true".')
     if not node.text.strip():
         return Pose()
     if quaternion:
@@ -90,7 +100,12 @@ def read_pose(node: Node | None) -> Pose:
     else:
         # Gazebo Classic reads what is there.
         values = (*node.vector(len(words)), 0.0, 0.0, 0.0, 0.0, 0.0)[:6]
-        node.notes = (f"pose has {len(words)} numbers, not 6: what is missing is 0",)
+        incomplete = codes.VALUE_IGNORED.diagnostic(
+            f"the pose has {len(words)} of 6 numbers: 0 is used for the others",
+            origin=node.origin,
+            values={"stated": node.text},
+        )
+        node.notes = (incomplete,)
     angles = values[3:]
     if in_degrees:
         angles = tuple(math.radians(angle) for angle in angles)
@@ -119,7 +134,12 @@ def require_name(node: Node) -> str:
     """The name of an element, which must neither be empty nor one that SDF keeps for itself."""
     name = node.require("name").strip()
     if name.startswith("__") and name.endswith("__"):
-        raise node.fail(f'the name "{name}" is reserved', "Choose one without the underscores.")
+        raise node.fail(
+            f'the name "{name}" is reserved',
+            "Choose one without the underscores.",
+            code=codes.NAME_TAKEN,
+            values={"name": name},
+        )
     return name
 
 
@@ -127,20 +147,22 @@ def positive(node: Node, what: str) -> float:
     """The text as a number above zero that a length can be."""
     value = node.number()
     if value <= 0:
-        raise node.fail(f"{what} must be above 0, but is {node.text}")
+        raise node.fail(f"{what} must be above 0 (got {node.text})")
     if value > LARGEST:
-        raise node.fail(f"{what} must be at most {LARGEST:g}, but is {node.text}")
+        raise node.fail(f"{what} must be at most {LARGEST:g} (got {node.text})")
     return value
 
 
 def check_unique(kind: str, names: list[tuple[str, Origin]]) -> None:
-    """Refuses a name given twice, telling where it was first used."""
+    """Refuses a name that occurs twice; the hint names the first place."""
     seen: dict[str, Origin] = {}
     for name, origin in names:
         if name in seen:
             raise DescriptionError(
-                f'{kind} "{name}" exists twice',
+                f'the {kind} "{name}" exists twice',
+                code=codes.NAME_TAKEN,
                 origin=origin,
-                hint=f"The first is at {seen[name]}.",
+                hint=f"The first one is at {seen[name]}.",
+                values={"name": name},
             )
         seen[name] = origin

@@ -8,7 +8,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from cartwheel.errors import DescriptionError, Origin, suggestion
+from cartwheel.codes import tags as codes
+from cartwheel.errors import DescriptionError, Origin, meant, suggestion
 from cartwheel.geometry import Pose
 
 MODEL = "__model__"
@@ -62,8 +63,10 @@ class Frames:
             first = self._frames[name]
             raise DescriptionError(
                 f'{kind} "{name}" has the name of another {first.kind} of this {self.kind}',
+                code=codes.NAME_TAKEN,
                 origin=origin,
-                hint=f"The first is at {first.origin}.",
+                hint=f"The first one is at {first.origin}.",
+                values={"name": name},
             )
         self._frames[name] = _Frame(kind, pose, relative_to, attached_to, origin)
 
@@ -101,12 +104,17 @@ class Frames:
             if name in ("", MODEL):
                 if self.default_link is None:
                     raise DescriptionError(
-                        f'{self.kind} "{self.name}" has no link to attach to', origin=origin
+                        f'{self.kind} "{self.name}" has no link to attach to',
+                        code=codes.MODEL_EMPTY,
+                        origin=origin,
+                        values={"name": self.name},
                     )
                 return self.default_link
             if name in seen:
                 raise DescriptionError(
                     f"frames are attached to each other in a circle: {' -> '.join([*seen, name])}",
+                    code=codes.FRAMES_CIRCULAR,
+                    values={"names": (*seen, name)},
                     origin=origin,
                 )
             seen.append(name)
@@ -163,7 +171,10 @@ class Frames:
         if name in asking:
             circle = " -> ".join([*asking[asking.index(name) :], name])
             raise DescriptionError(
-                f"poses are relative to each other in a circle: {circle}", origin=frame.origin
+                f"poses are relative to each other in a circle: {circle}",
+                code=codes.FRAMES_CIRCULAR,
+                origin=frame.origin,
+                values={"names": (*asking[asking.index(name) :], name)},
             )
         base = frame.relative_to or (frame.attached_to if frame.kind != "link" else "")
         result = self._pose(base, frame.origin, [*asking, name]) @ frame.pose
@@ -185,8 +196,10 @@ class Frames:
         frame = self._frames.get(name)
         if frame is None:
             raise DescriptionError(
-                f'frame "{name}" does not exist in {self.kind} "{self.name}"',
+                f'the frame "{name}" does not exist in {self.kind} "{self.name}"',
+                code=codes.NAME_UNKNOWN,
                 origin=origin,
                 hint=suggestion(name, self.names()),
+                values={"name": name, "meant": meant(name, self.names())},
             )
         return frame

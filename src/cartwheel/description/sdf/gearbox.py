@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from cartwheel.codes.tags import ELEMENT_LEFT_OUT
 from cartwheel.description import numbers
 from cartwheel.description.model import Joint, Mimic
 from cartwheel.description.sdf.context import Context
@@ -24,7 +25,7 @@ def mesh_gears(
     Args:
         nodes: The gearbox joints, and what their frames are called.
         joints: All others of the model.
-        ctx: The document's; told of what cannot be geared.
+        ctx: The document's; takes a warning for each gearbox without effect.
         frames: The model's.
     """
     for node, frame in nodes:
@@ -45,20 +46,24 @@ def mesh_gears(
             ends.append(_hinge(joints, link, reference))
         name = node.attributes.get("name", "")
         if ends[0] is None or ends[1] is None:
-            ctx.tell(
-                "warning",
-                f'gearbox joint "{name}" has no effect: its links hang on the '
-                f'gearbox_reference_body "{reference}" by no hinge each',
-                node.origin,
+            ctx.report(
+                ELEMENT_LEFT_OUT.diagnostic(
+                    f'the gearbox joint "{name}" has no effect: a hinge must join each of its '
+                    f'links to the gearbox_reference_body "{reference}"',
+                    origin=node.origin,
+                    values={"tag": "joint", "name": name},
+                )
             )
             continue
         first, second = ends[0], ends[1]
         if second[0].mimic is not None:
-            ctx.tell(
-                "warning",
-                f'gearbox joint "{name}" has no effect: joint "{second[0].name}" follows '
-                "another already",
-                node.origin,
+            ctx.report(
+                ELEMENT_LEFT_OUT.diagnostic(
+                    f'the gearbox joint "{name}" has no effect: joint "{second[0].name}" already '
+                    "follows another one",
+                    origin=node.origin,
+                    values={"tag": "joint", "name": name},
+                )
             )
             continue
         in_model = frames.pose(frame, node.origin)

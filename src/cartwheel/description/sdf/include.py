@@ -6,7 +6,9 @@ import contextlib
 from dataclasses import dataclass
 from pathlib import Path
 
+from cartwheel.codes import files, tags
 from cartwheel.description import fuel
+from cartwheel.description.losses import loss
 from cartwheel.description.model import PluginTag
 from cartwheel.description.sdf.context import MAX_INCLUDES, MODERN, Context, read_version
 from cartwheel.description.sdf.oldest import as_modern
@@ -47,13 +49,20 @@ def open_include(node: Node, ctx: Context) -> Included:
     """
     uri = node.child("uri")
     if uri is None:
-        raise NotThereError("<include> has no <uri>", origin=node.origin)
+        raise NotThereError(
+            "<include> has no <uri>",
+            code=tags.TAG_MISSING,
+            origin=node.origin,
+            values={"missing": "uri"},
+        )
     path = _file(uri, ctx).resolve()
     if path in ctx.including or len(ctx.including) >= MAX_INCLUDES:
-        raise node.fail(f'"{uri.text}" includes itself')
+        raise node.fail(f'"{uri.text}" includes itself', code=files.INCLUDE_RECURSIVE)
     root = read_file(path)
     if root.tag not in ("sdf", "gazebo", "robot"):
-        raise root.fail(f"expected <sdf>, but the file begins with <{root.tag}>")
+        raise root.fail(
+            f"expected <sdf>, but the file begins with <{root.tag}>", code=files.NOT_A_DESCRIPTION
+        )
     version = ctx.version if root.tag == "robot" else read_version(root)
     if root.tag != "robot" and version < MODERN:
         root = as_modern(root)
@@ -81,8 +90,14 @@ def _chosen(root: Node, uri: Node) -> Node:
         return chosen
     if (actor := root.child("actor")) is not None:
         actor.mark()
-        raise NotThereError(f'"{uri.text}" is an actor, which is not simulated', origin=uri.origin)
-    raise root.fail("there is neither a <model> nor a <light> to include")
+        raise NotThereError(
+            f'"{uri.text}" is an actor, which is not simulated',
+            code=tags.NOT_SIMULATED,
+            origin=uri.origin,
+        )
+    raise root.fail(
+        "the file has neither a <model> nor a <light> to include", code=files.NOT_A_DESCRIPTION
+    )
 
 
 def _file(uri: Node, ctx: Context) -> Path:
@@ -90,7 +105,13 @@ def _file(uri: Node, ctx: Context) -> Path:
     text = uri.text.strip()
     if not text:
         hint = "Write <uri>model://sun</uri>, for example."
-        raise NotThereError("<uri> is empty", origin=uri.origin, hint=hint)
+        raise NotThereError(
+            "<uri> is empty",
+            code=tags.TAG_MISSING,
+            origin=uri.origin,
+            hint=hint,
+            values={"missing": "uri"},
+        )
     name = fuel.model_name(text)
     if name is not None:
         found = _fuel_model(name, uri, ctx)
@@ -103,7 +124,13 @@ def _file(uri: Node, ctx: Context) -> Path:
                 # Gazebo looks for a bare name in its model folders too.
                 found = ctx.packages.find_model(plain, uri.origin)
             except DescriptionError:
-                raise NotThereError(error.message, origin=uri.origin, hint=error.hint) from error
+                raise NotThereError(
+                    error.message,
+                    code=error.code,
+                    origin=uri.origin,
+                    hint=error.hint,
+                    values=error.values,
+                ) from error
     return _in_folder(found, uri, ctx) if found.is_dir() else found
 
 
@@ -117,8 +144,10 @@ def _fuel_model(name: str, uri: Node, ctx: Context) -> Path:
         except DescriptionError:
             continue
     raise NotThereError(
-        f'"{uri.text}" is on the network; nothing is downloaded',
+        f'"{uri.text}" is on the network, and nothing is downloaded',
+        code=files.FILE_ON_NETWORK,
         origin=uri.origin,
+        values={"kind": "model", "name": uri.text},
         hint='"gz fuel download -u" with its URL puts it into ~/.gz/fuel, where it is found; or '
         f'put the model\'s folder "{name}" where GZ_SIM_RESOURCE_PATH points.',
     )
@@ -133,7 +162,7 @@ def _in_folder(folder: Path, uri: Node, ctx: Context) -> Path:
             versions = read_file(config).all("sdf")
         except DescriptionError as error:
             # What it says is of no use but for the file's name, which has a default.
-            ctx.tell("info", f"the model.config is not read: {error.message}", error.origin)
+            ctx.report(loss(error, "the model.config is ignored", severity="info"))
             versions = []
         for each in versions:
             version = each.get("version") or "0"
@@ -150,6 +179,8 @@ def _in_folder(folder: Path, uri: Node, ctx: Context) -> Path:
     wanted = best[1] if best is not None and best[1] else "model.sdf"
     raise NotThereError(
         f'the folder of "{uri.text}" has no {wanted}',
+        code=files.FILE_MISSING,
         origin=uri.origin,
+        values={"kind": "model", "name": uri.text},
         hint=f"It is {folder}, found by its name.",
     )

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from cartwheel.codes.robot import INERTIA_IMPOSSIBLE, MASS_NOT_POSITIVE
 from cartwheel.description.inertia import HEAVIEST, impossibility, made_possible, principal_moments
 from cartwheel.description.meshes import convex_hull_input, load_mesh
 from cartwheel.description.model import (
@@ -27,7 +28,7 @@ from cartwheel.description.model import (
 )
 from cartwheel.description.outline import solid
 from cartwheel.description.sdf.context import Context
-from cartwheel.errors import DescriptionError, Origin
+from cartwheel.errors import DescriptionError, Origin, Value
 from cartwheel.geometry import Pose, matrix_from_quat
 
 Array = NDArray[np.float64]
@@ -51,9 +52,11 @@ def judged_inertia(link: Link, *, rigid: bool, ctx: Context) -> Inertial | None:
         return None
     if not 0 < i.mass <= HEAVIEST:
         raise DescriptionError(
-            f'the mass of link "{link.name}" must be above 0 and at most {HEAVIEST:g} kg, '
-            f"but is {i.mass:g}",
+            f'the mass of link "{link.name}" must be above 0 and at most {HEAVIEST:g} kg '
+            f"(got {i.mass:g})",
+            code=MASS_NOT_POSITIVE,
             origin=i.origin,
+            values={"link": link.name, "stated": i.mass},
         )
     diagonal, products = i.diagonal, i.products
     if rigid and not any((*diagonal, *products)):
@@ -63,21 +66,29 @@ def judged_inertia(link: Link, *, rigid: bool, ctx: Context) -> Inertial | None:
     if wrong is None:
         return i
     message, hint = f'link "{link.name}": {wrong[0]}', wrong[1]
+    values: dict[str, Value] = {"link": link.name, "moments": moments}
+    unusable = DescriptionError(
+        message, code=INERTIA_IMPOSSIBLE, origin=i.origin, hint=hint, values=values
+    )
     if moments[0] < -1e-9 * moments[2]:
-        raise DescriptionError(message, origin=i.origin, hint=hint)
+        raise unusable
     if not any(moments):
         shape = inertial_of(list(link.collisions), [WATER] * len(link.collisions), i.origin)
         if shape is None:
-            raise DescriptionError(message, origin=i.origin, hint=hint)
+            raise unusable
         # About the stated centre of mass, along the link's axes.
         made = replace(weighing(shape, i.mass), pose=Pose(i.pose.position))
-        here = f"it has that of its collisions here, {made.ixx:.4g}, {made.iyy:.4g}, {made.izz:.4g}"
+        here = f"here it has that of its collisions, {made.ixx:.4g}, {made.iyy:.4g}, {made.izz:.4g}"
     else:
         (ixx, iyy, izz), (ixy, ixz, iyz) = made_possible(diagonal, products)
         made = replace(i, ixx=ixx, iyy=iyy, izz=izz, ixy=ixy, ixz=ixz, iyz=iyz)
         a, b, _ = principal_moments((ixx, iyy, izz), (ixy, ixz, iyz))
         here = f"here the smaller are {a:.4g} and {b:.4g}"
-    ctx.tell("warning", f"{message}; {here}. {hint}", i.origin)
+    ctx.report(
+        INERTIA_IMPOSSIBLE.diagnostic(
+            f"{message}; {here}", origin=i.origin, hint=hint, severity="warning", values=values
+        )
+    )
     return made
 
 

@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
+from cartwheel.codes import robot, tags
 from cartwheel.description import numbers
 from cartwheel.description.model import Axis, Joint, JointType, Mimic, Sensor
 from cartwheel.description.sdf.context import Context, read_pose, reference_of, require_name
 from cartwheel.description.sdf.frames import WORLD, Frames
 from cartwheel.description.sdf.sensors import read_sensor
 from cartwheel.description.xml import Node
-from cartwheel.errors import DescriptionError, suggestion
+from cartwheel.errors import DescriptionError, Value, meant, suggestion
 from cartwheel.geometry import Pose, Vec3, quat_conjugate, rotate
 
 _TYPES: dict[str, JointType] = {
@@ -34,7 +35,9 @@ _ALONG = 0.9
 
 
 class NoLinkError(DescriptionError):
-    """A joint names a link that is not there."""
+    """A joint names a link that does not exist."""
+
+    code = robot.JOINT_LINK_UNKNOWN
 
 
 def add_joint(frames: Frames, node: Node, ctx: Context, joints: list[str]) -> str:
@@ -57,17 +60,30 @@ def add_joint(frames: Frames, node: Node, ctx: Context, joints: list[str]) -> st
         # Until 1.6 a joint could be called as its link, which many a file still does.
         frame = joint_frame(name)
         if ctx.version >= (1, 7):
-            ctx.tell("warning", f'joint "{name}" has the name of a link or frame too', node.origin)
+            ctx.report(
+                tags.NAME_TAKEN.diagnostic(
+                    f'joint "{name}" has the name of a link or frame',
+                    origin=node.origin,
+                    severity="warning",
+                    values={"name": name},
+                )
+            )
     child = node.require_child("child").text.strip()
     if child == WORLD and node.attributes.get("type") == "fixed":
         child = node.text_at("parent").strip()
     if child == WORLD:
-        raise node.fail(f'joint "{name}": the child cannot be the world', "Swap parent and child.")
+        raise node.fail(
+            f'joint "{name}": the world cannot be the child',
+            "Swap parent and child.",
+            code=robot.JOINT_LINK_UNKNOWN,
+            values={"joint": name, "end": "child", "name": WORLD, "meant": ""},
+        )
     if not frames.has(child) and child not in joints:
         raise NoLinkError(
             f'joint "{name}": child link "{child}" does not exist',
             origin=node.origin,
             hint=suggestion(child, frames.names()),
+            values=_unknown_link(name, "child", child, frames),
         )
     frames.add(
         "joint",
@@ -104,31 +120,51 @@ def read_joint(node: Node, ctx: Context, frames: Frames, frame: str) -> Joint | 
         return None
     if kind is None:
         raise node.fail(
-            f'joint "{name}": type "{written}" is not known',
+            f'joint "{name}" has the unknown type "{written}"',
             suggestion(written, [*_TYPES, GEARBOX]),
+            code=robot.JOINT_TYPE_UNKNOWN,
+            values={"joint": name, "name": written, "meant": meant(written, [*_TYPES, GEARBOX])},
         )
     parent = _end(node, "parent", name, frames)
     child = _end(node, "child", name, frames)
     if child == WORLD and kind == "fixed":
         parent, child = WORLD, parent  # it holds either way round
     if child == WORLD:
-        raise node.fail(f'joint "{name}": the child cannot be the world', "Swap parent and child.")
+        raise node.fail(
+            f'joint "{name}": the world cannot be the child',
+            "Swap parent and child.",
+            code=robot.JOINT_LINK_UNKNOWN,
+            values={"joint": name, "end": "child", "name": WORLD, "meant": ""},
+        )
     if parent == child:
-        raise node.fail(f'joint "{name}" joins link "{child}" to itself')
+        raise node.fail(
+            f'joint "{name}" joins link "{child}" to itself',
+            code=robot.KINEMATIC_LOOP,
+            values={"joint": name},
+        )
     in_model = frames.pose(frame, node.origin)
     axis, axis2 = node.child("axis"), node.child("axis2")
     first = Axis()
     if kind not in _WITHOUT_AXIS and axis is None:
-        ctx.tell(
-            "warning", f'joint "{name}" has no <axis>: z is taken, SDF\'s default', node.origin
+        ctx.report(
+            tags.DEFAULT_USED.diagnostic(
+                f'joint "{name}" has no <axis>, so SDF\'s default is used, z',
+                origin=node.origin,
+                values={"joint": name, "missing": "axis"},
+            )
         )
     if axis is not None:
         first = _axis(axis, name, ctx, frames, in_model)
         if kind in _WITHOUT_AXIS:
             # Nor does Gazebo heed it: a ball with damping there turns freely.
             first = Axis()
-            told = f'joint "{name}": a {written} joint needs no <axis>, which has no effect'
-            ctx.tell("info", told, axis.origin)
+            ctx.report(
+                tags.NOT_SIMULATED.diagnostic(
+                    f'joint "{name}": the <axis> of a {written} joint has no effect',
+                    origin=axis.origin,
+                    values={"joint": name, "tag": "axis"},
+                )
+            )
     second = None
     if kind == "universal":
         if axis2 is not None:
@@ -137,7 +173,13 @@ def read_joint(node: Node, ctx: Context, frames: Frames, frame: str) -> Joint | 
             along_y = abs(first.xyz[1]) > _ALONG
             second = Axis(xyz=(1.0, 0.0, 0.0) if along_y else (0.0, 1.0, 0.0))
             taken = "x" if along_y else "y"
-            ctx.tell("warning", f'joint "{name}" has no <axis2>: {taken} is taken', node.origin)
+            ctx.report(
+                tags.DEFAULT_USED.diagnostic(
+                    f'joint "{name}" has no <axis2>, so {taken} is used',
+                    origin=node.origin,
+                    values={"joint": name, "missing": "axis2"},
+                )
+            )
     mimic = _mimic(axis) if axis is not None else None
     ode = node.find("physics/ode")
     cfm, erp, feedback, damper = None, None, False, False
@@ -151,7 +193,14 @@ def read_joint(node: Node, ctx: Context, frames: Frames, frame: str) -> Joint | 
         if suspension is not None:
             suspension.mark()
             if suspension.children:
-                ctx.tell("warning", f'joint "{name}": <suspension> is rigid', suspension.origin)
+                ctx.report(
+                    tags.NOT_SIMULATED.diagnostic(
+                        f'joint "{name}": <suspension> has no effect, it is rigid here',
+                        origin=suspension.origin,
+                        severity="warning",
+                        values={"joint": name, "tag": "suspension"},
+                    )
+                )
     provide = node.find("physics/provide_feedback")
     if provide is not None:
         feedback = provide.boolean()
@@ -194,7 +243,11 @@ def _end(node: Node, tag: str, joint: str, frames: Frames) -> str:
     part = node.require_child(tag)
     name = part.text.strip()
     if not name:
-        raise part.fail(f'joint "{joint}": <{tag}> is empty')
+        raise part.fail(
+            f'joint "{joint}": <{tag}> is empty',
+            code=tags.TAG_MISSING,
+            values={"joint": joint, "missing": tag},
+        )
     if name == WORLD:
         return WORLD
     try:
@@ -206,7 +259,12 @@ def _end(node: Node, tag: str, joint: str, frames: Frames) -> str:
             f'joint "{joint}": {tag} link "{name}" does not exist',
             origin=part.origin,
             hint=suggestion(name, frames.names()),
+            values=_unknown_link(joint, tag, name, frames),
         ) from error
+
+
+def _unknown_link(joint: str, end: str, name: str, frames: Frames) -> dict[str, Value]:
+    return {"joint": joint, "end": end, "name": name, "meant": meant(name, frames.names())}
 
 
 def _axis(node: Node, joint: str, ctx: Context, frames: Frames, in_model: Pose) -> Axis:
@@ -214,7 +272,11 @@ def _axis(node: Node, joint: str, ctx: Context, frames: Frames, in_model: Pose) 
     xyz: Vec3 = xyz_node.vec3() if xyz_node is not None else (0.0, 0.0, 1.0)
     length = math.sqrt(sum(c * c for c in xyz))
     if length < 1e-9:
-        raise node.fail(f'joint "{joint}": the axis 0 0 0 has no direction')
+        raise node.fail(
+            f'joint "{joint}": the axis 0 0 0 has no direction',
+            code=robot.AXIS_ZERO,
+            values={"joint": joint},
+        )
     xyz = (xyz[0] / length, xyz[1] / length, xyz[2] / length)
     expressed_in = (xyz_node.get("expressed_in") or "").strip() if xyz_node is not None else ""
     # Until 1.4 axes were always in the model's frame; 1.5 and 1.6 say so where they are.
@@ -226,7 +288,9 @@ def _axis(node: Node, joint: str, ctx: Context, frames: Frames, in_model: Pose) 
     upper = _limit(node.optional_number_at("limit/upper", infinite=True))
     if lower is not None and upper is not None and lower > upper:
         raise node.fail(
-            f'joint "{joint}": the lower limit {lower:g} is above the upper limit {upper:g}'
+            f'joint "{joint}": the lower limit {lower:g} is above the upper limit {upper:g}',
+            code=robot.LIMIT_REVERSED,
+            values={"joint": joint, "lower": lower, "upper": upper},
         )
     return Axis(
         xyz=xyz,
@@ -278,5 +342,5 @@ def _pitch(node: Node) -> float:
         return metres.number()
     value = old.number() if old is not None else 1.0
     if value == 0:
-        raise node.fail("a thread_pitch of 0 is no screw")
+        raise node.fail("the thread_pitch of a screw must not be 0")
     return -2 * math.pi / value

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Literal
 
+from cartwheel.codes.tags import TYPE_UNKNOWN
 from cartwheel.description.model import Light
 from cartwheel.description.sdf.context import read_rgba, require_name
 from cartwheel.description.xml import Node
@@ -24,8 +25,10 @@ def read_light(node: Node, pose: Pose) -> Light:
     kind = kinds.get(node.require("type").strip())
     if kind is None:
         raise node.fail(
-            f'light type "{node.attributes["type"]}" is not known',
-            "Allowed are directional, point and spot.",
+            f'the light type "{node.attributes["type"]}" is unknown',
+            "Write directional, point or spot.",
+            code=TYPE_UNKNOWN,
+            values={"name": node.attributes["type"]},
         )
     diffuse, specular = node.child("diffuse"), node.child("specular")
     direction = node.vec3_at("direction", (0.0, 0.0, -1.0))

@@ -7,6 +7,8 @@ from collections.abc import Callable, Iterable
 from dataclasses import replace
 from typing import Any, TypeVar
 
+from cartwheel.codes import robot, tags
+from cartwheel.description.losses import loss
 from cartwheel.description.model import (
     Collision,
     Inertial,
@@ -31,7 +33,7 @@ from cartwheel.description.sdf.sensors import read_sensor
 from cartwheel.description.sdf.shapes import read_shape
 from cartwheel.description.sdf.surface import read_surface
 from cartwheel.description.xml import Node
-from cartwheel.errors import DescriptionError
+from cartwheel.errors import DescriptionError, Diagnostic
 from cartwheel.geometry import Pose, rotate
 
 _WITHOUT_COUNTERPART = (
@@ -72,9 +74,8 @@ def read_link(node: Node, ctx: Context, frames: Frames) -> Link:
             carrier = frames.link_of(frame, part.origin)
             there = frames.pose(carrier, part.origin).inverse() @ frames.pose(frame, part.origin)
         except DescriptionError as error:
-            hint = f" {error.hint}" if error.hint else ""
-            message = f"{error.message}: fdir1 is taken in the collision's own axes.{hint}"
-            ctx.tell("warning", message, part.origin)
+            consequence = "fdir1 counts in the collision's own axes"
+            ctx.report(loss(error, consequence, severity="warning", origin=part.origin))
             del fields["fdir1_frame"]
             return
         fields["fdir1_frame"] = carrier
@@ -90,7 +91,7 @@ def read_link(node: Node, ctx: Context, frames: Frames) -> Link:
         for part in node.all(tag):
             part.mark()
             if part.children or part.text.strip().lower() in ("true", "1"):
-                ctx.tell("warning", f"<{tag}> is not simulated", part.origin)
+                ctx.report(_not_simulated(f"<{tag}> is not simulated", part))
     decay = node.child("velocity_decay")
     return Link(
         name=name,
@@ -123,10 +124,14 @@ def named_apart(kind: str, parts: Iterable[P], ctx: Context) -> list[P]:
         if part is not None and part.name in seen:
             numbered = (f"{part.name}_{number}" for number in itertools.count(1))
             name = next(each for each in numbered if each not in taken)
-            ctx.tell(
-                "warning",
-                f'{kind} "{part.name}" has the same name as another: it is renamed "{name}" here',
-                part.origin,
+            ctx.report(
+                tags.NAME_TAKEN.diagnostic(
+                    f'{kind} "{part.name}" has the same name as another one, and is renamed '
+                    f'"{name}"',
+                    origin=part.origin,
+                    severity="warning",
+                    values={"name": part.name, "renamed": name},
+                )
             )
             mine = replace(part, name=name)
         if mine is not None:
@@ -149,16 +154,18 @@ def _inertial(link: Node, ctx: Context, place: Place, collisions: list[Collision
     water = node.child("fluid_added_mass")
     if water is not None:
         water.mark()
-        ctx.tell("warning", "<fluid_added_mass> is not simulated", water.origin)
+        ctx.report(_not_simulated("<fluid_added_mass> is not simulated", water))
     tensor = node.child("inertia")
     if tensor is not None and any("nan" in each.text.lower() for each in tensor.children):
         # What a model editor wrote for a mesh whose volume it could not tell.
         tensor.mark()
-        ctx.tell(
-            "warning",
-            f'the inertia of link "{link.attributes.get("name")}" is not a number: '
-            "SDF's default counts, 1 kg m²",
-            tensor.origin,
+        name = link.attributes.get("name", "")
+        ctx.report(
+            tags.DEFAULT_USED.diagnostic(
+                f'the inertia of link "{name}" is not a number, so SDF\'s default is used, 1 kg m²',
+                origin=tensor.origin,
+                values={"link": name, "missing": "inertia"},
+            )
         )
         tensor = None
 
@@ -188,16 +195,23 @@ def _auto_inertial(link: Node, node: Node, ctx: Context, collisions: list[Collis
     densities = [stated.get(each.name, default) for each in collisions]
     found = inertial_of(collisions, densities, node.origin)
     if found is None:
-        ctx.tell(
-            "warning",
-            f'link "{link.attributes.get("name")}" has no solid collision to take its inertia '
-            "from: 1 kg and 1 kg m² are used",
-            node.origin,
+        name = link.attributes.get("name", "")
+        ctx.report(
+            tags.DEFAULT_USED.diagnostic(
+                f'link "{name}" has no solid collision to compute its inertia from, so 1 kg and '
+                "1 kg m² are used",
+                origin=node.origin,
+                values={"link": name, "missing": "collision"},
+            )
         )
         return Inertial(mass=1.0, ixx=1.0, iyy=1.0, izz=1.0, origin=node.origin)
     mass = node.number_at("mass", found.mass)
     if mass <= 0:
-        raise node.fail(f"the mass must be above 0, but is {mass:g}")
+        raise node.fail(
+            f"the mass must be above 0 (got {mass:g})",
+            code=robot.MASS_NOT_POSITIVE,
+            values={"stated": mass},
+        )
     return weighing(found, mass)
 
 
@@ -210,7 +224,7 @@ def _visual(node: Node, ctx: Context, place: Place) -> Visual | None:
     pose = place(node)
     for part in node.all("plugin"):
         part.mark()
-        ctx.tell("warning", "a plugin of a visual is not run", part.origin)
+        ctx.report(_not_simulated("plugins of visuals are not run", part))
     shape = read_shape(node, ctx)
     if shape is None:
         return None
@@ -223,6 +237,12 @@ def _visual(node: Node, ctx: Context, place: Place) -> Visual | None:
         cast_shadows=shadows,
         laser_retro=retro,
         origin=node.origin,
+    )
+
+
+def _not_simulated(message: str, node: Node) -> Diagnostic:
+    return tags.NOT_SIMULATED.diagnostic(
+        message, origin=node.origin, severity="warning", values={"tag": node.tag}
     )
 
 

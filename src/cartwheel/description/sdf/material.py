@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from cartwheel.codes import files, tags
+from cartwheel.description.losses import loss
 from cartwheel.description.materials import gazebo_material, unknown_material
 from cartwheel.description.model import Material, Rgba
 from cartwheel.description.sdf.context import Context, read_rgba
@@ -32,7 +34,7 @@ def read_material(node: Node | None, ctx: Context) -> Material:
     if ambient is not None and (
         diffuse == read_rgba(ambient) or (diffuse is None and texture is None)
     ):
-        # Another one stays unread, and is told of.
+        # Another one stays unread, and is reported.
         diffuse = _colour(node, "ambient")
     return Material(
         name=name,
@@ -60,38 +62,55 @@ def _albedo(node: Node, ctx: Context) -> Path | None:
     try:
         return ctx.packages.resolve(image.text, image.origin, what="texture")
     except DescriptionError as error:
-        ctx.tell("warning", error.message, image.origin)
+        ctx.report(error.diagnostic("warning"))
         return None
 
 
 def _scripted(name: str, uris: list[Node], script: Node, ctx: Context) -> Material:
-    """What a named material looks like: Gazebo's own by heart, others by their script."""
+    """What a named material looks like: Gazebo's own are known, others are in their script."""
     known = gazebo_material(name)
     if known is not None:
         return known
     places: list[Path] = []
-    lost: list[str] = []
+    lost: list[DescriptionError] = []
     for uri in uris:
         try:
             places.append(ctx.packages.resolve(uri.text, uri.origin, what="script", folder=True))
         except DescriptionError as error:
-            lost.append(error.message)
+            lost.append(error)
     packages = ctx.packages
     may_read = packages.may_read if packages.reach is not None else lambda _: True
     found = find_script(name, places, may_read)
     if found is None:
-        message = unknown_material(name)
         if places and not name.startswith("Gazebo/"):
-            message = f'the material "{name}" is not in its scripts: the colour stays as it is.'
+            ctx.report(
+                tags.MATERIAL_UNDEFINED.diagnostic(
+                    f'the material "{name}" is not in its scripts: the colour stays as it is',
+                    origin=script.origin,
+                    values={"name": name, "meant": ""},
+                )
+            )
         elif lost and not name.startswith("Gazebo/"):
-            message = f'the material "{name}" was not found, as {lost[0]}'
-        ctx.tell("warning", message, script.origin)
+            ctx.report(
+                loss(
+                    lost[0],
+                    f'the material "{name}" is not known',
+                    of="material",
+                    severity="warning",
+                    origin=script.origin,
+                )
+            )
+        else:
+            ctx.report(unknown_material(name, script.origin))
         return Material(name=name)
     if found.missing is not None:
-        ctx.tell(
-            "warning",
-            f'the texture "{found.missing}" of material "{name}" was not found',
-            script.origin,
+        ctx.report(
+            files.FILE_MISSING.diagnostic(
+                f'the texture "{found.missing}" of material "{name}" does not exist',
+                origin=script.origin,
+                severity="warning",
+                values={"kind": "texture", "name": found.missing, "left_out": "texture"},
+            )
         )
     return Material(
         name=name,

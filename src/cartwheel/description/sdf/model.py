@@ -6,6 +6,8 @@ from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 
+from cartwheel.codes import files, tags
+from cartwheel.description.losses import loss
 from cartwheel.description.model import Element, Joint, Sensor
 from cartwheel.description.sdf.context import (
     Context,
@@ -29,13 +31,15 @@ from cartwheel.description.sdf.parts import add_frame, attach, check_mimic, left
 from cartwheel.description.sdf.sensors import read_plugins
 from cartwheel.description.sdf.unplaced import Model, name_apart
 from cartwheel.description.xml import Node, unread
-from cartwheel.errors import DescriptionError, suggestion
+from cartwheel.errors import DescriptionError, meant, suggestion
 
 MAX_NESTING = 32
 
 
 class NoLinksError(DescriptionError):
-    """A model in which nothing stands."""
+    """A model without links."""
+
+    code = tags.MODEL_EMPTY
 
 
 def read_included(included: Included) -> Model:
@@ -63,7 +67,9 @@ def read_model(node: Node, ctx: Context, included: Included | None = None, depth
         DescriptionError: whatever makes it unusable, with its place.
     """
     if depth > MAX_NESTING:
-        raise node.fail("models are nested too deeply")
+        raise node.fail(
+            f"models are nested more than {MAX_NESTING} deep", code=files.INCLUDE_RECURSIVE
+        )
     name = require_name(node)
     if included is not None and included.name:
         name = included.name
@@ -73,11 +79,14 @@ def read_model(node: Node, ctx: Context, included: Included | None = None, depth
         add_frame(frames, "link", link)
     for gripper in node.all("gripper"):
         gripper.mark()
-        ctx.tell(
-            "warning",
-            "<gripper> has no effect: nothing is attached by touching it. "
-            "libgazebo_grasp_fix.so does that",
-            gripper.origin,
+        ctx.report(
+            tags.NOT_SIMULATED.diagnostic(
+                "<gripper> has no effect: a touch attaches nothing",
+                origin=gripper.origin,
+                hint="The plugin libgazebo_grasp_fix.so attaches objects.",
+                severity="warning",
+                values={"tag": "gripper"},
+            )
         )
     nested = [read_model(each, ctx, depth=depth + 1) for each in node.all("model")]
     for each in node.all("include"):
@@ -85,11 +94,14 @@ def read_model(node: Node, ctx: Context, included: Included | None = None, depth
             found = open_include(each, ctx)
         except NotThereError as missing:
             each.mark()
-            hint = f" {missing.hint}" if missing.hint else ""
-            ctx.tell("error", f"{missing.message}; it is left out.{hint}", missing.origin)
+            ctx.report(loss(missing, "the model is left out", of="include"))
             continue
         if found.node.tag == "light":
-            raise each.fail("a light cannot be included in a model", "Include it in the world.")
+            raise each.fail(
+                "a light cannot be included in a model",
+                "Include it in the world.",
+                code=tags.TAG_MISPLACED,
+            )
         nested.append(read_included(found))
     name_apart((inner for inner in nested if not inner.merge), ctx)
     for inner in nested:
@@ -103,7 +115,7 @@ def read_model(node: Node, ctx: Context, included: Included | None = None, depth
         with _linked(each, ctx):
             joint_nodes.append((each, add_joint(frames, each, ctx, later)))
     for known in frames.names():
-        frames.pose(known, node.origin)  # a circle is told even where nobody needs the pose
+        frames.pose(known, node.origin)  # a circle is an error even where the pose is not needed
     links = [read_link(each, ctx, frames) for each in link_nodes]
     joints: list[Joint] = []
     sensors: list[Sensor] = []
@@ -144,7 +156,9 @@ def read_model(node: Node, ctx: Context, included: Included | None = None, depth
             _hold(model, inner)
     attach(model.links, sensors)
     if not model.links and not model.static:
-        raise NoLinksError(f'model "{name}" has no links', origin=node.origin)
+        raise NoLinksError(
+            f'model "{name}" has no links', origin=node.origin, values={"name": name}
+        )
     names = [joint.name for joint in model.joints]
     for joint in model.joints:
         check_mimic(joint, names)
@@ -153,7 +167,7 @@ def read_model(node: Node, ctx: Context, included: Included | None = None, depth
 
 @contextmanager
 def _linked(node: Node, ctx: Context) -> Iterator[None]:
-    """Tells of a joint that names a link that is not there, and goes on without it.
+    """Reports a joint that names a link that does not exist, and goes on without it.
 
     Gazebo Classic, too, loads the rest.
     """
@@ -195,7 +209,10 @@ def _set_canonical(node: Node, frames: Frames, link_nodes: list[Node], nested: l
     if stated:
         if stated not in frames.names():
             raise node.fail(
-                f'canonical link "{stated}" does not exist', suggestion(stated, frames.names())
+                f'the canonical link "{stated}" does not exist',
+                suggestion(stated, frames.names()),
+                code=tags.NAME_UNKNOWN,
+                values={"name": stated, "meant": meant(stated, frames.names())},
             )
         frames.default_link = frames.link_of(stated, node.origin)
     elif link_nodes:

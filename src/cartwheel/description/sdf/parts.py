@@ -5,13 +5,15 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Sequence
 from dataclasses import replace
 
+from cartwheel.codes.robot import MIMIC_UNKNOWN
+from cartwheel.description.losses import loss
 from cartwheel.description.model import Joint, Link, Sensor
 from cartwheel.description.sdf.context import Context, read_pose, reference_of, require_name
 from cartwheel.description.sdf.frames import Frames
 from cartwheel.description.sdf.inertia import judged_inertia
 from cartwheel.description.sdf.joint import joint_frame
 from cartwheel.description.xml import Node
-from cartwheel.errors import DescriptionError, suggestion
+from cartwheel.errors import DescriptionError, meant, suggestion
 
 
 def frames_of(
@@ -59,10 +61,9 @@ def add_frame(frames: Frames, kind: str, node: Node) -> None:
 
 
 def left_out(node: Node, error: DescriptionError, ctx: Context) -> None:
-    """Tells of an element that does not make sense: it costs itself, and the rest goes on."""
+    """Reports an invalid element, which is left out; the rest goes on."""
     node.mark()
-    hint = f" {error.hint}" if error.hint else ""
-    ctx.tell("error", f"{error.message}: the {node.tag} is left out.{hint}", error.origin)
+    ctx.report(loss(error, f"the {node.tag} is left out", of=node.tag))
 
 
 def attach(links: list[Link], sensors: Iterable[Sensor]) -> None:
@@ -102,10 +103,16 @@ def judge(
 
 
 def check_mimic(joint: Joint, names: Collection[str]) -> None:
-    """Refuses a joint that mimics one that is not there."""
+    """Refuses a joint that mimics one that does not exist."""
     if joint.mimic is not None and joint.mimic.joint not in names:
         raise DescriptionError(
             f'joint "{joint.name}" mimics "{joint.mimic.joint}", which does not exist',
+            code=MIMIC_UNKNOWN,
+            values={
+                "joint": joint.name,
+                "name": joint.mimic.joint,
+                "meant": meant(joint.mimic.joint, names),
+            },
             origin=joint.origin,
             hint=suggestion(joint.mimic.joint, names),
         )

@@ -11,6 +11,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
 
+from cartwheel.codes import files, tags
 from cartwheel.description.model import RobotDescription, WorldDescription
 from cartwheel.description.packages import Packages
 from cartwheel.description.sdf.context import MODERN, NEWEST, Context, read_version
@@ -40,47 +41,64 @@ def read_sdf(
             wrong; names the place and the likely fix.
     """
     if root.tag not in ("sdf", "gazebo"):
-        raise root.fail(f"expected <sdf>, but the file begins with <{root.tag}>")
+        raise root.fail(
+            f"expected <sdf>, but the file begins with <{root.tag}>", code=files.NOT_A_DESCRIPTION
+        )
     including = () if packages.file is None else (Path(packages.file).resolve(),)
     ctx = Context(packages, read_version(root), including=including)
     if ctx.version < MODERN:
         root = as_modern(root)
     if ctx.version > NEWEST:
-        ctx.tell(
-            "info",
-            f"SDF {ctx.version[0]}.{ctx.version[1]} is newer than {NEWEST[0]}.{NEWEST[1]}: "
-            "what is new in it is not understood",
-            root.origin,
+        ctx.report(
+            files.SDF_VERSION.diagnostic(
+                f"SDF {ctx.version[0]}.{ctx.version[1]} is newer than {NEWEST[0]}.{NEWEST[1]}: "
+                "new elements are ignored",
+                origin=root.origin,
+                severity="info",
+                values={"stated": f"{ctx.version[0]}.{ctx.version[1]}"},
+            )
         )
     worlds, models = root.all("world"), root.all("model")
     described: RobotDescription | WorldDescription
     if worlds:
         for further in worlds[1:]:
             further.mark()
-            ctx.tell(
-                "warning",
-                f'one world is run at a time: "{further.attributes.get("name", "")}" is left out',
-                further.origin,
+            name = further.attributes.get("name", "")
+            ctx.report(
+                tags.ELEMENT_LEFT_OUT.diagnostic(
+                    f'only one world runs at a time: "{name}" is left out',
+                    origin=further.origin,
+                    values={"tag": "world", "name": name},
+                )
             )
         if models:
-            raise models[0].fail("a model beside a world", "Put it into the <world>.")
+            raise models[0].fail(
+                "a model beside a world", "Put it into the <world>.", code=tags.TAG_MISPLACED
+            )
         described = read_world(worlds[0], ctx)
     elif len(models) == 1:
         model = _whole(models[0], ctx)
         described = model.describe(model.frames.placed(model.pose, "", model.origin), ctx, text)
         if model.relative_to:
-            ctx.tell(
-                "warning",
-                f'model "{model.name}" is placed relative to "{model.relative_to}", '
-                "which only a world could know",
-                model.origin,
+            ctx.report(
+                tags.NAME_UNKNOWN.diagnostic(
+                    f'model "{model.name}" is placed relative to "{model.relative_to}", '
+                    "which exists only in a world",
+                    origin=model.origin,
+                    severity="warning",
+                    values={"name": model.relative_to, "meant": ""},
+                )
             )
     elif models:
         raise models[1].fail(
-            f"{len(models)} models without a world", "One is a robot; put several into a <world>."
+            f"the file has {len(models)} models without a world",
+            "Put them into a <world>; a file with one model describes a robot.",
+            code=files.WRONG_KIND,
         )
     else:
-        raise root.fail("there is neither a <model> nor a <world> in it")
+        raise root.fail(
+            "the file has neither a <model> nor a <world>", code=files.NOT_A_DESCRIPTION
+        )
     diagnostics = tuple(_distinct([*ctx.diagnostics, *unread(root, HARMLESS)]))
     return replace(described, diagnostics=diagnostics)
 
@@ -90,23 +108,28 @@ def _whole(node: Node, ctx: Context) -> Model:
     try:
         return read_model(node, ctx)
     except DescriptionError as error:
-        lacking = next((told for told in ctx.diagnostics if told.severity == "error"), None)
+        lacking = next((each for each in ctx.diagnostics if each.severity == "error"), None)
         if lacking is None:
             raise
         raise DescriptionError(
-            lacking.message, origin=lacking.origin, hint=f"Without it: {error.message}."
+            lacking.message,
+            code=lacking.code,
+            origin=lacking.origin,
+            hint=f"Without it: {error.message}.",
+            values=lacking.values,
         ) from error
 
 
 def _distinct(diagnostics: Iterable[Diagnostic]) -> Iterable[Diagnostic]:
-    """Each once: a file included ten times has the same to say ten times.
+    """Each once: a file that is included ten times repeats its diagnostics.
 
-    An info is told once, wherever it applies.
+    An info occurs once, wherever it applies.
     """
-    infos: set[str] = set()
-    for told in dict.fromkeys(diagnostics):
-        if told.severity == "info":
-            if told.message in infos:
+    infos: set[tuple[object, ...]] = set()
+    for each in dict.fromkeys(diagnostics):
+        if each.severity == "info":
+            values = tuple(sorted(each.values.items(), key=lambda item: item[0]))
+            if (each.code, each.message, values) in infos:
                 continue
-            infos.add(told.message)
-        yield told
+            infos.add((each.code, each.message, values))
+        yield each

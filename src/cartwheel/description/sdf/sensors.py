@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from cartwheel.codes.tags import TYPE_UNKNOWN
 from cartwheel.description.model import CameraIntrinsics, PluginTag, Sensor
 from cartwheel.description.numbers import LARGEST, within
 from cartwheel.description.sdf.context import read_pose
@@ -52,7 +53,7 @@ def read_sensor(node: Node, link: str, pose: Pose | None = None, name: str = "")
     title = (node.get("name") or "").strip() or name or kind
     update_rate = node.number_at("update_rate", 0.0)
     if update_rate < 0:
-        raise node.fail(f'the update_rate of sensor "{title}" must not be below 0')
+        raise node.fail(f'the update_rate of sensor "{title}" must not be negative')
     cameras = [read_camera(camera) for camera in node.all("camera")]
     mark_known(node)
     contact = node.child("contact")
@@ -89,14 +90,13 @@ def read_camera(node: Node) -> CameraIntrinsics:
     if width < 1 or height < 1 or width * height > MOST_PIXELS:
         wrong = image.child("width" if width < 1 else "height") if image is not None else None
         raise (wrong or node).fail(
-            f"an image has from 1 x 1 to {MOST_PIXELS:,} pixels, "
-            f"but this one has {width:.12g} x {height:.12g}"
+            f"an image must have 1 x 1 to {MOST_PIXELS:,} pixels (got {width:.12g} x {height:.12g})"
         )
     if near < NEAREST or far > LARGEST:
         wrong = clip.child("near" if near < NEAREST else "far") if clip is not None else None
         raise (wrong or node).fail(
-            f"clip near must be at least {NEAREST:g} m and far at most {LARGEST:g} m, "
-            f"but they are {near:g} and {far:g}"
+            f"clip near must be at least {NEAREST:g} m and far at most {LARGEST:g} m "
+            f"(got {near:g} and {far:g})"
         )
     if not near < far:
         wrong = clip.child("near") if clip is not None else None
@@ -142,8 +142,13 @@ def _noise(node: Node | None) -> tuple[float, float]:
     if kind == "none":
         return 0.0, 0.0
     if kind != "gaussian":
-        raise node.fail(f'noise of type "{kind}" is not supported', "There are: none, gaussian.")
+        raise node.fail(
+            f'noise of type "{kind}" is not supported',
+            "Write none or gaussian.",
+            code=TYPE_UNKNOWN,
+            values={"name": kind},
+        )
     mean, stddev = (_bounded(node, name, _LOUDEST) for name in ("mean", "stddev"))
     if stddev < 0:
-        raise node.fail("<stddev> of a noise makes no sense below 0")
+        raise node.fail(f"<stddev> of a noise must not be negative (got {stddev:g})")
     return mean, stddev

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from cartwheel.codes import files, tags
+from cartwheel.description.losses import loss
 from cartwheel.description.meshes import MeshError, load_mesh
 from cartwheel.description.model import (
     Box,
@@ -20,7 +22,7 @@ from cartwheel.description.outline import OutlineError, convex_pieces
 from cartwheel.description.sdf.context import Context, positive
 from cartwheel.description.terrain import ELEVATION_MODELS, TerrainError, heights_of
 from cartwheel.description.xml import Node
-from cartwheel.errors import DescriptionError, suggestion
+from cartwheel.errors import CartwheelError, DescriptionError, Origin, meant, suggestion
 from cartwheel.geometry import Vec3
 
 SHAPES = (
@@ -35,12 +37,18 @@ _FLAT = 1e-3
 def read_shape(owner: Node, ctx: Context) -> Shape | None:
     """The shape of a visual or collision; None where it is empty or its file cannot be used.
 
-    Such a file costs the one shape, not the whole world that it stands in: it is told as an
-    error that others may stop at.
+    Such a file costs the one shape, not the whole world around it: it is reported as an error,
+    at which others may stop.
     """
     geometry = owner.child("geometry")
     if geometry is None:
-        ctx.tell("warning", f"{_label(owner)} has no <geometry>: it is left out", owner.origin)
+        ctx.report(
+            tags.VALUE_IGNORED.diagnostic(
+                f"{_label(owner)} has no <geometry>, and is left out",
+                origin=owner.origin,
+                values={"left_out": owner.tag, "missing": "geometry"},
+            )
+        )
         return None
     for tag in SHAPES:
         node = geometry.child(tag)
@@ -49,24 +57,41 @@ def read_shape(owner: Node, ctx: Context) -> Shape | None:
     else:
         if geometry.children:
             wrong = geometry.children[0].mark()
-            raise wrong.fail(f'geometry "{wrong.tag}" is not known', suggestion(wrong.tag, SHAPES))
-        ctx.tell(
-            "warning", f"{_label(owner)}: <geometry> is empty, so it has no shape", owner.origin
+            raise wrong.fail(
+                f"the geometry <{wrong.tag}> is unknown",
+                suggestion(wrong.tag, SHAPES),
+                code=tags.TYPE_UNKNOWN,
+                values={"name": wrong.tag, "meant": meant(wrong.tag, SHAPES)},
+            )
+        ctx.report(
+            tags.TAG_EMPTY.diagnostic(
+                f"the <geometry> of {_label(owner)} is empty, so it has no shape",
+                origin=owner.origin,
+                values={"tag": "geometry", "left_out": owner.tag},
+            )
         )
         return None
     if tag == "empty":
         return None
     if tag == "image":
         node.mark()
-        ctx.tell("warning", "the shape <image> is not simulated", node.origin)
+        ctx.report(
+            tags.NOT_SIMULATED.diagnostic(
+                "the shape <image> is not simulated",
+                origin=node.origin,
+                severity="warning",
+                values={"tag": "image"},
+            )
+        )
         return None
     if tag in ("mesh", "heightmap"):
         try:
             return _mesh(node, ctx) if tag == "mesh" else _heightmap(node, ctx)
         except _UnusableFileError as missing:
             node.mark()
-            hint = f" {missing.hint}" if missing.hint else ""
-            ctx.tell("error", f"{missing.message}; {_label(owner)} is left out.{hint}", node.origin)
+            ctx.report(
+                loss(missing, f"{_label(owner)} is left out", of=owner.tag, origin=node.origin)
+            )
             return None
     if tag == "polyline":
         return _polyline(geometry.all("polyline"), ctx)
@@ -75,6 +100,17 @@ def read_shape(owner: Node, ctx: Context) -> Shape | None:
 
 class _UnusableFileError(DescriptionError):
     """A file of a shape that is missing or cannot be read."""
+
+    @classmethod
+    def of(cls, error: CartwheelError, origin: Origin) -> _UnusableFileError:
+        """The error of a file, at the element that names it."""
+        return cls(
+            error.message,
+            code=error.code,
+            origin=origin,
+            hint=error.hint,
+            values=error.values,
+        )
 
 
 def _primitive(tag: str, node: Node, ctx: Context) -> Shape:
@@ -98,7 +134,7 @@ def _primitive(tag: str, node: Node, ctx: Context) -> Shape:
 def _measure(shape: Node, tag: str, ctx: Context) -> float:
     node = shape.child(tag)
     if node is None:
-        _tell_default(shape, tag, ctx)
+        _warn_default(shape, tag, ctx)
         return 1.0
     return positive(node, f"a {tag}")
 
@@ -106,20 +142,32 @@ def _measure(shape: Node, tag: str, ctx: Context) -> float:
 def _sizes(shape: Node, tag: str, ctx: Context) -> Vec3:
     node = shape.child(tag)
     if node is None:
-        _tell_default(shape, tag, ctx)
+        _warn_default(shape, tag, ctx)
         return (1.0, 1.0, 1.0)
     x, y, z = node.vec3()
     if shape.tag == "box" and min(x, y, z) == 0 < max(x, y, z):
         # As Gazebo's building editor writes the wall above a door that reaches the ceiling.
-        ctx.tell("warning", f"a box of {node.text} is made {_FLAT * 1e3:g} mm thick", node.origin)
+        ctx.report(
+            tags.VALUE_IGNORED.diagnostic(
+                f"a box of {node.text} becomes {_FLAT * 1e3:g} mm thick",
+                origin=node.origin,
+                values={"stated": node.text},
+            )
+        )
         x, y, z = (max(side, _FLAT) for side in (x, y, z))
     if min(x, y, z) <= 0:
-        raise node.fail(f"every {tag} must be above 0, but they are {node.text}")
+        raise node.fail(f"every {tag} must be above 0 (got {node.text})")
     return (x, y, z)
 
 
-def _tell_default(shape: Node, tag: str, ctx: Context) -> None:
-    ctx.tell("warning", f"<{shape.tag}> has no <{tag}>: SDF's default of 1 m counts", shape.origin)
+def _warn_default(shape: Node, tag: str, ctx: Context) -> None:
+    ctx.report(
+        tags.DEFAULT_USED.diagnostic(
+            f"<{shape.tag}> has no <{tag}>, so SDF's default is used, 1 m",
+            origin=shape.origin,
+            values={"shape": shape.tag, "missing": tag},
+        )
+    )
 
 
 def _plane(node: Node) -> Plane:
@@ -139,46 +187,62 @@ def _polyline(nodes: list[Node], ctx: Context) -> Polyline:
     for node in nodes:
         points = [point.vector(2) for point in node.all("point")]
         if len(points) < 3:
-            raise node.fail(f"a polyline needs three points, but has {len(points)}")
+            raise node.fail(f"a polyline needs three points (got {len(points)})")
         outlines.append(tuple((x, y) for x, y in points))
     heights = [positive(node.require_child("height"), "a height") for node in nodes]
     if any(height != heights[0] for height in heights):
-        ctx.tell(
-            "warning",
-            f"polylines of one geometry have one height: {heights[0]:g} m counts",
-            nodes[0].origin,
+        ctx.report(
+            tags.VALUE_IGNORED.diagnostic(
+                f"the polylines of one geometry have different heights: {heights[0]:g} m is used",
+                origin=nodes[0].origin,
+                values={"stated": tuple(heights)},
+            )
         )
     shape = Polyline(points=outlines[0], height=heights[0], holes=tuple(outlines[1:]))
     try:
         pieces = convex_pieces(shape)
     except OutlineError as error:
-        raise nodes[0].fail(str(error), "A mesh holds a shape as fine as that.") from None
+        raise nodes[0].fail(str(error), "Use a mesh for a shape this fine.") from None
     if not pieces:
-        raise nodes[0].fail("the points of the polyline lie on one line")
+        raise nodes[0].fail("all points of the polyline are on one line")
     return shape
 
 
 def _mesh(node: Node, ctx: Context) -> Mesh:
     uri = node.child("uri") or node.child("filename")
     if uri is None or not uri.text.strip():
-        raise node.fail("a mesh has no <uri>", "Write <uri>model://my_robot/meshes/part.dae</uri>.")
+        raise node.fail(
+            "the mesh has no <uri>",
+            "Write <uri>model://my_robot/meshes/part.dae</uri>.",
+            code=tags.TAG_MISSING,
+            values={"missing": "uri"},
+        )
     scale = node.child("scale")
     values: Vec3 = (1.0, 1.0, 1.0)
     if scale is not None and len(scale.text.split()) == 1:
         values = (scale.number(),) * 3
-        ctx.tell("warning", f"the scale {scale.text} counts for all three axes", scale.origin)
+        ctx.report(
+            tags.VALUE_IGNORED.diagnostic(
+                f"the scale {scale.text} is used for all three axes",
+                origin=scale.origin,
+                values={"stated": scale.text},
+            )
+        )
     elif scale is not None:
         values = scale.vec3()
     if scale is not None and 0.0 in values:
         raise _UnusableFileError(
-            f"the scale {scale.text} flattens the mesh", origin=scale.origin, hint=None
+            f"the scale {scale.text} flattens the mesh",
+            code=files.MESH_UNREADABLE,
+            origin=scale.origin,
+            values={"kind": "mesh", "stated": scale.text},
         )
     submesh = node.child("submesh")
     optimization = node.get("optimization") or ""
     try:
         path = ctx.packages.resolve(uri.text, uri.origin, what="mesh")
     except DescriptionError as error:
-        raise _UnusableFileError(error.message, origin=uri.origin, hint=error.hint) from error
+        raise _UnusableFileError.of(error, uri.origin) from error
     shape = Mesh(
         uri=uri.text,
         path=path,
@@ -190,7 +254,7 @@ def _mesh(node: Node, ctx: Context) -> Mesh:
     try:
         load_mesh(shape, origin=uri.origin)
     except MeshError as error:
-        raise _UnusableFileError(error.message, origin=uri.origin, hint=error.hint) from error
+        raise _UnusableFileError.of(error, uri.origin) from error
     return shape
 
 
@@ -201,7 +265,7 @@ def _heightmap(node: Node, ctx: Context) -> Heightmap:
     try:
         path = ctx.packages.resolve(uri.text, uri.origin, what="heightmap")
     except DescriptionError as error:
-        raise _UnusableFileError(error.message, origin=uri.origin, hint=error.hint) from error
+        raise _UnusableFileError.of(error, uri.origin) from error
     texture = None
     for each in node.all("texture"):
         diffuse = each.find("diffuse")
@@ -209,20 +273,22 @@ def _heightmap(node: Node, ctx: Context) -> Heightmap:
             try:
                 texture = ctx.packages.resolve(diffuse.text, diffuse.origin, what="texture")
             except DescriptionError as error:
-                ctx.tell("warning", error.message, diffuse.origin)
+                ctx.report(error.diagnostic("warning"))
     if path.suffix.lower() in ELEVATION_MODELS:
         raise _UnusableFileError(
-            f'the heightmap "{path.name}" is geographic elevation data, which is not read',
+            f'the heightmap "{path.name}" is geographic elevation data, which is not supported',
+            code=files.PICTURE_UNREADABLE,
             origin=uri.origin,
+            values={"kind": "heightmap", "name": uri.text},
             hint="Save the heights as a PNG in grey, the highest point white.",
         )
     if min(size[:2]) <= 0 or size[2] == 0:
-        raise node.fail(f"every size of a heightmap must be above 0, not {size}")
+        raise node.fail(f"every size of a heightmap must be above 0 (got {size})")
     shape = Heightmap(path=path, size=size, position=position, texture=texture)
     try:
         heights_of(shape, origin=uri.origin)
     except TerrainError as error:
-        raise _UnusableFileError(error.message, origin=uri.origin, hint=error.hint) from error
+        raise _UnusableFileError.of(error, uri.origin) from error
     return shape
 
 

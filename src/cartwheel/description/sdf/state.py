@@ -8,12 +8,14 @@ from dataclasses import replace
 
 import numpy as np
 
+from cartwheel.codes.tags import NOT_SIMULATED
 from cartwheel.description.model import Light, Link, RobotDescription
 from cartwheel.description.numbers import FARTHEST_JOINT
 from cartwheel.description.sdf.context import Context, read_pose, require_name
 from cartwheel.description.sdf.frames import WORLD
 from cartwheel.description.sdf.model import read_model
 from cartwheel.description.xml import Node
+from cartwheel.errors import Diagnostic, Severity
 from cartwheel.geometry import Pose, quat_from_axis_angle
 
 _NEAR = 1e-3
@@ -26,7 +28,7 @@ def apply_state(
     """Models and lights as the state puts them.
 
     Poses of models and lights are taken over, those of links that no joint holds, and positions
-    of joints that the poses of their links tell of. What they do not tell is reported.
+    of joints that follow from the poses of their links. The rest is reported.
     """
     node.get("world_name")
     deletions = node.child("deletions")
@@ -34,7 +36,7 @@ def apply_state(
     known = {model.name for model in models} | {light.name for light in lights}
     for name in sorted(gone - known):
         assert deletions is not None
-        ctx.tell("info", f'the state deletes the unknown model "{name}"', deletions.origin)
+        ctx.report(_ignored(f'the state deletes the unknown model "{name}"', deletions, name))
     models = [model for model in models if model.name not in gone]
     lights = [light for light in lights if light.name not in gone]
     insertions = node.child("insertions")
@@ -46,7 +48,8 @@ def apply_state(
     saved_lights = {each.get("name") or "": each for each in node.all("light")}
     for name in saved_models.keys() - {model.name for model in models}:
         saved_models[name].mark()
-        ctx.tell("info", f'the state names the unknown model "{name}"', saved_models[name].origin)
+        message = f'the state names the unknown model "{name}"'
+        ctx.report(_ignored(message, saved_models[name], name))
     models = [
         _moved(model, saved_models[model.name], ctx) if model.name in saved_models else model
         for model in models
@@ -62,7 +65,8 @@ def apply_state(
 def _moved(model: RobotDescription, saved: Node, ctx: Context) -> RobotDescription:
     scale = saved.child("scale")
     if scale is not None and scale.vec3() != (1.0, 1.0, 1.0):
-        ctx.tell("warning", f'the scale of model "{model.name}" is not applied', scale.origin)
+        message = f'the scale of model "{model.name}" is not applied'
+        ctx.report(_ignored(message, scale, model.name, severity="warning"))
     stated = saved.child("pose")
     pose = read_pose(stated) if stated is not None else model.pose
     links = _saved_parts(saved, "link")
@@ -74,7 +78,7 @@ def _moved(model: RobotDescription, saved: Node, ctx: Context) -> RobotDescripti
         found = links.get(link.name)
         place = found.child("pose") if found is not None else None
         if found is not None:
-            _tell_motion(found, ctx)
+            _warn_motion(found, ctx)
         if place is None:
             moved.append(link)
             continue
@@ -89,12 +93,11 @@ def _moved(model: RobotDescription, saved: Node, ctx: Context) -> RobotDescripti
     lost += [f'link "{name}"' for name in links.keys() - {link.name for link in model.links}]
     lost += [f'joint "{name}"' for name in angles.keys() - {joint.name for joint in model.joints}]
     if lost:
-        ctx.tell(
-            "warning",
+        message = (
             f'model "{model.name}": the saved state is not restored for '
-            f"{', '.join(sorted(set(lost)))}",
-            saved.origin,
+            f"{', '.join(sorted(set(lost)))}"
         )
+        ctx.report(_ignored(message, saved, model.name, severity="warning"))
     return replace(model, pose=pose, links=tuple(moved), joint_positions=tuple(positions.items()))
 
 
@@ -117,18 +120,27 @@ def _angle(joint: Node) -> float | None:
     value = axes[0].number()
     if abs(value) > FARTHEST_JOINT:
         raise axes[0].fail(
-            f"angle must be from {-FARTHEST_JOINT:g} to {FARTHEST_JOINT:g} rad or m, "
-            f"but is {axes[0].text}"
+            f"angle must be from {-FARTHEST_JOINT:g} to {FARTHEST_JOINT:g} rad or m "
+            f"(got {axes[0].text})"
         )
     return value
 
 
-def _tell_motion(link: Node, ctx: Context) -> None:
-    """Warns of a velocity that would be felt: what is restored stands."""
+def _warn_motion(link: Node, ctx: Context) -> None:
+    """Warns of a velocity that is not restored: models start at rest."""
     velocity = link.child("velocity")
     if velocity is not None and any(abs(value) > _NEAR for value in velocity.vector(6)):
         name = link.attributes.get("name", "")
-        ctx.tell("warning", f'the velocity of link "{name}" is not restored', velocity.origin)
+        message = f'the velocity of link "{name}" is not restored'
+        ctx.report(_ignored(message, velocity, name, severity="warning"))
+
+
+def _ignored(
+    message: str, node: Node, name: str, *, severity: Severity | None = None
+) -> Diagnostic:
+    return NOT_SIMULATED.diagnostic(
+        message, origin=node.origin, severity=severity, values={"tag": node.tag, "name": name}
+    )
 
 
 def _positions(

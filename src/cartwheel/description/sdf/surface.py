@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from cartwheel.codes.tags import VALUE_IGNORED
 from cartwheel.description.sdf.context import Context
 from cartwheel.description.xml import Node
 
@@ -66,7 +67,13 @@ def not_negative(node: Node | None, ctx: Context) -> float | None:
         return None
     value = node.number(infinite=True)
     if value < 0:
-        ctx.tell("warning", f"{node.tag} {node.text} is below 0: the default counts", node.origin)
+        ctx.report(
+            VALUE_IGNORED.diagnostic(
+                f"{node.tag} {node.text} is negative, so its default is used",
+                origin=node.origin,
+                values={"tag": node.tag, "stated": value},
+            )
+        )
         return None
     return value
 
@@ -87,4 +94,4 @@ def _bitmask(node: Node) -> int:
     try:
         return int(node.text, 0) & _BITS
     except ValueError:
-        raise node.fail(f'{node.tag} "{node.text}" is no whole number') from None
+        raise node.fail(f'{node.tag} "{node.text}" is not an integer') from None

@@ -6,6 +6,7 @@ import itertools
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
+from cartwheel.codes.tags import NAME_TAKEN
 from cartwheel.description.model import Element, Joint, Link, PluginTag, RobotDescription
 from cartwheel.description.sdf.context import Context
 from cartwheel.description.sdf.frames import Frames
@@ -70,8 +71,11 @@ def name_apart(models: Iterable[Model], ctx: Context) -> None:
             numbers[name] = itertools.count(1)
             continue
         model.name = next(free for i in numbers[name] if (free := f"{name}_{i}") not in taken)
-        ctx.tell(
-            "warning",
-            f'model "{name}" has the name of another model: it is called "{model.name}" here',
-            model.origin,
+        ctx.report(
+            NAME_TAKEN.diagnostic(
+                f'model "{name}" has the same name as another one, and is renamed "{model.name}"',
+                origin=model.origin,
+                severity="warning",
+                values={"name": name, "renamed": model.name},
+            )
         )

@@ -6,6 +6,8 @@ import contextlib
 from collections.abc import Iterator
 from dataclasses import replace
 
+from cartwheel.codes import tags
+from cartwheel.description.losses import loss
 from cartwheel.description.model import Light, Physics, WorldDescription
 from cartwheel.description.sdf.context import (
     Context,
@@ -25,7 +27,7 @@ from cartwheel.description.sdf.state import apply_state
 from cartwheel.description.sdf.unplaced import Model, name_apart
 from cartwheel.description.sdf.world_joints import join_models
 from cartwheel.description.xml import Node, to_element, unread
-from cartwheel.errors import DescriptionError
+from cartwheel.errors import DescriptionError, Diagnostic
 from cartwheel.geometry import Pose, Vec3
 
 _NOT_SIMULATED = ("actor", "population", "road")
@@ -76,12 +78,12 @@ def read_world(node: Node, ctx: Context) -> WorldDescription:
             each.mark()
             name_of = each.attributes.get("name", "")
             what = f'<{tag}> "{name_of}"' if name_of else f"<{tag}>"
-            ctx.tell("warning", f"{what} is not simulated: it is left out", each.origin)
+            ctx.report(_not_simulated(f"{what} is not simulated, and is left out", each))
     for tag in ("wind", "atmosphere"):
         for each in node.all(tag):
             each.mark()
             if each.children and not _still(each):
-                ctx.tell("warning", f"<{tag}> is not simulated", each.origin)
+                ctx.report(_not_simulated(f"<{tag}> is not simulated", each))
     for each in node.all("gui"):
         each.mark()  # of Gazebo's window, and of nothing in the world
     physics = _default_physics(node, ctx)
@@ -122,8 +124,7 @@ def _contents(node: Node, ctx: Context) -> tuple[list[Model], list[tuple[Node, I
             except NotThereError as missing:
                 # It costs the one model, not the whole world; an error that others may stop at.
                 each.mark()
-                hint = f" {missing.hint}" if missing.hint else ""
-                ctx.tell("error", f"{missing.message}; it is left out.{hint}", missing.origin)
+                ctx.report(loss(missing, "the model is left out", of="include"))
                 continue
             if included.node.tag == "light":
                 lights.append((included.node, included))
@@ -144,19 +145,25 @@ def _tolerant(ctx: Context, name: str, node: Node | None = None) -> Iterator[Non
     try:
         yield
     except DescriptionError as error:
-        lacking = any(told.severity == "error" for told in ctx.diagnostics)
+        lacking = any(each.severity == "error" for each in ctx.diagnostics)
         if not lacking and not isinstance(error, NoLinksError):
             raise
         if node is not None:
             node.mark()
         if lacking and isinstance(error, NoLinksError):
-            return  # all that it is was told to be left out
-        told = error.message if f'"{name}"' in error.message else f'model "{name}": {error.message}'
-        ctx.tell("error" if lacking else "warning", f"{told}; it is left out", error.origin)
+            return  # all its parts were reported as left out
+        ctx.report(
+            loss(
+                error,
+                f'the model "{name}" is left out',
+                of="model",
+                severity="error" if lacking else "warning",
+            )
+        )
 
 
 def _places(node: Node, frames: Frames, ctx: Context) -> Iterator[tuple[str, Pose]]:
-    """The frames that stay where they are; one whose pose cannot be told is told of."""
+    """The frames that never move; one without a pose is reported."""
     for each in node.all("frame"):
         name = require_name(each)
         if not frames.stays(name):
@@ -164,7 +171,13 @@ def _places(node: Node, frames: Frames, ctx: Context) -> Iterator[tuple[str, Pos
         try:
             yield name, frames.pose(name, each.origin)
         except DescriptionError as error:
-            ctx.tell("warning", f'frame "{name}" is nowhere: {error.message}', error.origin)
+            ctx.report(loss(error, f'the frame "{name}" has no place', severity="warning"))
+
+
+def _not_simulated(message: str, node: Node) -> Diagnostic:
+    return tags.NOT_SIMULATED.diagnostic(
+        message, origin=node.origin, severity="warning", values={"tag": node.tag}
+    )
 
 
 def _light(node: Node, included: Included | None, frames: Frames) -> Light:
@@ -187,7 +200,14 @@ def _default_physics(node: Node, ctx: Context) -> Node | None:
         each.get("name"), each.get("type")
         if each is not chosen:
             each.mark()
-            ctx.tell("info", "a further <physics> has no effect: one counts", each.origin)
+            ctx.report(
+                tags.TAG_REPEATED.diagnostic(
+                    "<physics> is repeated: only one of them counts",
+                    origin=each.origin,
+                    severity="info",
+                    values={"tag": "physics", "parent": "world"},
+                )
+            )
     return chosen
 
 
@@ -206,10 +226,17 @@ def _physics(node: Node, ctx: Context) -> Physics:
         step = node.find("ode/solver/dt")
         if step is not None:
             ode = node.require_child("ode").mark()
-            ctx.tell("info", "of <ode> in <physics> only <dt> has an effect", ode.origin)
+            ctx.report(
+                tags.TAG_IGNORED.diagnostic(
+                    "only <dt> of the <ode> in <physics> has an effect",
+                    origin=ode.origin,
+                    severity="info",
+                    values={"tag": "ode", "parent": "physics"},
+                )
+            )
     if step is not None and not SHORTEST_STEP <= step.number() <= LONGEST_STEP:
         raise step.fail(
-            f"the step must be from {SHORTEST_STEP:g} to {LONGEST_STEP:g} s, but is {step.text}"
+            f"the step must be from {SHORTEST_STEP:g} to {LONGEST_STEP:g} s (got {step.text})"
         )
     rate = node.child("real_time_update_rate") or node.child("update_rate")
     return Physics(

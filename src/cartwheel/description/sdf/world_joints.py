@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+from cartwheel.codes import tags
+from cartwheel.description.losses import loss
 from cartwheel.description.model import Joint, RobotDescription
 from cartwheel.description.sdf.context import Context
 from cartwheel.description.sdf.frames import WORLD, Frames
@@ -41,7 +43,7 @@ def join_models(
         child, link = _owner(joint.child, found)
         parent, other = _owner(joint.parent, found)
         if child is None or (parent is None and joint.parent != WORLD):
-            _leave_out(each, "one of its models is not there", ctx)
+            _leave_out(each, "one of its models does not exist", ctx)
             continue
         if parent is not None and parent.static:
             parent, other = None, WORLD
@@ -50,37 +52,52 @@ def join_models(
         if parent is None or parent is child:
             own = replace(joint, parent=other if parent is child else WORLD, child=link)
             if child.joint(own.name) is not None:
-                raise each.fail(f'model "{child.name}" has a joint "{own.name}" already')
+                raise each.fail(
+                    f'model "{child.name}" already has a joint "{own.name}"',
+                    code=tags.NAME_TAKEN,
+                    values={"name": own.name},
+                )
             found[child.name] = replace(child, joints=(*child.joints, own))
         elif joint.type not in _BETWEEN:
             _leave_out(each, f"a {each.attributes['type']} joint cannot hold two models", ctx)
         else:
             if joint.type != "fixed" and joint.resists:
-                ctx.tell(
-                    "warning",
-                    f'joint "{joint.name}" holds two models together, but turns freely: its '
-                    "limits, damping, friction and spring have no effect",
-                    each.origin,
+                ctx.report(
+                    tags.NOT_SIMULATED.diagnostic(
+                        f'joint "{joint.name}" between two models turns freely: its limits, '
+                        "damping, friction and spring have no effect",
+                        origin=each.origin,
+                        severity="warning",
+                        values={"joint": joint.name},
+                    )
                 )
             between.append(joint)
     return list(found.values()), tuple(between)
 
 
 def _read(node: Node, frames: Frames, later: list[str], ctx: Context) -> Joint | None:
-    """A joint; None where it joins what could not be found, which is told."""
+    """A joint; None where it joins something that was left out, which is reported."""
     try:
         frame = add_joint(frames, node, ctx, later)
         joint = read_joint(node, ctx, frames, frame)
     except DescriptionError as error:
-        if not any(told.severity == "error" for told in ctx.diagnostics):
+        if not any(each.severity == "error" for each in ctx.diagnostics):
             raise
-        _leave_out(node, error.message, ctx)
+        node.mark()
+        ctx.report(loss(error, "the joint is left out", of="joint", origin=node.origin))
         return None
     for sensor in node.all("sensor"):
         sensor.mark()
-        ctx.tell("warning", "a sensor of a joint of the world is left out", sensor.origin)
+        ctx.report(
+            tags.NOT_SIMULATED.diagnostic(
+                "sensors of joints of the world are left out",
+                origin=sensor.origin,
+                severity="warning",
+                values={"tag": "sensor"},
+            )
+        )
     if joint is None:
-        _leave_out(node, "a gearbox gears joints of one model", ctx)
+        _leave_out(node, "a gearbox connects joints of one model", ctx)
     return joint
 
 
@@ -96,4 +113,11 @@ def _owner(scoped: str, models: dict[str, RobotDescription]) -> tuple[RobotDescr
 def _leave_out(node: Node, why: str, ctx: Context) -> None:
     node.mark()
     name = node.attributes.get("name", "")
-    ctx.tell("error", f'joint "{name}" is left out: {why}', node.origin)
+    ctx.report(
+        tags.ELEMENT_LEFT_OUT.diagnostic(
+            f'joint "{name}" is left out: {why}',
+            origin=node.origin,
+            severity="error",
+            values={"tag": "joint", "name": name, "left_out": "joint"},
+        )
+    )

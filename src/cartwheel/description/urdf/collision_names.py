@@ -9,9 +9,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
+from cartwheel.codes import devices
 from cartwheel.description.model import Collision, Link, Sensor
 from cartwheel.description.urdf.tree import Tree
-from cartwheel.errors import Diagnostic, suggestion
+from cartwheel.errors import Diagnostic, meant, suggestion
 
 _LUMP = "_fixed_joint_lump__"
 
@@ -89,12 +90,12 @@ def _unknown_collisions(sensor: Sensor, link: Link, known: set[str]) -> Iterable
         if name in known:
             continue
         own = [collision.name for collision in link.collisions]
-        hint = suggestion(name, sorted(known))
-        if "Did you mean" not in hint:
-            hint = suggestion(name, own)
-        yield Diagnostic(
-            severity="warning",
-            message=f'sensor "{sensor.name}" watches the collision "{asked}", which does not '
-            f"exist: it will never report anything. {hint}",
+        near = meant(name, sorted(known))
+        yield devices.CONTACT_COLLISION_UNKNOWN.diagnostic(
+            f'sensor "{sensor.name}" watches the collision "{asked}", which does not exist: '
+            "it will never report a contact",
             origin=sensor.origin,
+            hint=suggestion(name, sorted(known) if near else own),
+            severity="warning",
+            values={"sensor": sensor.name, "name": asked, "meant": near},
         )

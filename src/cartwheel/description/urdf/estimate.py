@@ -11,6 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from cartwheel.codes import robot
 from cartwheel.description.inertia import impossibility, principal_moments
 from cartwheel.description.meshes import MeshError, convex_hull_input, load_mesh
 from cartwheel.description.model import Box, Collision, Inertial, Joint, Link, Mesh, Visual
@@ -51,7 +52,7 @@ def with_masses(
         elif not any(_turns(link) for link in part):
             found.update(_spread(part, ctx))
     if roots:
-        _tell(roots, found, tree, ctx)
+        _warn(roots, found, tree, ctx)
     return tuple(found.get(link.name, link) for link in links)
 
 
@@ -92,11 +93,13 @@ def _spread(part: Sequence[Link], ctx: UrdfContext) -> Mapping[str, Link]:
     share = stated.mass / like.mass
     values = {key: share * getattr(like, key) for key in ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")}
     inertial = replace(stated, pose=Pose(stated.pose.position), **values)
-    ctx.tell(
-        "warning",
-        f'link "{link.name}" moves, and all its mass lies in a point, with an inertia '
-        f"of 0. Here it has that of its geometry: {inertial_text(inertial)}",
-        stated.origin,
+    ctx.report(
+        robot.INERTIA_IMPOSSIBLE.diagnostic(
+            f'link "{link.name}" moves, but its inertia is 0; here it has that of its geometry',
+            origin=stated.origin,
+            hint=f"Write {inertial_text(inertial)}",
+            values={"link": link.name},
+        )
     )
     return {link.name: replace(link, inertial=inertial)}
 
@@ -124,7 +127,7 @@ def _solid(part: Collision | Visual) -> Collision | None:
         try:
             vertices, _ = convex_hull_input(load_mesh(shape))
         except MeshError:
-            return None  # told where the mesh is read to be shown
+            return None  # reported where the mesh is read to be shown
         low, high = vertices.min(axis=0).astype(float), vertices.max(axis=0).astype(float)
         if not _is_solid(shape, low, high):
             x, y, z = np.maximum(high - low, _FLATTEST).tolist()
@@ -150,7 +153,7 @@ def _speck(origin: Origin) -> Inertial:
     return Inertial(mass=SPECK, ixx=moment, iyy=moment, izz=moment, origin=origin)
 
 
-def _tell(roots: Sequence[str], found: Mapping[str, Link], tree: Tree, ctx: UrdfContext) -> None:
+def _warn(roots: Sequence[str], found: Mapping[str, Link], tree: Tree, ctx: UrdfContext) -> None:
     holders = [tree.inbound.get(root) for root in roots]
     groups: dict[str, list[Link]] = {root: [] for root in roots}
     for link in found.values():
@@ -160,14 +163,17 @@ def _tell(roots: Sequence[str], found: Mapping[str, Link], tree: Tree, ctx: Urdf
     first = parts[0][0]
     if len(roots) == 1:
         assert first.inertial is not None
-        advice = "`cartwheel check` has the <inertial> to write"
+        advice = "`cartwheel check` shows the <inertial> to write."
         if len(parts[0]) == 1:
             advice = f'Write in link "{first.name}": {inertial_text(first.inertial)}'
-        ctx.tell(
-            "warning",
-            f"{_mover(roots[0], holders[0])} has no <inertial>: {_fate(holders[0])}. Here it has "
-            f"{weights[0]:.3g} kg{_reason(first)}. {advice}",
-            first.origin,
+        ctx.report(
+            robot.INERTIA_MISSING.diagnostic(
+                f"{_mover(roots[0], holders[0])} has no <inertial>: {_fate(holders[0])}; here it "
+                f"has {weights[0]:.3g} kg{_reason(first)}",
+                origin=first.origin,
+                hint=advice,
+                values={"links": (roots[0],), "masses": (weights[0],)},
+            )
         )
         return
     shown = ", ".join(
@@ -175,12 +181,14 @@ def _tell(roots: Sequence[str], found: Mapping[str, Link], tree: Tree, ctx: Urdf
     )
     more = f" and {len(roots) - 4} more" if len(roots) > 4 else ""
     fate = "does not load such a robot" if None in holders else "drops them with their joints"
-    ctx.tell(
-        "warning",
-        f"{len(roots)} links that move have no <inertial>: Gazebo {fate}. Here they weigh what "
-        f"their geometry does at {WATER:g} kg/m³: {shown}{more}. `cartwheel check` has the "
-        "<inertial> of each",
-        first.origin,
+    ctx.report(
+        robot.INERTIA_MISSING.diagnostic(
+            f"{len(roots)} moving links have no <inertial>: Gazebo {fate}; here their geometry "
+            f"counts at {WATER:g} kg/m³: {shown}{more}",
+            origin=first.origin,
+            hint="`cartwheel check` shows the <inertial> of each.",
+            values={"links": tuple(roots), "masses": tuple(weights)},
+        )
     )
 
 

@@ -6,6 +6,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from typing import Any
 
+from cartwheel.codes import tags as codes
+from cartwheel.description.losses import loss
 from cartwheel.description.materials import gazebo_material, unknown_material
 from cartwheel.description.model import Light, Link, Material, Sensor, Visual
 from cartwheel.description.sdf.context import Context, read_pose
@@ -95,11 +97,11 @@ class LinkTags:
         ):
             stated = [tag for tag in acting if tag in self.places]
             if stated and not parts:
-                yield Diagnostic(
-                    severity="info",
-                    message=f'link "{link.name}" has no {what}, on which <'
-                    f"{'>, <'.join(stated)}> would act",
+                yield codes.TAG_IGNORED.diagnostic(
+                    f'<{">, <".join(stated)}> has no effect: link "{link.name}" has no <{what}>',
                     origin=self.places[stated[0]],
+                    severity="info",
+                    values={"tag": stated[0], "link": link.name, "missing": what},
                 )
 
     def _seen(self, visual: Visual) -> Visual:
@@ -155,11 +157,13 @@ def read_link_tags(node: Node, link: str, tags: LinkTags, ctx: UrdfContext) -> N
     for sensor in node.all("sensor"):
         read = read_sensor(sensor, link)
         if read.name in seen:
-            ctx.tell(
-                "warning",
-                f'link "{link}" has two sensors of the name "{read.name}": '
-                "they may publish on one topic",
-                sensor.origin,
+            ctx.report(
+                codes.SENSOR_TWICE.diagnostic(
+                    f'link "{link}" has two sensors named "{read.name}", which may publish on the '
+                    "same topic",
+                    origin=sensor.origin,
+                    values={"link": link, "name": read.name},
+                )
             )
         seen.add(read.name)
         tags.sensors.append(read)
@@ -168,7 +172,14 @@ def read_link_tags(node: Node, link: str, tags: LinkTags, ctx: UrdfContext) -> N
     for tag, reason in _IDLE.items():
         for child in node.all(tag):
             child.mark()
-            ctx.tell("warning", f"<{tag}> has no effect here: {reason}", child.origin)
+            ctx.report(
+                codes.NOT_SIMULATED.diagnostic(
+                    f"<{tag}> has no effect: {reason}",
+                    origin=child.origin,
+                    severity="warning",
+                    values={"tag": tag},
+                )
+            )
 
 
 def _read_motion(node: Node, tags: LinkTags) -> None:
@@ -202,8 +213,15 @@ def _material(node: Node, sdf: Context, ctx: UrdfContext) -> Material | None:
     except DescriptionError as error:
         # Gazebo takes a name there and nothing else: a slip in the rest hurts nobody.
         node.mark()
-        at = error.origin or node.origin
-        ctx.tell("warning", f"{error.message}: the <material> is left out", at)
+        ctx.report(
+            loss(
+                error,
+                "the <material> is left out",
+                severity="warning",
+                code=codes.VALUE_IGNORED,
+                origin=error.origin or node.origin,
+            )
+        )
         return None
 
 
@@ -213,7 +231,7 @@ def _known(material: Material, node: Node, ctx: UrdfContext) -> Material | None:
         return material if material.diffuse or material.texture else None
     found = gazebo_material(material.name)
     if found is None:
-        ctx.tell("warning", unknown_material(material.name), node.origin)
+        ctx.report(unknown_material(material.name, node.origin))
         return material
     return found
 

@@ -1,6 +1,6 @@
-"""The ``<gazebo>`` tags of a URDF: what they say of links, joints and the robot as a whole.
+"""The ``<gazebo>`` tags of a URDF: of links, of joints, and of the robot as a whole.
 
-Every element acts, or a diagnostic says that it does not, and why.
+Every element has an effect, or a diagnostic with the reason.
 """
 
 from __future__ import annotations
@@ -9,13 +9,15 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
+from cartwheel.codes import robot as robot_codes
+from cartwheel.codes import tags as codes
 from cartwheel.description.model import Joint, Link, PluginTag
 from cartwheel.description.sdf.inserting import INSERTED
 from cartwheel.description.sdf.sensors import read_plugin, read_sensor
 from cartwheel.description.urdf.gazebo_link_tags import LINK_TAGS, LinkTags, read_link_tags
 from cartwheel.description.urdf.link import UrdfContext
 from cartwheel.description.xml import Node
-from cartwheel.errors import suggestion
+from cartwheel.errors import meant, suggestion
 
 JOINT_TAGS = (
     "stopCfm", "stopErp", "springReference", "springStiffness", "fudgeFactor", "provideFeedback",
@@ -91,15 +93,20 @@ def read_gazebo_tags(
             _read_robot_tags(node, tags, ctx)
             continue
         if reference not in links and reference not in joints:
-            # Gazebo passes over it without a word, and robots are published with such tags.
-            ctx.tell(
-                "warning",
-                f'<gazebo> refers to "{reference}", which is neither a link nor a joint: '
-                "all in it is left out. "
-                f"{suggestion(reference, sorted({*links, *joints})) or ''}".rstrip(),
-                node.origin,
+            # Gazebo ignores it silently, and robots are published with such tags.
+            names = sorted({*links, *joints})
+            ctx.report(
+                robot_codes.REFERENCE_UNKNOWN.diagnostic(
+                    f'<gazebo> refers to "{reference}", which is neither a link nor a joint: '
+                    "everything in it is ignored",
+                    origin=node.origin,
+                    hint=suggestion(reference, names),
+                    severity="warning",
+                    mark="reference",
+                    values={"name": reference, "meant": meant(reference, names)},
+                )
             )
-            # Told as a whole, not part by part.
+            # Reported as a whole, not part by part.
             node.children.clear()
             continue
         if reference in links:
@@ -113,7 +120,7 @@ def read_gazebo_tags(
             _read_joint_tags(node, joints[reference], tags, ctx, of_both=of_both)
         tags.robot_plugins.extend(_misplaced_plugins(node, reference, ctx))
         if (reference in links) != (reference in joints):
-            _tell_misplaced(node, reference, reference in links, ctx)
+            _warn_misplaced(node, reference, reference in links, ctx)
     return tags
 
 
@@ -128,7 +135,13 @@ def _settle(node: Node, ctx: UrdfContext) -> None:
         if child.attributes.get("value", "").strip() and child.tag not in _WITH_PARTS:
             child.text = (child.get("value") or "").strip()
         elif not child.attributes or list(child.attributes) == ["value"]:
-            ctx.tell("warning", f"<{child.tag}> is empty: the default counts", child.origin)
+            ctx.report(
+                codes.TAG_EMPTY.diagnostic(
+                    f"<{child.tag}> is empty, so its default is used",
+                    origin=child.origin,
+                    values={"tag": child.tag},
+                )
+            )
             node.drop(child)
 
 
@@ -139,7 +152,7 @@ def _read_robot_tags(node: Node, tags: GazeboTags, ctx: UrdfContext) -> None:
     tags.self_collide = node.boolean_at("selfCollide", tags.self_collide)
     inserted = {id(part) for tag in INSERTED for part in node.all(tag)}
     tags.inserted.extend(child for child in node.children if id(child) in inserted)
-    _tell_idle(node, _ROBOT_IDLE, ctx)
+    _warn_idle(node, _ROBOT_IDLE, ctx)
     for child in node.children:
         if child.tag in ROBOT_TAGS or child.tag in _ROBOT_IDLE:
             continue
@@ -147,22 +160,27 @@ def _read_robot_tags(node: Node, tags: GazeboTags, ctx: UrdfContext) -> None:
             kind = "link" if child.tag in LINK_TAGS else "joint"
             node.all(child.tag)
             child.mark()
-            ctx.tell(
-                "warning",
-                f"<{child.tag}> has no effect in a <gazebo> without a reference: it needs "
-                f'reference="…" with the name of a {kind}',
-                child.origin,
+            ctx.report(
+                codes.TAG_MISPLACED.diagnostic(
+                    f"<{child.tag}> has no effect in a <gazebo> without a reference",
+                    origin=child.origin,
+                    hint=f'Write it into a <gazebo reference="…"> with the name of a {kind}.',
+                    values={"tag": child.tag, "needs": kind, "reference": ""},
+                )
             )
 
 
 def _misplaced_plugins(node: Node, reference: str, ctx: UrdfContext) -> list[PluginTag]:
     plugins = [read_plugin(plugin) for plugin in node.all("plugin")]
     for plugin in plugins:
-        ctx.tell(
-            "warning",
-            f'plugin "{plugin.name}" stands in the <gazebo> of "{reference}", where Gazebo '
-            "Classic does not load it; here it is loaded as a plugin of the robot",
-            plugin.origin,
+        ctx.report(
+            codes.TAG_MISPLACED.diagnostic(
+                f'plugin "{plugin.name}" is in the <gazebo> of "{reference}", where Gazebo Classic '
+                "does not load it; here it is loaded as a plugin of the robot",
+                origin=plugin.origin,
+                hint="Write it into a <gazebo> without a reference.",
+                values={"tag": "plugin", "name": plugin.name, "reference": reference},
+            )
         )
     return plugins
 
@@ -199,36 +217,54 @@ def _read_joint_tags(
             fields[name] = found.boolean() or fields.get(name, False)
     for fudge in node.all("fudgeFactor"):
         fudge.mark()
-        message = "<fudgeFactor> is not needed: joint limits here do not overshoot"
-        ctx.tell("info", message, fudge.origin)
+        ctx.report(
+            codes.NOT_SIMULATED.diagnostic(
+                "<fudgeFactor> is not needed: joint limits do not overshoot here",
+                origin=fudge.origin,
+                values={"tag": "fudgeFactor"},
+            )
+        )
     child_tags = tags.links.setdefault(joint.child, LinkTags())
     for sensor in node.all("sensor"):
         read = replace(read_sensor(sensor, joint.child), joint=joint.name)
         if not of_both or read.type == _OF_JOINTS:
             child_tags.sensors.append(read)
     if joint.type != "fixed" and fields.get("preserve_fixed"):
-        ctx.tell(
-            "info", f'joint "{joint.name}" is not fixed: there is nothing to preserve', node.origin
+        ctx.report(
+            codes.NOT_SIMULATED.diagnostic(
+                f'joint "{joint.name}" is not fixed, so there is nothing to preserve',
+                origin=node.origin,
+                values={"joint": joint.name},
+            )
         )
 
 
-def _tell_misplaced(node: Node, reference: str, is_link: bool, ctx: UrdfContext) -> None:
+def _warn_misplaced(node: Node, reference: str, is_link: bool, ctx: UrdfContext) -> None:
     here, there = (LINK_TAGS, JOINT_TAGS) if is_link else (JOINT_TAGS, LINK_TAGS)
     kinds = ("joint", "link") if is_link else ("link", "joint")
     for child in node.children:
         if child.tag in there and child.tag not in here:
             node.all(child.tag)
             child.mark()
-            ctx.tell(
-                "warning",
-                f'<{child.tag}> acts on a {kinds[0]}, but "{reference}" is a {kinds[1]}: '
-                "it has no effect",
-                child.origin,
+            ctx.report(
+                codes.TAG_MISPLACED.diagnostic(
+                    f"<{child.tag}> has no effect: it belongs to a {kinds[0]}, but "
+                    f'"{reference}" is a {kinds[1]}',
+                    origin=child.origin,
+                    values={"tag": child.tag, "needs": kinds[0], "reference": reference},
+                )
             )
 
 
-def _tell_idle(node: Node, reasons: Mapping[str, str], ctx: UrdfContext) -> None:
+def _warn_idle(node: Node, reasons: Mapping[str, str], ctx: UrdfContext) -> None:
     for tag, reason in reasons.items():
         for child in node.all(tag):
             child.mark()
-            ctx.tell("warning", f"<{tag}> has no effect here: {reason}", child.origin)
+            ctx.report(
+                codes.NOT_SIMULATED.diagnostic(
+                    f"<{tag}> has no effect: {reason}",
+                    origin=child.origin,
+                    severity="warning",
+                    values={"tag": tag},
+                )
+            )

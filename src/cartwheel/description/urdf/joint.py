@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Iterable
 
+from cartwheel.codes import robot, tags
 from cartwheel.description import numbers
 from cartwheel.description.model import Axis, Joint, JointType, Mimic, SoftLimits
 from cartwheel.description.urdf.link import UrdfContext, read_origin
 from cartwheel.description.xml import Node
-from cartwheel.errors import DescriptionError, suggestion
+from cartwheel.errors import DescriptionError, meant, suggestion
 from cartwheel.geometry import Pose, Vec3
 
 TYPES: dict[str, JointType] = {
@@ -35,15 +36,24 @@ def read_joint(node: Node, links: Collection[str], ctx: UrdfContext) -> tuple[Jo
     kind = TYPES.get(written)
     if kind is None:
         raise node.fail(
-            f'joint "{name}": the type "{written}" is not known', suggestion(written, TYPES)
+            f'joint "{name}" has the unknown type "{written}"',
+            suggestion(written, TYPES),
+            code=robot.JOINT_TYPE_UNKNOWN,
+            values={"joint": name, "name": written, "meant": meant(written, TYPES)},
         )
     parent, child = _end(node, name, "parent", links), _end(node, name, "child", links)
     if parent == child:
-        raise node.fail(f'joint "{name}" joins the link "{child}" to itself')
+        raise node.fail(
+            f'joint "{name}" joins the link "{child}" to itself',
+            code=robot.KINEMATIC_LOOP,
+            values={"joint": name},
+        )
     if child == "world":
         raise node.fail(
-            f'joint "{name}": the link "world" stands still and cannot be a child',
+            f'joint "{name}": the link "world" cannot be a child, since it never moves',
             "Swap parent and child.",
+            code=robot.JOINT_LINK_UNKNOWN,
+            values={"joint": name, "name": child},
         )
     safety = node.child("safety_controller")
     mimic = node.child("mimic")
@@ -55,7 +65,14 @@ def read_joint(node: Node, links: Collection[str], ctx: UrdfContext) -> tuple[Jo
             continue
         part.mark()
         if unused != "axis":  # which URDF allows
-            ctx.tell("info", f'joint "{name}" is {kind}: its <{unused}> has no effect', part.origin)
+            ctx.report(
+                tags.TAG_IGNORED.diagnostic(
+                    f'joint "{name}" is {kind}: its <{unused}> has no effect',
+                    origin=part.origin,
+                    severity="info",
+                    values={"joint": name, "tag": unused},
+                )
+            )
     joint = Joint(
         name=name,
         type=kind,
@@ -72,13 +89,23 @@ def read_joint(node: Node, links: Collection[str], ctx: UrdfContext) -> tuple[Jo
 def _end(node: Node, joint: str, which: str, links: Collection[str]) -> str:
     end = node.child(which)
     if end is None:
-        raise node.fail(f'joint "{joint}" has no <{which}>', f'Write <{which} link="…"/>.')
+        raise node.fail(
+            f'joint "{joint}" has no <{which}>',
+            f'Write <{which} link="…"/>.',
+            code=tags.TAG_MISSING,
+            values={"joint": joint, "missing": which},
+        )
     link = end.require("link").strip()
     if link not in links:
         hint = suggestion(link, sorted(links))
         if link == "world":
             hint = 'Add <link name="world"/> to fix the robot to the world.'
-        raise end.fail(f'joint "{joint}": {which} link "{link}" does not exist', hint)
+        raise end.fail(
+            f'joint "{joint}": {which} link "{link}" does not exist',
+            hint,
+            code=robot.JOINT_LINK_UNKNOWN,
+            values={"joint": joint, "name": link, "meant": meant(link, sorted(links))},
+        )
     return link
 
 
@@ -88,7 +115,11 @@ def _axis(node: Node, limits: Node | None, name: str, kind: JointType, ctx: Urdf
     length = math.sqrt(sum(value * value for value in xyz))
     if length < 1e-6:
         assert stated is not None
-        raise stated.fail(f'joint "{name}": the axis {stated.attributes.get("xyz")} has length 0')
+        raise stated.fail(
+            f'joint "{name}": the axis {stated.attributes.get("xyz")} has length 0',
+            code=robot.AXIS_ZERO,
+            values={"joint": name},
+        )
     unit: Vec3 = (xyz[0] / length, xyz[1] / length, xyz[2] / length)
     lower = upper = effort = velocity = None
     if limits is not None:
@@ -100,21 +131,30 @@ def _axis(node: Node, limits: Node | None, name: str, kind: JointType, ctx: Urdf
             lower, upper = lower or 0.0, upper or 0.0
             if lower > upper:
                 raise limits.fail(
-                    f'joint "{name}": the lower limit {lower:g} is above the upper limit {upper:g}'
+                    f'joint "{name}": the lower limit {lower:g} is above the upper limit {upper:g}',
+                    code=robot.LIMIT_REVERSED,
+                    values={"joint": name, "lower": lower, "upper": upper},
                 )
     elif kind in ("revolute", "prismatic"):
-        ctx.tell(
-            "warning",
-            f'joint "{name}" of type {kind} has no <limit>: ROS refuses it, here it is unlimited',
-            node.origin,
+        ctx.report(
+            robot.LIMIT_MISSING.diagnostic(
+                f'joint "{name}" of type {kind} has no <limit>: ROS refuses it, here it is '
+                "unlimited",
+                origin=node.origin,
+                severity="warning",
+                values={"joint": name},
+            )
         )
     if kind not in ("revolute", "prismatic"):
         if lower or upper:
             assert limits is not None
-            ctx.tell(
-                "info",
-                f'joint "{name}" is {kind}: its lower and upper limit have no effect',
-                limits.origin,
+            ctx.report(
+                tags.TAG_IGNORED.diagnostic(
+                    f'joint "{name}" is {kind}: its lower and upper limit have no effect',
+                    origin=limits.origin,
+                    severity="info",
+                    values={"joint": name, "tag": "limit"},
+                )
             )
         lower = upper = None
     dynamics = node.child("dynamics")
@@ -132,12 +172,18 @@ def _axis(node: Node, limits: Node | None, name: str, kind: JointType, ctx: Urdf
 
 
 def _bound(limits: Node, attribute: str, joint: str, ctx: UrdfContext) -> float | None:
-    """An effort or velocity that a joint may have; what is below 0 means none, as in SDF."""
+    """The largest effort or velocity; a negative one means no limit, as in SDF."""
     value = limits.optional_number_of(attribute, infinite=True)
     if value is None or value >= 0:
         return value
-    told = f'joint "{joint}": the {attribute} limit {value:g} is below 0: there is none, as in SDF'
-    ctx.tell("info", told, limits.origin)
+    ctx.report(
+        tags.VALUE_IGNORED.diagnostic(
+            f'joint "{joint}": the {attribute} limit {value:g} is negative, so there is no limit',
+            origin=limits.origin,
+            severity="info",
+            values={"joint": joint, "attribute": attribute, "stated": value},
+        )
+    )
     return None
 
 
@@ -152,7 +198,7 @@ def _not_negative(dynamics: Node | None, attribute: str, joint: str) -> float:
     value = dynamics.number_of(attribute, 0.0)
     if value < 0:
         raise dynamics.fail(
-            f'joint "{joint}": the {attribute} {value:g} is below 0, which would drive the joint'
+            f'joint "{joint}": the {attribute} {value:g} is negative, which would drive the joint'
         )
     return value
 
@@ -188,6 +234,12 @@ def check_mimics(joints: Iterable[Joint]) -> None:
             raise DescriptionError(
                 f'joint "{joint.name}" mimics the joint "{joint.mimic.joint}", '
                 "which does not exist",
+                code=robot.MIMIC_UNKNOWN,
+                values={
+                    "joint": joint.name,
+                    "name": joint.mimic.joint,
+                    "meant": meant(joint.mimic.joint, sorted(set(by_name) - {joint.name})),
+                },
                 origin=joint.origin,
                 hint=suggestion(joint.mimic.joint, sorted(set(by_name) - {joint.name})),
             )
@@ -198,6 +250,8 @@ def check_mimics(joints: Iterable[Joint]) -> None:
             if leader.name in seen:
                 raise DescriptionError(
                     f'joint "{joint.name}" mimics itself, by way of "{joint.mimic.joint}"',
+                    code=robot.MIMIC_UNKNOWN,
+                    values={"joint": joint.name, "name": joint.mimic.joint},
                     origin=joint.origin,
                 )
             seen.add(leader.name)

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 
+from cartwheel.codes import robot, tags
 from cartwheel.description import numbers
 from cartwheel.description.inertia import HEAVIEST, impossibility, made_possible, principal_moments
+from cartwheel.description.losses import loss
 from cartwheel.description.meshes import load_mesh
 from cartwheel.description.model import (
     Box,
@@ -23,7 +25,7 @@ from cartwheel.description.model import (
 )
 from cartwheel.description.packages import Packages
 from cartwheel.description.xml import Node
-from cartwheel.errors import DescriptionError, Diagnostic, Origin, Severity, suggestion
+from cartwheel.errors import DescriptionError, Diagnostic, Origin, meant, suggestion
 from cartwheel.geometry import Pose
 
 SHAPES = ("box", "cylinder", "sphere", "capsule", "mesh")
@@ -38,9 +40,9 @@ class UrdfContext:
     """Those defined for the whole robot."""
     diagnostics: list[Diagnostic] = field(default_factory=list)
 
-    def tell(self, severity: Severity, message: str, origin: Origin) -> None:
+    def report(self, diagnostic: Diagnostic) -> None:
         """Adds a diagnostic."""
-        self.diagnostics.append(Diagnostic(severity=severity, message=message, origin=origin))
+        self.diagnostics.append(diagnostic)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -81,10 +83,12 @@ def _define(node: Node, ctx: UrdfContext) -> None:
         return
     known = ctx.materials.setdefault(name, material)
     if known != material:
-        ctx.tell(
-            "warning",
-            f'the material "{name}" is defined twice, differently: the first counts',
-            node.origin,
+        ctx.report(
+            tags.MATERIAL_DIFFERS.diagnostic(
+                f'the material "{name}" has two different definitions: the first one counts',
+                origin=node.origin,
+                values={"name": name},
+            )
         )
 
 
@@ -92,7 +96,7 @@ def read_link(node: Node, ctx: UrdfContext) -> ReadLink:
     """A link, its parts named as Gazebo names them.
 
     Raises:
-        DescriptionError: an impossible size, a number that is none.
+        DescriptionError: An impossible size, or a value that is not a number.
     """
     name = node.require("name").strip()
     visuals: list[Visual] = []
@@ -157,10 +161,14 @@ def _material(node: Node | None, ctx: UrdfContext) -> Material:
     if name in ctx.materials:
         return ctx.materials[name]
     if name:
-        ctx.tell(
-            "warning",
-            f'the material "{name}" is not defined. {suggestion(name, sorted(ctx.materials))}',
-            node.origin,
+        known = sorted(ctx.materials)
+        ctx.report(
+            tags.MATERIAL_UNDEFINED.diagnostic(
+                f'the material "{name}" is not defined',
+                origin=node.origin,
+                hint=suggestion(name, known) if known else "",
+                values={"name": name, "meant": meant(name, known)},
+            )
         )
     return Material(name=name)
 
@@ -176,8 +184,7 @@ def _stated(node: Node, name: str, ctx: UrdfContext) -> Material | None:
         try:
             path = ctx.packages.resolve(texture.require("filename"), texture.origin, what="texture")
         except DescriptionError as error:
-            hint = f". {error.hint}" if error.hint else ""
-            ctx.tell("warning", f"{error.message}{hint}", texture.origin)
+            ctx.report(error.diagnostic("warning"))
     return Material(name=name, diffuse=rgba, texture=path)
 
 
@@ -187,17 +194,29 @@ def _colour(node: Node, ctx: UrdfContext) -> Rgba | None:
     values = text.split()
     try:
         if len(values) == 3:
-            ctx.tell(
-                "warning", f'the colour "{text}" has no opacity: it is taken for 1', node.origin
+            ctx.report(
+                tags.VALUE_IGNORED.diagnostic(
+                    f'the colour "{text}" has no opacity, so 1 is used',
+                    origin=node.origin,
+                    values={"stated": text},
+                )
             )
             values = [*values, "1"]
         r, g, b, a = numbers.vector(" ".join(values), 4, "color rgba", node.origin)
     except DescriptionError as error:
-        ctx.tell("warning", f"{error.message}: the colour is left out", node.origin)
+        ctx.report(
+            loss(error, "the colour is left out", severity="warning", code=tags.VALUE_IGNORED)
+        )
         return None
     rgba = (_share(r), _share(g), _share(b), _share(a))
     if rgba != (r, g, b, a):
-        ctx.tell("warning", f'the colour "{text}" is not within 0 and 1', node.origin)
+        ctx.report(
+            tags.VALUE_IGNORED.diagnostic(
+                f'the colour "{text}" has values outside 0 to 1, which are clipped',
+                origin=node.origin,
+                values={"stated": text},
+            )
+        )
     return rgba
 
 
@@ -206,10 +225,14 @@ def _share(value: float) -> float:
 
 
 def read_geometry(owner: Node, kind: str, link: str, ctx: UrdfContext) -> Shape | None:
-    """The shape of a visual or collision; None where it has none that can be had."""
+    """The shape of a visual or collision; None where it is left out."""
     geometry = owner.child("geometry")
     if geometry is None:
-        raise owner.fail(f'a {kind} of link "{link}" has no <geometry>')
+        raise owner.fail(
+            f'a {kind} of link "{link}" has no <geometry>',
+            code=tags.TAG_MISSING,
+            values={"missing": "geometry", "link": link},
+        )
     for tag in SHAPES:
         node = geometry.child(tag)
         if node is None:
@@ -220,12 +243,16 @@ def read_geometry(owner: Node, kind: str, link: str, ctx: UrdfContext) -> Shape 
     if geometry.children:
         wrong = geometry.children[0]
         raise wrong.fail(
-            f'the geometry <{wrong.tag}> of link "{link}" is not known',
+            f'the geometry <{wrong.tag}> of link "{link}" is unknown',
             suggestion(wrong.tag, SHAPES),
+            code=tags.TYPE_UNKNOWN,
+            values={"name": wrong.tag, "meant": meant(wrong.tag, SHAPES), "link": link},
         )
     raise geometry.fail(
         f'the <geometry> of a {kind} of link "{link}" is empty',
-        f"It holds one of: {', '.join(SHAPES)}.",
+        f"Write one of: {', '.join(SHAPES)}.",
+        code=tags.TAG_MISSING,
+        values={"link": link},
     )
 
 
@@ -235,11 +262,13 @@ def _primitive(node: Node, kind: str, link: str, ctx: UrdfContext) -> Shape | No
         size = node.vec3_of("size")
         if min(size) < 0:
             # Gazebo Classic draws it, inside out, as large as it is without the sign.
-            ctx.tell(
-                "warning",
-                f'a box of link "{link}" has the negative size {_listed(size)}: '
-                "it counts without the sign",
-                node.origin,
+            ctx.report(
+                tags.VALUE_IGNORED.diagnostic(
+                    f'a box of link "{link}" has the negative size {_listed(size)}: '
+                    "the sign is ignored",
+                    origin=node.origin,
+                    values={"link": link, "stated": size},
+                )
             )
             size = (abs(size[0]), abs(size[1]), abs(size[2]))
         sizes: tuple[float, ...] = size
@@ -257,14 +286,18 @@ def _primitive(node: Node, kind: str, link: str, ctx: UrdfContext) -> Shape | No
     if min(sizes) < 0:
         raise node.fail(
             f'a {node.tag} of link "{link}" has the negative size {_listed(sizes)}',
-            "Sizes are metres, above 0.",
+            "Sizes are in metres and above 0.",
         )
     if min(sizes) == 0:
-        ctx.tell(
-            # The old way to write a link that is but a frame.
-            "warning" if any(sizes) else "info",
-            f'a {node.tag} of link "{link}" has the size {_listed(sizes)}: the {kind} is left out',
-            node.origin,
+        ctx.report(
+            tags.VALUE_IGNORED.diagnostic(
+                f'a {node.tag} of link "{link}" has the size {_listed(sizes)}: '
+                f"the {kind} is left out",
+                origin=node.origin,
+                # With 0 alone it is the old way to write a link that is only a frame.
+                severity="warning" if any(sizes) else "info",
+                values={"link": link, "stated": sizes, "left_out": kind},
+            )
         )
         return None
     return shape
@@ -274,19 +307,24 @@ def _mesh(node: Node, kind: str, link: str, ctx: UrdfContext) -> Mesh | None:
     uri = node.require("filename").strip()
     scale = node.vec3_of("scale", (1.0, 1.0, 1.0))
     if 0.0 in scale:
-        raise node.fail(f'the scale of a mesh of link "{link}" is {_listed(scale)}: it is flat')
+        raise node.fail(
+            f'the scale of a mesh of link "{link}" is {_listed(scale)}, which flattens it'
+        )
     try:
         path = ctx.packages.resolve(uri, node.origin, what="mesh")
         mesh = Mesh(uri=uri, path=path, scale=scale)
         load_mesh(mesh, origin=node.origin)
     except DescriptionError as error:
         # As in Gazebo, and as in a world: it costs the one shape.
-        hint = f" {error.hint}" if error.hint else ""
-        loss = " and touches nothing" if kind == "collision" else ""
-        ctx.tell(
-            "error",
-            f'{error.message}; a {kind} of link "{link}" is left out{loss}.{hint}',
-            node.origin,
+        rest = " and collides with nothing" if kind == "collision" else ""
+        ctx.report(
+            loss(
+                error,
+                f'a {kind} of link "{link}" is left out{rest}',
+                of=kind,
+                origin=node.origin,
+                values={"link": link},
+            )
         )
         return None
     return mesh
@@ -295,7 +333,7 @@ def _mesh(node: Node, kind: str, link: str, ctx: UrdfContext) -> Mesh | None:
 def _inertial(node: Node) -> Inertial:
     mass = node.require_child("mass").number_of("value")
     if mass > HEAVIEST:
-        raise node.fail(f"a mass must be at most {HEAVIEST:g} kg, but is {mass:g}")
+        raise node.fail(f"a mass must be at most {HEAVIEST:g} kg (got {mass:g})")
     tensor = node.child("inertia")
     values = {
         key: tensor.number_of(key, 0.0) if tensor is not None else 0.0
@@ -328,18 +366,34 @@ def judged_inertia(inertial: Inertial, link: str, *, rigid: bool, ctx: UrdfConte
     message, hint = found
     if not any((*diagonal, *products)):
         if rigid:
-            ctx.tell("info", f'link "{link}" is a point mass: its inertia is 0', i.origin)
+            ctx.report(
+                robot.INERTIA_IMPOSSIBLE.diagnostic(
+                    f'link "{link}" is a point mass: its inertia is 0',
+                    origin=i.origin,
+                    severity="info",
+                    values={"link": link},
+                )
+            )
         return inertial  # a part that turns without any inertia is given one as a whole
     if moments[2] <= 0:
-        raise DescriptionError(f'link "{link}": {message}', origin=i.origin, hint=hint)
+        raise DescriptionError(
+            f'link "{link}": {message}',
+            code=robot.INERTIA_IMPOSSIBLE,
+            origin=i.origin,
+            hint=hint,
+            values={"link": link, "moments": moments},
+        )
     (ixx, iyy, izz), (ixy, ixz, iyz) = made_possible(diagonal, products)
     made = replace(i, ixx=ixx, iyy=iyy, izz=izz, ixy=ixy, ixz=ixz, iyz=iyz)
     smaller = principal_moments(made.diagonal, made.products)
-    ctx.tell(
-        "info" if rigid else "warning",
-        f'link "{link}": {message}; here the smaller are {smaller[0]:.4g} and {smaller[1]:.4g}. '
-        f"{hint}",
-        i.origin,
+    ctx.report(
+        robot.INERTIA_IMPOSSIBLE.diagnostic(
+            f'link "{link}": {message}; here the smaller are {smaller[0]:.4g} and {smaller[1]:.4g}',
+            origin=i.origin,
+            hint=hint,
+            severity="info" if rigid else "warning",
+            values={"link": link, "moments": moments, "used": smaller},
+        )
     )
     return made
 

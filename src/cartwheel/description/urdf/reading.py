@@ -9,6 +9,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
+from cartwheel.codes import files, robot
+from cartwheel.codes import tags as tag_codes
 from cartwheel.description.model import Inertial, Link, RobotDescription
 from cartwheel.description.packages import Packages
 from cartwheel.description.sdf.harmless import HARMLESS as HARMLESS_IN_SDF
@@ -50,7 +52,10 @@ def read_urdf(
         DescriptionError: it is no robot; names the place and the likely fix.
     """
     if root.tag != "robot":
-        raise root.fail(f"expected <robot>, but the file begins with <{root.tag}>")
+        raise root.fail(
+            f"expected <robot>, but the file begins with <{root.tag}>",
+            code=files.NOT_A_DESCRIPTION,
+        )
     name = _name(root)
     root.get("version")
     ctx = UrdfContext(packages=packages, diagnostics=list(diagnostics))
@@ -60,6 +65,8 @@ def read_urdf(
         raise root.fail(
             f'the robot "{name}" has no links',
             "Is the robot a xacro macro that is defined, but never called?",
+            code=tag_codes.MODEL_EMPTY,
+            values={"name": name},
         )
     _check_unique("link", link_nodes)
     joint_nodes = root.all("joint")
@@ -82,7 +89,7 @@ def read_urdf(
     links = _without_world(links, tree, ctx)
     links = list(with_masses(links, tree, ctx, static=tags.static))
     canonical_link = links[0].name if tree.root == WORLD else tree.root
-    links, joints, told = insert(
+    links, joints, inserted = insert(
         tags.inserted,
         links,
         joints,
@@ -91,13 +98,13 @@ def read_urdf(
         canonical_link=canonical_link,
         static=tags.static,
     )
-    ctx.diagnostics.extend(told)
+    ctx.diagnostics.extend(inserted)
     if not tags.static and tree.root != WORLD:
-        _tell_untouchable(links, ctx)
+        _warn_untouchable(links, ctx)
 
     transmissions = tuple(to_element(node) for node in root.all("transmission"))
     ros2_control = tuple(to_element(node) for node in root.all("ros2_control"))
-    _tell_unprefixed(root, ctx)
+    _warn_unprefixed(root, ctx)
     ctx.diagnostics.extend(unread(root, HARMLESS_IN_SDF | HARMLESS))
     return RobotDescription(
         name=name,
@@ -119,7 +126,8 @@ def _name(root: Node) -> str:
     if "name" not in root.attributes and not root.all("link"):
         raise root.fail(
             "<robot> has neither a name nor links",
-            "A file that only defines macros is included by another: load that one.",
+            "A file that only defines macros is included by another one: load that one.",
+            code=files.NOT_A_DESCRIPTION,
         )
     return root.require("name").strip()
 
@@ -129,24 +137,37 @@ def _check_unique(kind: str, nodes: Sequence[Node]) -> None:
     for node in nodes:
         name = node.require("name").strip()
         if name in seen:
-            raise node.fail(f'the {kind} "{name}" exists twice', f"The first is at {seen[name]}.")
+            raise node.fail(
+                f'the {kind} "{name}" exists twice',
+                f"The first one is at {seen[name]}.",
+                code=robot.DUPLICATE_NAME,
+                values={"name": name},
+            )
         seen[name] = node.origin
 
 
-def _tell_unprefixed(root: Node, ctx: UrdfContext) -> None:
+def _warn_unprefixed(root: Node, ctx: UrdfContext) -> None:
     """Warns of xacro's elements in the spelling without a prefix, which ROS gave up long ago."""
     for tag in ("include", "property", "macro", "arg", "if", "unless"):
         for node in root.all(tag):
             node.mark()
-            ctx.tell("warning", f"<{tag}> has no effect: write <xacro:{tag}>", node.origin)
+            ctx.report(
+                files.XACRO_PREFIX.diagnostic(
+                    f"<{tag}> without its prefix has no effect",
+                    origin=node.origin,
+                    hint=f"Write <xacro:{tag}>.",
+                    values={"tag": tag, "meant": f"xacro:{tag}"},
+                )
+            )
 
 
 def distinct(diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
-    """Each once, by its text and line: a macro called ten times has the same to say ten times."""
-    found: dict[tuple[str, str], Diagnostic] = {}
+    """Each once for each line: a macro that is called ten times repeats its diagnostics."""
+    unique: dict[tuple[object, ...], Diagnostic] = {}
     for each in diagnostics:
-        found.setdefault((each.message, str(each.origin)), each)
-    return tuple(found.values())
+        values = tuple(sorted(each.values.items(), key=lambda item: item[0]))
+        unique.setdefault((each.code, each.message, values, str(each.origin)), each)
+    return tuple(unique.values())
 
 
 def _complete(part: ReadLink, tree: Tree, pose: Pose, tags: GazeboTags, ctx: UrdfContext) -> Link:
@@ -164,10 +185,13 @@ def _judged(part: ReadLink, tree: Tree, ctx: UrdfContext) -> Inertial | None:
     holder = tree.inbound.get(name)
     fixed = holder is not None and holder.type == "fixed"
     if inertial.mass <= 0:
-        ctx.tell(
-            "info" if fixed and inertial.mass == 0 else "warning",
-            f'link "{name}" has the mass {inertial.mass:g}: it counts as a frame without mass',
-            inertial.origin,
+        ctx.report(
+            robot.MASS_NOT_POSITIVE.diagnostic(
+                f'link "{name}" has the mass {inertial.mass:g}: it becomes a frame without mass',
+                origin=inertial.origin,
+                severity="info" if fixed and inertial.mass == 0 else "warning",
+                values={"link": name, "stated": inertial.mass},
+            )
         )
         return None
     rigid = fixed or any(joint.type == "fixed" for joint in tree.children[name])
@@ -182,25 +206,32 @@ def _without_world(links: list[Link], tree: Tree, ctx: UrdfContext) -> list[Link
     world = next(link for link in links if link.name == WORLD)
     if not kept:
         raise DescriptionError(
-            'the only link is "world", which stands for the world itself', origin=world.origin
+            'the only link is "world", which represents the world itself',
+            code=tag_codes.MODEL_EMPTY,
+            origin=world.origin,
         )
     if world.visuals or world.collisions or world.inertial or world.sensors:
-        ctx.tell(
-            "warning",
-            'the link "world" stands for the world itself: what it consists of is left out',
-            world.origin,
+        ctx.report(
+            tag_codes.ELEMENT_LEFT_OUT.diagnostic(
+                'the link "world" represents the world itself: its shapes, mass and sensors are '
+                "left out",
+                origin=world.origin,
+                values={"tag": "link", "name": WORLD},
+            )
         )
     return [link for name in tree.order for link in kept if link.name == name]
 
 
-def _tell_untouchable(links: Sequence[Link], ctx: UrdfContext) -> None:
+def _warn_untouchable(links: Sequence[Link], ctx: UrdfContext) -> None:
     """Warns of a robot made for rviz alone, which nothing holds."""
     seen = next((link for link in links if link.visuals), None)
     if seen is not None and not any(link.collisions for link in links):
-        ctx.tell(
-            "warning",
-            "none of its links has a <collision>: the robot falls through the ground. Write one "
-            f"beside the <visual> of each, with the same <origin> and <geometry>; "
-            f'"{seen.name}" is the first',
-            seen.visuals[0].origin,
+        ctx.report(
+            robot.BASE_WITHOUT_COLLISION.diagnostic(
+                "none of its links has a <collision>: the robot falls through the ground",
+                origin=seen.visuals[0].origin,
+                hint="Write one beside the <visual> of each, with the same <origin> and "
+                f'<geometry>. "{seen.name}" is the first.',
+                values={"link": seen.name},
+            )
         )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
+from cartwheel.codes import robot
 from cartwheel.description.model import Joint
 from cartwheel.errors import DescriptionError, Origin
 from cartwheel.geometry import Pose
@@ -73,6 +74,8 @@ def build_tree(links: Sequence[tuple[str, Origin]], joints: Sequence[Joint]) -> 
             raise DescriptionError(
                 f'link "{joint.child}" has two parents: joint "{other.name}" joins it to '
                 f'"{other.parent}", joint "{joint.name}" to "{joint.parent}"',
+                code=robot.MULTIPLE_PARENTS,
+                values={"link": joint.child, "joints": (other.name, joint.name)},
                 origin=joint.origin,
                 hint=f'The joint "{other.name}" is at {other.origin}. A URDF is a tree.',
             )
@@ -85,6 +88,8 @@ def build_tree(links: Sequence[tuple[str, Origin]], joints: Sequence[Joint]) -> 
         names = ", ".join(f'"{name}"' for name, _ in roots)
         raise DescriptionError(
             f"the links are not one tree: {names} have no joint to a parent",
+            code=robot.MULTIPLE_ROOTS,
+            values={"links": tuple(name for name, _ in roots)},
             origin=roots[1][1],
             hint=f'Is a joint missing that has "{roots[1][0]}" for its child?',
         )
@@ -110,7 +115,9 @@ def _cycle(start: str, inbound: dict[str, Joint]) -> DescriptionError:
     ring.append(ring[0])
     joint = inbound[ring[0]]
     return DescriptionError(
-        f"the joints make a ring of links: {' -> '.join(reversed(ring))}",
+        f"the joints form a loop: {' -> '.join(reversed(ring))}",
+        code=robot.KINEMATIC_LOOP,
+        values={"links": tuple(reversed(ring))},
         origin=joint.origin,
-        hint="Turn round or remove one of its joints: a URDF is a tree with one root.",
+        hint="Reverse or remove one of its joints: a URDF is a tree with one root.",
     )
