@@ -469,8 +469,7 @@ def meant_one(name: str, existing: Iterable[str], *, cutoff: float = 0.75) -> st
 
 def meant(name: str, existing: Iterable[str]) -> str:
     """The likely meant one of `existing`, which `suggestion` names; empty where none is alike."""
-    close = _close(name, list(existing), _SIMILAR)
-    return close[0] if close else ""
+    return meant_one(name, existing, cutoff=_SIMILAR)
 
 
 def suggestion(name: str, existing: Iterable[str]) -> str:

@@ -58,6 +58,7 @@ FORMER = {
     "controller-gains": "controller-gains-missing",
     "plugin-parameter": "plugin-parameter-unknown",
     "property-twice": "property-overwritten",
+    "unreadable": "value-invalid",
 }
 """Names that codes had before, which settings and options still accept."""
 _HEADING = re.compile(r"^## (CW\d{3}) (\S+)\n", re.MULTILINE)

@@ -152,7 +152,6 @@ SDF_VERSION = Code(
     "error",
     "a version of SDF that is missing, too old or newer than supported",
 )
-UNREADABLE = Code("CW152", "unreadable", "error", "an element cannot be read and is left out")
 ARGUMENT_UNUSED = Code("CW153", "argument-unused", "warning", "a xacro argument has no effect")
 PROPERTY_UNUSED = Code("CW154", "property-unused", "info", "a xacro property is never used")
 PROPERTY_OVERWRITTEN = Code(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -34,7 +33,6 @@ _OF_WHEELS = frozenset(
     each.code for each in RULES if each.code.name.startswith(("drive", "wheel", "caster"))
 )
 """Rules of `check` that tell why a base does not drive as it is told."""
-_NO_MESH = re.compile(r"the mesh|; a (visual|collision) of link")
 
 
 def try_robot(
@@ -104,7 +102,10 @@ def _described(verdict: Verdict, robot: RobotDescription) -> Verdict:
         links=len(robot.links),
         plugins=tuple(name for name in names if name in known),
         missing=tuple(name for name in names if name not in known),
-        missing_meshes=sum(bool(_NO_MESH.search(each.message)) for each in robot.diagnostics),
+        missing_meshes=sum(
+            each.values.get("left_out") in ("visual", "collision") and each.severity == "error"
+            for each in robot.diagnostics
+        ),
         diagnostics=robot.diagnostics,
     )
 

@@ -220,8 +220,8 @@ WITHOUT_PLACE = {
         ('<origin xyz="0 0 0.21"/>', '<origin xyz="0 0 -0.06"/>')], None, "smaller"),
     "clockwise": ("sensor-range-invalid", [("<min_angle>-1<", "<min_angle>1.5<")], "<min_angle>", "max_angle"),
     "mesh": ("file-missing", [('<box size="0.03 0.03 0.01"/>', '<mesh filename="finger.stl"/>')],
-        "finger.stl", "Looked for"),
-    "number": ("unreadable", [('<box size="0.03 0.03 0.01"/>', '<box size="0.03 0.03 x"/>')],
+        "finger.stl", "Searched"),
+    "number": ("value-invalid", [('<box size="0.03 0.03 0.01"/>', '<box size="0.03 0.03 x"/>')],
         "0.03 0.03 x", ""),
     "two sensors": ("sensor-twice", [('type="ray" name="lidar"', 'type="ray" name="camera"')],
         'type="ray"', ""),
@@ -271,12 +271,12 @@ def test_what_follows_from_a_fault_is_not_told_as_well(bench, spoil):
     def rules(*changes):
         return [finding.code.name for finding in bench.report(spoil(*changes)).findings]
 
-    assert rules(('<origin xyz="0 0.2 0.08"/>', '<origin xyz="0, 0.2, 0.08"/>')) == ["unreadable"]
+    assert rules(('<origin xyz="0 0.2 0.08"/>', '<origin xyz="0, 0.2, 0.08"/>')) == ["value-invalid"]
     assert rules(('reference="caster_link"', 'reference="castor_link"')) == ["reference-unknown"]
-    assert rules(('<sphere radius="0.03"/>', '<sphere diameter="0.06"/>')) == ["unreadable"]
+    assert rules(('<sphere radius="0.03"/>', '<sphere diameter="0.06"/>')) == ["tag-missing"]
     assert rules(('name="caster_joint"', 'name="eye_joint"')) == ["duplicate-name"]
     box = '<box size="0.4 0.3 0.1"/>\n      </geometry>\n    </collision>'
-    assert rules((box, box.replace("<box size=", "<box sizes="))) == ["unreadable"]
+    assert rules((box, box.replace("<box size=", "<box sizes="))) == ["tag-missing"]
 
 
 def test_a_robot_that_faces_the_other_way_is_right_in_all(bench, spoil):
@@ -346,7 +346,7 @@ def test_the_rest_is_checked_behind_an_error(bench, spoil):
     report = bench.report(text)
     assert report.complete
     assert {
-        "joint-link-unknown", "axis-zero", "inertia-impossible", "wheel-separation-mismatch", "unreadable",
+        "joint-link-unknown", "axis-zero", "inertia-impossible", "wheel-separation-mismatch", "value-invalid",
     } <= {finding.code.name for finding in report.findings}  # fmt: skip
     lines = [finding.origin.line for finding in report.findings]
     assert lines == sorted(lines)
@@ -356,8 +356,8 @@ def test_a_cause_is_told_once(bench, spoil):
     """A link that is cut out because of one number makes no second error."""
     text = spoil(('<mass value="0.3"/>', '<mass value="heavy"/>'))
     errors = [f for f in bench.report(text).findings if f.severity == "error"]
-    assert [finding.code.name for finding in errors] == ["unreadable"]
-    assert '"heavy" is not a number' in errors[0].message
+    assert [finding.code.name for finding in errors] == ["value-invalid"]
+    assert errors[0].values["stated"] == "heavy"
 
 
 def test_a_rule_can_be_ignored(bench, spoil):
@@ -587,7 +587,8 @@ def test_a_wheel_beside_its_axis_has_its_own_diameter(bench, spoil):
 def test_tags_of_a_link_that_stand_at_its_joint_are_told_together(bench, spoil, take):
     text = spoil(('reference="caster_link"', 'reference="caster_joint"'))
     (finding,) = bench.find(text, "tag-misplaced")
-    assert finding.message.startswith("<mu1>, <mu2> act on a link")
+    assert finding.values["tags"] == ("mu1", "mu2")
+    assert finding.values["needs"] == "link"
     assert finding.instead == 'reference="caster_link"'
     assert not bench.find(take(text, finding), "tag-misplaced")
 

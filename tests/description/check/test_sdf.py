@@ -39,7 +39,7 @@ def test_a_good_model_and_a_good_world_are_clean(bench):
         ("angle-in-degrees", model(yaw="90"), 2),
         ("file-missing", world("<include><uri>model://nothing_here</uri></include>\n"), 2),
         ("tag-ignored", model("<velocty_decay/>"), 8),
-        ("unreadable", model('<joint name="j" type="fixed"/>'), 8),
+        ("tag-missing", model('<joint name="j" type="fixed"/>'), 8),
     ],
 )
 def test_a_fault_is_found_at_its_line(bench, rule, text, line):
@@ -88,7 +88,7 @@ def test_sdf_in_a_urdf_is_clean_where_it_is_good(bench):
             "",
         ),
         (
-            "unreadable",
+            "joint-link-unknown",
             inserted('<joint name="j" type="ball"><parent>bass</parent><child>box</child></joint>'),
             10,
             "",
@@ -173,7 +173,8 @@ def test_a_joint_that_cannot_be_read_is_no_missing_one(bench):
     text = WHEELS.format(wheels=wheels, separation=0.3).replace("left_joint>", "joint_name>")
     text = text.replace("right_joint>", "joint_name>").replace("diff_drive", "p3d")
     assert not bench.find(text, "plugin-joint-unknown", "x.sdf")
-    assert "revolut" in bench.find(text, "unreadable", "x.sdf")[0].message
+    found = bench.find(text, "joint-type-unknown", "x.sdf")
+    assert found[0].values["name"] == "revolut"
 
 
 def test_attributes_of_urdf_are_written_as_elements(bench, take):
@@ -187,12 +188,12 @@ def test_attributes_of_urdf_are_written_as_elements(bench, take):
 
 
 def test_a_misspelt_end_of_a_joint_is_told_once_with_the_right_one(bench, take):
-    rules = {"unreadable", "value-ignored", "drive-joint-unknown"}
+    rules = {"joint-link-unknown", "value-ignored", "drive-joint-unknown"}
     wheels = wheel("left", 0.15) + wheel("right", -0.15)
     good = WHEELS.format(wheels=wheels, separation=0.3)
     text = good.replace("<child>left_wheel<", "\n<child>left_whele<")
     (finding,) = (f for f in bench.report(text, "x.sdf").findings if f.code.name in rules)
-    assert finding.code.name == "unreadable"
+    assert finding.code.name == "joint-link-unknown"
     assert finding.instead == "<child>left_wheel</child>"
     assert finding.origin.line == text[: text.index("<child>left_whele")].count("\n") + 1
     mended = take(text, finding)
@@ -212,7 +213,7 @@ def test_a_model_of_a_world_that_cannot_be_read_is_told_as_such(bench):
         '<model name="a"><link name="b"><inertial><mass>-1</mass></inertial></link></model>\n'
     )
     found = [finding.code.name for finding in bench.report(text, "x.sdf").findings]
-    assert found == ["unreadable"]
+    assert found == ["mass-not-positive"]
 
 
 def turning(lower, upper):

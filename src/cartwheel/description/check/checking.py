@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -10,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from cartwheel.codes import code_named, codes_of
+from cartwheel.codes.tags import DEFAULT_USED
 from cartwheel.description.check import (
     control,
     controllers,
@@ -32,7 +32,7 @@ from cartwheel.description.check import (
 )
 from cartwheel.description.check.control_search import control_files
 from cartwheel.description.check.mending import displaced, mend
-from cartwheel.description.check.rule import Rule
+from cartwheel.description.check.rule import Rule, limited
 from cartwheel.description.check.subject import PluginKnowledge, Robot, Subject
 from cartwheel.description.loading import Opened, open_description, understand
 from cartwheel.description.model import RobotDescription, WorldDescription
@@ -63,7 +63,6 @@ REPORTED = tuple(
     code for module in ("files", "robot", "tags", "devices") for code in codes_of(module)
 )
 """The codes that a check can report: those of its rules, and those of what reads descriptions."""
-_WITHOUT = re.compile(r"is left out|so it has no shape|SDF's default of")
 MAX_FAILURES = 30
 """After so many things that cannot be read the rest is hardly worth a look."""
 
@@ -123,7 +122,12 @@ def check(
     subject = _subject(opened, known, controller_files)
     # Numbers near the largest overflow; no finding comes of what is not a number.
     with np.errstate(all="ignore"):
-        found = _distinct(finding for each in RULES for finding in each.apply(subject))
+        found = _distinct(
+            [
+                *limited(tags.passed(subject)),
+                *(one for each in RULES for one in each.apply(subject)),
+            ]
+        )
     told = [finding for finding in found if finding.code not in ignored]
     order = {file: index for index, file in enumerate(subject.files)}
     told.sort(key=lambda finding: _place(finding, order))
@@ -207,7 +211,9 @@ def _left_out(root: Node, read: RobotDescription | WorldDescription | None) -> s
     """The links of SDF that lack what its readers left out."""
     links = set[str]()
     for diagnostic in read.diagnostics if read is not None else ():
-        if _WITHOUT.search(diagnostic.message) and diagnostic.origin is not None:
+        values = diagnostic.values
+        lacks = "left_out" in values or (diagnostic.code is DEFAULT_USED and "shape" in values)
+        if lacks and diagnostic.origin is not None:
             node = nodes.at(root, diagnostic.origin)
             links |= _links_around(root, node) if node is not None else set()
     return links

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Iterator
 from dataclasses import replace
+from typing import cast
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from cartwheel.description.check import nodes
 from cartwheel.description.check.rule import rule
 from cartwheel.description.check.solids import as_collision, bounds
 from cartwheel.description.check.structure import ends, inbound, link_names
-from cartwheel.description.check.subject import IMPOSSIBLE, Robot, Subject
+from cartwheel.description.check.subject import Robot, Subject
 from cartwheel.description.inertia import impossibility, principal_moments
 from cartwheel.description.model import Box, Collision, Inertial, Link, Visual
 from cartwheel.description.node import Node
@@ -37,7 +37,6 @@ _FOAM = 50.0
 _LIGHTEST_IN_KG = 0.1
 _ROUNDED = 1e-9
 """Relative: what is left of a 0 by rounding."""
-_OF_LINK = re.compile(r'link "([^"]*)"')
 _NEVERTHELESS = (
     "Gazebo Classic simulates it anyway, and gz-sim refuses it. Cartwheel raises "
     "the smaller moments."
@@ -49,8 +48,8 @@ _KEYS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 @rule(robot_codes.INERTIA_IMPOSSIBLE)
 def inertia_impossible(subject: Subject) -> Iterator[Diagnostic]:
     for failure in subject.failures:
-        if IMPOSSIBLE.search(failure.message):
-            yield replace(failure, code=robot_codes.INERTIA_IMPOSSIBLE, severity="warning")
+        if "moments" in failure.values:
+            yield replace(failure, severity="warning")
     yield from _impossible_in_sdf(subject)
     held = _held(subject)
     for link, inertial in _inertials(subject):
@@ -82,18 +81,19 @@ def _impossible_in_sdf(subject: Subject) -> Iterator[Diagnostic]:
     """What its reader told of inertias, with that of the geometry."""
     links = {link.name: (robot, link) for robot in subject.robots for link in robot.links.values()}
     for diagnostic in subject.read.diagnostics if subject.read is not None else ():
-        match = _OF_LINK.match(diagnostic.message)
-        if match is None or not IMPOSSIBLE.search(diagnostic.message):
+        values = diagnostic.values
+        if diagnostic.code is not robot_codes.INERTIA_IMPOSSIBLE or "moments" not in values:
             continue
         if diagnostic.severity == "error" or not subject.in_sdf(diagnostic.origin):
             continue
-        robot, link = links.get(match[1], (None, None))
+        robot, link = links.get(str(values["link"]), (None, None))
+        wrong = impossibility(cast(Vec3, values["moments"]))
         like = _shape_inertia(robot, link) if robot is not None and link is not None else None
         mass = link.inertial.mass if link is not None and link.inertial is not None else 1.0
         yield robot_codes.INERTIA_IMPOSSIBLE.diagnostic(
             severity=diagnostic.severity,
-            message=diagnostic.message.partition("; here ")[0],
-            values={**diagnostic.values, "link": match[1]},
+            message=f'link "{values["link"]}": {wrong[0]}' if wrong else diagnostic.message,
+            values=values,
             origin=diagnostic.origin,
             instead=_inertia_text(like, mass, sdf=True),
             hint=_NEVERTHELESS,

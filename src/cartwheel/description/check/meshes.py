@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from pathlib import Path
 from statistics import median
 
@@ -15,10 +15,10 @@ from cartwheel.codes import robot as robot_codes
 from cartwheel.description.check import nodes, spelling
 from cartwheel.description.check.rule import rule
 from cartwheel.description.check.solids import Solid
-from cartwheel.description.check.subject import MISSING, Robot, Subject
+from cartwheel.description.check.subject import ABSENT, Robot, Subject
 from cartwheel.description.model import Mesh
 from cartwheel.description.node import Node
-from cartwheel.errors import Code, DescriptionError, Diagnostic, Severity
+from cartwheel.errors import DescriptionError, Diagnostic
 
 GIANT = 30.0
 """Times the size of all the rest of the robot."""
@@ -27,56 +27,47 @@ GIANT_MESH = 6.0
 DWARF = 300.0
 HUGE = 100.0
 """m: no link of a robot is as long; millimetres were meant."""
-_LEFT_OUT = re.compile(
-    r"(.* is left out(?: and touches nothing)?|the material .*, as .* was not found)\.?(.*)",
-    re.DOTALL,
-)
-_OF_A_FILE = re.compile(r"\bmesh\b|heightmap|texture|polyline|names no model|the folder of")
-_DID_YOU_MEAN = re.compile(r'^Did you mean "([^"]*)"')
 _PACKAGE = re.compile(r"(?:package://|model://|\$\(find )([\w.-]+)")
-_WHY = re.compile(r'the (?:package|model) "[^"]*" was not found|^"[^"]*" is on the network')
-_CAUSE = re.compile(_WHY.pattern + r'|^the [a-z ]+ "[^"]*" does not exist')
 _SHOWN = 3
-
-
-@dataclass
-class _Absence:
-    """Something that is not there, with all that names it."""
-
-    cause: str
-    """Such as ``the package "arm_description" was not found``."""
-    first: Diagnostic
-    places: list[str] = field(default_factory=list)
 
 
 @rule(files_codes.FILE_MISSING)
 def file_missing(subject: Subject) -> Iterator[Diagnostic]:
-    found: dict[str, _Absence] = {}
-    for remark in _absent(subject):
-        cause = _cause(remark.message)
-        absence = found.setdefault(cause, _Absence(cause, remark))
-        if (place := str(remark.origin)) not in absence.places:
-            absence.places.append(place)
-    for absence in found.values():
-        first, more = absence.first, absence.places[1:]
+    absences: dict[tuple[object, ...], list[Diagnostic]] = {}
+    for each in _absent(subject):
+        values = each.values
+        several = absences.setdefault((each.code, values.get("kind"), values.get("name")), [])
+        if all(str(each.origin) != str(other.origin) for other in several):
+            several.append(each)
+    for first, *more in absences.values():
         if not more:
             yield first
             continue
-        shown = ", ".join(more[:_SHOWN]) + (", …" if len(more) > _SHOWN else "")
+        places = ", ".join(str(each.origin) for each in more[:_SHOWN])
+        places += ", …" if len(more) > _SHOWN else ""
         yield replace(
             first,
-            message=f"{absence.cause}: {len(absence.places)} places need it",
-            hint=f"{first.hint.strip()} Also at {shown}.".strip(),
+            message=f"{_cause(first)}: {len(more) + 1} places need it",
+            hint=f"{first.hint.strip()} Also at {places}.".strip(),
         )
 
 
+def _cause(absence: Diagnostic) -> str:
+    kind, name = absence.values.get("kind"), absence.values.get("name")
+    if absence.code is files_codes.FILE_ON_NETWORK:
+        return f'"{name}" is on the network'
+    if absence.code is not files_codes.FILE_MISSING:
+        return absence.message
+    return f'the {kind} "{name}" ' + (
+        "was not found" if kind in ("model", "package") else "does not exist"
+    )
+
+
 def _absent(subject: Subject) -> Iterator[Diagnostic]:
-    for each in subject.failures:
-        if MISSING.search(each.message):
-            yield replace(each, code=files_codes.FILE_MISSING)
-    for remark in left_out(subject, files_codes.FILE_MISSING, missing=True):
-        if subject.in_sdf(remark.origin):
-            yield remark
+    yield from (each for each in subject.failures if each.code in ABSENT)
+    for diagnostic in subject.read.diagnostics if subject.read is not None else ():
+        if diagnostic.code in ABSENT and subject.in_sdf(diagnostic.origin):
+            yield _of_sdf(subject, diagnostic)
     if not subject.is_urdf:
         return
     for node in nodes.walk(subject.root):
@@ -86,27 +77,45 @@ def _absent(subject: Subject) -> Iterator[Diagnostic]:
         try:
             subject.packages.resolve(uri, node.origin, what=node.tag)
         except DescriptionError as error:
-            meant = _meant(subject, uri, node, error.hint or "")
-            yield files_codes.FILE_MISSING.diagnostic(
-                severity="error" if node.tag == "mesh" else "warning",
-                message=error.message,
+            meant = _meant(subject, uri, node, str(error.values.get("meant", "")))
+            yield replace(
+                error.diagnostic("error" if node.tag == "mesh" else "warning"),
                 origin=node.origin,
                 instead=f'filename="{meant}"' if meant else "",
                 place="attribute" if meant else "",
                 mark=uri,
-                hint=error.hint or "",
             )
 
 
-def _meant(subject: Subject, uri: str, node: Node, hint: str) -> str:
-    """The URI with the package or the file that was likely meant, where that is there."""
-    match = _DID_YOU_MEAN.search(hint)
-    if match is None:
+def _of_sdf(subject: Subject, diagnostic: Diagnostic) -> Diagnostic:
+    """A reader's diagnostic of something that is not there, with the URI to write."""
+    node = nodes.at(subject.root, diagnostic.origin) if diagnostic.origin else None
+    uri = nodes.child(node, "uri") or (node if node and node.tag == "uri" else None)
+    near = str(diagnostic.values.get("meant", ""))
+    meant = _meant(subject, uri.text.strip(), uri, near) if uri is not None else ""
+    severity = diagnostic.severity
+    if diagnostic.code is files_codes.FILE_ON_NETWORK:
+        severity = "info"  # Gazebo downloads it
+    elif diagnostic.values.get("kind") == "model":
+        severity = "warning"
+    return replace(
+        diagnostic,
+        severity=severity,
+        origin=uri.origin if uri is not None and meant else diagnostic.origin,
+        instead=nodes.written("uri", {}, meant) if meant else "",
+        place="element" if meant else "",
+        mark=nodes.text_of(node, "filename") if node is not None else "",
+    )
+
+
+def _meant(subject: Subject, uri: str, node: Node, near: str) -> str:
+    """The URI with the package or the file that was likely meant, where that exists."""
+    if not near:
         return ""
     package, name = _PACKAGE.match(uri), Path(uri).name
-    tries = [uri.removesuffix(name) + match[1]] if spelling.meant(name, [match[1]]) else []
+    tries = [uri.removesuffix(name) + near] if spelling.meant(name, [near]) else []
     if package is not None:
-        tries.append(uri[: package.start(1)] + match[1] + uri[package.end(1) :])
+        tries.append(uri[: package.start(1)] + near + uri[package.end(1) :])
     for each in tries:
         try:
             subject.packages.resolve(each, node.origin, folder=True)
@@ -114,29 +123,6 @@ def _meant(subject: Subject, uri: str, node: Node, hint: str) -> str:
             continue
         return each
     return ""
-
-
-def _cause(message: str) -> str:
-    match = _CAUSE.search(message)
-    return match[0] if match is not None else message
-
-
-@rule(files_codes.MESH_UNREADABLE)
-def mesh_unreadable(subject: Subject) -> Iterator[Diagnostic]:
-    yield from (
-        each
-        for each in left_out(subject, files_codes.MESH_UNREADABLE)
-        if _OF_A_FILE.search(each.message)
-    )
-
-
-def left_out_otherwise(subject: Subject) -> Iterator[Diagnostic]:
-    """What is left out, though all its files are there: something in it cannot be read."""
-    yield from (
-        each
-        for each in left_out(subject, files_codes.UNREADABLE)
-        if not _OF_A_FILE.search(each.message)
-    )
 
 
 @rule(robot_codes.SHAPE_OUT_OF_SCALE)
@@ -162,60 +148,6 @@ def shape_size(subject: Subject) -> Iterator[Diagnostic]:
                 factor = 1000.0
             if factor is not None and (len(largest) > 2 or solid.extent > HUGE):
                 yield _remark(robot, solid, factor, usual)
-
-
-def left_out(subject: Subject, code: Code, *, missing: bool = False) -> Iterator[Diagnostic]:
-    """What the readers left out for want of its file, or because the file cannot be used."""
-    for diagnostic in subject.read.diagnostics if subject.read is not None else ():
-        match = _LEFT_OUT.fullmatch(diagnostic.message)
-        if match is None or diagnostic.severity == "info":
-            continue
-        why = _WHY.search(diagnostic.message)
-        if diagnostic.severity != "error" and why is None:
-            continue
-        if missing == bool(why or MISSING.search(diagnostic.message)):
-            node = nodes.at(subject.root, diagnostic.origin) if diagnostic.origin else None
-            uri = nodes.child(node, "uri") or (node if node and node.tag == "uri" else None)
-            hint = match[2].strip()
-            meant = _meant(subject, uri.text.strip(), uri, hint) if uri is not None else ""
-            if (end := _end_meant(node, diagnostic.message, hint)) is not None:
-                yield code.diagnostic(
-                    severity="error",
-                    message=match[1],
-                    origin=end.origin,
-                    instead=nodes.written(end.tag, {}, _DID_YOU_MEAN.match(hint)[1]),  # type: ignore[index]
-                    place="element",
-                    mark=end.text.strip(),
-                )
-                continue
-            yield code.diagnostic(
-                severity=_severity(diagnostic.message),
-                message=match[1],
-                origin=uri.origin if uri is not None and meant else diagnostic.origin,
-                instead=nodes.written("uri", {}, meant) if meant else "",
-                place="element" if meant else "",
-                hint=hint,
-                mark=nodes.text_of(node, "filename") if node is not None else "",
-            )
-
-
-def _end_meant(joint: Node | None, message: str, hint: str) -> Node | None:
-    """The misspelt parent or child of a joint, where its name is surely meant for another."""
-    meant = _DID_YOU_MEAN.match(hint)
-    if joint is None or joint.tag != "joint" or meant is None:
-        return None
-    for end in joint.children:
-        name = end.text.strip()
-        if end.tag in ("parent", "child") and f'"{name}" does not exist' in message:
-            return end if spelling.meant(name, [meant[1]]) else None
-    return None
-
-
-def _severity(message: str) -> Severity:
-    """An error where it can be nowhere; Gazebo fetches models by itself."""
-    if "is on the network" in message:
-        return "info"
-    return "warning" if 'the model "' in message else "error"
 
 
 def _factor(solid: Solid, usual: float, others: float, reach: float) -> float | None:
@@ -288,4 +220,4 @@ def _scaled(text: str, factor: float) -> str:
     return " ".join(nodes.short(value * factor) for value in values if value is not None)
 
 
-RULES = (file_missing, mesh_unreadable, shape_size)
+RULES = (file_missing, shape_size)

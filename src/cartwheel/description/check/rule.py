@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Iterable
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 
 from cartwheel.description.check.subject import Subject
-from cartwheel.errors import UNCLASSIFIED, Code, Diagnostic
+from cartwheel.errors import UNCLASSIFIED, Code, Diagnostic, Origin
 
 MOST_FINDINGS = 200
 """Of one rule. Each may search all names for the one that was meant."""
@@ -26,16 +27,31 @@ class Rule:
         """Its findings: at most `MOST_FINDINGS`, and one that reports that there are more."""
         findings = list(itertools.islice(self.find(subject), MOST_FINDINGS + 1))
         if len(findings) > MOST_FINDINGS:
-            findings[-1] = self.code.diagnostic(
-                f"there are more than {MOST_FINDINGS} findings of this kind",
-                origin=findings[-1].origin,
-                hint="Fix these and check again.",
-                values={"most": MOST_FINDINGS},
-            )
+            findings[-1] = _more(self.code, findings[-1].origin)
         return [
             replace(each, code=self.code) if each.code.number == UNCLASSIFIED.number else each
             for each in findings
         ]
+
+
+def limited(findings: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
+    """At most `MOST_FINDINGS` of each code, and one that reports that there are more."""
+    counts: Counter[Code] = Counter()
+    for each in findings:
+        counts[each.code] += 1
+        if counts[each.code] <= MOST_FINDINGS:
+            yield each
+        elif counts[each.code] == MOST_FINDINGS + 1:
+            yield _more(each.code, each.origin)
+
+
+def _more(code: Code, origin: Origin | None) -> Diagnostic:
+    return code.diagnostic(
+        f"there are more than {MOST_FINDINGS} findings of this kind",
+        origin=origin,
+        hint="Fix these and check again.",
+        values={"most": MOST_FINDINGS},
+    )
 
 
 def rule(code: Code) -> Callable[[Finder], Rule]:

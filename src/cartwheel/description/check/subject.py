@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
+from cartwheel.codes.files import FILE_MISSING, FILE_ON_NETWORK
 from cartwheel.description.check import nodes
 from cartwheel.description.check.control_files import ControlFile
 from cartwheel.description.check.solids import Floats, Solid, bounds, solid_of
@@ -41,10 +41,8 @@ class PluginKnowledge:
     """From a robot's file and its joints to files that a launch file could start."""
 
 
-IMPOSSIBLE = re.compile(r"principal moments")
-"""A failure to read an inertia of SDF, whose reader knows its place best."""
-MISSING = re.compile(r'^the [a-z ]+ ".*" (was not found|does not exist)|is on the network')
-"""A failure to find a file."""
+ABSENT = frozenset({FILE_MISSING, FILE_ON_NETWORK})
+"""Codes of files, models and packages that do not exist here."""
 GAZEBO_STEP = 0.001
 """s, where a world states none."""
 DRIVES = ("diff_drive", "diffdrive", "diff-drive")
@@ -331,9 +329,11 @@ class Subject:
 
     @cached_property
     def lacks_models(self) -> bool:
-        """Whether a model that it includes is not there: nobody knows what that one holds."""
-        told = () if self.read is None else self.read.diagnostics
-        return any('the model "' in each.message and MISSING.search(each.message) for each in told)
+        """Whether a model that it includes does not exist here, so that its content is unknown."""
+        diagnostics = () if self.read is None else self.read.diagnostics
+        return any(
+            each.code in ABSENT and each.values.get("kind") == "model" for each in diagnostics
+        )
 
     @property
     def step(self) -> float:
