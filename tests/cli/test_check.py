@@ -134,7 +134,7 @@ def test_json_tells_what_ended_the_check(checked):
     report = json.loads(checked(GOOD.replace("  </link>\n", ""), "--json", status=2))
     assert report["complete"] is False
     assert [(one["rule"], one["severity"], one["line"]) for one in report["findings"]] == [
-        ("unreadable", "error", 11)
+        ("xml-malformed", "error", 11)
     ]
 
 

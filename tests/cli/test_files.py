@@ -55,7 +55,7 @@ def test_what_cannot_be_converted(program):
     assert (
         f"[{OPTION_INVALID}]" in program("convert", "rosbots.xacro", "--to", "usd", status=2).stderr
     )
-    assert "is no URDF" in program("convert", "post.world", "--to", "urdf", status=2).stderr
+    assert "[CW108 " in program("convert", "post.world", "--to", "urdf", status=2).stderr
     done = program("convert", "rosbots.xacro", "--to", "urdf", "-o", "/no/where", status=2)
     assert f"[{OUTPUT_NOT_WRITTEN}]" in done.stderr
 

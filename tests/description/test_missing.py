@@ -42,7 +42,7 @@ def test_all_are_named_at_once(workspace):
         "$(find yours)/urdf/arm.xacro",
         "base.xacro",
     )
-    assert "Also named and not there: imu_z, grip_y. Get them with apt" in hint
+    assert "Also missing: imu_z, grip_y. Get them with apt" in hint
 
 
 def test_what_stands_in_a_comment_is_not_named(workspace):

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 
+from cartwheel.codes import files
 from cartwheel.description import load_plain
 from cartwheel.description.reach import Reach
 from cartwheel.gazebo.ros2_api import Ros2Api
@@ -163,4 +164,4 @@ def test_meshes_of_a_text_lie_in_packages_too(tmp_path, monkeypatch, uri, tag):
     )
     text = f'<robot name="r"><link name="l"><visual>{part}</visual></link></robot>'
     found = load_plain(text, file="<x>", reach=Reach(folders=(Path.cwd(),)))
-    assert any("outside of the folders" in each.message for each in found.diagnostics)
+    assert any(each.code is files.FILE_NOT_ALLOWED for each in found.diagnostics)

@@ -153,7 +153,7 @@ def hidden(transfer: str):
 def test_an_upload_reads_nothing_of_this_machine(simulation, tmp_path):
     (tmp_path / "secret.yaml").write_text("word: hidden")
     attacks = {
-        f"${{xacro.load_yaml('{tmp_path}/secret.yaml')['word']}}": "outside of the folders",
+        f"${{xacro.load_yaml('{tmp_path}/secret.yaml')['word']}}": "outside the folders",
         "$(env HOME)": "is not set",
         "${().__class__.__base__.__subclasses__()}": "not allowed in an",
         "${10**10**10}": "4096 bits",

@@ -12,10 +12,9 @@ from cartwheel.checks.knowledge import knowledge
 from cartwheel.checks.selection import Selection
 from cartwheel.checks.settings import Settings, settings_for
 from cartwheel.checks.suppressions import Suppressions
-from cartwheel.codes import files as files_codes
 from cartwheel.description.check import PluginKnowledge, Report
 from cartwheel.description.check import check as check_description
-from cartwheel.errors import UNCLASSIFIED, DescriptionError, Diagnostic, Origin
+from cartwheel.errors import DescriptionError, Diagnostic, Origin
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -116,8 +115,6 @@ def _report(
         if not folder and (error.origin is None or not error.origin.line):
             raise
         finding = error.diagnostic()
-        if finding.code is UNCLASSIFIED:
-            finding = replace(finding, code=files_codes.UNREADABLE)
         if finding.origin is None:
             finding = replace(finding, origin=Origin(file=str(file)))
         return Report(

@@ -271,7 +271,9 @@ def test_what_follows_from_a_fault_is_not_told_as_well(bench, spoil):
     def rules(*changes):
         return [finding.code.name for finding in bench.report(spoil(*changes)).findings]
 
-    assert rules(('<origin xyz="0 0.2 0.08"/>', '<origin xyz="0, 0.2, 0.08"/>')) == ["value-invalid"]
+    assert rules(('<origin xyz="0 0.2 0.08"/>', '<origin xyz="0, 0.2, 0.08"/>')) == [
+        "value-invalid"
+    ]
     assert rules(('reference="caster_link"', 'reference="castor_link"')) == ["reference-unknown"]
     assert rules(('<sphere radius="0.03"/>', '<sphere diameter="0.06"/>')) == ["tag-missing"]
     assert rules(('name="caster_joint"', 'name="eye_joint"')) == ["duplicate-name"]

@@ -6,6 +6,7 @@ import math
 
 import pytest
 from PIL import Image
+from tests.description.coded import coded
 
 from cartwheel.description import load_text
 from cartwheel.description import model as m
@@ -96,7 +97,7 @@ def test_mesh_and_heightmap(tmp_path):
 def test_a_measure_that_is_not_stated_is_1_m(geometry, expected, missing):
     found = link(f'<visual name="v"><geometry>{geometry}</geometry></visual>')
     assert found.links[0].visuals[0].shape == expected
-    assert [f"has no <{tag}>" in told.message for tag, told in
+    assert [told.values["missing"] == tag for tag, told in
             zip(missing, found.diagnostics, strict=True)] == [True] * len(missing)  # fmt: skip
 
 
@@ -119,8 +120,7 @@ def test_a_mesh_without_the_submesh_costs_the_one_shape(tmp_path):
     assert found.links[0].visuals == ()
     (told,) = found.diagnostics
     assert told.severity == "error"
-    assert 'no submesh "lip"' in told.message
-    assert 'Did you mean "lid"' in told.message
+    assert coded(told) == "mesh-unreadable lid"
 
 
 def test_one_scale_counts_for_all_axes_and_none_costs_the_shape(tmp_path):
@@ -444,7 +444,7 @@ def test_a_ball_turns_freely_whatever_its_axis_says():
     found = robot(BAD_JOINT.format("ball", ENDS + axis))
     assert found.joint("j").axis == m.Axis()
     (told,) = found.diagnostics
-    assert told.message == 'joint "j": a ball joint needs no <axis>, which has no effect'
+    assert (coded(told), told.values["tag"]) == ("not-simulated", "axis")
 
 
 @pytest.mark.parametrize(("first", "second"), [("0 0 1", (0, 1, 0)), ("0 1 0", (1, 0, 0))])
@@ -452,14 +452,14 @@ def test_a_universal_joint_without_a_second_axis_takes_y_where_it_can(first, sec
     found = robot(BAD_JOINT.format("universal", f"{ENDS}<axis><xyz>{first}</xyz></axis>"))
     assert found.joint("j").axis2.xyz == second
     (told,) = found.diagnostics
-    assert "has no <axis2>" in told.message
+    assert (coded(told), told.values["missing"]) == ("default-used", "axis2")
 
 
 def test_a_joint_without_an_axis_turns_about_z():
     found = robot(BAD_JOINT.format("revolute", ENDS))
     assert found.joint("j").axis.xyz == (0, 0, 1)
     (told,) = found.diagnostics
-    assert "has no <axis>" in told.message
+    assert (coded(told), told.values["missing"]) == ("default-used", "axis")
 
 
 def test_a_fixed_joint_may_name_the_world_as_its_child():
@@ -550,10 +550,7 @@ def test_a_gripper_is_told_as_idle_with_what_acts():
       <palm_link>a</palm_link></gripper></model></sdf>"""
     (told,) = load_text(text, file="gripper.sdf").diagnostics
     assert told.severity == "warning"
-    assert told.message == (
-        "<gripper> has no effect: nothing is attached by touching it. "
-        "libgazebo_grasp_fix.so does that"
-    )
+    assert (coded(told), told.values["tag"]) == ("not-simulated", "gripper")
     assert told.origin.line == 1
 
 
@@ -584,7 +581,7 @@ def test_a_point_mass_that_moves_has_the_inertia_of_its_shape():
     assert (made.ixx, made.iyy, made.izz) == pytest.approx((0.3 * 0.04**2 / 2, across, across))
     assert made.pose == Pose((0, 0, 0.1))
     (told,) = found.diagnostics
-    assert "it has that of its collisions here" in told.message
+    assert (coded(told), told.values["link"]) == ("inertia-impossible", "base")
 
 
 def test_a_rod_turns_about_itself_almost_freely():
@@ -602,7 +599,8 @@ def test_a_box_without_height_is_a_plate():
     )
     (visual,) = found.links[0].visuals
     assert visual.shape == m.Box(size=(3.5, 0.15, 0.001))
-    assert "a box of 3.5 0.15 0 is made 1 mm thick" in found.diagnostics[0].message
+    assert coded(found.diagnostics[0]) == "value-ignored"
+    assert found.diagnostics[0].values["stated"] == "3.5 0.15 0"
     with pytest.raises(DescriptionError, match="must be above 0"):
         link('<visual name="v"><geometry><box><size>0 0 0</size></box></geometry></visual>')
 
@@ -631,12 +629,9 @@ def test_what_is_not_understood_is_told_with_its_place():
         """<gravty>0</gravty>
         <visual name="v" colour="red"><geometry><plane/></geometry></visual>"""
     )
-    told = sorted((d.origin.line, d.message) for d in found.diagnostics)
-    assert told[0][0] == 4
-    assert "<gravty>" in told[0][1]
-    assert "<gravity>" in told[0][1]
-    assert told[1][0] == 5
-    assert '"colour"' in told[1][1]
+    tag, attribute = sorted(found.diagnostics, key=lambda each: each.origin.line)
+    assert (tag.origin.line, coded(tag)) == (4, "tag-ignored gravity")
+    assert (attribute.origin.line, attribute.values["attribute"]) == (5, "colour")
 
 
 BAD_JOINT = '<link name="a"/><link name="b"/><joint name="j" type="{}">{}</joint>'
@@ -644,57 +639,60 @@ ENDS = "<parent>a</parent><child>b</child>"
 
 
 @pytest.mark.parametrize(
-    ("inside", "reason"),
+    ("inside", "code"),
     [
-        (BAD_JOINT.format("ball", "<parent>a</parent><child>world</child>"), "Swap"),
-        (BAD_JOINT.format("fixed", "<parent>a</parent><child>a</child>"), "to itself"),
-        (BAD_JOINT.format("fixed", "<parent>a</parent>"), "has no <child>"),
-        (BAD_JOINT.format("revolut", ENDS), 'Did you mean "revolute"'),
-        (BAD_JOINT.format("revolute", ENDS + "<axis><xyz>0 0 0</xyz></axis>"), "no direction"),
+        (BAD_JOINT.format("ball", "<parent>a</parent><child>world</child>"), "joint-link-unknown"),
+        (BAD_JOINT.format("fixed", "<parent>a</parent><child>a</child>"), "kinematic-loop"),
+        (BAD_JOINT.format("fixed", "<parent>a</parent>"), "tag-missing"),
+        (BAD_JOINT.format("revolut", ENDS), "joint-type-unknown revolute"),
+        (BAD_JOINT.format("revolute", ENDS + "<axis><xyz>0 0 0</xyz></axis>"), "axis-zero"),
         (BAD_JOINT.format("revolute", ENDS + "<axis><limit><lower>1</lower><upper>0</upper>"
-         "</limit></axis>"), "lower limit 1 is above"),
-        (BAD_JOINT.format("revolute", ENDS + '<axis><mimic joint="k"/></axis>'), 'mimics "k"'),
-        (BAD_JOINT.format("fixed", ENDS) + f'<joint name="j" type="fixed">{ENDS}</joint>', '"j"'),
-        ('<link name="a"><inertial><mass>0</mass></inertial></link>', "must be above 0"),
-        ('<link name="a"><inertial><mass>x</mass></inertial></link>', 'mass "x" is not a number'),
-        ('<link name="a"><pose>0 0 x</pose></link>', 'pose "x" is not a number'),
+         "</limit></axis>"), "limit-reversed"),
+        (BAD_JOINT.format("revolute", ENDS + '<axis><mimic joint="k"/></axis>'), "mimic-unknown"),
+        (BAD_JOINT.format("fixed", ENDS) + f'<joint name="j" type="fixed">{ENDS}</joint>',
+         "name-taken"),
+        ('<link name="a"><inertial><mass>0</mass></inertial></link>', "mass-not-positive"),
+        ('<link name="a"><inertial><mass>x</mass></inertial></link>', "value-invalid"),
+        ('<link name="a"><pose>0 0 x</pose></link>', "value-invalid"),
         ('<link name="a"><visual name="v"><geometry><bx/></geometry></visual></link>',
-         'Did you mean "box"'),
+         "type-unknown box"),
         ('<link name="a"><visual name="v"><geometry><box><size>1 -1 1</size></box></geometry>'
-         "</visual></link>", "above 0"),
+         "</visual></link>", "value-invalid"),
         ('<link name="a"><visual name="v"><geometry><mesh/></geometry></visual></link>',
-         "a mesh has no <uri>"),
-        ('<link name="a"><sensor name="s"/></link>', 'has no attribute "type"'),
+         "tag-missing"),
+        ('<link name="a"><sensor name="s"/></link>', "tag-missing"),
         ('<link name="a"><sensor name="s" type="camera"><camera><horizontal_fov>60'
-         "</horizontal_fov></camera></sensor></link>", "In degrees it would be 1.047"),
+         "</horizontal_fov></camera></sensor></link>", "value-invalid"),
         ('<link name="a"><sensor name="s" type="camera"><camera><clip><near>2</near><far>1</far>'
-         "</clip></camera></sensor></link>", "clip near 2"),
+         "</clip></camera></sensor></link>", "value-invalid"),
         ('<link name="a"><sensor name="s" type="imu"/><sensor name="s" type="imu"/></link>',
-         'sensor "s" exists twice'),
-        ('<link name="a"/><plugin name="p"/>', 'has no attribute "filename"'),
+         "name-taken"),
+        ('<link name="a"/><plugin name="p"/>', "tag-missing"),
     ],
 )  # fmt: skip
-def test_errors(inside, reason):
-    with pytest.raises(DescriptionError, match=reason) as caught:
+def test_errors(inside, code):
+    with pytest.raises(DescriptionError) as caught:
         robot(inside)
+    assert coded(caught.value) == code
     assert caught.value.origin is not None
     assert caught.value.origin.line >= 2
 
 
 @pytest.mark.parametrize(
-    ("text", "reason"),
+    ("text", "code"),
     [
-        ('<sdf version="1.7"/>', "neither a <model> nor a <world>"),
-        ("<sdf/>", "no usable version"),
-        ('<sdf version="new"/>', "no usable version"),
-        ('<gazebo version="0.9"/>', "too old"),
-        ('<sdf version="1.7"><model name="a"/><model name="b"/></sdf>', "2 models"),
-        ('<robot name="a"/>', "begins with <robot>"),
+        ('<sdf version="1.7"/>', "not-a-description"),
+        ("<sdf/>", "sdf-version"),
+        ('<sdf version="new"/>', "sdf-version"),
+        ('<gazebo version="0.9"/>', "sdf-version"),
+        ('<sdf version="1.7"><model name="a"/><model name="b"/></sdf>', "description-kind"),
+        ('<robot name="a"/>', "not-a-description"),
     ],
 )
-def test_wrong_documents(text, reason):
-    with pytest.raises(DescriptionError, match=reason):
+def test_wrong_documents(text, code):
+    with pytest.raises(DescriptionError) as caught:
         read_sdf(parse(text, "a.sdf"), Packages(environment={}))
+    assert coded(caught.value) == code
 
 
 def test_an_inertia_that_is_no_number_is_the_default():
@@ -718,11 +716,11 @@ def test_names_with_a_prefix_are_for_other_programs_and_told_once():
         <fdir1 gz:expressed_in="a">1 0 0</fdir1></ode></friction></surface></collision></link>
         <static>0</static><static>0</static>"""
     )
-    infos = [told.message for told in found.diagnostics if told.severity == "info"]
-    assert infos == [
-        "gz:semantics is for other programs",
-        "my:colour is for other programs",
-        "<static> in <model> has no effect: the first one is used",
+    infos = [told for told in found.diagnostics if told.severity == "info"]
+    assert [(coded(told), told.values["tag"]) for told in infos] == [
+        ("not-simulated", "gz:semantics"),
+        ("not-simulated", "my:colour"),
+        ("tag-ignored", "static"),
     ]
 
 
@@ -741,7 +739,9 @@ def test_a_joint_to_a_link_that_is_not_there_is_left_out(ends, missing):
     assert [each.name for each in found.joints] == ["k"]
     (told,) = found.diagnostics
     assert (told.severity, told.origin.file, told.origin.line) == ("error", "m.sdf", 3)
-    assert f'joint "j": {missing} does not exist: the joint is left out.' in told.message
+    assert told.code.name == "joint-link-unknown"
+    assert (told.values["joint"], told.values["left_out"]) == ("j", "joint")
+    assert missing == f'{told.values["end"]} link "{told.values["name"]}"'
 
 
 def test_what_needs_a_missing_part_tells_of_the_missing_part():
@@ -763,9 +763,9 @@ def test_a_second_collision_of_a_name_gets_another():
     (link,) = found.links
     assert [each.name for each in link.collisions] == ["c", "c_2", "c_1"]
     assert [each.name for each in link.visuals] == ["c"]
-    (told,) = [each for each in found.diagnostics if "the same name as another" in each.message]
+    (told,) = [each for each in found.diagnostics if each.code.name == "name-taken"]
     assert told.severity == "warning"
-    assert 'it is renamed "c_2" here' in told.message
+    assert told.values["renamed"] == "c_2"
 
 
 def test_a_joint_to_a_missing_part_goes_with_it():
@@ -774,9 +774,9 @@ def test_a_joint_to_a_missing_part_goes_with_it():
         <joint name='j' type='fixed'><parent>a</parent><child>n::b</child></joint>"""
     )
     assert not [each for each in found.joints if each.name == "j"]
-    part, joint = (told.message for told in found.diagnostics)
-    assert '"nothing_there" was not found; it is left out.' in part
-    assert 'child link "n::b" does not exist: the joint is left out.' in joint
+    part, joint = found.diagnostics
+    assert (coded(part), part.values["left_out"]) == ("file-missing", "include")
+    assert (coded(joint), joint.values["name"]) == ("joint-link-unknown", "n::b")
 
 
 def test_a_missing_part_of_a_model_costs_the_part():

@@ -152,10 +152,11 @@ def _tolerant(ctx: Context, name: str, node: Node | None = None) -> Iterator[Non
             node.mark()
         if lacking and isinstance(error, NoLinksError):
             return  # all its parts were reported as left out
+        what = "it" if isinstance(error, NoLinksError) else f'the model "{name}"'
         ctx.report(
             loss(
                 error,
-                f'the model "{name}" is left out',
+                f"{what} is left out",
                 of="model",
                 severity="error" if lacking else "warning",
             )
