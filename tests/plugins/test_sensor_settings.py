@@ -318,9 +318,7 @@ def said_of(text):
         f"""<sdf version="1.7"><model name="m"><link name="link">{text}</link></model></sdf>""",
         file="test.sdf",
     )
-    return [
-        named(each) for each in described.diagnostics if each.code.name != "not-simulated"
-    ]
+    return [named(each) for each in described.diagnostics if each.code.name != "not-simulated"]
 
 
 @pytest.mark.parametrize("text", [EVERYTHING, RAYS.format("<max_angle>1</max_angle>", "")])
