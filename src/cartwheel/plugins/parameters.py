@@ -95,6 +95,7 @@ def _unknown(element: Element, known: Iterable[str]) -> Diagnostic:
         origin=element.origin,
         hint=f"Did you mean <{meant}>?" if meant else "",
         values={"parameter": element.tag, "meant": meant},
+        mark=f"<{element.tag}",
     )
 
 
@@ -105,6 +106,7 @@ def _first(element: Element) -> tuple[Element, Diagnostic]:
         f"<{element.tag}> must be one number, but states several: {word} is used",
         origin=element.origin,
         values={"parameter": element.tag, "value": word},
+        mark=f"<{element.tag}",
     )
 
 
@@ -123,6 +125,7 @@ def invalid(name: str, value: Value, wanted: str, origin: Origin | None) -> Plug
         code=devices.PLUGIN_PARAMETER_INVALID,
         origin=origin,
         values={"parameter": name, "value": value},
+        mark=f"<{name}",
     )
 
 

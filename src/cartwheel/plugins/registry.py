@@ -148,5 +148,6 @@ def _report_unknown(part: Part, tag: PluginTag) -> None:
             origin=tag.origin,
             hint=" ".join((suggested, *broken)).strip(),
             values={"name": tag.filename, "meant": meant, "broken": tuple(broken)},
+            mark=tag.filename,
         )
     )

@@ -34,6 +34,7 @@ def left_out(tag: PluginTag, error: CartwheelError) -> Diagnostic:
     return running.PLUGIN_LEFT_OUT.diagnostic(
         f"{_title(tag)} is left out: {error.message}",
         origin=error.origin or tag.origin,
+        mark=error.mark,
         hint=error.hint or "",
         values={
             **error.values,
@@ -80,6 +81,7 @@ def attach_world(part: Part, graph: Graph) -> list[Behaviour]:
                     severity="warning",
                     origin=tag.origin,
                     values={"name": tag.filename},
+                    mark=tag.filename,
                 )
             )
         elif not plugin.for_world:
