@@ -114,3 +114,15 @@ def test_the_diff_names_the_file_and_the_lines(tmp_path):
         '-      <origin xyz="0 0 0.1" rpy="0 0 90"/>',
         '+      <origin xyz="0 0 0.1" rpy="0 0 1.5708"/>',
     ]
+
+
+def test_a_size_in_yaml_is_fixed(tmp_path):
+    path, yaml = tmp_path / "robot.urdf", tmp_path / "base.yaml"
+    path.write_text(ROBOT)
+    text = (
+        "base:\n  type: diff_drive_controller/DiffDriveController\n  left_wheel: left_wheel_joint\n"
+        "  right_wheel: right_wheel_joint\n  wheel_separation: 0.45  # measured\n"
+    )
+    yaml.write_text(text)
+    (fix,) = fixing.fixes(check(path, controllers=[yaml]).findings, tmp_path)
+    assert fix.after.decode() == text.replace("0.45", "0.4")
