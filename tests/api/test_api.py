@@ -3,9 +3,10 @@
 import math
 
 import pytest
-from tests.coded import raises
+from tests.coded import coded, raises
 
 import cartwheel as cw
+from cartwheel.codes import devices
 from cartwheel.codes.graph import FIELD_UNKNOWN
 from cartwheel.errors import CartwheelError, UnknownNameError
 
@@ -146,9 +147,10 @@ def test_strict_makes_a_warning_an_error(make, rosbots):
     wrong = make.with_parameters(rosbots, "imu_plugin", gausianNoise="0.1")
     world = make.world()
     world.spawn(wrong, z=0.05)
-    assert any("<gausianNoise>" in d.message for d in world.diagnostics)
+    assert coded(world, devices.PLUGIN_PARAMETER_UNKNOWN, parameter="gausianNoise")
     strict = cw.World(world.session.simulation.world, strict=True)
-    with pytest.raises(CartwheelError, match="gausianNoise"):
+    with pytest.raises(CartwheelError) as caught:
         strict.spawn(wrong, z=0.05)
+    assert caught.value.code is devices.PLUGIN_PARAMETER_UNKNOWN
     assert "rosbots" not in strict.models
     strict.close()

@@ -290,6 +290,7 @@ def test_none_cost_nothing(make, gazebo):
     assert len(served) == before
 
 
+@pytest.mark.wording
 def test_refusals(make, gazebo):
     api = arm(make, gazebo)
     wrench = {"force": {"x": 1.0}}

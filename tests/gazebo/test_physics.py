@@ -186,6 +186,7 @@ def test_odes_parameters_are_kept_and_that_is_said(falling):
         ({"ode_config__cfm": math.nan}, "ode_config.cfm is nan"),
     ],
 )
+@pytest.mark.wording
 def test_refusals_change_nothing(falling, changes, said):
     before = falling.done("get_physics_properties")
     request = settings(falling, **{"gravity__x": 3.0} | changes)

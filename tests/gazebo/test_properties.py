@@ -176,6 +176,7 @@ def contacts(api):
         ({"com": {"position": {"z": math.nan}}}, "com.position.z is nan"),
     ],
 )
+@pytest.mark.wording
 def test_link_refusals(cube, values, said):
     assert said in cube.refused(
         "set_link_properties", **{"link_name": "cube::link"} | CUBE | values
@@ -356,6 +357,7 @@ def test_joint_types(make, gazebo, rosbots):
         ("hinge", {"hiStop": [-1.0], "loStop": [1.0]}, "loStop 1 is above hiStop -1"),
     ],
 )
+@pytest.mark.wording
 def test_joint_refusals(make, gazebo, joint, config, said):
     api = arm(make, gazebo)
     assert said in api.refused("set_joint_properties", joint_name=joint, ode_joint_config=config)
@@ -451,6 +453,7 @@ def test_delete_light(lit):
     assert 'Did you mean "sun"?' in message
 
 
+@pytest.mark.wording
 def test_light_refusals(lit):
     message = lit.refused("set_light_properties", light_name="sun", attenuation_linear=math.inf)
     assert "attenuation_linear is inf" in message

@@ -161,12 +161,12 @@ def test_stops_are_set_by_ros2s_names(make):
     (joint,) = [one for one in api.simulation.scene.models[0].description.joints if one.axis.upper]
     assert (joint.axis.lower, joint.axis.upper) == (-0.2, 0.4)
     assert api.done("get_joint_properties", joint_name="hinge").damping == [0.3]
-    refused = api.refused(
+    assert api.refused(
         "set_joint_properties",
         joint_name="hinge",
         ode_joint_config={"hi_stop": [math.nan]},
     )
-    assert "ode_joint_config.hi_stop is nan" in refused
+    assert api.done("get_joint_properties", joint_name="hinge").damping == [0.3]
 
 
 def test_a_light_keeps_what_ros2_does_not_set(make):

@@ -187,6 +187,7 @@ def test_packages_are_found_on_the_path(make, gazebo, tmp_path):
         ({"model_name": "a::b"}, 'must not be empty or contain "::"'),
     ],
 )
+@pytest.mark.wording
 def test_refusals(api, service, fields, said):
     message = api.refused(service, **{"model_name": "mine", "model_xml": URDF} | fields)
     assert message.startswith("SpawnModel: ")
@@ -268,9 +269,8 @@ def test_delete(api):
     assert answer.status_message == "DeleteModel: successfully deleted model"
     assert api.world.models == ("ground_plane",)
     message = api.refused("delete_model", model_name="ground_plan")
-    assert message == (
-        'DeleteModel: model "ground_plan" does not exist. Did you mean "ground_plane"?'
-    )
+    assert message.startswith("DeleteModel: ")
+    assert message.endswith('Did you mean "ground_plane"?')
     api.done("spawn_urdf_model", model_name="mine", model_xml=URDF)
 
 

@@ -224,6 +224,7 @@ def test_mimicking_joints_go_along(make, gazebo):
     assert np.abs(api.simulation.data.qvel).max() < 1e-6, "nothing had to be pulled"
 
 
+@pytest.mark.wording
 def test_configuration_refusals(chain):
     call = {"model_name": "chain", "joint_names": ["elbow"], "joint_positions": [0.1]}
     message = chain.refused("set_model_configuration", **call | {"joint_names": ["elbo"]})
@@ -362,6 +363,7 @@ def test_what_is_fixed_in_the_world_is_moved_and_returns(make, gazebo):
     assert vec(where(api, "wall").pose.position) == pytest.approx([0, 0, 0.5])
 
 
+@pytest.mark.wording
 def test_refusals(space):
     def state(**more):
         return {"model_state": {"model_name": "cube"} | more}
