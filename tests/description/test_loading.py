@@ -5,8 +5,10 @@ import sys
 from pathlib import Path
 
 import pytest
+from tests.coded import raises
 from tests.description.coded import coded, placed
 
+from cartwheel.codes import files
 from cartwheel.description import load, load_robot, load_text, load_world
 from cartwheel.description.model import RobotDescription, WorldDescription
 from cartwheel.description.packages import share
@@ -173,7 +175,7 @@ def test_text_finds_packages_around_the_file_it_is_said_to_be(folder):
 
 @pytest.mark.parametrize("text", ["", " ", b""])
 def test_empty_text(text):
-    with pytest.raises(DescriptionError, match="the description is empty"):
+    with raises(files.FILE_UNREADABLE):
         load_text(text)
 
 

@@ -25,7 +25,8 @@ def hint_of(workspace, *includes):
     file.write_text(XACRO.format("".join(INCLUDE.format(each) for each in includes)))
     with pytest.raises(DescriptionError) as caught:
         load_robot(file)
-    assert caught.value.message == 'the package "laser_x" was not found'
+    assert caught.value.code.name == "file-missing"
+    assert caught.value.values["name"] == "laser_x"
     return caught.value.hint
 
 

@@ -3,8 +3,10 @@
 import tempfile
 
 import pytest
+from tests.coded import raises
 from tests.description.coded import coded
 
+from cartwheel.codes import files
 from cartwheel.description import packages as packages_module
 from cartwheel.description.packages import Packages, share
 from cartwheel.errors import DescriptionError, Origin
@@ -53,7 +55,7 @@ def test_ignored_folders_are_not_searched(tmp_path):
     own = package(tmp_path / "ws" / "src" / "a")
     package(tmp_path / "ws" / "src" / "old" / "b")
     (tmp_path / "ws" / "src" / "old" / "COLCON_IGNORE").touch()
-    with pytest.raises(DescriptionError, match='the package "b" was not found'):
+    with raises(files.FILE_MISSING):
         packages(robot(own)).find("b")
 
 
@@ -196,7 +198,7 @@ def test_what_lies_among_temporary_files_belongs_to_nobody(tmp_path, monkeypatch
     beside = package(tmp_path / "ws" / "c")
     found = packages(robot(package(tmp_path / "ws" / "a")))
     assert found.find("c") == beside
-    with pytest.raises(DescriptionError, match='"b" was not found'):
+    with raises(files.FILE_MISSING):
         found.find("b")
 
 
@@ -228,7 +230,7 @@ def test_large_trees_are_not_walked(tmp_path, monkeypatch):
         return name_of(folder)
 
     monkeypatch.setattr(packages_module, "_package_name", counted)
-    with pytest.raises(DescriptionError, match="was not found"):
+    with raises(files.FILE_MISSING):
         packages(robot(own)).find("nowhere")
     walked = [each for each in looked if each.parent == tmp_path / "ws"]
     assert 0 < len(walked) <= packages_module.MAX_ENTRIES

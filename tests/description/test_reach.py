@@ -5,7 +5,9 @@ from pathlib import Path
 
 import pytest
 from PIL import Image
+from tests.coded import raises
 
+from cartwheel.codes import files
 from cartwheel.description import load
 from cartwheel.description.loading import load_plain, open_description
 from cartwheel.description.reach import Reach, is_inside
@@ -95,17 +97,17 @@ def test_workspace_and_packages_are_read(workspace, path, expected):
 )
 def test_files_elsewhere_are_refused(workspace, path, monkeypatch):
     monkeypatch.setattr("cartwheel.description.packages.MAX_LEVELS_UP", 2)
-    with pytest.raises(DescriptionError, match="outside of the folders that the description"):
+    with raises(files.FILE_NOT_ALLOWED):
         word(workspace, path.format(workspace))
     include = f'<xacro:include filename="{path.format(workspace)}"/>'
-    with pytest.raises(DescriptionError, match="outside of the folders that the description"):
+    with raises(files.FILE_NOT_ALLOWED):
         loaded(workspace, include.replace("a.yaml", "part.xacro") if "beside" in path else include)
 
 
 @pytest.mark.parametrize("pattern", ["/etc/*", "{0}/beside/*.xacro", "../folder/*.xacro"])
 def test_wildcards_stay_inside(workspace, pattern, monkeypatch):
     monkeypatch.setattr("cartwheel.description.packages.MAX_LEVELS_UP", 2)
-    with pytest.raises(DescriptionError, match="outside of the folders that the description"):
+    with raises(files.FILE_NOT_ALLOWED):
         loaded(workspace, f'<xacro:include filename="{pattern.format(workspace)}"/>')
     with pytest.raises(DescriptionError, match="after a wildcard"):
         loaded(workspace, '<xacro:include filename="../*/../../../beside/part.xacro"/>')
@@ -118,10 +120,10 @@ def test_files_that_arguments_name_are_read(workspace, monkeypatch):
     assert word(workspace, "$(arg file)", file=file) == "beside"
     assert word(workspace, "$(arg file)/a.yaml", file=str(workspace / "beside")) == "beside"
     for value in ("/", str(workspace / "home"), "/etc"):
-        with pytest.raises(DescriptionError, match="outside of the folders"):
+        with raises(files.FILE_NOT_ALLOWED):
             word(workspace, f"{workspace}/home/.ssh/a.yaml", file=value)
     # What the file itself gives an argument names nothing.
-    with pytest.raises(DescriptionError, match="outside of the folders"):
+    with raises(files.FILE_NOT_ALLOWED):
         loaded(
             workspace,
             f"""<xacro:arg name="x" default="{file}"/>
@@ -130,24 +132,24 @@ def test_files_that_arguments_name_are_read(workspace, monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("path", "reason", "included"),
+    ("path", "code"),
     [
-        ("pipe", "cannot be read", 'robot.xacro:1: .*pipe" is not a regular file'),
-        ("folder", "cannot be read", 'robot.xacro:1: .*folder" is a folder'),
-        ("zero", "outside of the folders", "outside of the folders"),
-        ("large", "cannot be read", "too large"),
+        ("pipe", files.FILE_UNREADABLE),
+        ("folder", files.FILE_UNREADABLE),
+        ("zero", files.FILE_NOT_ALLOWED),
+        ("large", files.FILE_UNREADABLE),
     ],
 )
-def test_only_regular_files_of_some_size_are_read(workspace, path, reason, included):
+def test_only_regular_files_of_some_size_are_read(workspace, path, code):
     folder = workspace / "ws/src/one/urdf"
     os.mkfifo(folder / "pipe")
     (folder / "folder").mkdir()
     (folder / "zero").symlink_to("/dev/zero")
     with (folder / "large").open("wb") as file:
         file.truncate(10**10)
-    with pytest.raises(DescriptionError, match=reason):
+    with raises(code):
         word(workspace, path)
-    with pytest.raises(DescriptionError, match=included):
+    with raises(code):
         loaded(workspace, f'<xacro:include filename="{path}"/>')
 
 
@@ -181,7 +183,7 @@ def test_a_description_in_the_home_folder_reads_nothing_hidden(workspace, monkey
         if readable:
             assert open_description(home / "robot.xacro", {}).root.children[0].get("name") == "ok"
         else:
-            with pytest.raises(DescriptionError, match="outside of the folders"):
+            with raises(files.FILE_NOT_ALLOWED):
                 open_description(home / "robot.xacro", {})
 
 
@@ -204,7 +206,7 @@ def test_a_text_names_no_controller_file_elsewhere(workspace, monkeypatch, named
     text = """<robot name="r" xmlns:gz="g"><link name="a"/><gazebo>
       <plugin filename="libgazebo_ros2_control.so" name="c"><{tag}>{named}</{tag}></plugin>
     </gazebo></robot>"""
-    with pytest.raises(DescriptionError, match="outside of the folders"):
+    with raises(files.FILE_NOT_ALLOWED):
         plain(text.format(tag=tag, named=named.format(workspace)), workspace)
     for kept in ("allowed/a.yaml", f"{workspace}/allowed/a.yaml", "allowed/missing.yaml"):
         plain(text.format(tag=tag, named=kept), workspace)
@@ -217,7 +219,7 @@ def test_what_the_page_uploads_names_no_controller_file_elsewhere(workspace):
       <plugin filename="libgazebo_ros2_control.so" name="c"><parameters>{}</parameters></plugin>
     </gazebo></robot>"""
     (uploaded / "r.urdf").write_text(text.format(workspace / "beside/a.yaml"))
-    with pytest.raises(DescriptionError, match="outside of the folders"):
+    with raises(files.FILE_NOT_ALLOWED):
         load(uploaded / "r.urdf", reach=Reach(folders=(uploaded,)))
 
 

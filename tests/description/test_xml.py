@@ -1,8 +1,10 @@
 """What is told of malformed XML and of numbers that are none; what nobody read."""
 
 import pytest
+from tests.coded import raises
 from tests.description.coded import coded, placed
 
+from cartwheel.codes import tags
 from cartwheel.description import numbers, xml
 from cartwheel.description.model import Element
 from cartwheel.errors import DescriptionError, Origin
@@ -163,7 +165,7 @@ def test_missing_attribute_names_the_likely_meant_one():
 
 def test_missing_child_names_the_likely_meant_one():
     root = xml.parse('<link name="a"><inertail/></link>')
-    with pytest.raises(DescriptionError, match='link "a" has no <inertial>') as caught:
+    with raises(tags.TAG_MISSING) as caught:
         root.require_child("inertial")
     assert "<inertail>" in str(caught.value)
 

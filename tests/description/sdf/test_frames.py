@@ -5,8 +5,10 @@ from __future__ import annotations
 import math
 
 import pytest
+from tests.coded import raises
 from tests.description.coded import coded
 
+from cartwheel.codes import tags
 from cartwheel.description.packages import Packages
 from cartwheel.description.sdf import read_sdf
 from cartwheel.description.xml import parse
@@ -220,7 +222,7 @@ def test_wrong_frames(inside, code):
 
 
 def test_canonical_link_that_is_missing():
-    with pytest.raises(DescriptionError, match='canonical link "b" does not exist'):
+    with raises(tags.NAME_UNKNOWN):
         robot('<link name="a"/>', attributes='canonical_link="b"')
 
 
@@ -230,7 +232,7 @@ def test_a_joint_may_be_called_as_a_link_in_older_files():
     found = robot(inside, version="1.6")
     close(found.joint("b").pose, (0, 0, 1))
     assert found.diagnostics == ()
-    assert "name of a link" in robot(inside, version="1.7").diagnostics[0].message
+    assert coded(robot(inside, version="1.7").diagnostics[0]) == "name-taken"
 
 
 @pytest.mark.parametrize(

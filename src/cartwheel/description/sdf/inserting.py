@@ -48,7 +48,7 @@ def insert(
     canonical_link: str,
     static: bool,
 ) -> tuple[list[Link], list[Joint], list[Diagnostic]]:
-    """A robot with further parts; one that does not make sense costs itself and is told.
+    """A robot with further parts; an invalid one is left out and reported.
 
     Args:
         nodes: ``<link>``, ``<joint>`` and ``<frame>`` of SDF, in the robot's frame.
@@ -60,7 +60,7 @@ def insert(
         static: Whether nothing of it moves.
 
     Returns:
-        All links, all joints, and what is to be told.
+        All links, all joints, and the diagnostics.
     """
     if not nodes:
         return list(links), list(joints), []

@@ -125,11 +125,11 @@ def _distinct(diagnostics: Iterable[Diagnostic]) -> Iterable[Diagnostic]:
 
     An info occurs once, wherever it applies.
     """
-    infos: set[tuple[object, ...]] = set()
-    for each in dict.fromkeys(diagnostics):
-        if each.severity == "info":
-            values = tuple(sorted(each.values.items(), key=lambda item: item[0]))
-            if (each.code, each.message, values) in infos:
-                continue
-            infos.add((each.code, each.message, values))
-        yield each
+    seen: set[tuple[object, ...]] = set()
+    for each in diagnostics:
+        values = tuple(sorted(each.values.items(), key=lambda item: item[0]))
+        origin = None if each.severity == "info" else each.origin
+        key = (each.code, each.severity, each.message, values, origin)
+        if key not in seen:
+            seen.add(key)
+            yield each

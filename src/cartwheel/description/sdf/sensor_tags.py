@@ -1,4 +1,4 @@
-"""Which elements a ``<sensor>`` may have: what nobody reads is told.
+"""Which elements a ``<sensor>`` may have: unknown ones are reported.
 
 Source: SDF 1.4 to 1.12, ``sensor.sdf`` and what it includes, and what Gazebo's readers know beside
 them.
@@ -94,7 +94,7 @@ _SENSOR = _tags(
     logical_camera=_tags("near", "far", "horizontal_fov", "aspect_ratio"),
     air_pressure={"reference_altitude": {}, "pressure": _NOISY},
     force_torque=_tags("frame", "measure_direction", force=_BY_AXIS, torque=_BY_AXIS),
-    # Of sensors that publish nothing, which is told of the whole.
+    # Of sensors that publish nothing, which is reported for the whole sensor.
     **dict.fromkeys(
         (
             "air_speed",

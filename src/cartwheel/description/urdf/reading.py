@@ -46,7 +46,7 @@ def read_urdf(
         root: Its root, with all xacro expanded.
         packages: Finds the meshes and textures that it names.
         text: The expanded XML, kept with the robot.
-        diagnostics: Those told before, of the expansion.
+        diagnostics: Those of the expansion.
 
     Raises:
         DescriptionError: it is no robot; names the place and the likely fix.
