@@ -47,7 +47,8 @@ def file_missing(subject: Subject) -> Iterator[Diagnostic]:
         places += ", …" if len(more) > _SHOWN else ""
         yield replace(
             first,
-            message=f"{_cause(first)}: {len(more) + 1} places need it",
+            message=f"{_cause(first)}; {len(more) + 1} places use it",
+            values={**first.values, "places": len(more) + 1},
             hint=f"{first.hint.strip()} Also at {places}.".strip(),
         )
 
