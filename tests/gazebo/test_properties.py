@@ -350,9 +350,9 @@ def test_joint_types(make, gazebo, rosbots):
     [
         ("hing", {}, 'Did you mean "hinge"?'),
         ("arm", {}, "is a model, not a joint"),
-        ("hinge", {"damping": [-1.0]}, "damping is -1"),
+        ("hinge", {"damping": [-1.0]}, "damping must be from 0"),
         ("hinge", {"damping": [math.nan]}, "ode_joint_config.damping is nan"),
-        ("hinge", {"fmax": [-1.0]}, "fmax is -1"),
+        ("hinge", {"fmax": [-1.0]}, "fmax must not be negative"),
         ("hinge", {"vel": [math.inf]}, "ode_joint_config.vel is inf"),
         ("hinge", {"hiStop": [-1.0], "loStop": [1.0]}, "loStop 1 is above hiStop -1"),
     ],

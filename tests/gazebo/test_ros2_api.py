@@ -151,6 +151,7 @@ def test_links_of_a_model_are_told_with_its_name(make):
     assert not found.is_static
 
 
+@pytest.mark.wording
 def test_stops_are_set_by_ros2s_names(make):
     api = ros2(make.world(make.sdf(ARM), ground=None, gravity=0.0))
     api.done(

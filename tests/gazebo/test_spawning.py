@@ -29,6 +29,7 @@ def api(make, gazebo):
     return gazebo(make.world())
 
 
+@pytest.mark.wording
 def test_a_world_that_includes_one_model_is_that_model(api):
     include = "<include><uri>model://traffic_cone</uri></include>"
     text = f'<sdf version="1.4"><world name="default">{include}</world></sdf>'
@@ -168,6 +169,7 @@ def test_packages_are_found_on_the_path(make, gazebo, tmp_path):
 
 
 @BOTH
+@pytest.mark.wording
 @pytest.mark.parametrize(
     ("fields", "said"),
     [

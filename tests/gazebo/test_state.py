@@ -232,7 +232,7 @@ def test_configuration_refusals(chain):
     message = chain.refused("set_model_configuration", **call | {"model_name": "chian"})
     assert 'Did you mean "chain"?' in message
     message = chain.refused("set_model_configuration", **call | {"joint_positions": []})
-    assert "different lengths" in message
+    assert "differ in number" in message
     message = chain.refused("set_model_configuration", **call | {"joint_positions": [math.nan]})
     assert '"elbow" is nan' in message
 

@@ -2,48 +2,54 @@
 
 from __future__ import annotations
 
-import click
+from typing import Any
+
+import typer
 
 from cartwheel.cli.showing import print_diagnostic
 from cartwheel.codes.command import OPTION_INVALID, USAGE
 from cartwheel.errors import Diagnostic
 
+# Releases of typer differ in whether click is a package of its own or a part of theirs.
+_PARSER_ERROR: type[Exception] = typer.BadParameter.__mro__[2]
+
 
 def is_wrong(error: Exception) -> bool:
     """Whether the parser raised an error."""
-    return isinstance(error, click.ClickException | click.Abort)
+    return isinstance(error, _PARSER_ERROR | typer.Abort)
 
 
 def report(error: Exception) -> int:
     """Prints what is wrong; returns the status."""
-    if isinstance(error, click.exceptions.NoArgsIsHelpError):
-        error.show()
-        return error.exit_code
-    if isinstance(error, click.ClickException):
-        print_diagnostic(_diagnostic(error))
-        return error.exit_code
-    return 1
+    if isinstance(error, typer.Abort):
+        return 1
+    parser_error: Any = error
+    if _is(error, "NoArgsIsHelpError"):
+        parser_error.show()
+    else:
+        print_diagnostic(_diagnostic(parser_error))
+    return int(parser_error.exit_code)
 
 
-def _diagnostic(error: click.ClickException) -> Diagnostic:
+def _diagnostic(error: Any) -> Diagnostic:
     """Here alone the parser's texts are put into ours."""
     hints = []
-    if isinstance(error, click.NoSuchOption) and error.possibilities:
-        text = error.message
-        hints.append(f"Did you mean {' or '.join(sorted(error.possibilities))}?")
-    else:
-        text = error.format_message()
+    possible = getattr(error, "possibilities", None)
+    if possible:
+        hints.append(f"Did you mean {' or '.join(sorted(possible))}?")
+    text = " ".join((error.message if possible else error.format_message()).split())
     context = getattr(error, "ctx", None)
-    if context is not None:
-        hints.append(f"See: {context.command_path} --help")
+    command = context.command_path if context is not None else ""
+    if command:
+        hints.append(f"See: {command} --help")
     parameter = getattr(error, "param", None)
-    is_value = isinstance(error, click.BadParameter)
-    missing = isinstance(error, click.MissingParameter)
-    return (OPTION_INVALID if is_value and not missing else USAGE).diagnostic(
+    is_value = isinstance(error, typer.BadParameter) and not _is(error, "MissingParameter")
+    return (OPTION_INVALID if is_value else USAGE).diagnostic(
         f"{text[:1].lower()}{text[1:].rstrip('.')}",
         hint=" ".join(hints),
-        values={
-            "command": context.command_path if context is not None else "",
-            "parameter": parameter.name if parameter is not None else "",
-        },
+        values={"command": command, "parameter": getattr(parameter, "name", None) or ""},
     )
+
+
+def _is(error: Exception, name: str) -> bool:
+    return any(kind.__name__ == name for kind in type(error).__mro__)
