@@ -48,5 +48,5 @@ def test_special_characters_survive(tmp_path):
 def test_sdf_is_none(tmp_path):
     path = tmp_path / "m.sdf"
     path.write_text(SDF)
-    with pytest.raises(DescriptionError, match="is no URDF: it begins with <sdf>"):
+    with pytest.raises(DescriptionError, match="the file is not a URDF: its root is <sdf>"):
         to_urdf(path)
