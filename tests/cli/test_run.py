@@ -52,9 +52,9 @@ def test_topics_have_the_names_of_a_bridge(program):
     )
     run = ("run", "--headless", "--for", "0.1", "--speed", "max", "--bridge", "bridge.yaml")
     done = program(*run)
-    assert "bridge.yaml:1: warning: nothing here publishes or reads" in done.stderr
+    assert "bridge.yaml:1: warning: " in done.stderr and "[CW479 " in done.stderr
     done = program(*run, "--strict", status=2)
-    assert "nothing here publishes or reads" in done.stderr
+    assert "[CW479 " in done.stderr
 
 
 def test_a_world_is_the_world(program):
@@ -84,9 +84,9 @@ def test_warnings_have_their_place_and_strict_makes_them_errors(program):
     )
     (program.folder / "box.urdf").write_text(text)
     done = program("run", "box.urdf", "--headless", "--for", "0.1", "--speed", "max")
-    assert 'box.urdf:8: warning: plugin "libnone.so" is not supported' in done.stderr
+    assert "box.urdf:8: warning: " in done.stderr and "[CW414 " in done.stderr
     done = program("run", "box.urdf", "--headless", "--for", "0.1", "--strict", status=2)
-    assert 'box.urdf:8: error: plugin "libnone.so"' in done.stderr
+    assert "box.urdf:8: error: " in done.stderr and "[CW414 " in done.stderr
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
