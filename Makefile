@@ -32,7 +32,7 @@ format: ## format the sources
 	$(BIN)/ruff check --fix-only -q .
 	$(BIN)/ruff format -q .
 
-bench: ## measure the speed relative to MuJoCo alone; writes benchmarks/results/*.json
+bench: ## measure the speed relative to MuJoCo alone, and what the check finds; writes benchmarks/results/*.json
 	@tools/setup.sh test
 	@$(BIN)/python -m benchmarks $(ARGS)
 

@@ -55,6 +55,16 @@ def test_every_frame_is_delivered(tmp_path: Path):
     assert frames["value"] == pytest.approx(30, rel=0.35)
 
 
+def test_a_sample_of_the_seeded_faults_is_found(tmp_path: Path):
+    figures = {figure["name"]: figure for figure in measure(tmp_path, "check")["figures"]}
+    assert all(set(figure) == FIELDS for figure in figures.values())
+    assert figures["recall, documents of the tests"]["value"] == 100
+    assert figures["recall, mutations"]["value"] >= 80, figures
+    assert figures["precision, mutations"]["value"] >= 80, figures
+    assert figures["harmless edits with a finding"]["value"] == 0, figures
+    assert figures["shipped"]["value"] == 0, figures
+
+
 def test_an_unknown_part_is_refused(tmp_path: Path):
     with pytest.raises(AssertionError, match="unknown part gazebo"):
         measure(tmp_path, "gazebo")

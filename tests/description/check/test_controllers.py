@@ -5,28 +5,8 @@
 from __future__ import annotations
 
 import pytest
+from tests.description.check.seeded import ARM, EFFORT, IN_CONTROLLERS, ROS1, transmission
 
-ROS1 = (
-    "</robot>",
-    '<gazebo><plugin name="c" filename="libgazebo_ros_control.so"/></gazebo>\n</robot>',
-)
-
-
-def transmission(joint, interface):
-    return (
-        "</robot>",
-        f'<transmission name="{joint}_t"><type>transmission_interface/SimpleTransmission</type>\n'
-        f'<joint name="{joint}">\n<hardwareInterface>{interface}</hardwareInterface></joint>'
-        "</transmission>\n</robot>",
-    )
-
-
-EFFORT = "hardware_interface/EffortJointInterface"
-ARM = """arm:
-  type: effort_controllers/JointPositionController
-  joint: arm_joint
-  pid: {p: 10.0, i: 0.1, d: 1.0}
-"""
 WHEELS = """drive:
   type: diff_drive_controller/DiffDriveController
   left_wheel: left_wheel_joint
@@ -68,20 +48,7 @@ def test_a_file_without_a_fault_gives_no_finding(arm, spoil, told):
     assert told(spoil(ROS1, *wheels), WHEELS) == []
 
 
-# The rule; what is replaced by what in the file; its line; a text of the advice.
-FAULTS = {
-    "joint": ("controller-joint-unknown", ("joint: arm_joint", "joint: arm_jiont"), 3,
-        "joint: arm_joint"),
-    "type": ("controller-type-unknown", ("effort_controllers/Joint", "effort_controller/Joint"), 2,
-        "type: effort_controllers/JointPositionController"),
-    "type of ROS 2": ("controller-type-unknown", ("pid: {p: 10.0, i: 0.1, d: 1.0}\n",
-        "pid: {p: 10.0}\nstates:\n  type: joint_state_broadcaster/JointStateBroadcaster\n"), 6,
-        "type: joint_state_controller/JointStateController"),
-    "no gains": ("controller-gains-missing", ("  pid: {p: 10.0, i: 0.1, d: 1.0}\n", ""), 2, "pid: {p: "),
-}  # fmt: skip
-
-
-@pytest.mark.parametrize("case", FAULTS.values(), ids=FAULTS)
+@pytest.mark.parametrize("case", IN_CONTROLLERS.values(), ids=IN_CONTROLLERS)
 def test_a_fault_in_a_file_is_found_and_its_advice_mends_it(case, arm, told, take):
     rule, (old, new), line, advice = case
     assert old in ARM

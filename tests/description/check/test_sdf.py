@@ -1,30 +1,18 @@
 """Models and worlds of SDF go through the same rules."""
 
 import pytest
+from tests.description.check.seeded import (
+    IN_SDF,
+    IN_SDF_OF_A_URDF,
+    inserted,
+    model,
+    world,
+)
 
 from cartwheel.codes import code_named
 from cartwheel.description.check import check
 from cartwheel.description.shipped import shipped_descriptions
 from cartwheel.errors import DescriptionError
-
-BOX = """<link name="box"><pose>0 0 0.5 0 0 {yaw}</pose>
-<inertial><mass>{mass}</mass>
-<inertia><ixx>{i}</ixx><iyy>{i}</iyy><izz>{izz}</izz></inertia></inertial>
-<collision name="c"><geometry><box><size>1 1 1</size></box></geometry></collision>
-<visual name="v"><geometry><box><size>1 1 1</size></box></geometry></visual>
-</link>
-"""
-GOOD = {"mass": "6", "i": "1", "izz": "1", "yaw": "1.57"}
-
-
-def model(extra="", **values):
-    text = BOX.format(**{**GOOD, **values})
-    return f'<sdf version="1.6"><model name="m">\n{text}{extra}</model></sdf>'
-
-
-def world(extra="", inner=""):
-    inside = model(inner).removeprefix('<sdf version="1.6">').removesuffix("</sdf>")
-    return f'<sdf version="1.6"><world name="w">\n{extra}{inside}</world></sdf>'
 
 
 def test_a_good_model_and_a_good_world_are_clean(bench):
@@ -32,17 +20,7 @@ def test_a_good_model_and_a_good_world_are_clean(bench):
     assert bench.report(world(), "w.world").findings == ()
 
 
-@pytest.mark.parametrize(
-    ("rule", "text", "line"),
-    [
-        ("inertia-impossible", model(izz="9"), 3),
-        ("inertia-geometry-mismatch", model(i="100", izz="100"), 3),
-        ("angle-in-degrees", model(yaw="90"), 2),
-        ("file-missing", world("<include><uri>model://nothing_here</uri></include>\n"), 2),
-        ("tag-ignored", model("<velocty_decay/>"), 8),
-        ("tag-missing", model('<joint name="j" type="fixed"/>'), 8),
-    ],
-)
+@pytest.mark.parametrize(("rule", "text", "line"), IN_SDF)
 def test_a_fault_is_found_at_its_line(bench, rule, text, line):
     found = bench.find(text, rule, "x.sdf")
     assert found, bench.report(text, "x.sdf").findings
@@ -56,46 +34,13 @@ def test_advice_is_written_as_sdf_has_it(bench):
     )
 
 
-URDF = """<robot name="r"><link name="base"><inertial><mass value="6"/>
-<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
-<collision><geometry><box size="1 1 1"/></geometry></collision></link><gazebo>
-{}</gazebo></robot>"""
-
-
-def inserted(extra="", **values):
-    """A URDF into which ``<gazebo>`` inserts the box from line 4 on."""
-    return URDF.format(BOX.format(**{**GOOD, **values}) + extra)
-
-
 def test_sdf_in_a_urdf_is_clean_where_it_is_good(bench):
     assert bench.report(inserted(), "r.urdf").findings == ()
     # SDF's 1 kg counts: Gazebo does not drop it, as it would a link of a URDF.
     assert bench.report(inserted('<link name="bare"/>'), "r.urdf").findings == ()
 
 
-@pytest.mark.parametrize(
-    ("rule", "text", "line", "instead"),
-    [
-        ("inertia-impossible", inserted(izz="9"), 5, "<ixx>1</ixx>"),
-        ("inertia-geometry-mismatch", inserted(i="100", izz="100"), 6, "<ixx>1</ixx>"),
-        ("mass-in-grams", inserted(mass="60000", i="1e4", izz="1e4"), 5, "<mass>60</mass>"),
-        (
-            "file-missing",
-            inserted(
-                '<link name="l"><visual name="v"><geometry><mesh>\n<uri>model://nothing/a.dae</uri>'
-                "</mesh></geometry></visual></link>"
-            ),
-            10,
-            "",
-        ),
-        (
-            "joint-link-unknown",
-            inserted('<joint name="j" type="ball"><parent>bass</parent><child>box</child></joint>'),
-            10,
-            "",
-        ),
-    ],
-)
+@pytest.mark.parametrize(("rule", "text", "line", "instead"), IN_SDF_OF_A_URDF)
 def test_sdf_in_a_urdf_has_its_findings_and_its_words(bench, rule, text, line, instead):
     (found,) = bench.find(text, rule, "r.urdf")
     assert found.origin.line == line
