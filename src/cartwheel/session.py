@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from cartwheel.codes.running import CONTROLLER_NOT_STARTED
 from cartwheel.description.model import RobotDescription, WorldDescription
 from cartwheel.errors import CartwheelError, Diagnostic, PluginError
 from cartwheel.geometry import Pose
@@ -106,7 +107,9 @@ class Session:
         if left:
             self.simulation.delete(spawned)
             raise PluginError(
-                f'model "{spawned}" has no controllers to start',
+                f'model "{spawned}" has no plugin that starts controllers',
+                code=CONTROLLER_NOT_STARTED,
+                values={"model": spawned},
                 origin=description.origin,
                 hint="They need the plugin libgazebo_ros_control.so, libgazebo_ros2_control.so "
                 "or gz_ros2_control-system in a <gazebo> tag.",

@@ -22,6 +22,8 @@ PAUSED, SPEED = "/cartwheel/paused", "/cartwheel/speed"
 class _FullError(GraphError):
     """A parameter is too large, or there are too many."""
 
+    code = PARAMETER_REFUSED
+
 
 class Values:
     """Reads and sets parameters; on any thread.
