@@ -10,7 +10,7 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
 from cartwheel import description as descriptions
-from cartwheel.codes.graph import GRAPH_CLOSED
+from cartwheel.codes.world import SIMULATION_CLOSED
 from cartwheel.description.model import RobotDescription, WorldDescription
 from cartwheel.errors import Diagnostic, SimulationError
 from cartwheel.geometry import Pose
@@ -119,7 +119,7 @@ class World:
         """
         with self.lock:
             if self.session.simulation.closed:
-                raise SimulationError("the world is closed", code=GRAPH_CLOSED)
+                raise SimulationError("the world is closed", code=SIMULATION_CLOSED)
             yield self.session.simulation
 
     @property

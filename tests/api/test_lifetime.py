@@ -10,6 +10,7 @@ from tests.coded import raises
 
 import cartwheel as cw
 from cartwheel.codes.graph import GRAPH_CLOSED
+from cartwheel.codes.world import SIMULATION_CLOSED
 from cartwheel.description import load_robot
 from cartwheel.errors import SimulationError
 
@@ -101,7 +102,7 @@ def test_a_closed_world_is_read_and_not_run(make):
         world.reset,
         world.model("box").delete,
     ):
-        with raises(GRAPH_CLOSED, SimulationError):
+        with raises(SIMULATION_CLOSED, SimulationError):
             use()
     with raises(GRAPH_CLOSED):
         world.graph.publish("/clock", "rosgraph_msgs/msg/Clock", None)
@@ -113,7 +114,7 @@ def test_who_waits_for_an_answer_gets_it_from_a_world_that_closes(make):
     waiting = world.session.simulation.call(lambda: 7)
     world.close()
     assert waiting.result(timeout=60) == 7
-    with raises(GRAPH_CLOSED, SimulationError):
+    with raises(SIMULATION_CLOSED, SimulationError):
         world.session.simulation.call(lambda: 7)
 
 

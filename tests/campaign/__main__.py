@@ -41,6 +41,8 @@ def main() -> int:
         campaign.forget_mended()
     else:
         campaign.clear()
+    # Also where it was started in the background, with SIGINT ignored.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
         campaign.run(arguments.minutes)

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+from cartwheel.codes.files import FILE_MISSING
 from cartwheel.description import load, load_robot
 from cartwheel.errors import DescriptionError
 
@@ -52,10 +53,11 @@ def test_robots_load(name, links):
 
 def test_missing_meshes_of_the_waffle_are_named():
     path = CORPUS / f"{TURTLEBOT}waffle.urdf.xacro"
-    (text,) = [str(each) for each in load(path).diagnostics if each.severity == "error"]
-    assert "meshes/bases/waffle_base.stl" in text
-    assert "turtlebot3_waffle.urdf.xacro:23: " in text
-    assert 'Did you mean "waffle_pi_base.stl"?' in text
+    (missing,) = [each for each in load(path).diagnostics if each.severity == "error"]
+    assert missing.code is FILE_MISSING
+    assert str(missing.origin).endswith("turtlebot3_waffle.urdf.xacro:23")
+    assert "meshes/bases/waffle_base.stl" in str(missing.values["name"])
+    assert missing.values["meant"] == "waffle_pi_base.stl"
 
 
 def test_mir_s_friction_is_read_from_its_attributes():

@@ -12,6 +12,7 @@ from tests.description.test_elements import DOCUMENTS
 import cartwheel as cw
 from cartwheel.codes import devices
 from cartwheel.codes import world as world_codes
+from cartwheel.codes.tags import NAME_TAKEN
 from cartwheel.description import load_text
 from cartwheel.description.check import check, mending, structure
 from cartwheel.description.model import WorldDescription
@@ -96,10 +97,8 @@ def test_lights_of_one_name():
         made.run(0.01)
         (told,) = [each for each in made.diagnostics if "light" in each.message]
     assert [light.name for light in world.lights] == ["a", "a_1"]
-    assert (
-        str(told)
-        == 'w:2: warning: light "a" has the same name as another: it is renamed "a_1" here'
-    )
+    assert str(told.origin) == "w:2" and told.severity == "warning"
+    assert told.code is NAME_TAKEN and told.values["renamed"] == "a_1"
 
 
 @pytest.mark.parametrize("form", ["sdf", "urdf"])
@@ -338,8 +337,8 @@ def test_a_rate_beyond_all_clocks(rate):
     ("values", "line", "message"),
     [
         ((1_000_000, 1_000_000, 0.1, 9), 3, "pixels (got 1000000 x 1000000"),
-        (("1e308", 1, 0.1, 9), 3, "an image has from 1 x 1 to 33,177,600 pixels"),
-        ((-1, 1, 0.1, 9), 3, "an image has from 1 x 1 to 33,177,600 pixels"),
+        (("1e308", 1, 0.1, 9), 3, "an image must have 1 x 1 to 33,177,600 pixels"),
+        ((-1, 1, 0.1, 9), 3, "an image must have 1 x 1 to 33,177,600 pixels"),
         ((9, 9, "1e-308", 9), 4, "clip near must be at least 1e-09 m"),
         ((9, 9, 0.1, "1e308"), 4, "far at most 1e+15 m"),
         ((9, 9, 9, 0.1), 4, "clip near 9 must be below far 0.1"),

@@ -3,6 +3,7 @@
 import pytest
 
 from cartwheel.description.materials import gazebo_material, material_names, unknown_material
+from cartwheel.errors import Origin
 
 
 @pytest.mark.parametrize(
@@ -37,6 +38,12 @@ def test_other_names(name):
 
 
 def test_likely_names():
-    assert 'Did you mean "Gazebo/Grey"?' in unknown_material("Gazebo/Gray")
-    assert 'Did you mean "Gazebo/SkyBlue"?' in unknown_material("skyblue")
-    assert "Did you mean" not in unknown_material("Custom/Chequered")
+    place = Origin(file="r.urdf", line=1)
+    for name, meant in (
+        ("Gazebo/Gray", "Gazebo/Grey"),
+        ("skyblue", "Gazebo/SkyBlue"),
+        ("Custom/Chequered", ""),
+    ):
+        diagnostic = unknown_material(name, place)
+        assert diagnostic.values == {"name": name, "meant": meant}
+        assert (meant in diagnostic.hint) if meant else not diagnostic.hint

@@ -155,7 +155,7 @@ rospy.init_node("look_up", anonymous=True)
 buffer = tf2_ros.Buffer()
 listener = tf2_ros.TransformListener(buffer)
 for link in sys.argv[1:]:
-    found = buffer.lookup_transform("odom", link, rospy.Time(0), rospy.Duration(10))
+    found = buffer.lookup_transform("odom", link, rospy.Time(0), rospy.Duration(60))
     print(link, found.transform.translation.z)
 """
 
