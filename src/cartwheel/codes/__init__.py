@@ -9,7 +9,6 @@ from __future__ import annotations
 import importlib
 import re
 from functools import cache
-from importlib import resources
 from types import ModuleType
 
 from cartwheel.errors import Code, UnknownNameError
@@ -105,6 +104,8 @@ def explanation(code: Code) -> str:
 
 @cache
 def _explanations() -> dict[str, str]:
+    from importlib import resources  # only for explanations: it takes time to import
+
     found: dict[str, str] = {}
     for module in MODULES:
         text = (resources.files(__name__) / "texts" / f"{module}.md").read_text(encoding="utf-8")
