@@ -14,6 +14,7 @@ from cartwheel.checks.settings import Settings, settings_for
 from cartwheel.checks.suppressions import Suppressions
 from cartwheel.description.check import PluginKnowledge, Report
 from cartwheel.description.check import check as check_description
+from cartwheel.description.check.checking import place
 from cartwheel.errors import DescriptionError, Diagnostic, Origin
 
 
@@ -153,23 +154,14 @@ def _result(
                 accepted += 1
             else:
                 findings.append(finding)
-    notes = suppressions.unused(file for report in reports for file in report.files)
+    files = dict.fromkeys(file for report in reports for file in report.files)
+    notes = suppressions.unused(files)
     findings += [note for note in notes if note.code in selection]
-    order: dict[str, int] = {}
-    for report in reports:
-        for file in report.files:
-            order.setdefault(file, len(order))
-
-    def place(finding: Diagnostic) -> tuple[int, str, int]:
-        if finding.origin is None:
-            return (-1, "", 0)
-        file = finding.origin.file
-        return (order.get(file, len(order)), file, finding.origin.line)
-
+    order = {file: index for index, file in enumerate(files)}
     return Result(
         path=path,
         reports=reports,
-        findings=tuple(sorted(findings, key=place)),
+        findings=tuple(sorted(findings, key=lambda each: place(each, order))),
         ignored=ignored,
         suppressed=suppressed,
         accepted=accepted,

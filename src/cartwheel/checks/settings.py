@@ -9,7 +9,7 @@ from typing import Any
 
 from cartwheel.codes import command
 from cartwheel.description.regular import read_regular_text
-from cartwheel.errors import CartwheelError, Origin, meant_one
+from cartwheel.errors import CartwheelError, Origin, meant
 
 _MAX_BYTES = 1_000_000
 _LISTS = ("select", "ignore")
@@ -66,7 +66,7 @@ def _settings(file: Path, table: Any) -> Settings:
         raise _invalid(file, "the settings of check must be a table")
     for key, value in table.items():
         if key not in _KNOWN:
-            near = meant_one(key, _KNOWN, cutoff=0.6)
+            near = meant(key, _KNOWN)
             hint = f'Did you mean "{near}"?' if near else f"Settings are {', '.join(_KNOWN)}."
             raise _invalid(file, f'the setting "{key}" does not exist', hint, setting=key)
         if key in _LISTS and not (

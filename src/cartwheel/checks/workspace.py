@@ -4,24 +4,28 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path, PurePosixPath
 
 from cartwheel.description import xml
 from cartwheel.description.node import Node
+from cartwheel.description.packages import IGNORE_MARKERS
 from cartwheel.errors import DescriptionError
 
 SUFFIXES = (".xacro", ".urdf", ".sdf", ".world")
 MOST = 5000
 """Files of a folder that are looked at."""
 _LEFT_OUT = {"build", "install", "devel", "log", "node_modules", "__pycache__"}
-_MARKERS = ("COLCON_IGNORE", "CATKIN_IGNORE", "AMENT_IGNORE")
 _SUBSTITUTION = re.compile(r"\$\{[^}]*\}|\$\([^)]*\)|^(?:package|model|file)://")
 _FIND = re.compile(r"^(?:\$\(find(?:-pkg-share)? +([\w.-]+)\)|package://([\w.-]+))/(.+)$")
 _BUILT_IN = frozenset({
     "include", "arg", "property", "macro", "if", "unless", "insert_block", "call", "element",
     "attribute",
 })  # fmt: skip
+
+
+Walked = Sequence[tuple[Path, list[str]]]
+"""Folders, and the names of their files."""
 
 
 def descriptions(folder: Path) -> list[Path]:
@@ -31,10 +35,11 @@ def descriptions(folder: Path) -> list[Path]:
     A file that cannot be read counts, so that its error is reported.
     """
     roots: dict[Path, Node | None] = {}
-    for path in _files(folder):
+    walked = list(_walk(folder))
+    for path in _files(walked):
         roots[path] = _root(path)
     included: set[Path] = set()
-    packages = {path.parent.name: path.parent for path in _manifests(folder)}
+    packages = {path.parent.name: path.parent for path in _manifests(folder, walked)}
     for path, root in roots.items():
         if root is not None:
             included |= set(_included(path, root, packages, roots)) - {path}
@@ -52,21 +57,19 @@ def _walk(folder: Path) -> Iterator[tuple[Path, list[str]]]:
             for name in folders
             if name not in _LEFT_OUT
             and not name.startswith(".")
-            and not any(Path(here, name, marker).exists() for marker in _MARKERS)
+            and not any(Path(here, name, marker).exists() for marker in IGNORE_MARKERS)
         )
         yield Path(here), sorted(files)
 
 
-def _files(folder: Path) -> list[Path]:
-    found = (
-        here / name for here, names in _walk(folder) for name in names if name.endswith(SUFFIXES)
-    )
+def _files(walked: Walked) -> list[Path]:
+    found = (here / name for here, names in walked for name in names if name.endswith(SUFFIXES))
     return [path for _, path in zip(range(MOST), found, strict=False) if path.is_file()]
 
 
-def _manifests(folder: Path) -> list[Path]:
+def _manifests(folder: Path, walked: Walked) -> list[Path]:
     above = [each / "package.xml" for each in folder.absolute().parents]
-    below = (here / "package.xml" for here, names in _walk(folder) if "package.xml" in names)
+    below = (here / "package.xml" for here, names in walked if "package.xml" in names)
     return [*(path for path in above if path.is_file()), *below]
 
 

@@ -41,7 +41,8 @@ _ROS1 = "ROS_PACKAGE_PATH"
 _PREFIXES = ("AMENT_PREFIX_PATH", "CMAKE_PREFIX_PATH", "COLCON_PREFIX_PATH")
 _MODELS = ("GAZEBO_MODEL_PATH", "GZ_SIM_RESOURCE_PATH", "IGN_GAZEBO_RESOURCE_PATH", "SDF_PATH")
 _RESOURCES = ("GAZEBO_RESOURCE_PATH", "GZ_SIM_RESOURCE_PATH", "IGN_GAZEBO_RESOURCE_PATH")
-_IGNORED = frozenset({"CATKIN_IGNORE", "COLCON_IGNORE", "AMENT_IGNORE"})
+IGNORE_MARKERS = frozenset({"CATKIN_IGNORE", "COLCON_IGNORE", "AMENT_IGNORE"})
+"""Files of folders in which no package is looked for."""
 _SKIPPED = frozenset({"build", "devel", "log", "node_modules", "__pycache__", "proc", "sys", "dev"})
 _NAME = re.compile(rb"<name>\s*([^<>\s]+)\s*</name>")
 _COMMENT = re.compile(rb"<!--.*?(?:-->|\Z)", re.DOTALL)
@@ -475,7 +476,7 @@ def _listing(folder: Path, _changed: int) -> tuple[Path, ...]:
             for count, entry in enumerate(entries):
                 if count >= MAX_ENTRIES:
                     break
-                if entry.name in _IGNORED:
+                if entry.name in IGNORE_MARKERS:
                     return ()
                 hidden = entry.name.startswith(".") or entry.name in _SKIPPED
                 if not hidden and entry.is_dir():

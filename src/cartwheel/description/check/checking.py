@@ -130,7 +130,7 @@ def check(
         )
     told = [finding for finding in found if finding.code not in ignored]
     order = {file: index for index, file in enumerate(subject.files)}
-    told.sort(key=lambda finding: _place(finding, order))
+    told.sort(key=lambda finding: place(finding, order))
     return Report(
         file=subject.files[0],
         name=subject.read.name if subject.read is not None else "",
@@ -247,7 +247,8 @@ def _distinct(findings: Iterable[Diagnostic]) -> list[Diagnostic]:
     return list(distinct.values())
 
 
-def _place(finding: Diagnostic, order: Mapping[str, int]) -> tuple[int, str, int]:
+def place(finding: Diagnostic, order: Mapping[str, int]) -> tuple[int, str, int]:
+    """The key that sorts findings by file, in an order of files, and by line."""
     if finding.origin is None:
         return (-1, "", 0)
     file = finding.origin.file

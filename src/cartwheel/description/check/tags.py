@@ -156,13 +156,13 @@ def _marked(subject: Subject, diagnostic: Diagnostic) -> Diagnostic:
 
 def _advised(subject: Subject, diagnostic: Diagnostic) -> Diagnostic:
     """A warning with the text to write, and less severe where it is hardly a fault."""
-    node = nodes.at(subject.root, diagnostic.origin) if diagnostic.origin is not None else None
     if diagnostic.code is files.XACRO_NAMESPACE:
         return replace(diagnostic, instead=_NAMESPACE, place="attribute", hint="")
     if diagnostic.code is codes.NOT_SIMULATED:
         return replace(diagnostic, severity="info")
     if diagnostic.code not in _GUESSED:
         return diagnostic
+    node = nodes.at(subject.root, diagnostic.origin) if diagnostic.origin is not None else None
     values = diagnostic.values
     attribute = str(values.get("attribute", ""))
     if node is not None and attribute and (written := _from_urdf(subject, node)):

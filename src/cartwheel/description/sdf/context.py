@@ -44,6 +44,13 @@ class Context:
         self.diagnostics.append(diagnostic)
 
 
+def not_simulated(message: str, node: Node) -> Diagnostic:
+    """The warning for an element that is valid, but not simulated."""
+    return codes.NOT_SIMULATED.diagnostic(
+        message, origin=node.origin, severity="warning", values={"tag": node.tag}
+    )
+
+
 def read_version(root: Node) -> Version:
     """The version of an ``<sdf>`` root.
 

@@ -21,6 +21,7 @@ from cartwheel.description.model import (
 from cartwheel.description.sdf.context import (
     Context,
     check_unique,
+    not_simulated,
     read_pose,
     reference_of,
     require_name,
@@ -33,7 +34,7 @@ from cartwheel.description.sdf.sensors import read_sensor
 from cartwheel.description.sdf.shapes import read_shape
 from cartwheel.description.sdf.surface import read_surface
 from cartwheel.description.xml import Node
-from cartwheel.errors import DescriptionError, Diagnostic
+from cartwheel.errors import DescriptionError
 from cartwheel.geometry import Pose, rotate
 
 _WITHOUT_COUNTERPART = (
@@ -91,7 +92,7 @@ def read_link(node: Node, ctx: Context, frames: Frames) -> Link:
         for part in node.all(tag):
             part.mark()
             if part.children or part.text.strip().lower() in ("true", "1"):
-                ctx.report(_not_simulated(f"<{tag}> is not simulated", part))
+                ctx.report(not_simulated(f"<{tag}> is not simulated", part))
     decay = node.child("velocity_decay")
     return Link(
         name=name,
@@ -154,7 +155,7 @@ def _inertial(link: Node, ctx: Context, place: Place, collisions: list[Collision
     water = node.child("fluid_added_mass")
     if water is not None:
         water.mark()
-        ctx.report(_not_simulated("<fluid_added_mass> is not simulated", water))
+        ctx.report(not_simulated("<fluid_added_mass> is not simulated", water))
     tensor = node.child("inertia")
     if tensor is not None and any("nan" in each.text.lower() for each in tensor.children):
         # What a model editor wrote for a mesh whose volume it could not tell.
@@ -224,7 +225,7 @@ def _visual(node: Node, ctx: Context, place: Place) -> Visual | None:
     pose = place(node)
     for part in node.all("plugin"):
         part.mark()
-        ctx.report(_not_simulated("plugins of visuals are not run", part))
+        ctx.report(not_simulated("plugins of visuals are not run", part))
     shape = read_shape(node, ctx)
     if shape is None:
         return None
@@ -237,12 +238,6 @@ def _visual(node: Node, ctx: Context, place: Place) -> Visual | None:
         cast_shadows=shadows,
         laser_retro=retro,
         origin=node.origin,
-    )
-
-
-def _not_simulated(message: str, node: Node) -> Diagnostic:
-    return tags.NOT_SIMULATED.diagnostic(
-        message, origin=node.origin, severity="warning", values={"tag": node.tag}
     )
 
 

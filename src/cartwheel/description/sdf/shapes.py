@@ -19,7 +19,7 @@ from cartwheel.description.model import (
     Sphere,
 )
 from cartwheel.description.outline import OutlineError, convex_pieces
-from cartwheel.description.sdf.context import Context, positive
+from cartwheel.description.sdf.context import Context, not_simulated, positive
 from cartwheel.description.terrain import ELEVATION_MODELS, TerrainError, heights_of
 from cartwheel.description.xml import Node
 from cartwheel.errors import CartwheelError, DescriptionError, Origin, meant, suggestion
@@ -75,14 +75,7 @@ def read_shape(owner: Node, ctx: Context) -> Shape | None:
         return None
     if tag == "image":
         node.mark()
-        ctx.report(
-            tags.NOT_SIMULATED.diagnostic(
-                "the shape <image> is not simulated",
-                origin=node.origin,
-                severity="warning",
-                values={"tag": "image"},
-            )
-        )
+        ctx.report(not_simulated("the shape <image> is not simulated", node))
         return None
     if tag in ("mesh", "heightmap"):
         try:

@@ -11,6 +11,7 @@ from cartwheel.description.losses import loss
 from cartwheel.description.model import Light, Physics, WorldDescription
 from cartwheel.description.sdf.context import (
     Context,
+    not_simulated,
     read_pose,
     read_rgba,
     reference_of,
@@ -27,7 +28,7 @@ from cartwheel.description.sdf.state import apply_state
 from cartwheel.description.sdf.unplaced import Model, name_apart
 from cartwheel.description.sdf.world_joints import join_models
 from cartwheel.description.xml import Node, to_element, unread
-from cartwheel.errors import DescriptionError, Diagnostic
+from cartwheel.errors import DescriptionError
 from cartwheel.geometry import Pose, Vec3
 
 _NOT_SIMULATED = ("actor", "population", "road")
@@ -78,12 +79,12 @@ def read_world(node: Node, ctx: Context) -> WorldDescription:
             each.mark()
             name_of = each.attributes.get("name", "")
             what = f'<{tag}> "{name_of}"' if name_of else f"<{tag}>"
-            ctx.report(_not_simulated(f"{what} is not simulated, and is left out", each))
+            ctx.report(not_simulated(f"{what} is not simulated, and is left out", each))
     for tag in ("wind", "atmosphere"):
         for each in node.all(tag):
             each.mark()
             if each.children and not _still(each):
-                ctx.report(_not_simulated(f"<{tag}> is not simulated", each))
+                ctx.report(not_simulated(f"<{tag}> is not simulated", each))
     for each in node.all("gui"):
         each.mark()  # of Gazebo's window, and of nothing in the world
     physics = _default_physics(node, ctx)
@@ -173,12 +174,6 @@ def _places(node: Node, frames: Frames, ctx: Context) -> Iterator[tuple[str, Pos
             yield name, frames.pose(name, each.origin)
         except DescriptionError as error:
             ctx.report(loss(error, f'the frame "{name}" has no place', severity="warning"))
-
-
-def _not_simulated(message: str, node: Node) -> Diagnostic:
-    return tags.NOT_SIMULATED.diagnostic(
-        message, origin=node.origin, severity="warning", values={"tag": node.tag}
-    )
 
 
 def _light(node: Node, included: Included | None, frames: Frames) -> Light:

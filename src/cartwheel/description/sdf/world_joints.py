@@ -8,7 +8,7 @@ from dataclasses import replace
 from cartwheel.codes import tags
 from cartwheel.description.losses import loss
 from cartwheel.description.model import Joint, RobotDescription
-from cartwheel.description.sdf.context import Context
+from cartwheel.description.sdf.context import Context, not_simulated
 from cartwheel.description.sdf.frames import WORLD, Frames
 from cartwheel.description.sdf.joint import add_joint, read_joint
 from cartwheel.description.xml import Node
@@ -88,14 +88,7 @@ def _read(node: Node, frames: Frames, later: list[str], ctx: Context) -> Joint |
         return None
     for sensor in node.all("sensor"):
         sensor.mark()
-        ctx.report(
-            tags.NOT_SIMULATED.diagnostic(
-                "sensors of joints of the world are left out",
-                origin=sensor.origin,
-                severity="warning",
-                values={"tag": "sensor"},
-            )
-        )
+        ctx.report(not_simulated("sensors of joints of the world are left out", sensor))
     if joint is None:
         _leave_out(node, "a gearbox connects joints of one model", ctx)
     return joint

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -169,17 +169,7 @@ def read_link_tags(node: Node, link: str, tags: LinkTags, ctx: UrdfContext) -> N
         tags.sensors.append(read)
     for light in node.all("light"):
         tags.lights.append(read_light(light, read_pose(light.child("pose"))))
-    for tag, reason in _IDLE.items():
-        for child in node.all(tag):
-            child.mark()
-            ctx.report(
-                codes.NOT_SIMULATED.diagnostic(
-                    f"<{tag}> has no effect: {reason}",
-                    origin=child.origin,
-                    severity="warning",
-                    values={"tag": tag},
-                )
-            )
+    warn_idle(node, _IDLE, ctx)
 
 
 def _read_motion(node: Node, tags: LinkTags) -> None:
@@ -264,3 +254,24 @@ def _read_collision(node: Node, tags: LinkTags, sdf: Context) -> None:
     if surface is None:
         return
     tags.surface.update(read_surface(surface, sdf))
+
+
+def warn_idle(node: Node, reasons: Mapping[str, str], ctx: UrdfContext) -> None:
+    """Warns of elements that have no effect.
+
+    Args:
+        node: In which they are.
+        reasons: Why, by tag.
+        ctx: Takes the warnings.
+    """
+    for tag, reason in reasons.items():
+        for child in node.all(tag):
+            child.mark()
+            ctx.report(
+                codes.NOT_SIMULATED.diagnostic(
+                    f"<{tag}> has no effect: {reason}",
+                    origin=child.origin,
+                    severity="warning",
+                    values={"tag": tag},
+                )
+            )

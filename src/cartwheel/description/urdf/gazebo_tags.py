@@ -14,7 +14,12 @@ from cartwheel.codes import tags as codes
 from cartwheel.description.model import Joint, Link, PluginTag
 from cartwheel.description.sdf.inserting import INSERTED
 from cartwheel.description.sdf.sensors import read_plugin, read_sensor
-from cartwheel.description.urdf.gazebo_link_tags import LINK_TAGS, LinkTags, read_link_tags
+from cartwheel.description.urdf.gazebo_link_tags import (
+    LINK_TAGS,
+    LinkTags,
+    read_link_tags,
+    warn_idle,
+)
 from cartwheel.description.urdf.link import UrdfContext
 from cartwheel.description.xml import Node
 from cartwheel.errors import meant, suggestion
@@ -152,7 +157,7 @@ def _read_robot_tags(node: Node, tags: GazeboTags, ctx: UrdfContext) -> None:
     tags.self_collide = node.boolean_at("selfCollide", tags.self_collide)
     inserted = {id(part) for tag in INSERTED for part in node.all(tag)}
     tags.inserted.extend(child for child in node.children if id(child) in inserted)
-    _warn_idle(node, _ROBOT_IDLE, ctx)
+    warn_idle(node, _ROBOT_IDLE, ctx)
     for child in node.children:
         if child.tag in ROBOT_TAGS or child.tag in _ROBOT_IDLE:
             continue
@@ -252,19 +257,5 @@ def _warn_misplaced(node: Node, reference: str, is_link: bool, ctx: UrdfContext)
                     f'"{reference}" is a {kinds[1]}',
                     origin=child.origin,
                     values={"tag": child.tag, "needs": kinds[0], "reference": reference},
-                )
-            )
-
-
-def _warn_idle(node: Node, reasons: Mapping[str, str], ctx: UrdfContext) -> None:
-    for tag, reason in reasons.items():
-        for child in node.all(tag):
-            child.mark()
-            ctx.report(
-                codes.NOT_SIMULATED.diagnostic(
-                    f"<{tag}> has no effect: {reason}",
-                    origin=child.origin,
-                    severity="warning",
-                    values={"tag": tag},
                 )
             )

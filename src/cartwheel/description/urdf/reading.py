@@ -165,8 +165,7 @@ def distinct(diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
     """Each once for each line: a macro that is called ten times repeats its diagnostics."""
     unique: dict[tuple[object, ...], Diagnostic] = {}
     for each in diagnostics:
-        values = tuple(sorted(each.values.items(), key=lambda item: item[0]))
-        unique.setdefault((each.code, each.message, values, str(each.origin)), each)
+        unique.setdefault(each.identity, each)
     return tuple(unique.values())
 
 
