@@ -222,3 +222,9 @@ def test_the_baseline_is_plain_json(file, tmp_path):
     write(accepted, check(file(BAD)).findings)
     (entry,) = json.loads(accepted.read_text())["findings"]
     assert entry == {"file": "bar.urdf", "code": "CW220", "names": [["link", "bar"]], "count": 1}
+
+
+def test_a_long_line_of_comments_is_read_at_once(file):
+    # In time that grows with its square this took minutes.
+    result = check(file(f"{BAD}\n{'<!-- cartwheel: ignore CW999 -->' * 30_000}\n"))
+    assert command.SUPPRESSION_UNUSED in {each.code for each in result.findings}

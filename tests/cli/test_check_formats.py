@@ -167,3 +167,32 @@ def test_a_diff_changes_nothing_and_a_fix_does(checked, program):
     assert '+      <origin rpy="0 0 1.5708"/>' in shown and path.read_text() == text
     checked(text, "--fix", status=0)
     assert path.read_text() == text.replace("0 0 90", "0 0 1.5708")
+
+
+@pytest.mark.parametrize("form", ["json", "sarif"])
+def test_json_is_valid_whatever_a_name_holds(checked, form):
+    text = ERROR.replace('name="bar"', 'name="&#127;&#133;\N{SNOWMAN}"')
+    done = checked(text, "--format", form, "--strict", status=None)
+    assert json.loads(done.stdout)
+
+
+def test_a_name_of_a_stranger_makes_no_command_in_plain_text_either(checked):
+    text = ERROR.replace('name="bar"', 'name="x&#10;  ::stop-commands::x"')
+    done = checked(text, status=1)
+    assert "stop-commands" in done.stdout
+    assert not any(line.strip().startswith("::") for line in done.stdout.splitlines())
+
+
+def test_of_a_file_on_one_line_the_place_is_shown(checked):
+    filler = "<!-- " + "x" * 100_000 + " -->"
+    text = filler + ERROR.replace('<?xml version="1.0"?>', "").replace("\n", "") + filler
+    done = checked(text, status=1)
+    assert len(done.stdout) < 3000
+    source, caret = done.stdout.splitlines()[1:3]
+    start = caret.index("^")
+    assert source[start:].startswith("<robot") and len(source) < 300
+
+
+def test_a_baseline_that_cannot_be_written_is_an_error_of_the_user(checked):
+    done = checked(ERROR, "--write-baseline", "nowhere/base.json", status=2)
+    assert "nowhere/base.json cannot be written" in done.stderr and "[CW" in done.stderr

@@ -62,3 +62,8 @@ def test_what_is_malformed_is_left_out():
     assert found == Diagnostic(severity="error", message="")
     assert found.values == {}
     assert unpacked({"file": "a", "line": -4, "values": []}).origin == Origin(file="a", line=0)
+
+
+def test_numbers_of_any_size_are_no_fault():
+    given = {"message": "m", "values": {"sizes": [10**400, 1], "name": "x"}}
+    assert unpacked(sent(given)).values == {"name": "x"}

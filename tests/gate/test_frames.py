@@ -76,3 +76,23 @@ def test_incomplete_messages_of_all_clients_are_bounded() -> None:
     other.close()
     one.feed(memoryview(bytes(100)))
     Frames(lambda _: True, room).feed(memoryview(head + bytes(700)))
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        framed(Opcode.TEXT, b"a", fin=False) + framed(Opcode.TEXT, b"b", fin=False),
+        framed(Opcode.BINARY, b"a", fin=False) + framed(Opcode.TEXT, b"b"),
+        framed(Opcode.CONT, b"a"),
+        framed(Opcode.TEXT, b"a") + framed(Opcode.CONT, b"b"),
+        b"\x89\xfe" + (126).to_bytes(2) + bytes(4),
+    ],
+    ids=["text in text", "text in binary", "no begin", "no begin after an end", "control"],
+)
+def test_a_message_within_a_message_takes_no_room(data: bytes) -> None:
+    room = Room(1 << 20)
+    frames = Frames(lambda _: True, room)
+    with pytest.raises(FrameError):
+        frames.feed(memoryview(data))
+    frames.close()
+    room.take(1 << 20)

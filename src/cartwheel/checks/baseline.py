@@ -49,7 +49,7 @@ class Baseline:
             for entry in content["findings"]:
                 names = json.dumps(entry["names"])
                 counts[str(entry["file"]), str(entry["code"]), names] += int(entry["count"])
-        except (OSError, ValueError, KeyError, TypeError, RecursionError) as error:
+        except (OSError, ValueError, KeyError, TypeError, OverflowError, RecursionError) as error:
             raise CartwheelError(
                 f"the baseline cannot be read: {error}",
                 code=command.BASELINE_INVALID,
@@ -75,7 +75,7 @@ def write(file: Path, findings: Iterable[Diagnostic]) -> int:
         {"file": name, "code": code, "names": json.loads(names), "count": count}
         for (name, code, names), count in sorted(counts.items())
     ]
-    text = json.dumps({"schema": _SCHEMA, "findings": entries}, indent=1, ensure_ascii=False)
+    text = json.dumps({"schema": _SCHEMA, "findings": entries}, indent=1)
     file.write_text(text + "\n", encoding="utf-8")
     return counts.total()
 

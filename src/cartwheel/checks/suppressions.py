@@ -8,7 +8,7 @@ reason may follow in parentheses.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -18,7 +18,8 @@ from cartwheel.description import xml
 from cartwheel.description.regular import read_regular_text
 from cartwheel.errors import Code, Diagnostic, Origin, UnknownNameError
 
-_IN_XML = re.compile(r"<!--\s*cartwheel:\s*ignore\b([^(]*?)(?:\(.*?)?-->")
+_IN_XML = re.compile(r"<!--\s*cartwheel:\s*ignore\b")
+_END = "-->"
 _IN_YAML = re.compile(r"#\s*cartwheel:\s*ignore\b([^(\n]*)")
 _YAML = (".yaml", ".yml")
 MOST = 1000
@@ -83,25 +84,48 @@ def _read(file: str) -> list[Suppression]:
         lines = read_regular_text(Path(file), xml.MAX_BYTES).split("\n")
     except (OSError, ValueError):
         return []
-    pattern = _IN_YAML if file.endswith(_YAML) else _IN_XML
+    parted = _parted_yaml if file.endswith(_YAML) else _parted_xml
     found: list[Suppression] = []
     for number, line in enumerate(lines, 1):
         # A plain search first: most lines of large files have no comment of ours.
         if "cartwheel:" not in line:
             continue
-        for match in pattern.finditer(line):
-            alone = not pattern.sub("", line).strip()
-            reach = {number, _next(lines, number, pattern)} if alone else {number}
-            for word in re.split(r"[\s,]+", match[1].strip()):
-                if word and len(found) < MOST:
-                    found.append(_suppression(file, number, frozenset(reach), word))
+        comments, others = parted(line)
+        alone = not others.strip()
+        reach = {number, _next(lines, number, parted)} if comments and alone else {number}
+        for word in re.split(r"[\s,]+", " ".join(comments)):
+            if len(found) >= MOST:
+                return found
+            if word:
+                found.append(_suppression(file, number, frozenset(reach), word))
     return found
 
 
-def _next(lines: Sequence[str], number: int, pattern: re.Pattern[str]) -> int:
+def _parted_xml(line: str) -> tuple[list[str], str]:
+    """The codes that each comment of a line names, and what else the line holds.
+
+    In time that grows with the line's length alone: strangers write these lines.
+    """
+    comments, others, at = list[str](), list[str](), 0
+    while (begin := _IN_XML.search(line, at)) is not None:
+        end = line.find(_END, begin.end())
+        if end < 0:
+            break
+        comments.append(line[begin.end() : end].partition("(")[0])
+        others.append(line[at : begin.start()])
+        at = end + len(_END)
+    return comments, "".join((*others, line[at:]))
+
+
+def _parted_yaml(line: str) -> tuple[list[str], str]:
+    """As `_parted_xml`."""
+    return _IN_YAML.findall(line), _IN_YAML.sub("", line)
+
+
+def _next(lines: Sequence[str], number: int, parted: Callable[[str], tuple[list[str], str]]) -> int:
     """The first line behind a comment that holds something else."""
     for following in range(number, min(number + 20, len(lines))):
-        if pattern.sub("", lines[following]).strip():
+        if parted(lines[following])[1].strip():
             return following + 1
     return number
 

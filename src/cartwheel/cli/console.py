@@ -56,17 +56,6 @@ def note(text: str) -> None:
     print(printable(text), file=sys.stderr, flush=True)
 
 
-def print_error(text: str) -> None:
-    """What went wrong."""
-    sys.stdout.flush()
-    note(paint("error: ", "red", "bold", stream=sys.stderr) + text)
-
-
-def print_warning(text: str) -> None:
-    """What a user should know, though the command goes on."""
-    note(paint("warning: ", "yellow", stream=sys.stderr) + text)
-
-
 def say_table(rows: Sequence[Sequence[str]]) -> None:
     """`table`, its head dim."""
     head, *lines = table(rows).splitlines()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import sys
 from collections.abc import Sequence
+from functools import lru_cache
 from pathlib import Path
 from typing import TextIO
 
@@ -16,6 +17,8 @@ STYLES = {"error": ("red", "bold"), "warning": ("yellow", "bold"), "info": ("cya
 _WORDS = {"info": "note"}
 _LINES_SHOWN = 10
 _NAMES_SHOWN = 6
+_LONGEST = 200
+"""Characters of a line that are shown."""
 _LOOK_AHEAD = 8
 """Lines of an element that are searched for the caret's text."""
 
@@ -56,7 +59,12 @@ def shown(
         lines.append(f"  and {len(others)} more, in line {', '.join(numbers[:_LINES_SHOWN])}{more}")
     if diagnostic.origin is not None:
         lines += [paint(f"  in {frame}", "dim", stream=out) for frame in diagnostic.origin.stack]
-    return "\n".join(lines)
+    return quiet("\n".join(lines))
+
+
+def quiet(text: str) -> str:
+    """A text of which no line is a command to GitHub's runner: names of strangers are in it."""
+    return re.sub(r"\n(?=\s*::)", r"\\n", text)
 
 
 def print_diagnostic(diagnostic: Diagnostic) -> None:
@@ -95,6 +103,11 @@ def _excerpt(diagnostic: Diagnostic, styles: tuple[str, ...], out: TextIO) -> li
     # Tabs are one column wide here, as the caret's line cannot know the terminal's stops.
     source = lines[number - 1].replace("\t", " ")
     indent = len(source) - len(source.lstrip())
+    if len(source) - indent > _LONGEST:
+        # Of a file on one line, what is around the mark.
+        indent = max(indent, column - _LONGEST // 4)
+        source = source[: indent + _LONGEST]
+        width = max(1, min(width, len(source) - column))
     label = f"{number:>5} | "
     under = " " * (len(label) + column - indent)
     return [
@@ -103,14 +116,24 @@ def _excerpt(diagnostic: Diagnostic, styles: tuple[str, ...], out: TextIO) -> li
     ]
 
 
-def _lines_of(file: str) -> list[str]:
+def _lines_of(file: str) -> Sequence[str]:
+    try:
+        state = Path(file).stat()
+    except (OSError, ValueError):
+        return ()
+    return _lines_of_state(file, state.st_mtime_ns, state.st_size)
+
+
+@lru_cache(maxsize=4)
+def _lines_of_state(file: str, _changed_ns: int, _size: int) -> Sequence[str]:
+    """The lines as XML's reader counts them; a file with many findings is read once."""
     from cartwheel.description import xml
     from cartwheel.description.regular import read_regular_text
 
     try:
-        return read_regular_text(Path(file), xml.MAX_BYTES).splitlines()
+        return read_regular_text(Path(file), xml.MAX_BYTES).split("\n")
     except (OSError, ValueError):
-        return []
+        return ()
 
 
 def _caret(lines: Sequence[str], first: int, mark: str) -> tuple[int, int, int]:

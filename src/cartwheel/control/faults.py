@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any, get_args
@@ -133,7 +134,8 @@ def _values(given: Any) -> dict[str, Value]:
             if all(isinstance(each, str) for each in value):
                 found[name] = tuple(value)
             elif all(isinstance(each, int | float) for each in value):
-                found[name] = tuple(map(float, value))
+                with contextlib.suppress(OverflowError):  # JSON's whole numbers have any size
+                    found[name] = tuple(map(float, value))
         elif value is None or isinstance(value, str | int | float):
             found[name] = value
     return found

@@ -10,6 +10,8 @@ _LARGEST = 16 << 20
 _ALL = 64 << 20
 """Bytes of incomplete messages of all clients: the server behind holds them."""
 _TEXT, _CONTROL = 1, 8
+_LARGEST_CONTROL = 125
+"""Source: RFC 6455, 5.5."""
 
 Passes = Callable[[bytes], bool]
 
@@ -55,6 +57,8 @@ class Frames:
         self._head = bytearray()
         self._left = 0
         """Bytes of the current frame that are still to come."""
+        self._is_open = False
+        """Whether a message has begun and not ended."""
         self._is_text = False
         """Whether the current message is text."""
         self._is_held = False
@@ -114,8 +118,13 @@ class Frames:
         elif length == 127:
             length = int.from_bytes(head[2:10])
         self._is_control = kind >= _CONTROL
-        if kind and not self._is_control:
-            self._is_text, self._size = kind == _TEXT, 0
+        if self._is_control:
+            if length > _LARGEST_CONTROL:
+                raise FrameError(f"a control frame of more than {_LARGEST_CONTROL} bytes")
+        elif self._is_open == bool(kind):
+            raise FrameError("a message within a message, or the rest of none")
+        elif kind:
+            self._is_open, self._is_text, self._size = True, kind == _TEXT, 0
         # The heads count as well: there may be any number of frames without content.
         self._size += length + len(head)
         most = _LARGEST_TEXT if self._is_text else _LARGEST
@@ -137,6 +146,7 @@ class Frames:
         if self._is_control or not self._is_last:
             return
         self.close()
+        self._is_open = False
         if self._is_held:
             if self._passes(bytes(self._text)):
                 out += self._held

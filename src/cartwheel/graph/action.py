@@ -245,8 +245,9 @@ class Action:
         for goal in self._late(done, now):
             del self._goals[goal.id]
         # Clients may send any number of goals within the time for which one is kept.
-        for goal in done[: max(0, len(self._goals) - _MOST + 1)]:
-            self._goals.pop(goal.id, None)
+        kept = [goal for goal in done if goal.id in self._goals]
+        for goal in kept[: max(0, len(self._goals) - _MOST + 1)]:
+            del self._goals[goal.id]
 
     @staticmethod
     def _late(done: list[Goal], now: int) -> Iterable[Goal]:

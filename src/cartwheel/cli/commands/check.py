@@ -9,7 +9,8 @@ from pathlib import Path
 from cartwheel.checks import Result, baseline, fixing, run
 from cartwheel.cli.commands.check_formats import FORMATS
 from cartwheel.cli.console import note, paint, say, table
-from cartwheel.cli.showing import STYLES, shown
+from cartwheel.cli.showing import STYLES, quiet, shown
+from cartwheel.cli.writing import writing
 from cartwheel.description.check import REPORTED
 from cartwheel.errors import Diagnostic
 
@@ -73,11 +74,13 @@ def check(
             say(f"{_findings(count)} can be fixed")
             return int(bool(fixes))
         for each in fixes:
-            each.write()
+            with writing(each.file):
+                each.write()
         note(f"fixed {_findings(count)}")
         result = checked()
     if write_baseline is not None:
-        count = baseline.write(write_baseline, result.findings)
+        with writing(write_baseline):
+            count = baseline.write(write_baseline, result.findings)
         say(f"wrote {_findings(count)} to {write_baseline}")
         return 0
     if format == "text":
@@ -140,4 +143,4 @@ def _summary(result: Result) -> str:
     styles = STYLES[worst] if worst is not None else ("green", "bold")
     reports = result.reports
     subject = reports[0].file if len(reports) == 1 else f"{result.path} ({len(reports)} robots)"
-    return f"{subject}: {paint(text, *styles)}"
+    return quiet(f"{subject}: {paint(text, *styles)}")

@@ -26,7 +26,7 @@ _COMMANDS = {"error": "error", "warning": "warning", "info": "notice"}
 
 def as_json(result: Result) -> str:
     """The report in the form that docs/check.md defines."""
-    return json.dumps(as_mapping(result), indent=2, ensure_ascii=False)
+    return json.dumps(as_mapping(result), indent=2)
 
 
 def as_mapping(result: Result) -> dict[str, Any]:
@@ -103,7 +103,7 @@ def as_sarif(result: Result) -> str:
         "invocations": [{"executionSuccessful": result.complete}],
     }
     log = {"$schema": SARIF_SCHEMA, "version": "2.1.0", "runs": [run]}
-    return json.dumps(log, indent=2, ensure_ascii=False)
+    return json.dumps(log, indent=2)
 
 
 def as_github(result: Result) -> str:
@@ -117,7 +117,9 @@ def as_junit(result: Result) -> str:
     failures = 0
     for report in result.reports:
         case = ElementTree.SubElement(
-            suite, "testcase", {"classname": "cartwheel.check", "name": _relative(report.file)}
+            suite,
+            "testcase",
+            {"classname": "cartwheel.check", "name": _in_xml(_relative(report.file))},
         )
         files = set(report.files)
         own = [each for each in result.findings if each.origin is None or each.origin.file in files]
@@ -126,9 +128,8 @@ def as_junit(result: Result) -> str:
             failures += 1
             summary = f"{len(grave)} findings" if grave else "it could not be read completely"
             failure = ElementTree.SubElement(case, "failure", {"message": summary})
-            failure.text = _NOT_XML.sub(
-                "\N{REPLACEMENT CHARACTER}",
-                "\n".join(f"{each}{f' {each.hint}' if each.hint else ''}" for each in grave),
+            failure.text = _in_xml(
+                "\n".join(f"{each}{f' {each.hint}' if each.hint else ''}" for each in grave)
             )
     suite.set("tests", str(len(result.reports)))
     suite.set("failures", str(failures))
@@ -160,9 +161,8 @@ def _text(finding: Diagnostic) -> str:
 
 def _location(finding: Diagnostic) -> dict[str, Any]:
     assert finding.origin is not None
-    place: dict[str, Any] = {
-        "artifactLocation": {"uri": quote(_relative(finding.origin.file))},
-    }
+    uri = quote(_relative(finding.origin.file), errors="surrogateescape")
+    place: dict[str, Any] = {"artifactLocation": {"uri": uri}}
     if finding.origin.line:
         place["region"] = {"startLine": finding.origin.line}
         column = column_of(finding)
@@ -175,6 +175,11 @@ def _relative(file: str) -> str:
     """A path from the working directory with slashes; as it is where it lies elsewhere."""
     path = Path(os.path.relpath(file))
     return Path(file).as_posix() if path.parts[:1] == ("..",) else path.as_posix()
+
+
+def _in_xml(text: str) -> str:
+    """A text without the characters that XML cannot hold."""
+    return _NOT_XML.sub("\N{REPLACEMENT CHARACTER}", text)
 
 
 def _annotation(finding: Diagnostic) -> str:

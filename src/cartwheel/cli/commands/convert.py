@@ -9,8 +9,7 @@ from pathlib import Path
 from cartwheel.cli.commands.grouping import grouped
 from cartwheel.cli.console import note
 from cartwheel.cli.showing import print_diagnostic
-from cartwheel.codes.command import OUTPUT_NOT_WRITTEN
-from cartwheel.errors import CartwheelError
+from cartwheel.cli.writing import writing
 
 
 def convert(
@@ -34,14 +33,8 @@ def convert(
         sys.stdout.write(text)
         sys.stdout.flush()
         return
-    try:
+    with writing(output):
         output.write_text(text)
-    except OSError as error:
-        raise CartwheelError(
-            f"{output} cannot be written: {error.strerror}",
-            code=OUTPUT_NOT_WRITTEN,
-            values={"path": str(output)},
-        ) from error
     note(f"wrote {output}")
 
 

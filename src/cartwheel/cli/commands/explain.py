@@ -24,7 +24,7 @@ def explain(names: Sequence[str], *, json: bool) -> None:
     chosen = [code_named(name) for name in names] or list(all_codes())
     if json:
         entries = [_entry(code) for code in chosen]
-        say(json_module.dumps(entries, indent=2, ensure_ascii=False))
+        say(json_module.dumps(entries, indent=2))
     elif names:
         for code in chosen:
             _print(code)
