@@ -473,7 +473,8 @@ _RUN = ["run", "--headless", "--speed", "max", "--for", "100000", "--record"]
 def test_a_kill_leaves_all_but_the_last_second(name: str, tmp_path: Path) -> None:
     path = tmp_path / name
     process = subprocess.Popen(
-        [PROGRAM, *_RUN, str(path), "--record-topics", "!*image*"], stdout=subprocess.DEVNULL
+        [PROGRAM, *_RUN, str(path), "--record-topics", "!*image*"],
+        stdout=subprocess.DEVNULL,
     )
     try:
         deadline = time.monotonic() + 120
@@ -484,7 +485,9 @@ def test_a_kill_leaves_all_but_the_last_second(name: str, tmp_path: Path) -> Non
         # What is kept is what was there a second ago.
         time.sleep(random.uniform(1.5, 3.0))
     finally:
-        process.send_signal(signal.SIGKILL)
+        # Its recorder first: where the run alone is killed, that completes the file.
+        for pid in (*_children(process), process.pid):
+            os.kill(pid, signal.SIGKILL)
         process.wait()
     times = [t for t, _ in _read_broken(name, path)["/clock"]]
     assert len(times) > 100
@@ -508,8 +511,8 @@ def test_a_recorder_that_is_killed_early_has_the_beginning(name: str, tmp_path: 
             assert time.monotonic() < deadline and process.poll() is None
             time.sleep(0.01)
             times = _times_so_far(path)
-        (recorder,) = Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
-        os.kill(int(recorder), signal.SIGKILL)
+        (recorder,) = _children(process)
+        os.kill(recorder, signal.SIGKILL)
         _, said = process.communicate(timeout=120)
     finally:
         process.kill()
@@ -585,6 +588,11 @@ def _times_so_far(path: Path) -> list[int]:
         return [message.time_ns for message in recording.messages()]
     finally:
         recording.close()
+
+
+def _children(process: subprocess.Popen[Any]) -> list[int]:
+    listed = Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text()
+    return [int(pid) for pid in listed.split()]
 
 
 def _holds_much(file: Path) -> bool:

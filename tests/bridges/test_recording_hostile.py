@@ -24,6 +24,7 @@ from cartwheel.codes.recording import (
     RECORDING_UNREADABLE,
 )
 from cartwheel.errors import RecordingError
+from cartwheel.messages import store
 
 PACKERS = {"bz2": bz2.compress, "lz4": frame.compress, "zstd": zstd.compress}
 TABLES = """CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT, type TEXT,
@@ -133,7 +134,9 @@ def test_a_database_has_tables_of_the_right_types(tmp_path, tables):
         ("ros2idl", "module a {" * 400, "definition"),
         ("ros2msg", "uint8 A=1e400", "definition"),
         ("ros1msg", "string S=a\nstring S=a", "definition"),
-        ("ros1msg", "Lost x", "definition"),
+        ("ros1msg", "Lost x", "unknown"),
+        ("ros2msg", "float64 y\nlost_msgs/Lost[2] x", "unknown"),
+        ("ros2idl", "module a { module msg { struct B { b::msg::C x; }; }; };", "unknown"),
         ("ros2msg", "string[400000000] x", "size"),
         ("ros2msg", "int32[-1] x", "size"),
         ("ros2msg", "int32[10000000000000000000] x", "size"),
@@ -147,6 +150,8 @@ def test_a_database_has_tables_of_the_right_types(tmp_path, tables):
         "endless",
         "twice",
         "lost",
+        "lost in an array",
+        "lost, IDL",
         "array",
         "below zero",
         "numbers",
@@ -163,8 +168,10 @@ def test_a_definition_is_read_in_bounded_time(schema, definition, why):
         schema=schema,
         definition=definition,
     )
+    known = set(store().fielddefs)
     with raises(RECORDED_TYPE_UNUSABLE, why=why):
         decoder(topic)
+    assert set(store().fielddefs) == known
 
 
 def test_parentheses_of_texts_and_comments_do_not_count():

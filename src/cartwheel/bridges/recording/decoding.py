@@ -85,6 +85,7 @@ def _learn(topic: RecordedTopic) -> None:
         _check_arrays(topic, name, fields)
     _check_depth(topic, types)
     ours = store()
+    _check_complete(topic, types, ours.fielddefs)
     if topic.encoding == "cdr":
         for name, (_, fields) in types.items():
             if twin_name(name) in ours.fielddefs:
@@ -192,6 +193,18 @@ def _check_depth(topic: RecordedTopic, types: dict[str, Any]) -> None:
                 values={"topic": topic.name, "type": min(inner), "why": "recursive"},
             )
         inner = {name: others for name, others in inner.items() if name not in flat}
+
+
+def _check_complete(topic: RecordedTopic, types: dict[str, Any], known: Any) -> None:
+    """Refuses a field of a type that nothing defines, before the others become known."""
+    for name, (_, fields) in types.items():
+        for _, used in _elements(fields):
+            if used not in types and used not in known:
+                raise RecordingError(
+                    f"{topic.name}: {name} has a field of the type {used}, which is not defined",
+                    code=RECORDED_TYPE_UNUSABLE,
+                    values={"topic": topic.name, "type": used, "why": "unknown"},
+                )
 
 
 def _elements(fields: Any) -> Iterator[tuple[int, Any]]:
