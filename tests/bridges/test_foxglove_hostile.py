@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import threading
 import time
@@ -11,6 +12,7 @@ import pytest
 from tests.bridges.test_foxglove import Served, serving
 from tests.coded import coded
 from websockets.exceptions import ConnectionClosed
+from websockets.frames import Frame, Opcode
 from websockets.sync.client import ClientConnection, connect
 
 from cartwheel.codes.wires import CLIENT_REQUEST_IGNORED
@@ -219,6 +221,27 @@ def test_a_text_that_is_not_json_or_too_large_reaches_no_server(
         for _ in other:
             pass
         other.ping().wait(PATIENCE)
+    reader.reads_on()
+
+
+def test_idle_incomplete_messages_keep_nobody_from_sending(served: Served, reader: Reader) -> None:
+    size = (16 << 20) - 100
+    frame = Frame(Opcode.BINARY, b"\xff" * size).serialize(mask=True)
+    with contextlib.ExitStack() as stack:
+        idle = [stack.enter_context(connected(served)) for _ in range(4)]
+        for one in idle:
+            answered(one)
+            one.socket.sendall(frame[:-1])
+        other = stack.enter_context(connected(served))
+        for _ in range(3):
+            other.send(b"\xff" * (10 << 20))
+            answered(other)
+        reader.wait(lambda: coded(served.reports, CLIENT_REQUEST_IGNORED), "the warning")
+        (report,) = coded(served.reports, CLIENT_REQUEST_IGNORED)
+        assert "oldest" in report.values["fault"]
+        with pytest.raises(ConnectionClosed):
+            for _ in idle[0]:
+                pass
     reader.reads_on()
 
 

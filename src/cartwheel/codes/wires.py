@@ -134,7 +134,7 @@ CLIENT_REQUEST_IGNORED = Code(
     "CW830",
     "client-request-ignored",
     "warning",
-    "a request of a Foxglove client that is malformed or exceeds a limit",
+    "a request or message of a Foxglove client that is malformed or exceeds a limit",
 )
 PARAMETER_REFUSED = Code(
     "CW831", "parameter-refused", "warning", "a parameter that a client may not set to this value"

@@ -9,6 +9,7 @@ _LARGEST = 16 << 20
 """Bytes of a message that is not text: a request with a whole description."""
 _ALL = 64 << 20
 """Bytes of incomplete messages of all clients: the server behind holds them."""
+_FULL = f"incomplete messages of all clients exceed {_ALL >> 20} MiB, and this one is the oldest"
 _TEXT, _CONTROL = 1, 8
 _LARGEST_CONTROL = 125
 """Source: RFC 6455, 5.5."""
@@ -17,22 +18,33 @@ Passes = Callable[[bytes], bool]
 
 
 class Room:
-    """Bytes of incomplete messages, of all clients of a server together."""
+    """Bytes of incomplete messages, of all clients of a server together.
+
+    If they are full, the client whose message began first is disconnected: otherwise a few idle
+    clients with incomplete messages would keep all others from sending.
+    """
 
     def __init__(self, most: int = _ALL) -> None:
         self._left = most
+        self._held: dict[Frames, int] = {}
+        """Bytes of each incomplete message, in the order in which the messages began."""
 
-    def take(self, size: int) -> None:
+    def take(self, holder: Frames, size: int) -> None:
         """Raises:
-        FrameError: There is no more room.
+        FrameError: The holder's own message is the first that has to go.
         """
-        if size > self._left:
-            raise FrameError("incomplete messages fill the memory for them")
+        while size > self._left:
+            oldest = next(iter(self._held), holder)
+            if oldest is holder:
+                raise FrameError(_FULL)
+            self.give_back(oldest)
+            oldest.evict()
         self._left -= size
+        self._held[holder] = self._held.get(holder, 0) + size
 
-    def give_back(self, size: int) -> None:
-        """What was taken is not held any more."""
-        self._left += size
+    def give_back(self, holder: Frames) -> None:
+        """The message of a holder is complete, or its client is disconnected."""
+        self._left += self._held.pop(holder, 0)
 
 
 class FrameError(Exception):
@@ -47,13 +59,17 @@ class Frames:
     Args:
         passes: Whether the server behind gets a text.
         room: For incomplete messages.
+        disconnect: Called if the room is needed for the messages of other clients.
+
+    Attributes:
+        fault: Why the client has to be disconnected; empty as long as it may stay.
     """
 
-    def __init__(self, passes: Passes, room: Room) -> None:
+    def __init__(self, passes: Passes, room: Room, disconnect: Callable[[], object]) -> None:
+        self.fault = ""
         self._passes = passes
         self._room = room
-        self._taken = 0
-        """Bytes of the room."""
+        self._disconnect = disconnect
         self._head = bytearray()
         self._left = 0
         """Bytes of the current frame that are still to come."""
@@ -76,8 +92,12 @@ class Frames:
 
     def close(self) -> None:
         """The client has gone."""
-        self._room.give_back(self._taken)
-        self._taken = 0
+        self._room.give_back(self)
+
+    def evict(self) -> None:
+        """Disconnects the client: others need the room of its incomplete message."""
+        self.fault = _FULL
+        self._disconnect()
 
     def feed(self, data: memoryview) -> bytes:
         """What the server behind gets now.
@@ -85,6 +105,13 @@ class Frames:
         Raises:
             FrameError: A message is too large, or its frames are malformed.
         """
+        try:
+            return self._fed(data)
+        except FrameError as error:
+            self.fault = str(error)
+            raise
+
+    def _fed(self, data: memoryview) -> bytes:
         out = bytearray()
         while data:
             if not self._left:
@@ -156,8 +183,7 @@ class Frames:
 
     def _take(self, size: int) -> None:
         if not self._is_control:
-            self._room.take(size)
-            self._taken += size
+            self._room.take(self, size)
 
     def _unmasked(self, part: memoryview) -> bytes:
         turn, size = self._turn % 4, len(part)

@@ -59,6 +59,9 @@ class Client(Protocol):
     def passes(self, text: bytes) -> bool:
         """Whether the server gets a text that it sent; on the gate's thread."""
 
+    def broke(self, fault: str) -> None:
+        """It is disconnected because of what it sent; on the gate's thread."""
+
     def end(self) -> None:
         """It has gone; on the gate's thread."""
 
@@ -229,7 +232,7 @@ class Gate:
             await relay(sock, server)
             return
         client = self._client()
-        frames = Frames(client.passes, self._room)
+        frames = Frames(client.passes, self._room, _canceller())
         try:
             with contextlib.suppress(FrameError):
                 passed = frames.feed(memoryview(begun))
@@ -237,7 +240,14 @@ class Gate:
                 await relay(sock, server, frames)
         finally:
             frames.close()
+            if frames.fault:
+                client.broke(frames.fault)
             client.end()
+
+
+def _canceller() -> Callable[[], object]:
+    """Ends the task that calls this, and with it a connection."""
+    return asyncio.current_task().cancel  # type: ignore[union-attr]
 
 
 async def _begin(sock: socket.socket, server: socket.socket, request: Request) -> bytes | None:

@@ -71,6 +71,14 @@ class JoinedClient:
             return False
         return True
 
+    def broke(self, fault: str) -> None:
+        """Warns that it is disconnected."""
+        self._warn(
+            CLIENT_REQUEST_IGNORED.diagnostic(
+                f"a client is disconnected: {fault}", values={"fault": fault}
+            )
+        )
+
     def end(self) -> None:
         """It has gone."""
         self._channels.clear()
