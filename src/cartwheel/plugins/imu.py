@@ -1,8 +1,8 @@
 """``libgazebo_ros_imu.so`` and ``libgazebo_ros_imu_sensor.so``: inertial measurement units.
 
-Both follow REP 145: rates and proper acceleration in the sensor's axes, gravity's reaction
-included, orientation against the world. Gazebo's model plugin turned the rates the wrong
-way and left gravity out.
+Both follow REP 145: angular velocity and proper acceleration (including the reaction to gravity)
+in the sensor's axes, and orientation relative to the world. Gazebo's model plugin rotates the
+angular velocity the wrong way and omits gravity.
 """
 
 from __future__ import annotations
@@ -24,32 +24,48 @@ from cartwheel.plugins.parameters import tag
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ImuParameters:
-    body: str = tag("bodyName", "body_name", "frame_name", doc="Link that carries it.")
-    topic: str = tag("topicName", default="imu", doc="Imu.")
-    service: str = tag("serviceName", default="imu_service", doc="Empty service, accepted.")
-    frame: str = tag("frameName", default="", doc="Frame of the messages; the link's when empty.")
+    body: str = tag("bodyName", "body_name", "frame_name", doc="Link that carries the IMU.")
+    topic: str = tag("topicName", default="imu", doc="Topic of the Imu messages.")
+    service: str = tag(
+        "serviceName",
+        default="imu_service",
+        doc="Service of type Empty. Calls succeed and have no effect.",
+    )
+    frame: str = tag("frameName", default="", doc="Frame of the messages. Defaults to the link.")
     noise: float = tag(
         "gaussianNoise",
         default=0.0,
         unit="rad/s, m/s²",
-        doc="Standard deviation of rates and accelerations.",
+        doc="Standard deviation of the noise on angular velocity and acceleration.",
     )
     rpy_offset: tuple[float, float, float] = tag(
-        "rpyOffsets", "rpyOffset", default=(0.0, 0.0, 0.0), unit="rad", doc="Mounting."
+        "rpyOffsets",
+        "rpyOffset",
+        default=(0.0, 0.0, 0.0),
+        unit="rad",
+        doc="Roll, pitch and yaw of the IMU in the link.",
     )
     xyz_offset: tuple[float, float, float] = tag(
-        "xyzOffset", "xyzOffsets", default=(0.0, 0.0, 0.0), unit="m", doc="Mounting."
+        "xyzOffset",
+        "xyzOffsets",
+        default=(0.0, 0.0, 0.0),
+        unit="m",
+        doc="Position of the IMU in the link.",
     )
     update_rate: float = tag(
-        "updateRate", "update_rate", default=0.0, unit="Hz", doc="0 is every step."
+        "updateRate",
+        "update_rate",
+        default=0.0,
+        unit="Hz",
+        doc="Publish rate; 0 publishes at every step.",
     )
 
 
 class ImuBase(Plugin[Any]):
-    """Reads a link and publishes what a unit mounted on it measures."""
+    """Base of the IMU plugins: publishes the measurements of an IMU on a link."""
 
     with_gravity: ClassVar[bool] = True
-    """Whether its acceleration holds gravity's reaction, as an accelerometer's does."""
+    """Whether the acceleration includes gravity, as that of an accelerometer does."""
 
     def start(
         self,
@@ -82,7 +98,7 @@ class ImuBase(Plugin[Any]):
         self._rate_covariance = self._accel_covariance = self._covariance
         self._orientation_covariance = self._covariance
         if not self._unit.has_orientation:
-            # sensor_msgs/Imu: -1 in its first element says that there is none.
+            # sensor_msgs/Imu: -1 in the first element marks the orientation as not measured.
             self._orientation_covariance = np.array([-1.0, *[0.0] * 8])
         both = (self._unit.rate_noise, self._unit.acceleration_noise)
         if both[0] is not None and both[1] is not None:
@@ -96,7 +112,7 @@ class ImuBase(Plugin[Any]):
     def _blurred(
         self, rate: Sequence[float], acceleration: Sequence[float]
     ) -> tuple[Sequence[float], Sequence[float]]:
-        """Both with the errors that a plugin has of its own."""
+        """Both with the errors that a subclass adds. Override to add some."""
         return rate, acceleration
 
     def _measure(self) -> None:
@@ -124,7 +140,10 @@ class ImuBase(Plugin[Any]):
 
 
 class Imu(ImuBase):
-    """An IMU on a link of the model. Source: gazebo_plugins, gazebo_ros_imu; REP 145."""
+    """Publishes angular velocity, acceleration and orientation of an IMU on a link.
+
+    Source: gazebo_plugins, gazebo_ros_imu; REP 145.
+    """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_imu.so",)
     parameters: ClassVar[type] = ImuParameters
@@ -140,50 +159,63 @@ class Imu(ImuBase):
             rate=config.update_rate,
         )
         empty = message_class("std_srvs/srv/Empty_Response")
-        # Gazebo's accepts the call and does nothing: the simulated unit has no drift to remove.
+        # As in Gazebo, calls have no effect: the simulated IMU has no drift to remove.
         self.serve(config.service, "std_srvs/srv/Empty", lambda _: empty())
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ImuSensorParameters:
-    topic: str = tag("topicName", "topic", default="imu_data", doc="Imu.")
-    body: str = tag("bodyName", default="", doc="Read and ignored: the sensor's link counts.")
+    topic: str = tag("topicName", "topic", default="imu_data", doc="Topic of the Imu messages.")
+    body: str = tag("bodyName", default="", doc="No effect: the IMU is on the sensor's link.")
     frame: str = tag(
-        "frameName", "frame_name", default="", doc="Frame of the messages; the link's when empty."
+        "frameName",
+        "frame_name",
+        default="",
+        doc="Frame of the messages. Defaults to the sensor's link.",
     )
     noise: float = tag(
         "gaussianNoise",
         default=0.0,
         unit="rad/s, m/s²",
-        doc="Standard deviation of rates and accelerations.",
+        doc="Standard deviation of the noise on angular velocity and acceleration.",
     )
     rpy_offset: tuple[float, float, float] = tag(
-        "rpyOffset", "rpyOffsets", default=(0.0, 0.0, 0.0), unit="rad", doc="Mounting."
+        "rpyOffset",
+        "rpyOffsets",
+        default=(0.0, 0.0, 0.0),
+        unit="rad",
+        doc="Roll, pitch and yaw of the IMU relative to the sensor's pose.",
     )
     xyz_offset: tuple[float, float, float] = tag(
-        "xyzOffset", "xyzOffsets", default=(0.0, 0.0, 0.0), unit="m", doc="Mounting."
+        "xyzOffset",
+        "xyzOffsets",
+        default=(0.0, 0.0, 0.0),
+        unit="m",
+        doc="Position of the IMU relative to the sensor's pose.",
     )
     update_rate: float = tag(
         "updateRateHZ",
         "updateRate",
         default=0.0,
         unit="Hz",
-        doc="The slower of this and the sensor's counts; 0 is the sensor's.",
+        doc="Publish rate. The lower of this and the sensor's rate applies; 0: the sensor's rate.",
     )
     initial_orientation: bool = tag(
         "initialOrientationAsReference",
         "initial_orientation_as_reference",
         default=False,
-        doc="The orientation is against that at first, not against the world (REP 145).",
+        doc="Report orientation relative to the spawn orientation instead of the world (REP 145). "
+        "The sensor's `<orientation_reference_frame>` has priority.",
     )
 
 
 class ImuSensor(ImuBase):
-    """The plugin of an ``imu`` sensor, with the noise that its ``<imu>`` states.
+    """Publishes the measurements of an ``imu`` sensor, with the noise that its ``<imu>`` states.
 
-    In ROS 2's spelling, with ``<ros>``, the topic is ``~/out``, to be remapped. In ROS 1's, in a
-    model of a world, it is under the model's name where no ``<robotNamespace>`` is stated. Its
-    orientation is against the world, or what the sensor's ``<orientation_reference_frame>`` says.
+    With ``<ros>`` (ROS 2), the default topic is ``~/out``, which a ``<remapping>`` can rename.
+    Without it (ROS 1), the topic of a model in a world is below the model's name unless
+    ``<robotNamespace>`` is set. The orientation is relative to the world, or to the sensor's
+    ``<orientation_reference_frame>``. If ``<enable_orientation>`` is false, it is not measured.
     Source: gazebo_plugins, gazebo_ros_imu_sensor; REP 145.
     """
 
@@ -216,15 +248,19 @@ class ImuSensor(ImuBase):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class GzImuParameters:
-    topic: str = tag("topic", default="", doc="Imu; Gazebo's long name when empty.")
+    topic: str = tag(
+        "topic",
+        default="",
+        doc="Topic of the Imu messages. Defaults to `/world/<world>/…/sensor/<sensor>/imu`.",
+    )
     frame: str = frame_tag()
 
 
 class GzImu(ImuBase):
-    """An ``imu`` sensor that needs no plugin, with the noise that its ``<imu>`` states.
+    """Publishes the measurements of an ``imu`` sensor, with the noise that its ``<imu>`` states.
 
-    Its orientation is against the world, or what ``<orientation_reference_frame>`` says; none
-    where ``<enable_orientation>`` is false.
+    The orientation is relative to the world, or to ``<orientation_reference_frame>``. If
+    ``<enable_orientation>`` is false, it is not measured.
 
     Source: gz-sensors, ImuSensor; REP 145.
     """

@@ -1,4 +1,4 @@
-"""What an inertial measurement unit on a link measures, without a topic (REP 145)."""
+"""Measurements of an inertial measurement unit on a link, without a topic (REP 145)."""
 
 from __future__ import annotations
 
@@ -28,20 +28,26 @@ _NORTH = {
     "NWU": (0.0, 0.0, math.pi / 2),
     "NED": (math.pi, 0.0, math.pi / 2),
 }
-"""Roll, pitch and yaw of the axes of SDF's localizations, from east, north and up."""
+"""Roll, pitch and yaw of SDF's localizations, relative to east, north, up."""
 
 
 class InertialUnit:
-    """Rates and proper acceleration in the unit's axes, its orientation against the world.
+    """Measures angular velocity, proper acceleration and orientation of an IMU on a link.
+
+    Angular velocity and acceleration are in the IMU's axes.
 
     Args:
-        part: Of the model that carries it.
-        link: That carries it.
-        mount: Of the unit in the link.
-        sensor: Whose ``<imu>`` states noise; None is without.
-        from_first: Its orientation is against that at which it was spawned, where the sensor
-            states no other.
-        origin: Place of a link that does not exist.
+        part: The model's part of the simulation.
+        link: Name of the link that carries the IMU.
+        mount: Pose of the IMU in the link.
+        sensor: Sensor whose ``<imu>`` states noise and reference frame; None: neither.
+        from_first: Measure orientation relative to the spawn orientation, unless the sensor
+            states an ``<orientation_reference_frame>``.
+        origin: File and line for the error about an unknown link.
+
+    Raises:
+        UnknownNameError: The link does not exist.
+        PluginError: The sensor's ``<imu>`` is invalid.
     """
 
     def __init__(
@@ -61,7 +67,7 @@ class InertialUnit:
         self.rate_noise: VectorNoise | None = None
         self.acceleration_noise: VectorNoise | None = None
         self.has_orientation = True
-        """Whether it tells its orientation; else that is none at all."""
+        """Whether orientation is measured; otherwise `measure` returns the identity."""
         self._reference = IDENTITY
         if from_first:
             described = part.description.link(link)
@@ -71,8 +77,8 @@ class InertialUnit:
         element = sensor.element.find("imu") if sensor is not None else None
         if sensor is None or element is None:
             return
-        told = element.find("enable_orientation")
-        self.has_orientation = told is None or told.text.strip().lower() not in ("false", "0")
+        enable = element.find("enable_orientation")
+        self.has_orientation = enable is None or enable.text.strip().lower() not in ("false", "0")
         if element.find("orientation_reference_frame") is not None:
             self._reference = quat_conjugate(_reference(part, element))
         both = []
@@ -81,23 +87,24 @@ class InertialUnit:
                 read_noise(element.find(f"{what}/{axis}/noise"), part.report) for axis in "xyz"
             ]
             if element.find(f"noise/{older}") is not None and element.find(what) is None:
-                # As SDF 1.4 wrote it, one for all axes.
+                # SDF 1.4: one noise for all axes.
                 noises = [read_noise(element.find(f"noise/{older}"), part.report)] * 3
             name = f"imu {sensor.link} {sensor.name} {what}"
             both.append(VectorNoise(part, name, noises, rate=sensor.update_rate))
         self.rate_noise, self.acceleration_noise = both
 
     def measure(self) -> tuple[Quat, Sequence[float], Sequence[float]]:
-        """Orientation, rates in rad/s and proper acceleration in m/s², with the sensor's noise.
+        """Orientation, angular velocity in rad/s and proper acceleration in m/s², with noise.
 
-        The orientation is against the world, or what ``<orientation_reference_frame>`` says.
+        The orientation is relative to the world, or to ``<orientation_reference_frame>``. It has
+        no noise.
         """
         _, turned = self._link.place()
         orientation = IDENTITY
         if self.has_orientation:
             mounted = quat_multiply(turned, self._mount.orientation)
             orientation = quat_multiply(self._reference, mounted)
-        # Rates first: the unit sits on a rigid link, so only its acceleration depends on where.
+        # Only the acceleration depends on the position on the link, which is rigid.
         rates = self.rates()
         acceleration = self._turned(self._link.proper_acceleration(self._mount.position).tolist())
         if self.acceleration_noise is not None:
@@ -106,17 +113,17 @@ class InertialUnit:
 
     @property
     def gravity(self) -> Sequence[float]:
-        """m/s², in the world's axes."""
+        """Gravity in the world's axes, m/s²."""
         return self._link.gravity
 
     def rates(self) -> Sequence[float]:
-        """What its gyroscopes measure, rad/s, with the sensor's noise."""
+        """Angular velocity in the IMU's axes, rad/s, with the sensor's noise."""
         _, turning = self._link.motion(local=True)
         rates = self._turned(turning)
         return rates if self.rate_noise is None else self.rate_noise.add(rates)
 
     def _turned(self, vector: Sequence[float]) -> Sequence[float]:
-        """A vector of the link in the unit's axes."""
+        """A vector in the link's axes, transformed to the IMU's."""
         if self._aligned:
             return vector
         x, y, z = vector
@@ -124,10 +131,10 @@ class InertialUnit:
 
 
 def _reference(part: Part, imu: Element) -> Quat:
-    """The axes of an ``<orientation_reference_frame>`` in the world.
+    """Orientation of an ``<orientation_reference_frame>`` in the world.
 
     Raises:
-        PluginError: A word or numbers that there are not.
+        PluginError: Unknown ``<localization>``, or invalid numbers.
     """
     frame = imu.find("orientation_reference_frame")
     assert frame is not None

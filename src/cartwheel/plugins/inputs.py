@@ -1,4 +1,4 @@
-"""What stands between the graph and what plugins do with its messages."""
+"""Checks between the graph and the plugins: commands that cannot be simulated are refused."""
 
 from __future__ import annotations
 
@@ -19,13 +19,15 @@ def obeyable(
     *,
     unset: bool = False,
 ) -> Callable[[Any], None]:
-    """A callback that passes on what can be simulated, and warns once where something cannot.
+    """Wraps a callback so that it only receives commands that can be simulated.
+
+    Other commands are ignored; the first one causes a warning.
 
     Args:
-        take: Takes the messages that can be obeyed.
-        part: Of the simulation, which counts commands from outside.
-        warn: Takes the code and the message of the warning.
-        unset: Pass on NaN and infinities too.
+        take: Receives the valid messages.
+        part: Counts the commands.
+        warn: Receives the code and the message of the warning.
+        unset: Accept NaN and infinity.
     """
     warned = False
 
@@ -46,7 +48,7 @@ def obeyable(
 def obeyable_positions(
     put: Callable[[Mapping[str, float], float], None], part: Part
 ) -> Callable[[Mapping[str, float], float], None]:
-    """`JointInput.put`, which refuses positions that cannot be simulated with a CartwheelError."""
+    """A `JointInput.put` that raises a CartwheelError for positions that cannot be simulated."""
 
     def checked(wanted: Mapping[str, float], seconds: float) -> None:
         for joint, position in wanted.items():

@@ -1,4 +1,4 @@
-"""``libgazebo_ros_joint_pose_trajectory.so``: joints put where a trajectory says."""
+"""``libgazebo_ros_joint_pose_trajectory.so``: joints set to the positions of a trajectory."""
 
 from __future__ import annotations
 
@@ -15,21 +15,33 @@ from cartwheel.simulation.handles import JointHandle
 @dataclass(frozen=True, kw_only=True, slots=True)
 class JointPoseTrajectoryParameters:
     topic: str = tag(
-        "topicName", "topic_name", default="set_joint_trajectory", doc="JointTrajectory."
+        "topicName",
+        "topic_name",
+        default="set_joint_trajectory",
+        doc="Topic of the JointTrajectory commands.",
     )
-    service: str = tag("serviceName", default="set_joint_trajectory", doc="SetJointTrajectory.")
+    service: str = tag(
+        "serviceName",
+        default="set_joint_trajectory",
+        doc="Service of type SetJointTrajectory, which also sets a trajectory.",
+    )
     update_rate: float = tag(
-        "updateRate", "update_rate", default=0.0, unit="Hz", doc="0 is every step."
+        "updateRate",
+        "update_rate",
+        default=0.0,
+        unit="Hz",
+        doc="Rate at which due points are applied; 0 applies them at every step.",
     )
 
 
 class JointPoseTrajectory(Plugin[JointPoseTrajectoryParameters]):
-    """Sets joints to a trajectory's positions at its times, whatever pushes them.
+    """Sets joint positions to the points of a trajectory, regardless of forces.
 
-    A point counts from its ``time_from_start`` after the start, which is the header's stamp or
-    the moment it is heard, whichever is later. (Gazebo's adds the times up instead.) The
-    root link stays where it is; another reference in ``header.frame_id`` is reported. Source:
-    gazebo_plugins, gazebo_ros_joint_pose_trajectory.
+    A point is applied ``time_from_start`` after the start. The start is the stamp of the header or
+    the time of arrival, whichever is later. (Gazebo accumulates the times of the points instead.)
+    The root link does not move: ``header.frame_id`` must be empty, the root link, ``world`` or
+    ``map``. Trajectories with another reference, and service requests with ``set_model_pose``, are
+    refused. Source: gazebo_plugins, gazebo_ros_joint_pose_trajectory.
     """
 
     filenames: ClassVar[tuple[str, ...]] = (
@@ -74,7 +86,7 @@ class JointPoseTrajectory(Plugin[JointPoseTrajectoryParameters]):
         return self._Response(success=not problem, status_message=problem)
 
     def _take(self, trajectory: Any) -> str:
-        """Replaces the trajectory; says what is wrong with it, or nothing."""
+        """Replaces the trajectory; returns an error message, empty if the trajectory is valid."""
         names = list(trajectory.joint_names)
         unknown = [name for name in names if name not in self._handles]
         if unknown:

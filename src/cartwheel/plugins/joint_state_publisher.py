@@ -1,4 +1,4 @@
-"""``libgazebo_ros_joint_state_publisher.so`` and new Gazebo's: where joints are."""
+"""``libgazebo_ros_joint_state_publisher.so`` and its counterpart of new Gazebo."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from cartwheel.simulation.handles import JointHandle
 
 
 def _joints(plugin: Plugin[Any], names: list[str]) -> list[JointHandle]:
-    """Those of the names, or all that move where there are none."""
+    """The named joints; without names, all movable ones."""
     description = plugin.part.description
     if not names:
         names = [joint.name for joint in description.joints if joint.drivable]
-    found = []
+    handles = []
     for name in names:
         joint = description.joint(name)
         if joint is not None and joint.type == "fixed":
@@ -29,8 +29,8 @@ def _joints(plugin: Plugin[Any], names: list[str]) -> list[JointHandle]:
                 values={"joint": name},
             )
         else:
-            found.append(plugin.part.joint(name, origin=plugin.tag.origin))
-    return found
+            handles.append(plugin.part.joint(name, origin=plugin.tag.origin))
+    return handles
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -39,18 +39,22 @@ class JointStatePublisherParameters:
         "jointName",
         "joint_name",
         default=(),
-        doc="Joints, with commas between or once for each; all that move when missing.",
+        doc="Joints, separated by commas or as repeated tags. Defaults to all movable joints.",
     )
     update_rate: float = tag(
-        "updateRate", "update_rate", default=100.0, unit="Hz", doc="0 is every step."
+        "updateRate",
+        "update_rate",
+        default=100.0,
+        unit="Hz",
+        doc="Publish rate; 0 publishes at every step.",
     )
 
 
 class JointStatePublisher(Plugin[JointStatePublisherParameters]):
     """Publishes positions and velocities of joints on ``joint_states``.
 
-    In a model of a world, or with an empty ``<robotNamespace>``, that is
-    ``/<model>/joint_states``, as in Gazebo Classic; in ROS 2's spelling it is ``/joint_states``.
+    In a model of a world, or with an empty ``<robotNamespace>``, the topic is
+    ``/<model>/joint_states``, as in Gazebo Classic. With ROS 2 tags it is ``/joint_states``.
     Source: gazebo_plugins, gazebo_ros_joint_state_publisher.
     """
 
@@ -81,12 +85,19 @@ class JointStatePublisher(Plugin[JointStatePublisherParameters]):
 @dataclass(frozen=True, kw_only=True, slots=True)
 class GzJointStatePublisherParameters:
     topic: str = tag(
-        "topic", default="", doc="JointState; /world/<world>/model/<name>/joint_state when empty."
+        "topic",
+        default="",
+        doc="Topic of the JointState messages. "
+        "Defaults to `/world/<world>/model/<model>/joint_state`.",
     )
     names: tuple[str, ...] = tag(
-        "joint_name", default=(), doc="Joints, once for each; all that move when missing."
+        "joint_name",
+        default=(),
+        doc="Joint, as a repeated tag for several. Defaults to all movable joints.",
     )
-    update_rate: float = tag("update_rate", default=0.0, unit="Hz", doc="0 is every step.")
+    update_rate: float = tag(
+        "update_rate", default=0.0, unit="Hz", doc="Publish rate; 0 publishes at every step."
+    )
 
 
 class GzJointStatePublisher(Plugin[GzJointStatePublisherParameters]):

@@ -22,50 +22,66 @@ from cartwheel.plugins.wheel_drive import WheelDrive, WheelPair
 from cartwheel.plugins.wheel_states import JointStates
 
 _BASE = "mobile_base/"
-"""Before the topics of the robot's own."""
+"""Namespace of the topics that kobuki_node defines."""
 _SIDES = ("left", "center", "right")
 _LOWEST, _HIGHEST = 0.01, 0.13
-"""m above the robot's frame, between which a contact presses the bumper."""
+"""m above the root link: contacts between these heights press the bumper."""
 _POSE_COVARIANCE = np.diag([0.1, 0.1, 1e6, 1e6, 1e6, 0.05]).ravel()
 _UNIT_COVARIANCE = np.diag([1e6, 1e6, 0.05]).ravel()
 _MOST = 4095
-"""Of a cliff sensor's converter."""
+"""Largest reading of a cliff sensor's A/D converter."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class KobukiParameters:
-    left_joint: str = tag("left_wheel_joint_name", doc="Joint of that wheel.")
-    right_joint: str = tag("right_wheel_joint_name", doc="Joint of that wheel.")
-    separation: float = tag("wheel_separation", unit="m", doc="Between the wheels.")
-    diameter: float = tag("wheel_diameter", unit="m", doc="Of both wheels.")
-    torque: float = tag("torque", unit="N m", doc="The most that each motor gives.")
+    left_joint: str = tag("left_wheel_joint_name", doc="Joint of the left wheel.")
+    right_joint: str = tag("right_wheel_joint_name", doc="Joint of the right wheel.")
+    separation: float = tag("wheel_separation", unit="m", doc="Distance between the wheels.")
+    diameter: float = tag("wheel_diameter", unit="m", doc="Diameter of both wheels.")
+    torque: float = tag("torque", unit="N m", doc="Maximum torque of each motor.")
     timeout: float = tag(
         "velocity_command_timeout",
         unit="s",
-        doc="After that long without a command it stands.",
+        doc="The robot stops after this time without a command.",
     )
-    cliff_left: str = tag("cliff_sensor_left_name", doc="A ray sensor.")
-    cliff_center: str = tag("cliff_sensor_center_name", doc="A ray sensor.")
-    cliff_right: str = tag("cliff_sensor_right_name", doc="A ray sensor.")
+    cliff_left: str = tag("cliff_sensor_left_name", doc="Ray sensor that faces the floor, left.")
+    cliff_center: str = tag(
+        "cliff_sensor_center_name", doc="Ray sensor that faces the floor, center."
+    )
+    cliff_right: str = tag("cliff_sensor_right_name", doc="Ray sensor that faces the floor, right.")
     cliff_threshold: float = tag(
-        "cliff_detection_threshold", unit="m", doc="A floor at least so far away is a cliff."
+        "cliff_detection_threshold",
+        unit="m",
+        doc="A cliff is reported if the distance to the floor is at least this.",
     )
-    bumper: str = tag("bumper_name", doc="A contact sensor.")
-    drop_left: str = tag("wheel_drop_left_sensor_name", doc="A contact sensor of that wheel.")
-    drop_right: str = tag("wheel_drop_right_sensor_name", doc="A contact sensor of that wheel.")
-    imu: str = tag("imu_name", doc="An imu sensor.")
-    publish_tf: bool = tag("publish_tf", default=False, doc="Publish the odometry's transform.")
+    bumper: str = tag("bumper_name", doc="Contact sensor of the bumper.")
+    drop_left: str = tag(
+        "wheel_drop_left_sensor_name",
+        doc="Contact sensor of the left wheel, which has dropped while there is no contact.",
+    )
+    drop_right: str = tag(
+        "wheel_drop_right_sensor_name",
+        doc="Contact sensor of the right wheel, which has dropped while there is no contact.",
+    )
+    imu: str = tag("imu_name", doc="Name of the imu sensor.")
+    publish_tf: bool = tag(
+        "publish_tf", default=False, doc="Publish the transform of the odometry."
+    )
     rate: float = tag(
-        "update_rate", default=0.0, unit="Hz", doc="Of all that is told; 0 is every step."
+        "update_rate",
+        default=0.0,
+        unit="Hz",
+        doc="Publish rate of all topics; 0 publishes at every step.",
     )
 
 
 class Kobuki(WheelDrive):
-    """Drives a Kobuki, and tells what its wheels, gyroscope, bumper and cliff sensors do.
+    """Drives a Kobuki base and publishes its odometry, IMU, bumper, cliff and wheel drop sensors.
 
-    The odometry's way is that of the wheels and its turning that of the gyroscope. Contacts press
-    the left bumper from 90° to 30°, the centre one down to -30°, the right one down to -90°. Events
-    tell what changed. Source: kobuki_gazebo_plugins.
+    The odometry combines the distance of the wheels with the rotation of the gyroscope. Contacts
+    press the center bumper up to 30° from straight ahead, and the left and right bumpers from there
+    to 90°. Bumper, cliff and wheel drop events are published when their state changes. The robot
+    stops while its motor power is off. Source: kobuki_gazebo_plugins.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_kobuki.so",)
@@ -157,14 +173,14 @@ class Kobuki(WheelDrive):
 
     def _sensor(self, name: str) -> Sensor:
         sensors = [sensor for link in self.part.description.links for sensor in link.sensors]
-        found = next((sensor for sensor in sensors if sensor.name == name), None)
-        if found is None:
+        match = next((sensor for sensor in sensors if sensor.name == name), None)
+        if match is None:
             known = [sensor.name for sensor in sensors]
             raise UnknownNameError(
                 "sensor", name, known, code=running.UNKNOWN_SENSOR, origin=self.tag.origin
             )
         self.part.read_sensors.add(name)
-        return found
+        return match
 
     def _on_command(self, message: Any) -> None:
         self._heard_ns = self.part.time_ns
@@ -198,8 +214,8 @@ class Kobuki(WheelDrive):
                     np.zeros(9),
                 )
             )
-        self._look_down()
-        self._feel()
+        self._check_cliffs()
+        self._check_contacts()
         if self._core.wanted:
             self._core.publish(
                 self._Core(
@@ -223,19 +239,19 @@ class Kobuki(WheelDrive):
                 )
             )
 
-    def _look_down(self) -> None:
+    def _check_cliffs(self) -> None:
         for index, side in enumerate(_SIDES):
             scanner = self._floors[side]
-            # The first ray's; what is beyond its reach is as far away as that.
+            # Only the first ray counts. Out of its range, the floor is at the maximum range.
             floor = min(float(scanner.measure().ranges[0, 0]), scanner.pattern.maximum)
             cliff = floor >= self.config.cliff_threshold
             if cliff != self._cliff[side]:
                 self._cliff[side] = cliff
-                # As its converter tells a distance of so many mm.
+                # Reading of the A/D converter for a distance in mm.
                 reading = 76123.0 * math.atan2(0.995, max(floor, 0.0) * 1000)
-                self._tell("cliff", index, int(cliff), min(int(reading), _MOST))
+                self._publish_event("cliff", index, int(cliff), min(int(reading), _MOST))
 
-    def _feel(self) -> None:
+    def _check_contacts(self) -> None:
         place, turned = self._root.place()
         pressed = dict.fromkeys(_SIDES, False)
         for contact in self.part.contacts(self._bumper):
@@ -243,25 +259,25 @@ class Kobuki(WheelDrive):
                 side = _bumper_of(contact.normal, yaw_of(turned))
                 if side:
                     pressed[side] = True
-        self._tell_changes("bumper", self._pressed, pressed)
+        self._publish_changes("bumper", self._pressed, pressed)
         dropped = {
             side: not self.part.contacts(collisions) for side, collisions in self._wheels.items()
         }
-        self._tell_changes("wheel_drop", self._dropped, dropped)
+        self._publish_changes("wheel_drop", self._dropped, dropped)
 
-    def _tell_changes(self, name: str, before: dict[str, bool], now: dict[str, bool]) -> None:
+    def _publish_changes(self, name: str, before: dict[str, bool], now: dict[str, bool]) -> None:
         for index, (side, state) in enumerate(now.items()):
             if before[side] != state:
                 before[side] = state
-                self._tell(name, index, int(state))
+                self._publish_event(name, index, int(state))
 
-    def _tell(self, name: str, *values: int) -> None:
+    def _publish_event(self, name: str, *values: int) -> None:
         if self._events[name].wanted:
             self._events[name].publish(self._Events[name](*values))
 
 
 def _bumper_of(normal: Array, heading: float) -> str:
-    """Which bumper a contact presses; none behind. Its normal points into the robot."""
+    """Bumper that a contact presses; empty behind the robot. The normal points into the robot."""
     x, y, _ = (-normal).tolist()
     angle = math.remainder(math.atan2(y, x) - heading, 2 * math.pi)
     if abs(angle) > math.pi / 2:

@@ -15,21 +15,28 @@ from cartwheel.plugins.scan_messages import laser_scan
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class LaserParameters:
-    topic: str = tag("topicName", "topic_name", default="scan", doc="LaserScan.")
+    topic: str = tag("topicName", "topic_name", default="scan", doc="Topic of the scans.")
     frame: str = tag(
-        "frameName", "frame_name", default="", doc="Frame of the messages; the link's when empty."
+        "frameName",
+        "frame_name",
+        default="",
+        doc="Frame of the messages. Defaults to the sensor's link.",
     )
     update_rate: float = tag(
-        "updateRate", "update_rate", default=0.0, unit="Hz", doc="Accepted: the sensor's counts."
+        "updateRate",
+        "update_rate",
+        default=0.0,
+        unit="Hz",
+        doc="No effect: the sensor's `<update_rate>` applies.",
     )
 
 
 class Laser(Plugin[LaserParameters]):
-    """Publishes what a ray sensor measures, as a LaserScan.
+    """Publishes the ranges of a ray sensor as a LaserScan.
 
-    A ``ray`` sensor sees collisions, a ``gpu_ray`` sensor visuals, as in Gazebo. The stamp is the
-    moment at which all rays are measured, so ``time_increment`` and ``scan_time`` are 0. Of a
-    sensor with several rows the middle one is published.
+    As in Gazebo, a ``ray`` sensor detects collisions and a ``gpu_ray`` sensor visuals. All rays are
+    measured at the time of the stamp, so ``time_increment`` and ``scan_time`` are 0. If the sensor
+    has several rows, only the middle one is published.
 
     Source: gazebo_plugins, gazebo_ros_laser and gazebo_ros_gpu_laser.
     """

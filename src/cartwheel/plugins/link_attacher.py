@@ -1,4 +1,4 @@
-"""``libgazebo_ros_link_attacher.so`` and ``libgazebo_link_attacher.so``: joints by service."""
+"""``libgazebo_ros_link_attacher.so`` and ``libgazebo_link_attacher.so``: attached links."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class LinkAttacherParameters:
 
 
 class _Attacher(Plugin[LinkAttacherParameters]):
-    """Keeps the joints by the pair of links that they join."""
+    """Base of the attachers: stores the joint of each pair of links."""
 
     parameters: ClassVar[type] = LinkAttacherParameters
     for_world: ClassVar[bool] = True
@@ -37,31 +37,34 @@ class _Attacher(Plugin[LinkAttacherParameters]):
         self._pairs.clear()
 
     def joined(self, one: Place, two: Place) -> bool:
-        """Whether the two links are held in each other."""
+        """Whether the two links are attached."""
         joint = self._pairs.get(frozenset((one, two)))
         return joint is not None and joint.held is not None
 
     def join(self, one: Place, two: Place) -> None:
-        """Joins two links as they are now."""
+        """Attaches two links in their current relative pose."""
         free = (joint for joint in self._joints if joint.held is None)
         joint = next(free, None)
         if joint is None:
             joint = self.part.attachment()
             self._joints.append(joint)
-        # Where one of the two cannot move, the other is what is held.
+        # If one of the two cannot move, it holds the other.
         holder, link = (one, two) if two in self._surroundings.moving else (two, one)
         joint.hold(holder, link)
         self._pairs[frozenset((one, two))] = joint
 
-    def part_them(self, one: Place, two: Place) -> None:
-        """Undoes what `join` did."""
+    def separate(self, one: Place, two: Place) -> None:
+        """Detaches two links that `join` attached."""
         self._pairs.pop(frozenset((one, two))).release()
 
     def places(self, *names: str) -> tuple[Place, Place]:
-        """Two links by the names of a request: model, link, model, link.
+        """The two links of a request.
+
+        Args:
+            names: Model, link, model, link.
 
         Raises:
-            UnknownNameError: There is no such model or link.
+            UnknownNameError: A model or link does not exist.
         """
         return self._place(*names[:2]), self._place(*names[2:])
 
@@ -78,10 +81,11 @@ class _Attacher(Plugin[LinkAttacherParameters]):
 
 
 class LinkAttacher(_Attacher):
-    """Joins any two links of the world as they are, and parts them, by service.
+    """Attaches and detaches any two links of the world by service.
 
-    As many as are asked for. What is asked in vain is answered with ok false, and told.
-    Source: pal-robotics, gazebo_ros_link_attacher.
+    Attached links keep their relative pose, as with a fixed joint. Any number of pairs can be
+    attached at a time. Failed requests return ``ok: false``. Unknown models and links also cause a
+    warning. Source: pal-robotics, gazebo_ros_link_attacher.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_link_attacher.so",)
@@ -103,7 +107,7 @@ class LinkAttacher(_Attacher):
         places = self._both(request)
         ok = places is not None and self.joined(*places)
         if ok and places is not None:
-            self.part_them(*places)
+            self.separate(*places)
         return self._Response(ok=ok)
 
     def _both(self, request: Any) -> tuple[Place, Place] | None:
@@ -125,10 +129,11 @@ class LinkAttacher(_Attacher):
 
 
 class LinkAttacherRos2(_Attacher):
-    """Joins any two links of the world as they are, and parts them, by service (ROS 2).
+    """Attaches and detaches any two links of the world by service (ROS 2).
 
-    As many pairs as are asked for; the original has one at a time. Source: IFRA-Cranfield,
-    IFRA_LinkAttacher.
+    Attached links keep their relative pose, as with a fixed joint. Any number of pairs can be
+    attached at a time; the original supports one. Failed requests return ``success: false`` with a
+    message. Source: IFRA-Cranfield, IFRA_LinkAttacher.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_link_attacher.so",)
@@ -157,7 +162,7 @@ class LinkAttacherRos2(_Attacher):
             return self._Detached(success=False, message=f"{error.message}. {error.hint}")
         if not self.joined(one, two):
             return self._Detached(success=False, message=f"{_pair(one, two)} are not attached")
-        self.part_them(one, two)
+        self.separate(one, two)
         return self._Detached(success=True, message=f"detached {_pair(one, two)}")
 
     def _both(self, request: Any) -> tuple[Place, Place]:

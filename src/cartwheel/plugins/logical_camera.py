@@ -1,4 +1,4 @@
-"""``logical_camera`` sensors: which models are in view, and where."""
+"""``logical_camera`` sensors: the models in view and their poses."""
 
 from __future__ import annotations
 
@@ -20,21 +20,31 @@ _HALF_TURN = math.pi
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class LogicalCameraParameters:
-    topic: str = tag("topic", default="", doc="LogicalCameraImage; Gazebo's long name when empty.")
+    topic: str = tag(
+        "topic",
+        default="",
+        doc="Topic of the LogicalCameraImage messages. "
+        "Defaults to `/world/<world>/…/sensor/<sensor>/logical_camera`.",
+    )
     frame: str = frame_tag()
-    near: float = tag("logical_camera/near", default=0.0, unit="m", doc="Nearest that is seen.")
-    far: float = tag("logical_camera/far", default=1.0, unit="m", doc="Farthest that is seen.")
-    view: float = tag("logical_camera/horizontal_fov", default=1.0, unit="rad", doc="Its width.")
+    near: float = tag(
+        "logical_camera/near", default=0.0, unit="m", doc="Distance of the near plane."
+    )
+    far: float = tag("logical_camera/far", default=1.0, unit="m", doc="Distance of the far plane.")
+    view: float = tag(
+        "logical_camera/horizontal_fov", default=1.0, unit="rad", doc="Horizontal field of view."
+    )
     aspect: float = tag(
-        "logical_camera/aspect_ratio", default=1.0, doc="Of the view's width to its height."
+        "logical_camera/aspect_ratio", default=1.0, doc="Width of the view divided by its height."
     )
 
 
 class LogicalCamera(Plugin[LogicalCameraParameters]):
-    """Publishes the models whose frames lie in its view, each with its pose in the sensor's axes.
+    """Publishes the models in view, each with its pose relative to the sensor.
 
-    It looks along its x axis, and nothing hides anything. ``pose`` is the sensor's own in the
-    world. Source: gz-sensors, LogicalCameraSensor; ros_gz_bridge.
+    The sensor looks along its x axis. A model is in view if its frame is; objects do not hide each
+    other. ``pose`` is the pose of the sensor in the world. Source: gz-sensors,
+    LogicalCameraSensor; ros_gz_bridge.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ()
@@ -70,14 +80,16 @@ class LogicalCamera(Plugin[LogicalCameraParameters]):
         eye = self._link.pose @ self._mount
         back = eye.inverse()
         seen = ((name, back @ pose) for name, pose in self.part.models().items())
-        models = [self._Model(name, self._told(pose)) for name, pose in seen if self._sees(pose)]
+        models = [
+            self._Model(name, self._pose_message(pose)) for name, pose in seen if self._sees(pose)
+        ]
         head = header(self.part.time_ns, self._frame)
-        self._publisher.publish(self._Image(head, self._told(eye), models))
+        self._publisher.publish(self._Image(head, self._pose_message(eye), models))
 
     def _sees(self, pose: Pose) -> bool:
         x, y, z = pose.position
         inside = self.config.near <= x <= self.config.far
         return inside and abs(y) <= self._wide * x and abs(z) <= self._high * x
 
-    def _told(self, pose: Pose) -> Any:
+    def _pose_message(self, pose: Pose) -> Any:
         return self._Pose(self._Point(*pose.position), self._Quaternion(*pose.orientation))

@@ -1,4 +1,4 @@
-"""``libhector_gazebo_ros_magnetic.so`` and ``magnetometer`` sensors: the Earth's field."""
+"""``libhector_gazebo_ros_magnetic.so`` and ``magnetometer`` sensors: the magnetic field."""
 
 from __future__ import annotations
 
@@ -21,42 +21,73 @@ _NONE = (0.0, 0.0, 0.0)
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class HectorMagneticParameters:
-    body: str = tag("bodyName", default="", doc="Link that carries it; the root when empty.")
-    topic: str = tag("topicName", default="magnetic", doc="Vector3Stamped or MagneticField.")
-    frame: str = tag("frameId", default="", doc="Frame of the messages; the link's when empty.")
-    update_rate: float = tag("updateRate", default=0.0, unit="Hz", doc="0 is every step.")
-    magnitude: float = tag("magnitude", default=1.0, doc="Of the field, in whatever unit.")
+    body: str = tag(
+        "bodyName",
+        default="",
+        doc="Link that carries the magnetometer. Defaults to the root link.",
+    )
+    topic: str = tag(
+        "topicName",
+        default="magnetic",
+        doc="Topic of the Vector3Stamped or MagneticField messages.",
+    )
+    frame: str = tag("frameId", default="", doc="Frame of the messages. Defaults to the link.")
+    update_rate: float = tag(
+        "updateRate", default=0.0, unit="Hz", doc="Publish rate; 0 publishes at every step."
+    )
+    magnitude: float = tag(
+        "magnitude", default=1.0, doc="Magnitude of the field. The messages use the same unit."
+    )
     use_world: bool = tag(
-        "useWorldSphericalCoordinates", default=False, doc="Take the heading from the world."
+        "useWorldSphericalCoordinates",
+        default=False,
+        doc="Take the heading from the world's `<spherical_coordinates>`.",
     )
     heading: float | None = tag(
         "referenceHeading",
         default=None,
         unit="degrees",
-        doc="Of the world's x axis, from the north to the east; 0.",
+        doc="Heading of the world's x axis, clockwise from north. Defaults to 0, or to the world's "
+        "heading with `<useWorldSphericalCoordinates>`.",
     )
-    declination: float = tag("declination", default=0.0, unit="degrees", doc="Of the field.")
-    inclination: float = tag("inclination", default=60.0, unit="degrees", doc="Of the field.")
+    declination: float = tag(
+        "declination",
+        default=0.0,
+        unit="degrees",
+        doc="Declination of the field, positive to the east.",
+    )
+    inclination: float = tag(
+        "inclination",
+        default=60.0,
+        unit="degrees",
+        doc="Inclination of the field, positive downward.",
+    )
     as_field: bool = tag(
-        "useMagneticFieldMsgs", default=False, doc="MagneticField instead of Vector3Stamped."
+        "useMagneticFieldMsgs",
+        default=False,
+        doc="Publish MagneticField messages instead of Vector3Stamped.",
     )
     offset: tuple[float, float, float] = tag("offset", default=_NONE, doc="Constant error.")
     drift: tuple[float, float, float] = tag(
         "drift", default=_NONE, doc="Standard deviation of the drift."
     )
     frequency: tuple[float, float, float] = tag(
-        "driftFrequency", default=(1 / 3600.0,) * 3, unit="1/s", doc="Of the drift."
+        "driftFrequency",
+        default=(1 / 3600.0,) * 3,
+        unit="1/s",
+        doc="Inverse of the drift's time constant.",
     )
     noise: tuple[float, float, float] = tag(
-        "gaussianNoise", default=_NONE, doc="Standard deviation."
+        "gaussianNoise", default=_NONE, doc="Standard deviation of the noise."
     )
-    scale: tuple[float, float, float] = tag("scaleError", default=(1.0,) * 3, doc="Factor.")
+    scale: tuple[float, float, float] = tag("scaleError", default=(1.0,) * 3, doc="Scale factor.")
 
 
 class HectorMagnetic(Plugin[HectorMagneticParameters]):
     """Publishes the Earth's magnetic field in a link's axes.
 
-    Errors are those of `HectorImu`. Source: hector_gazebo_plugins, gazebo_ros_magnetic.
+    The error model is that of `libhector_gazebo_ros_imu.so`: scale factor, constant error, drift
+    and noise. Source: hector_gazebo_plugins, gazebo_ros_magnetic.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libhector_gazebo_ros_magnetic.so",)
@@ -107,8 +138,8 @@ class HectorMagnetic(Plugin[HectorMagneticParameters]):
 
     def _measure(self) -> None:
         _, turned = self._link.place()
-        felt = self._error.add(rotate(quat_conjugate(turned), self._field)).tolist()
-        head, vector = header(self.part.time_ns, self._frame), self._Vector3(*felt)
+        measured = self._error.add(rotate(quat_conjugate(turned), self._field)).tolist()
+        head, vector = header(self.part.time_ns, self._frame), self._Vector3(*measured)
         if self.config.as_field:
             self._publisher.publish(self._Message(head, vector, self._covariance))
         else:
@@ -117,12 +148,17 @@ class HectorMagnetic(Plugin[HectorMagneticParameters]):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class GzMagnetometerParameters:
-    topic: str = tag("topic", default="", doc="MagneticField; Gazebo's long name when empty.")
+    topic: str = tag(
+        "topic",
+        default="",
+        doc="Topic of the MagneticField messages. "
+        "Defaults to `/world/<world>/…/sensor/<sensor>/magnetometer`.",
+    )
     frame: str = frame_tag()
 
 
 class GzMagnetometer(Plugin[GzMagnetometerParameters]):
-    """Publishes the world's ``<magnetic_field>`` in a ``magnetometer`` sensor's axes, in T.
+    """Publishes the world's ``<magnetic_field>`` in the axes of a ``magnetometer`` sensor, in T.
 
     Source: gz-sensors, MagnetometerSensor.
     """

@@ -1,4 +1,4 @@
-"""``gz-sim-mecanum-drive-system``: four wheels with rollers, which go sideways as well."""
+"""``gz-sim-mecanum-drive-system``: four mecanum wheels, which also move the robot sideways."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from cartwheel.plugins.parameters import tag
 from cartwheel.plugins.rollers import has_rollers
 
 CONTROL_RATE = 100.0
-"""Hz at which limits are kept, and the wheels' turning is read."""
+"""Hz at which limits are applied and the rotation of the wheels is integrated."""
 _CORNERS = ("front_left", "front_right", "back_left", "back_right")
 _SIDEWAYS = (-1.0, 1.0, 1.0, -1.0)
 _LEFT_RIGHT = (-1.0, 1.0, -1.0, 1.0)
@@ -27,30 +27,41 @@ _LEFT_RIGHT = (-1.0, 1.0, -1.0, 1.0)
 @dataclass(frozen=True, kw_only=True, slots=True)
 class MecanumParameters(GzCommonLimits):
     front_left: tuple[str, ...] = tag(
-        "front_left_joint", default=("front_left_joint",), doc="Joint of a wheel; once for each."
+        "front_left_joint",
+        default=("front_left_joint",),
+        doc="Joint of the front left wheel. Repeat the tag for further wheels.",
     )
     front_right: tuple[str, ...] = tag(
-        "front_right_joint", default=("front_right_joint",), doc="Joint of a wheel; once for each."
+        "front_right_joint",
+        default=("front_right_joint",),
+        doc="Joint of the front right wheel. Repeat the tag for further wheels.",
     )
     back_left: tuple[str, ...] = tag(
-        "back_left_joint", default=("back_left_joint",), doc="Joint of a wheel; once for each."
+        "back_left_joint",
+        default=("back_left_joint",),
+        doc="Joint of the back left wheel. Repeat the tag for further wheels.",
     )
     back_right: tuple[str, ...] = tag(
-        "back_right_joint", default=("back_right_joint",), doc="Joint of a wheel; once for each."
+        "back_right_joint",
+        default=("back_right_joint",),
+        doc="Joint of the back right wheel. Repeat the tag for further wheels.",
     )
-    wheel_base: float = tag("wheelbase", default=1.0, unit="m", doc="Between the axles.")
+    wheel_base: float = tag(
+        "wheelbase", default=1.0, unit="m", doc="Distance between the front and back axles."
+    )
     wheel_separation: float = tag(
-        "wheel_separation", default=1.0, unit="m", doc="Between left and right."
+        "wheel_separation", default=1.0, unit="m", doc="Distance between left and right wheels."
     )
-    wheel_radius: float = tag("wheel_radius", default=0.2, unit="m", doc="Of all wheels.")
+    wheel_radius: float = tag("wheel_radius", default=0.2, unit="m", doc="Radius of all wheels.")
 
 
 class MecanumDrive(Plugin[MecanumParameters]):
-    """Moves the robot along, sideways and around by Twist, and turns its wheels accordingly.
+    """Drives four mecanum wheels from Twist commands and publishes odometry.
 
-    Where its wheels grip along their rollers alone, friction takes it along: see `has_rollers`.
-    Otherwise a servo pushes it as `PlanarMove` does. The odometry is what the wheels turn.
-    Source: gz-sim, MecanumDrive.
+    If the collisions of the wheels model rollers (``<fdir1 gz:expressed_in="...">`` with different
+    ``<mu>`` and ``<mu2>``), friction moves the robot. Otherwise a servo pushes the robot, as
+    `libgazebo_ros_planar_move.so` does, and the wheels turn accordingly. The odometry integrates
+    the rotation of the wheels. Source: gz-sim, MecanumDrive.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("gz-sim-mecanum-drive-system",)
@@ -114,7 +125,7 @@ class MecanumDrive(Plugin[MecanumParameters]):
         self._integrate(radius)
 
     def _integrate(self, radius: float) -> None:
-        """The three motions of a body from what the first wheel at each corner has turned."""
+        """Updates the odometry from the rotation of the first wheel at each corner."""
         now = self.part.time_ns
         turned = [wheels[0][0].position * radius for wheels in self._wheels]
         if self._turned is not None:

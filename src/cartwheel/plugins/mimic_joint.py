@@ -1,4 +1,4 @@
-"""Joints that follow others: mimic plugins, and a rocker's differential."""
+"""Joints that follow others: mimic joints, and the differential of a rocker."""
 
 from __future__ import annotations
 
@@ -16,25 +16,38 @@ from cartwheel.simulation.limits import FARTHEST
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class MimicJointParameters:
-    joint: str = tag("joint", default="left_joint", doc="Joint that leads.")
-    mimic_joint: str = tag("mimicJoint", default="right_joint", doc="Joint that follows.")
+    joint: str = tag("joint", default="left_joint", doc="Leading joint.")
+    mimic_joint: str = tag("mimicJoint", default="right_joint", doc="Following joint.")
     multiplier: float = tag(
-        "multiplier", default=1.0, most=MOST_RATIO, doc="Of the leader's position."
+        "multiplier",
+        default=1.0,
+        most=MOST_RATIO,
+        doc="Factor: following position = multiplier * leading position + offset.",
     )
-    offset: float = tag("offset", default=0.0, unit="rad or m", most=FARTHEST, doc="Added to it.")
+    offset: float = tag(
+        "offset",
+        default=0.0,
+        unit="rad or m",
+        most=FARTHEST,
+        doc="Added to the product.",
+    )
     max_effort: float = tag(
-        "maxEffort", default=1.0, unit="N m or N", doc="Has no effect: the joint follows exactly."
+        "maxEffort", default=1.0, unit="N m or N", doc="No effect: the joint follows exactly."
     )
     sensitiveness: float = tag(
-        "sensitiveness", default=0.0, unit="rad or m", doc="Has no effect: it follows any motion."
+        "sensitiveness",
+        default=0.0,
+        unit="rad or m",
+        doc="No effect: the joint follows any motion.",
     )
-    has_pid: str | None = tag("hasPID", default=None, doc="Has no effect: it follows exactly.")
+    has_pid: str | None = tag("hasPID", default=None, doc="No effect: the joint follows exactly.")
 
 
 class MimicJoint(Plugin[MimicJointParameters]):
-    """Couples a joint to another one, as a URDF's ``<mimic>`` does here without it.
+    """Makes a joint follow another one.
 
-    Source: roboticsgroup_upatras_gazebo_plugins, MimicJointPlugin.
+    ``<mimic>`` in a URDF does the same without a plugin. Source:
+    roboticsgroup_upatras_gazebo_plugins, MimicJointPlugin.
     """
 
     filenames: ClassVar[tuple[str, ...]] = (
@@ -53,17 +66,20 @@ class MimicJoint(Plugin[MimicJointParameters]):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class DifferentialParameters:
-    first: str = tag("jointA", default="left_joint", doc="A joint.")
-    second: str = tag("jointB", default="right_joint", doc="The joint that turns as it does.")
+    first: str = tag("jointA", default="left_joint", doc="First joint.")
+    second: str = tag(
+        "jointB", default="right_joint", doc="Second joint, which turns by the same angle."
+    )
     force: float = tag(
-        "forceConstant", default=0.0, unit="N m/rad", doc="Has no effect: both turn alike exactly."
+        "forceConstant", default=0.0, unit="N m/rad", doc="No effect: both angles are equal."
     )
 
 
 class Differential(Plugin[DifferentialParameters]):
-    """Lets two joints turn alike, as the bars of a rocker's differential make them.
+    """Couples two joints so that their angles are equal, like the differential of a rocker.
 
-    Source: leo_gazebo_plugins, differential_plugin, where a spring of `forceConstant` does.
+    Source: leo_gazebo_plugins, differential_plugin, which couples them by a spring of stiffness
+    ``forceConstant``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libleo_gazebo_differential_plugin.so",)

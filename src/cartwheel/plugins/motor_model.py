@@ -1,4 +1,4 @@
-"""Propellers of multicopters: of rotors_simulator, of PX4 and of new Gazebo."""
+"""Propellers of multicopters: plugins of rotors_simulator, PX4 and new Gazebo."""
 
 from __future__ import annotations
 
@@ -19,39 +19,59 @@ ACTUATORS = "mav_msgs/msg/Actuators"
 GZ_ACTUATORS = "actuator_msgs/msg/Actuators"
 _FLOAT = "std_msgs/msg/Float32"
 SLOWDOWN = 10.0
-"""By which joints turn slower than the propellers that they stand for, where none is stated."""
+"""Default factor by which a joint turns slower than the propeller that it represents."""
 _NO_MOMENT = (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class _Motor:
-    joint: str = tag("jointName", doc="Of the propeller.")
-    link: str = tag("linkName", doc="Of the propeller; it pushes along its z axis.")
-    direction: Literal["cw", "ccw"] = tag("turningDirection", doc="Seen from above.")
+    joint: str = tag("jointName", doc="Joint of the propeller.")
+    link: str = tag("linkName", doc="Link of the propeller. The thrust acts along its z axis.")
+    direction: Literal["cw", "ccw"] = tag(
+        "turningDirection", doc="Direction of rotation, seen from above."
+    )
     kind: Literal["velocity", "position", "force"] = tag(
-        "motorType", default="velocity", doc="What it is told; only a velocity is supported."
+        "motorType", default="velocity", doc="Command type; only `velocity` is supported."
     )
     motor_constant: float = tag(
-        "motorConstant", default=8.54858e-06, unit="N s²/rad²", doc="Thrust of a speed squared."
+        "motorConstant",
+        default=8.54858e-06,
+        unit="N s²/rad²",
+        doc="Thrust divided by the speed squared.",
     )
     moment_constant: float = tag(
-        "momentConstant", default=0.016, unit="m", doc="Torque on what carries it, of its thrust."
+        "momentConstant",
+        default=0.016,
+        unit="m",
+        doc="Torque on the parent link divided by the thrust.",
     )
-    up: float = tag("timeConstantUp", default=1 / 80, unit="s", doc="Of getting faster.")
-    down: float = tag("timeConstantDown", default=1 / 40, unit="s", doc="Of getting slower.")
+    up: float = tag(
+        "timeConstantUp", default=1 / 80, unit="s", doc="Time constant of increasing speed."
+    )
+    down: float = tag(
+        "timeConstantDown", default=1 / 40, unit="s", doc="Time constant of decreasing speed."
+    )
     drag: float = tag(
-        "rotorDragCoefficient", default=1e-4, unit="N s²/(m rad)", doc="Of moving across the axis."
+        "rotorDragCoefficient",
+        default=1e-4,
+        unit="N s²/(m rad)",
+        doc="Drag for motion across the axis: force / (rotor speed * velocity).",
     )
     rolling: float = tag(
-        "rollingMomentCoefficient", default=1e-6, unit="N s²/rad", doc="Torque of the same."
+        "rollingMomentCoefficient",
+        default=1e-6,
+        unit="N s²/rad",
+        doc="Rolling moment for motion across the axis: torque / (rotor speed * velocity).",
     )
     slowdown: float = tag(
-        "rotorVelocitySlowdownSim", default=SLOWDOWN, doc="The joint turns so much slower."
+        "rotorVelocitySlowdownSim",
+        default=SLOWDOWN,
+        doc="Speed of the propeller divided by the speed of the joint.",
     )
 
 
 class _MotorModel(Plugin[Any]):
-    """Turns a joint as it is told, pushes its link and twists what carries it."""
+    """Turns a joint as commanded; applies thrust and drag to its link, moments to the parent."""
 
     def _start(self, *, topic: str, kind: str, field: str, number: int, fastest: float) -> None:
         config: _Motor = self.config
@@ -103,11 +123,11 @@ class _MotorModel(Plugin[Any]):
         self._wanted = min(float(speeds[self._number]), self._fastest)
 
     def _thrust(self, speed: float) -> float:
-        """N along the link's z axis, of a turning about the joint's axis in rad/s."""
+        """N along the link's z axis, for a speed about the joint's axis in rad/s."""
         return self._sense * math.copysign(speed * speed, speed) * float(self.config.motor_constant)
 
     def _left(self, _along: float) -> float:
-        """What is left of the thrust at a speed along the axis in m/s."""
+        """Remaining share of the thrust at a velocity along the axis in m/s."""
         return 1.0
 
     def _rolling(self) -> float:
@@ -139,17 +159,33 @@ class _MotorModel(Plugin[Any]):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class RotorsMotorParameters(_Motor):
-    number: int = tag("motorNumber", default=0, doc="Its place among the speeds of a command.")
-    topic: str = tag("commandSubTopic", default="command/motor_speed", doc="Speeds, rad/s.")
-    speed_topic: str = tag("motorSpeedPubTopic", default="motor_speed", doc="The joint's, rad/s.")
-    position_topic: str = tag("motorPositionPubTopic", default="", doc="The joint's angle, rad.")
-    fastest: float = tag("maxRotVelocity", default=838.0, unit="rad/s", doc="It goes no faster.")
+    number: int = tag(
+        "motorNumber", default=0, doc="Index of the motor in the speeds of a command, from 0."
+    )
+    topic: str = tag(
+        "commandSubTopic",
+        default="command/motor_speed",
+        doc="Topic of the Actuators commands, speeds in rad/s.",
+    )
+    speed_topic: str = tag(
+        "motorSpeedPubTopic",
+        default="motor_speed",
+        doc="Topic of the velocity of the joint, not of the propeller, in rad/s.",
+    )
+    position_topic: str = tag(
+        "motorPositionPubTopic",
+        default="",
+        doc="Topic of the joint's angle in rad. Not published if empty.",
+    )
+    fastest: float = tag(
+        "maxRotVelocity", default=838.0, unit="rad/s", doc="Maximum speed of the propeller."
+    )
 
 
 class RotorsMotorModel(_MotorModel):
-    """Turns a propeller, with a thrust of its speed squared, drag and rolling moment.
+    """Simulates a propeller: thrust proportional to the speed squared, drag and rolling moment.
 
-    Its air is at rest. Source: rotors_gazebo_plugins, gazebo_motor_model.
+    The air is at rest. Source: rotors_gazebo_plugins, gazebo_motor_model.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("librotors_gazebo_motor_model.so",)
@@ -162,8 +198,8 @@ class RotorsMotorModel(_MotorModel):
             number=config.number, fastest=config.fastest,
         )  # fmt: skip
         self._Float32 = message_class(_FLOAT)
-        # The motor's number ends it, which is no name in ROS 2.
-        self._told = [
+        # The topic ends with the motor's number, which is not a valid name in ROS 2.
+        self._outputs = [
             (self.advertise(gz_name(self, f"{self.namespace}/{topic}", ""), _FLOAT), what)
             for topic, what in (
                 (config.speed_topic, "velocity"),
@@ -172,37 +208,41 @@ class RotorsMotorModel(_MotorModel):
             if topic
         ]
         self.part.schedule(
-            0, after=self._tell, active=lambda: any(each.wanted for each, _ in self._told)
+            0, after=self._publish, active=lambda: any(each.wanted for each, _ in self._outputs)
         )
 
-    def _tell(self) -> None:
-        for publisher, what in self._told:
+    def _publish(self) -> None:
+        for publisher, what in self._outputs:
             if publisher.wanted:
                 publisher.publish(self._Float32(getattr(self._joint, what)))
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Px4MotorParameters(_Motor):
-    number: int = tag("motorNumber", default=0, doc="Its place among the speeds of a command.")
+    number: int = tag(
+        "motorNumber", default=0, doc="Index of the motor in the speeds of a command, from 0."
+    )
     topic: str = tag(
         "commandSubTopic",
         default="/gazebo/command/motor_speed",
-        doc="Speeds, rad/s; under the model's name.",
+        doc="Topic of the Actuators commands, speeds in rad/s; below the model's name.",
     )
-    fastest: float = tag("maxRotVelocity", default=838.0, unit="rad/s", doc="It goes no faster.")
+    fastest: float = tag(
+        "maxRotVelocity", default=838.0, unit="rad/s", doc="Maximum speed of the propeller."
+    )
     airspeed: float = tag(
         "maxRelativeAirspeed",
         default=25.0,
         unit="m/s",
-        doc="Along the axis, at which nothing is left of the thrust.",
+        doc="Velocity along the axis at which the thrust reaches 0.",
     )
-    reversible: bool = tag("reversible", default=False, doc="Whether it can push down.")
+    reversible: bool = tag("reversible", default=False, doc="Allow negative thrust.")
 
 
 class Px4MotorModel(_MotorModel):
-    """Turns a propeller as PX4's models have them, whose thrust fades with the speed of its flight.
+    """Simulates a propeller of PX4's models, whose thrust decreases with the airspeed.
 
-    Where PX4 speaks a protocol of its own, commands are mav_msgs/Actuators here. Source:
+    Commands are mav_msgs/Actuators messages instead of PX4's own protocol. Source:
     PX4-SITL_gazebo-classic, gazebo_motor_model.
     """
 
@@ -233,16 +273,23 @@ class Px4MotorModel(_MotorModel):
 @dataclass(frozen=True, kw_only=True, slots=True)
 class GzMotorParameters(_Motor):
     number: int = tag(
-        "actuator_number", "motorNumber", doc="Its place among the speeds of a command."
+        "actuator_number",
+        "motorNumber",
+        doc="Index of the motor in the speeds of a command, from 0.",
     )
     topic: str = tag(
-        "commandSubTopic", default="", doc="Speeds, rad/s; under <robotNamespace>, or the model."
+        "commandSubTopic",
+        default="",
+        doc="Topic of the Actuators commands, speeds in rad/s; below `<robotNamespace>`, "
+        "or else below the model's name.",
     )
-    fastest: float = tag("maxRotVelocity", default=838.0, unit="rad/s", doc="It goes no faster.")
+    fastest: float = tag(
+        "maxRotVelocity", default=838.0, unit="rad/s", doc="Maximum speed of the propeller."
+    )
 
 
 class GzMotorModel(_MotorModel):
-    """Turns a propeller, with a thrust of its speed squared, drag and rolling moment.
+    """Simulates a propeller: thrust proportional to the speed squared, drag and rolling moment.
 
     Source: gz-sim, MulticopterMotorModel.
     """

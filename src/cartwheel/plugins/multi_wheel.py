@@ -1,4 +1,4 @@
-"""``libdiffdrive_plugin_multi_wheel.so``: hector's drive of any number of wheels a side."""
+"""``libdiffdrive_plugin_multi_wheel.so``: differential drive with any number of wheels."""
 
 from __future__ import annotations
 
@@ -15,30 +15,40 @@ from cartwheel.plugins.wheel_drive import WheelDrive, WheelPair
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class MultiWheelParameters:
-    left: str = tag("leftJoints", default="left_joint", doc="Joints, between blanks.")
-    right: str = tag("rightJoints", default="right_joint", doc="Joints, between blanks.")
-    separation: float = tag(
-        "wheelSeparation", default=0.34, unit="m", doc="Between left and right."
+    left: str = tag(
+        "leftJoints", default="left_joint", doc="Joints of the left wheels, separated by spaces."
     )
-    diameter: float = tag("wheelDiameter", default=0.15, unit="m", doc="Of all wheels.")
-    torque: float = tag("torque", default=5.0, unit="N m", doc="The most that each motor gives.")
-    command_topic: str = tag("commandTopic", default="cmd_vel", doc="Twist.")
-    odometry_topic: str = tag("odometryTopic", default="odom", doc="Odometry.")
+    right: str = tag(
+        "rightJoints", default="right_joint", doc="Joints of the right wheels, separated by spaces."
+    )
+    separation: float = tag(
+        "wheelSeparation", default=0.34, unit="m", doc="Distance between left and right wheels."
+    )
+    diameter: float = tag("wheelDiameter", default=0.15, unit="m", doc="Diameter of all wheels.")
+    torque: float = tag("torque", default=5.0, unit="N m", doc="Maximum torque of each motor.")
+    command_topic: str = tag("commandTopic", default="cmd_vel", doc="Topic of the Twist commands.")
+    odometry_topic: str = tag("odometryTopic", default="odom", doc="Topic of the odometry.")
     odometry_frame: str = tag("odometryFrame", default="odom", doc="Frame of the odometry.")
     base_frame: str = tag(
         "robotBaseFrame",
         default="base_footprint",
-        doc="Link whose pose is told; the root link where there is none of that name.",
+        doc="Link whose pose the odometry reports. "
+        "Defaults to the root link if no link has this name.",
     )
-    rate: float = tag("updateRate", default=100.0, unit="Hz", doc="Of control and topics.")
-    publish_tf: bool = tag("publishOdometryTf", default=True, doc="Publish odometry's transform.")
-    publish_message: bool = tag("publishOdometryMsg", default=True, doc="Publish odometry.")
+    rate: float = tag(
+        "updateRate", default=100.0, unit="Hz", doc="Rate of control and of all topics."
+    )
+    publish_tf: bool = tag(
+        "publishOdometryTf", default=True, doc="Publish the transform of the odometry."
+    )
+    publish_message: bool = tag("publishOdometryMsg", default=True, doc="Publish the odometry.")
 
 
 class MultiWheelDrive(WheelDrive):
-    """Drives all wheels of a side alike by Twist; the odometry is the true pose.
+    """Drives any number of wheels on each side from Twist commands and publishes odometry.
 
-    Source: hector_gazebo_plugins, diffdrive_plugin_multi_wheel.
+    All wheels of a side turn at the same speed. The odometry is the true pose. Source:
+    hector_gazebo_plugins, diffdrive_plugin_multi_wheel.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libdiffdrive_plugin_multi_wheel.so",)
@@ -54,7 +64,7 @@ class MultiWheelDrive(WheelDrive):
                 origin=self.tag.origin,
                 values={"left": len(left), "right": len(right)},
             )
-        # Where a side has more wheels, its last ones are paired with one that turns already.
+        # Surplus wheels of one side are paired with the last wheel of the other.
         sides = itertools.zip_longest(left, right)
         pairs = [
             WheelPair(

@@ -1,4 +1,4 @@
-"""Errors of sensors: Gaussian noise with a bias as SDF states it, slow drift as hector has it."""
+"""Sensor errors: SDF's Gaussian noise with bias, and the slow drift of hector_gazebo_plugins."""
 
 from __future__ import annotations
 
@@ -18,19 +18,19 @@ from cartwheel.simulation import Part
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Noise:
-    """SDF's ``<noise>`` of one quantity."""
+    """SDF's ``<noise>`` of one measured quantity."""
 
     mean: float = 0.0
     stddev: float = 0.0
     bias_mean: float = 0.0
     bias_stddev: float = 0.0
     walk: float = 0.0
-    """How fast the bias wanders: the standard deviation after 1 s; from then on times the root of
-    the time."""
+    """Random walk of the bias: its standard deviation after 1 s, which grows with the square root
+    of time."""
     memory: float = 0.0
-    """s, the time constant with which it forgets; without one it does not wander."""
+    """Correlation time of the random walk, s. At 0 the bias is constant."""
     precision: float = 0.0
-    """What is measured is a multiple of this, where it is above 0."""
+    """If positive, measurements are rounded to a multiple of this."""
 
 
 _FIELDS = {
@@ -42,19 +42,19 @@ _FIELDS = {
     "dynamic_bias_correlation_time": "memory",
     "precision": "precision",
 }
-"""SDF's tags and what they are here."""
+"""Fields of `Noise` by SDF tag."""
 _SIGNED = ("mean", "bias_mean")
 
 
 def read_noise(element: Element | None, report: Callable[[Diagnostic], None]) -> Noise:
-    """What a ``<noise>`` element says; none at all without one.
+    """Reads a ``<noise>`` element.
 
     Args:
-        element: The tag.
-        report: Takes what has no effect.
+        element: The element; None: no noise.
+        report: Receives diagnostics about settings without effect.
 
     Raises:
-        PluginError: A type or a number that makes no sense.
+        PluginError: The type or a number is not allowed.
     """
     if element is None:
         return Noise()
@@ -67,7 +67,7 @@ def read_noise(element: Element | None, report: Callable[[Diagnostic], None]) ->
             f'noise of type "{name}" is not supported',
             code=devices.PLUGIN_PARAMETER_INVALID,
             origin=element.origin,
-            hint="There are: none, gaussian, gaussian_quantized.",
+            hint="Supported types: none, gaussian, gaussian_quantized.",
             values={"parameter": "noise", "value": name},
         )
     values = {}
@@ -88,15 +88,15 @@ def read_noise(element: Element | None, report: Callable[[Diagnostic], None]) ->
 
 
 class _Drift:
-    """Gauss-Markov processes: what they are at a time does not depend on who has asked when.
+    """Gauss-Markov processes. Their values depend on time only, not on when they are read.
 
     Args:
-        part: Whose seed counts.
-        name: Of the sequence.
-        rate: Hz at which it is asked; 0 is every step.
-        deviation: Standard deviations, of all times.
-        frequency: 1/s, inverse of the time constants.
-        settled: Whether it has one at the beginning; else it begins at 0.
+        part: Provides the seed and the time.
+        name: Name of the random sequence.
+        rate: Hz at which the value changes; 0: at every step.
+        deviation: Stationary standard deviations, shape (n,).
+        frequency: Inverse of the time constants, 1/s, shape (n,).
+        settled: Start from the stationary distribution; otherwise from 0.
     """
 
     def __init__(
@@ -117,25 +117,25 @@ class _Drift:
         self.restart()
 
     def restart(self) -> None:
-        """Time is what it is now; the drift begins anew."""
+        """Starts a new drift at the current time."""
         self._random = self._part.random(f"{self._name} drift")
         drawn: Array = self._random.normal(0.0, self._deviation)
         self._value = drawn if self._settled else np.zeros_like(drawn)
-        self._told_ns = self._part.time_ns
+        self._updated_ns = self._part.time_ns
 
     def put(self, value: Sequence[float]) -> None:
-        """Sets it, as calibration does; it wanders on from there."""
+        """Sets the current value, as calibration does."""
         self.now()
         self._value = np.array(value, dtype=float)
 
     def now(self) -> Array:
-        """The drift of this moment, shape (n,)."""
-        steps = (self._part.time_ns - self._told_ns) // self._period_ns
+        """The current value, shape (n,)."""
+        steps = (self._part.time_ns - self._updated_ns) // self._period_ns
         if steps < 0:
-            # Time went back.
+            # Time was reset.
             self.restart()
             return self._value
-        self._told_ns += steps * self._period_ns
+        self._updated_ns += steps * self._period_ns
         if self._deviation.any():
             for _ in range(steps):
                 self._value = self._keep * self._value + self._random.normal(0.0, self._grow)
@@ -146,10 +146,10 @@ class VectorNoise:
     """Noise of several quantities that are measured together.
 
     Args:
-        part: Whose seed counts.
-        name: Of the sequence.
+        part: Provides the seed and the time.
+        name: Name of the random sequence.
         noises: One for each quantity.
-        rate: Hz at which they are measured; 0 is every step.
+        rate: Hz at which they are measured; 0: at every step.
     """
 
     def __init__(self, part: Part, name: str, noises: Sequence[Noise], *, rate: float) -> None:
@@ -159,12 +159,12 @@ class VectorNoise:
         self._precision = np.array([noise.precision for noise in noises])
         self._rounds = self._precision > 0
         self.variance = self._stddev**2
-        """Shape (n,)."""
+        """Variance of the white noise, shape (n,)."""
         random = part.random(f"{name} bias")
         bias = random.normal(
             [noise.bias_mean for noise in noises], [noise.bias_stddev for noise in noises]
         )
-        # Gazebo gives a bias either sign.
+        # As in Gazebo, the sign of the bias is random.
         self._fixed = self._mean + np.where(random.random(len(noises)) < 0.5, bias, -bias)
         memory = np.array([noise.memory for noise in noises])
         walk = np.where(memory > 0, [noise.walk for noise in noises], 0.0)
@@ -172,7 +172,7 @@ class VectorNoise:
             part,
             name,
             rate=rate,
-            # What a walk comes to that forgets: its density is the tag's.
+            # Stationary deviation of a random walk with this density and correlation time.
             deviation=walk * np.sqrt(memory / 2),
             frequency=1.0 / np.where(memory > 0, memory, 1.0),
             settled=False,
@@ -183,12 +183,12 @@ class VectorNoise:
 
     @property
     def offset(self) -> Array:
-        """Mean and bias of this moment, shape (n,)."""
+        """Mean plus current bias, shape (n,)."""
         total: Array = self._fixed + self._drift.now()
         return total
 
     def add(self, values: Sequence[float]) -> Sequence[float]:
-        """The values as they are measured at this moment."""
+        """The values with noise, as measured at the current time."""
         if self._none:
             return values
         measured = np.asarray(values) + self.offset
@@ -196,26 +196,25 @@ class VectorNoise:
         if self._rounds.any():
             step = np.where(self._rounds, self._precision, 1.0)
             measured = np.where(self._rounds, np.round(measured / step) * step, measured)
-        told: list[float] = measured.tolist()
-        return told
+        result: list[float] = measured.tolist()
+        return result
 
 
 class DriftingError:
-    """An offset, a slow drift and noise, as hector_gazebo_plugins' sensor models have them.
+    """The error model of hector_gazebo_plugins: scale factor, offset, slow drift and noise.
 
-    The drift is a Gauss-Markov process: it has a standard deviation of its own at all times,
-    and forgets with a time constant. (hector's own grows with the length of the step.) What it
-    is at a time does not depend on who has listened since when.
+    The drift is a Gauss-Markov process with a constant standard deviation. (In the original, the
+    drift grows with the length of the step.) Its value depends on time only, not on subscribers.
 
     Args:
-        part: Whose seed counts.
-        name: Of the sequence.
-        rate: Hz at which it is asked; 0 is every step.
+        part: Provides the seed and the time.
+        name: Name of the random sequence.
+        rate: Hz at which measurements are made; 0: at every step.
         offset: Constant error.
         drift: Standard deviation of the drift.
-        frequency: 1/s, inverse of the drift's time constant.
+        frequency: Inverse of the drift's time constant, 1/s.
         noise: Standard deviation of the noise.
-        scale: Factor on what is measured.
+        scale: Factor on the true value.
     """
 
     def __init__(
@@ -241,24 +240,24 @@ class DriftingError:
             settled=True,
         )
         self.variance = self._noise**2
-        """Shape (n,), of the noise alone."""
+        """Variance of the noise, without drift, shape (n,)."""
 
     def restart(self) -> None:
-        """Time is what it is now; the drift begins anew."""
+        """Starts a new drift at the current time."""
         self._drift.restart()
 
     def put(self, drift: Sequence[float]) -> None:
-        """Sets the drift, as calibration does; it wanders on from there."""
+        """Sets the current drift, as calibration does."""
         self._drift.put(drift)
 
     @property
     def bias(self) -> Array:
-        """Offset and drift of this moment, shape (n,)."""
+        """Offset plus current drift, shape (n,)."""
         total: Array = self._offset + self._drift.now()
         return total
 
     def add(self, values: Sequence[float] | Array) -> Array:
-        """The values as they are measured at this moment, shape (n,)."""
+        """The values with all errors, as measured at the current time, shape (n,)."""
         noise = self._part.random(self._name).normal(0.0, self._noise)
         measured: Array = np.asarray(values) * self._scale + self.bias + noise
         return measured
