@@ -1,10 +1,19 @@
 """The plugin reference says what the code does."""
 
+import contextlib
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+import pytest
+
+from cartwheel.plugins.base import Plugin
+from cartwheel.plugins.catalogue import all_plugins
 
 ROOT = Path(__file__).parents[2]
+PLUGINS = [each for each in all_plugins() if each.__module__.startswith("cartwheel.")]
 
 
 def test_the_reference_is_up_to_date() -> None:
@@ -13,3 +22,23 @@ def test_the_reference_is_up_to_date() -> None:
         [sys.executable, str(script), "--check"], capture_output=True, text=True, check=False
     )
     assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.parametrize("plugin", PLUGINS, ids=lambda each: each.__name__)
+def test_each_example_loads_without_a_warning(
+    plugin: type[Plugin[Any]], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.syspath_prepend(str(ROOT / "tools"))
+    from make_plugin_reference import load_example
+    from plugin_examples import slug
+
+    page = (ROOT / "docs" / "plugins" / f"{slug(plugin)}.md").read_text()
+    assert page.count("```xml") == 1
+    with contextlib.closing(load_example(plugin)) as session:
+        reports = session.simulation.diagnostics
+    assert [each for each in reports if each.severity != "info"] == []
+
+
+@pytest.mark.parametrize("picture", sorted((ROOT / "docs/images/plugins").glob("*.svg")))
+def test_each_picture_is_valid_xml(picture: Path) -> None:
+    assert ElementTree.parse(picture).getroot().tag.endswith("svg")

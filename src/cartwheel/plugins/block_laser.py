@@ -40,6 +40,7 @@ class BlockLaser(Plugin[BlockLaserParameters]):
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_block_laser.so",)
     parameters: ClassVar[type] = BlockLaserParameters
     for_sensor: ClassVar[bool] = True
+    sensor_type: ClassVar[str] = "ray"
 
     def configure(self) -> None:
         assert self.sensor is not None

@@ -36,6 +36,7 @@ class CameraBase(Plugin[C]):
 
     empty_is_model: ClassVar[bool] = True
     for_sensor: ClassVar[bool] = True
+    sensor_type: ClassVar[str] = "camera"
 
     def configure(self) -> None:
         sensor = self.sensor

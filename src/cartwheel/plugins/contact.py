@@ -43,6 +43,7 @@ class Bumper(Plugin[Any]):
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_bumper.so",)
     parameters: ClassVar[type] = BumperParameters
     for_sensor: ClassVar[bool] = True
+    sensor_type: ClassVar[str] = "contact"
 
     def configure(self) -> None:
         assert self.sensor is not None

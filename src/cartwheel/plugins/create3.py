@@ -67,6 +67,7 @@ class Create3Bumper(_Hazard):
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_create_bumper.so",)
     parameters: ClassVar[type] = Create3BumperParameters
     for_sensor: ClassVar[bool] = True
+    sensor_type: ClassVar[str] = "contact"
 
     def configure(self) -> None:
         assert self.sensor is not None
@@ -104,6 +105,7 @@ class Create3Cliff(_Hazard):
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_create_cliff_sensor.so",)
     parameters: ClassVar[type] = Create3CliffParameters
     for_sensor: ClassVar[bool] = True
+    sensor_type: ClassVar[str] = "ray"
 
     def configure(self) -> None:
         assert self.sensor is not None
@@ -129,6 +131,7 @@ class Create3Intensity(Plugin[Create3IntensityParameters]):
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_create_ir_intensity_sensor.so",)
     parameters: ClassVar[type] = Create3IntensityParameters
     for_sensor: ClassVar[bool] = True
+    sensor_type: ClassVar[str] = "ray"
 
     def configure(self) -> None:
         sensor = self.sensor
@@ -174,6 +177,7 @@ class Create3Imu(ImuBase):
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_create_imu.so",)
     parameters: ClassVar[type] = Create3ImuParameters
     for_sensor: ClassVar[bool] = True
+    sensor_type: ClassVar[str] = "imu"
     with_gravity: ClassVar[bool] = False
 
     def configure(self) -> None:

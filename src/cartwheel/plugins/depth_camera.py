@@ -50,6 +50,7 @@ class DepthCamera(RosCamera[DepthCameraParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_depth_camera.so",)
+    sensor_type: ClassVar[str] = "depth"
     parameters: ClassVar[type] = DepthCameraParameters
 
     def configure(self) -> None:
@@ -91,4 +92,5 @@ class OpenniKinect(DepthCamera):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_openni_kinect.so",)
+    sensor_type: ClassVar[str] = "depth"
     parameters: ClassVar[type] = KinectParameters

@@ -29,6 +29,7 @@ class FootContact(Plugin[FootContactParameters]):
     filenames: ClassVar[tuple[str, ...]] = ("libunitreeFootContactPlugin.so",)
     parameters: ClassVar[type] = FootContactParameters
     for_sensor: ClassVar[bool] = True
+    sensor_type: ClassVar[str] = "contact"
 
     def configure(self) -> None:
         sensor = self.sensor

@@ -286,6 +286,7 @@ class GpsSensor(_GpsSensor):
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_gps_sensor.so",)
     parameters: ClassVar[type] = GpsSensorParameters
     for_sensor: ClassVar[bool] = True
+    sensor_type: ClassVar[str] = "gps"
 
     def configure(self) -> None:
         config: GpsSensorParameters = self.config

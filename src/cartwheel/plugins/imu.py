@@ -222,6 +222,7 @@ class ImuSensor(ImuBase):
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_imu_sensor.so",)
     parameters: ClassVar[type] = ImuSensorParameters
     for_sensor: ClassVar[bool] = True
+    sensor_type: ClassVar[str] = "imu"
 
     def configure(self) -> None:
         assert self.sensor is not None

@@ -48,6 +48,7 @@ class Laser(Plugin[LaserParameters]):
     parameters: ClassVar[type] = LaserParameters
     empty_is_model: ClassVar[bool] = True
     for_sensor: ClassVar[bool] = True
+    sensor_type: ClassVar[str] = "ray"
     prefixes_by_namespace: ClassVar[bool] = True
 
     def configure(self) -> None:

@@ -105,6 +105,7 @@ class Range(_RangeBase):
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_range.so",)
     parameters: ClassVar[type] = RangeParameters
     for_sensor: ClassVar[bool] = True
+    sensor_type: ClassVar[str] = "ray"
 
     def configure(self) -> None:
         config: RangeParameters = self.config
@@ -151,6 +152,7 @@ class HectorSonar(_RangeBase):
     filenames: ClassVar[tuple[str, ...]] = ("libhector_gazebo_ros_sonar.so",)
     parameters: ClassVar[type] = SonarParameters
     for_sensor: ClassVar[bool] = True
+    sensor_type: ClassVar[str] = "ray"
 
     def configure(self) -> None:
         config: SonarParameters = self.config

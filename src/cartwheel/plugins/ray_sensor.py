@@ -57,6 +57,7 @@ class RaySensor(Plugin[RaySensorParameters]):
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_ray_sensor.so",)
     parameters: ClassVar[type] = RaySensorParameters
     for_sensor: ClassVar[bool] = True
+    sensor_type: ClassVar[str] = "ray"
 
     def configure(self) -> None:
         sensor, config = self.sensor, self.config

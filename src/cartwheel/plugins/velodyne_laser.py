@@ -76,6 +76,7 @@ class VelodyneLaser(Plugin[VelodyneParameters]):
     )
     parameters: ClassVar[type] = VelodyneParameters
     for_sensor: ClassVar[bool] = True
+    sensor_type: ClassVar[str] = "ray"
     prefixes_by_namespace: ClassVar[bool] = True
 
     def configure(self) -> None:
