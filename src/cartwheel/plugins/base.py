@@ -55,7 +55,7 @@ class Plugin(Generic[C]):
     for_sensor: ClassVar[bool] = False
     """Whether it belongs inside a ``<sensor>``."""
     sensor_type: ClassVar[str] = ""
-    """Usual type of that sensor, as its documentation shows it; empty if it has a type in `serves`."""
+    """Usual type of that sensor, shown in its documentation. Empty if `serves` is set."""
     for_world: ClassVar[bool] = False
     """Whether it belongs directly inside a ``<world>``; its part is then the world's own."""
     empty_is_model: ClassVar[bool] = False
