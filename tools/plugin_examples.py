@@ -62,7 +62,7 @@ _BODIES = {
     "contact": _CONTACT,
 }
 """What a sensor of a type holds."""
-_SENSOR_FIELD = re.compile(r"\b(ray|contact|imu|camera) sensor\b")
+_SENSOR_FIELD = re.compile(r"\b(ray|contact|imu|camera) sensor\b", re.IGNORECASE)
 """In the description of a tag that names a sensor: its type."""
 _GAZEBO_SYSTEM = ("gz-sim-", "-system")
 
@@ -212,7 +212,7 @@ def _required(item: dataclasses.Field[Any], kind: Any) -> str:
     if "joint" in item.name:
         return _JOINTS[0]
     sensor = _SENSOR_FIELD.search(item.metadata["doc"])
-    return f"my_{sensor[1]}_sensor" if sensor else LINK
+    return f"my_{sensor[1].lower()}_sensor" if sensor else LINK
 
 
 def _default(value: Any) -> str:
