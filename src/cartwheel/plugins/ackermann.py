@@ -1,4 +1,4 @@
-"""``libgazebo_ros_ackermann_drive.so`` and ``gz-sim-ackermann-steering-system``: cars."""
+"""``libgazebo_ros_ackermann_drive.so`` and ``gz-sim-ackermann-steering-system``: car drives."""
 
 from __future__ import annotations
 
@@ -26,12 +26,14 @@ from cartwheel.plugins.wheel_states import WheelTransforms
 
 
 def wheel_angles(steer: float, base: float, track: float) -> tuple[float, float]:
-    """Angles of the left and the right steered wheel, all four wheels turning about one point.
+    """Returns the angles of the left and right steered wheels in rad, by Ackermann geometry.
+
+    The axes of all four wheels intersect at the centre of the turn.
 
     Args:
-        steer: Of the wheel that stands in the middle between them, rad, left positive.
-        base: m, between the axles.
-        track: m, between the steered wheels.
+        steer: Angle of a virtual wheel midway between the steered wheels, rad, left positive.
+        base: Distance between the axles, m.
+        track: Distance between the steered wheels, m.
     """
     tangent = math.tan(steer)
     half = track / 2 / base * tangent
@@ -40,75 +42,118 @@ def wheel_angles(steer: float, base: float, track: float) -> tuple[float, float]
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class AckermannParameters:
-    front_left: str = tag("front_left_joint", default="front_left_joint", doc="Joint of a wheel.")
-    front_right: str = tag(
-        "front_right_joint", default="front_right_joint", doc="Joint of a wheel."
+    front_left: str = tag(
+        "front_left_joint", default="front_left_joint", doc="Joint of the front left wheel."
     )
-    rear_left: str = tag("rear_left_joint", default="rear_left_joint", doc="Driven wheel.")
-    rear_right: str = tag("rear_right_joint", default="rear_right_joint", doc="Driven wheel.")
+    front_right: str = tag(
+        "front_right_joint", default="front_right_joint", doc="Joint of the front right wheel."
+    )
+    rear_left: str = tag(
+        "rear_left_joint",
+        default="rear_left_joint",
+        doc="Joint of the rear left wheel, which is driven.",
+    )
+    rear_right: str = tag(
+        "rear_right_joint",
+        default="rear_right_joint",
+        doc="Joint of the rear right wheel, which is driven.",
+    )
     steer_left: str = tag(
-        "left_steering_joint", default="left_steering_joint", doc="Steers the left wheel."
+        "left_steering_joint",
+        default="left_steering_joint",
+        doc="Joint that steers the front left wheel.",
     )
     steer_right: str = tag(
-        "right_steering_joint", default="right_steering_joint", doc="Steers the right wheel."
+        "right_steering_joint",
+        default="right_steering_joint",
+        doc="Joint that steers the front right wheel.",
     )
     steering_wheel: str = tag(
         "steering_wheel_joint",
         default="steering_wheel_joint",
-        doc="Turns with the wheels; none where there is no such joint.",
+        doc="Joint of the steering wheel, which turns in proportion to the steering angle. "
+        "Optional: ignored if no joint has this name.",
     )
-    max_steer: float = tag("max_steer", default=0.6, unit="rad", doc="Most of the wheels.")
+    max_steer: float = tag(
+        "max_steer", default=0.6, unit="rad", doc="Maximum steering angle of the front wheels."
+    )
     max_steering_angle: float = tag(
-        "max_steering_angle", default=7.85, unit="rad", doc="Of the steering wheel at max_steer."
+        "max_steering_angle",
+        default=7.85,
+        unit="rad",
+        doc="Angle of the steering wheel at max_steer.",
     )
-    max_speed: float = tag("max_speed", default=20.0, unit="m/s", doc="Most of the command.")
+    max_speed: float = tag("max_speed", default=20.0, unit="m/s", doc="Maximum commanded speed.")
     left_gain: tuple[float, float, float] | None = tag(
-        "left_steering_pid_gain", default=None, doc="Has no effect: a servo steers."
+        "left_steering_pid_gain", default=None, doc="No effect: a servo steers the wheel."
     )
     left_range: tuple[float, float] | None = tag(
-        "left_steering_i_range", default=None, doc="Has no effect."
+        "left_steering_i_range", default=None, doc="No effect."
     )
     right_gain: tuple[float, float, float] | None = tag(
-        "right_steering_pid_gain", default=None, doc="Has no effect: a servo steers."
+        "right_steering_pid_gain", default=None, doc="No effect: a servo steers the wheel."
     )
     right_range: tuple[float, float] | None = tag(
-        "right_steering_i_range", default=None, doc="Has no effect."
+        "right_steering_i_range", default=None, doc="No effect."
     )
     speed_gain: tuple[float, float, float] | None = tag(
-        "linear_velocity_pid_gain", default=None, doc="Has no effect: servos drive."
+        "linear_velocity_pid_gain", default=None, doc="No effect: servos drive the wheels."
     )
     speed_range: tuple[float, float] | None = tag(
-        "linear_velocity_i_range", default=None, doc="Has no effect."
+        "linear_velocity_i_range", default=None, doc="No effect."
     )
-    update_rate: float = tag("update_rate", default=100.0, unit="Hz", doc="Of control and topics.")
-    odometry_frame: str = tag("odometry_frame", default="odom", doc="Frame of the odometry.")
+    update_rate: float = tag(
+        "update_rate",
+        default=100.0,
+        unit="Hz",
+        doc="Rate of the control loop and of the topics. 0: every step.",
+    )
+    odometry_frame: str = tag("odometry_frame", default="odom", doc="Frame ID of the odometry.")
     base_frame: str = tag(
         "robot_base_frame",
         default="base_footprint",
-        doc="Link whose pose is told; the root link where there is none of that name.",
+        doc="Link whose pose the odometry reports. Defaults to the root link if no link has this "
+        "name.",
     )
-    publish_odom: bool = tag("publish_odom", default=False, doc="Publish odometry on odom.")
-    publish_odom_tf: bool = tag("publish_odom_tf", default=False, doc="Publish its transform.")
+    publish_odom: bool = tag("publish_odom", default=False, doc="Publish the odometry on `odom`.")
+    publish_odom_tf: bool = tag(
+        "publish_odom_tf",
+        default=False,
+        doc="Publish the transform from the odometry frame to the base link.",
+    )
     publish_wheel_tf: bool = tag(
-        "publish_wheel_tf", default=False, doc="Publish the joints' transforms."
+        "publish_wheel_tf",
+        default=False,
+        doc="Publish the transforms of the wheel and steering joints.",
     )
     publish_distance: bool = tag(
-        "publish_distance", default=False, doc="Publish the way gone, in m, on distance."
+        "publish_distance",
+        default=False,
+        doc="Publish the distance travelled, in m, on `distance`.",
     )
     publish_steerangle: bool = tag(
-        "publish_steerangle", default=False, doc="Publish the mean steering angle on steerangle."
+        "publish_steerangle",
+        default=False,
+        doc="Publish the mean steering angle of the front wheels, in rad, on `steerangle`.",
     )
-    covariance_x: float = tag("covariance_x", default=1e-5, unit="m²", doc="Of the odometry.")
-    covariance_y: float = tag("covariance_y", default=1e-5, unit="m²", doc="Of the odometry.")
-    covariance_yaw: float = tag("covariance_yaw", default=1e-3, unit="rad²", doc="Of the odometry.")
+    covariance_x: float = tag(
+        "covariance_x", default=1e-5, unit="m²", doc="Variance of the odometry in x."
+    )
+    covariance_y: float = tag(
+        "covariance_y", default=1e-5, unit="m²", doc="Variance of the odometry in y."
+    )
+    covariance_yaw: float = tag(
+        "covariance_yaw", default=1e-3, unit="rad²", doc="Variance of the odometry in yaw."
+    )
 
 
 class AckermannDrive(SteeredDrive):
-    """Drives the rear wheels of a car and steers its front ones, on cmd_vel.
+    """Drives the rear wheels and steers the front wheels of a car from Twist commands.
 
-    The Twist's linear.x is the speed of the middle of the rear axle; its angular.z is the
-    steering angle in rad, taken the other way round in reverse. Source: gazebo_plugins,
-    gazebo_ros_ackermann_drive.
+    Commands arrive on ``cmd_vel``. ``linear.x`` is the speed of the middle of the rear axle in m/s.
+    ``angular.z`` is the steering angle in rad, with its sign reversed while driving backwards. The
+    odometry is the true pose in the world. Wheel radius, wheel base and track are read from the
+    robot description. Source: gazebo_plugins, gazebo_ros_ackermann_drive.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_ackermann_drive.so",)
@@ -172,7 +217,7 @@ class AckermannDrive(SteeredDrive):
         self._run(command_topic="cmd_vel", base=config.base_frame, control_rate=rate, rate=rate)
 
     def _measure(self) -> None:
-        """Wheel radius, track and wheel base, from the description."""
+        """Reads the wheel radius, track and wheel base from the description."""
         config: AckermannParameters = self.config
         description, origin = self.part.description, self.tag.origin
         poses = link_poses(description, {})
@@ -191,7 +236,7 @@ class AckermannDrive(SteeredDrive):
             collision = link.collisions[0]
             shape = collision.shape
             round_one = isinstance(shape, Cylinder | Sphere | Capsule)
-            # A mesh's frame may be anywhere: the wheel is where its axle is.
+            # The frame of a mesh is arbitrary, so the wheel is placed at its axle.
             place = collision.pose if round_one or joint is None else joint.pose
             centres.append(poses[link.name].apply(place.position))
         if not isinstance(shape, Cylinder | Sphere | Capsule):
@@ -215,8 +260,8 @@ class AckermannDrive(SteeredDrive):
 
     def reset(self) -> None:
         super().reset()
-        self._gone = 0.0
-        self._was: tuple[float, float] | None = None
+        self._travelled = 0.0
+        self._last_position: tuple[float, float] | None = None
 
     def _turn_wheels(self, seconds: float) -> None:  # noqa: ARG002
         config: AckermannParameters = self.config
@@ -234,9 +279,9 @@ class AckermannDrive(SteeredDrive):
             self._wheel.command_position(wheel)
         if self._distance is not None:
             x, y, _ = self._base.place()[0]
-            if self._was is not None:
-                self._gone += math.dist(self._was, (x, y))
-            self._was = (x, y)
+            if self._last_position is not None:
+                self._travelled += math.dist(self._last_position, (x, y))
+            self._last_position = (x, y)
 
     def _wanted(self) -> bool:
         own = (self._distance, self._angle)
@@ -245,7 +290,7 @@ class AckermannDrive(SteeredDrive):
     def _publish(self) -> None:
         super()._publish()
         if self._distance is not None and self._distance.wanted:
-            self._distance.publish(self._Float(self._gone))
+            self._distance.publish(self._Float(self._travelled))
         if self._angle is not None and self._angle.wanted:
             left, right = self._steered
             self._angle.publish(self._Float((left.position + right.position) / 2))
@@ -254,38 +299,53 @@ class AckermannDrive(SteeredDrive):
 @dataclass(frozen=True, kw_only=True, slots=True)
 class GzAckermannParameters(GzLimitedParameters):
     left_joint: tuple[str, ...] = tag(
-        "left_joint", default=("left_joint",), doc="Joint of a driven left wheel; once for each."
+        "left_joint",
+        default=("left_joint",),
+        doc="Joint of a driven left wheel. Repeat for each wheel.",
     )
     right_joint: tuple[str, ...] = tag(
-        "right_joint", default=("right_joint",), doc="Joint of a driven right wheel; once for each."
+        "right_joint",
+        default=("right_joint",),
+        doc="Joint of a driven right wheel. Repeat for each wheel.",
     )
     steer_left: str = tag(
-        "left_steering_joint", default="left_steering_joint", doc="Steers the left wheel."
+        "left_steering_joint",
+        default="left_steering_joint",
+        doc="Joint that steers the front left wheel.",
     )
     steer_right: str = tag(
-        "right_steering_joint", default="right_steering_joint", doc="Steers the right wheel."
+        "right_steering_joint",
+        default="right_steering_joint",
+        doc="Joint that steers the front right wheel.",
     )
     wheel_separation: float = tag(
-        "wheel_separation", default=1.0, unit="m", doc="Between left and right."
+        "wheel_separation", default=1.0, unit="m", doc="Distance between the left and right wheels."
     )
     kingpin_width: float = tag(
-        "kingpin_width", default=0.8, unit="m", doc="Between the axes of steering."
+        "kingpin_width", default=0.8, unit="m", doc="Distance between the steering axes."
     )
-    wheel_base: float = tag("wheel_base", default=1.0, unit="m", doc="Between the axles.")
-    steering_limit: float = tag("steering_limit", default=0.5, unit="rad", doc="Most.")
-    wheel_radius: float = tag("wheel_radius", default=0.2, unit="m", doc="Of all wheels.")
+    wheel_base: float = tag("wheel_base", default=1.0, unit="m", doc="Distance between the axles.")
+    steering_limit: float = tag(
+        "steering_limit", default=0.5, unit="rad", doc="Maximum steering angle."
+    )
+    wheel_radius: float = tag("wheel_radius", default=0.2, unit="m", doc="Radius of all wheels.")
     steer_gain: float = tag(
-        "steer_p_gain", default=1.0, doc="Accepted: a servo steers, without delay."
+        "steer_p_gain", default=1.0, doc="Accepted for compatibility; a servo steers without delay."
     )
-    sub_topic: str = tag("sub_topic", default="", doc="Twist under /model/<name>.")
+    sub_topic: str = tag(
+        "sub_topic",
+        default="",
+        doc="Topic of the Twist commands below `/model/<model>`, if `<topic>` is empty.",
+    )
     steering_only: bool = tag("steering_only", default=False, doc="Not supported.")
     actuators: bool = tag("use_actuator_msg", default=False, doc="Not supported.")
 
 
 class GzAckermann(SteeredDrive):
-    """Drives and steers a car by Twist: linear.x in m/s, angular.z in rad/s.
+    """Drives and steers a car from Twist commands and publishes odometry from its wheels.
 
-    The odometry is what the driven wheels turn. Source: gz-sim, AckermannSteering.
+    ``linear.x`` is in m/s, ``angular.z`` in rad/s. The odometry is computed from the rotation of
+    the driven wheels. Source: gz-sim, AckermannSteering.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("gz-sim-ackermann-steering-system",)
@@ -347,7 +407,7 @@ class GzAckermann(SteeredDrive):
         config: GzAckermannParameters = self.config
         speed = self._linear.step(self._forward, seconds or 0.01)
         turn = self._angular.step(self._turn, seconds or 0.01)
-        # The middle of the front axle points across the line to the centre of the turn.
+        # A wheel in the middle of the front axle is perpendicular to the line to the turn's centre.
         steer = math.atan2(turn * config.wheel_base, abs(speed))
         steer = math.copysign(steer, turn * speed) if speed else 0.0
         steer = min(max(steer, -config.steering_limit), config.steering_limit)

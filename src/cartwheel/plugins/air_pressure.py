@@ -1,4 +1,4 @@
-"""``air_pressure`` sensors: the atmosphere at a height."""
+"""``air_pressure`` sensors: barometers."""
 
 from __future__ import annotations
 
@@ -12,33 +12,40 @@ from cartwheel.plugins.noise import VectorNoise, read_noise
 from cartwheel.plugins.parameters import number, tag
 
 SEA_LEVEL = 101325.0
-"""Pa."""
+"""Pressure at sea level, Pa."""
 TEMPERATURE = 288.15
-"""K, at sea level."""
+"""Temperature at sea level, K."""
 LAPSE = 0.0065
-"""K/m."""
+"""Decrease of the temperature with height, K/m."""
 EXPONENT = 9.80665 * 0.0289644 / (8.31446 * LAPSE)
 
 
 def pressure_at(height: float) -> float:
-    """Pa at a height in m above the sea: the international standard atmosphere up to 11 km.
+    """Returns the pressure in Pa at a height in m above sea level.
 
-    Its formula reaches 0 at 44 km.
+    The formula is that of the international standard atmosphere, which holds up to 11 km. It
+    reaches 0 at 44 km and stays there.
     """
     return float(SEA_LEVEL * max(1 - LAPSE * height / TEMPERATURE, 0.0) ** EXPONENT)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class AirPressureParameters:
-    topic: str = tag("topic", default="", doc="FluidPressure; Gazebo's long name when empty.")
+    topic: str = tag(
+        "topic",
+        default="",
+        doc="Topic of the FluidPressure messages. Default: "
+        "`/world/<world>/model/<model>/link/<link>/sensor/<sensor>/air_pressure`.",
+    )
     frame: str = frame_tag()
 
 
 class AirPressure(Plugin[AirPressureParameters]):
-    """Publishes the pressure at the sensor's height, in Pa.
+    """Publishes the air pressure at the height of the sensor, in Pa.
 
-    ``<reference_altitude>`` is the height of the world's origin. Source: gz-sensors,
-    AirPressureSensor; the international standard atmosphere.
+    ``<reference_altitude>`` is the height of the world's origin above sea level. The sensor's
+    ``<pressure><noise>`` is applied. Source: gz-sensors, AirPressureSensor; the international
+    standard atmosphere.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ()

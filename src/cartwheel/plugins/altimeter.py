@@ -1,4 +1,4 @@
-"""``altimeter`` sensors: how high they are, and how fast they rise."""
+"""``altimeter`` sensors: height and vertical velocity."""
 
 from __future__ import annotations
 
@@ -16,15 +16,21 @@ _KIND = "ros_gz_interfaces/msg/Altimeter"
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class AltimeterParameters:
-    topic: str = tag("topic", default="", doc="Altimeter; Gazebo's long name when empty.")
+    topic: str = tag(
+        "topic",
+        default="",
+        doc="Topic of the Altimeter messages. Default: "
+        "`/world/<world>/model/<model>/link/<link>/sensor/<sensor>/altimeter`.",
+    )
     frame: str = frame_tag()
 
 
 class Altimeter(Plugin[AltimeterParameters]):
-    """Publishes a sensor's height above where it was spawned, and its vertical velocity.
+    """Publishes the height of a sensor above its initial height, and its vertical velocity.
 
-    ``vertical_reference`` is that first height in the world. ``<vertical_position>`` and
-    ``<vertical_velocity>`` have noise. Source: gz-sensors, AltimeterSensor; ros_gz_bridge.
+    ``vertical_reference`` is the height in the world at which the sensor was spawned. The noise of
+    ``<vertical_position>`` and ``<vertical_velocity>`` is applied. Source: gz-sensors,
+    AltimeterSensor; ros_gz_bridge.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ()

@@ -1,4 +1,4 @@
-"""What every plugin is: parameters, names it answers to, and its part of a simulation."""
+"""The base class of all plugins: parameters, file names, and access to the simulation."""
 
 from __future__ import annotations
 
@@ -30,10 +30,10 @@ from cartwheel.simulation.limits import FARTHEST
 
 
 class Closable(Protocol):
-    """What a plugin holds while it lives."""
+    """A resource that a plugin holds while it is loaded."""
 
     def close(self) -> None:
-        """Ends it."""
+        """Releases the resource."""
 
 
 C = TypeVar("C")
@@ -41,31 +41,32 @@ K = TypeVar("K", bound=Closable)
 
 
 class Plugin(Generic[C]):
-    """Base of all plugins; made before the model is compiled, so that it can ask for motors.
+    """Base class of all plugins.
 
-    A subclass sets `filenames` and `parameters`, and in `configure` takes its handles,
-    advertises its topics and schedules its work. Third parties name theirs under the
-    entry point group ``cartwheel.plugins``.
+    Plugins are created before the model is compiled, so that they can request motors. A subclass
+    sets `filenames` and `parameters`. Its `configure` acquires handles, advertises topics and
+    schedules callbacks. Other packages register their plugins under the entry point group
+    ``cartwheel.plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]]
-    """Without ``lib`` and ``.so``: ``gazebo_ros_diff_drive``."""
+    """File names without ``lib`` and ``.so``: ``gazebo_ros_diff_drive``."""
     parameters: ClassVar[type]
     """A frozen dataclass of `tag` fields."""
     for_sensor: ClassVar[bool] = False
-    """Whether it belongs inside a ``<sensor>``."""
+    """Whether the plugin belongs inside a ``<sensor>``."""
     sensor_type: ClassVar[str] = ""
     """Usual type of that sensor, shown in its documentation. Empty if `serves` is set."""
     for_world: ClassVar[bool] = False
-    """Whether it belongs directly inside a ``<world>``; its part is then the world's own."""
+    """Whether the plugin belongs directly inside a ``<world>``. Its `part` is then the world's."""
     empty_is_model: ClassVar[bool] = False
-    """Whether an empty ``<robotNamespace>`` is the model's name; for others it is none."""
+    """Whether an empty ``<robotNamespace>`` selects the model's name instead of no namespace."""
     prefixes_by_namespace: ClassVar[bool] = False
-    """Whether its frames have the namespace before them where there is no tf_prefix."""
+    """Whether frame IDs are prefixed with the namespace if there is no ``tf_prefix``."""
     serves: ClassVar[tuple[str, ...]] = ()
-    """Types of sensors that it makes work without a ``<plugin>``, as new Gazebo's systems do.
+    """Types of sensors that the plugin serves without a ``<plugin>``, like new Gazebo's systems.
 
-    Its parameters are then read from the ``<sensor>`` itself.
+    The parameters of such a plugin are read from the ``<sensor>`` itself.
     """
 
     def __init__(self, part: Part, graph: Graph, tag: PluginTag, sensor: Sensor | None) -> None:
@@ -79,7 +80,7 @@ class Plugin(Generic[C]):
             part.report(diagnostic)
         ros = tag.element.find("ros/namespace")
         plain = tag.element.find("robotNamespace")
-        # As Gazebo does: what the tag says counts, and else what the spawner said.
+        # As in Gazebo: the tag takes precedence over the spawner's namespace.
         self.namespace = part.namespace.rstrip("/")
         self._frame_prefix = part.frame_prefix
         if ros is not None:
@@ -94,43 +95,43 @@ class Plugin(Generic[C]):
         try:
             self.configure()
         except Exception:
-            # A subclass's own close counts on what it did not come to.
+            # The subclass's own close may use attributes that configure has not set.
             Plugin.close(self)
             raise
 
     def configure(self) -> None:
-        """Takes handles, advertises, schedules.
+        """Acquires handles, advertises topics and schedules callbacks.
 
         Raises:
-            PluginError: Parameters that make no sense.
-            UnknownNameError: A link or joint that does not exist.
+            PluginError: A parameter is not allowed.
+            UnknownNameError: A link or joint does not exist.
         """
         raise NotImplementedError
 
     def reset(self) -> None:
-        """Time goes back to zero."""
+        """Restores the initial state when simulation time is reset to zero."""
 
     def close(self) -> None:
-        """The model leaves the world: takes everything off the graph."""
+        """Withdraws all topics and services, when the model is deleted."""
         self._open.close()
 
     def keep(self, item: K) -> K:
-        """What is to be closed with the plugin."""
+        """Registers an item that is closed with the plugin, and returns it."""
         self._open.callback(item.close)
         return item
 
     def under_model(self) -> None:
-        """Takes the model's name for a namespace where neither the tag nor the spawner says one.
+        """Uses the model's name as namespace if neither the tag nor the spawner states one.
 
-        Most of Gazebo's plugins take none then.
+        Most of Gazebo's plugins use no namespace in this case.
         """
         element = self.tag.element
-        told = element.find("robotNamespace") or element.find("ros")
-        if told is None and not self.part.namespace:
+        namespace = element.find("robotNamespace") or element.find("ros")
+        if namespace is None and not self.part.namespace:
             self.namespace = self.part.name
 
     def resolve(self, name: str) -> str:
-        """A topic or service name in the plugin's namespace, remapped."""
+        """Returns a topic or service name in the plugin's namespace, after remapping."""
         if name in self._remappings:
             return resolve_name(self._remappings[name], self.namespace)
         full = resolve_name(name, self.namespace)
@@ -140,29 +141,29 @@ class Plugin(Generic[C]):
         return full
 
     def remaps(self, name: str) -> bool:
-        """Whether the tag gives that private name (``~/out`` is ``out``) another."""
+        """Whether the tag remaps this private name (``out`` for ``~/out``)."""
         return name in self._remappings
 
     def frame(self, name: str) -> str:
-        """A frame's name with the robot's prefix."""
+        """Returns a frame ID with the robot's prefix."""
         return resolve_frame(name, self._frame_prefix)
 
     def advertise(
         self, topic: str, type_name: str, *, rate: float | None = None, qos: Qos = "default"
     ) -> Publisher:
-        """A publisher that closes with the plugin."""
+        """Advertises a topic. The publisher is closed with the plugin."""
         name = GzBridge.of(self.graph).published(self.resolve(topic), type_name)
         return self.keep(self.graph.advertise(name, type_name, node=self.node, rate=rate, qos=qos))
 
     def subscribe(self, topic: str, type_name: str, callback: Callable[[Any], None]) -> None:
-        """A subscription that closes with the plugin.
+        """Subscribes to a topic. The subscription is closed with the plugin.
 
-        Messages with a number that nobody can obey, such as NaN, are ignored, with a warning.
+        Messages with values that cannot be executed, such as NaN, are ignored with a warning.
         """
         callback = obeyable(callback, self.part, self.warn)
         bridge = GzBridge.of(self.graph)
-        name, kind, taker = bridge.read(self.resolve(topic), type_name, callback)
-        subscription = self.graph.subscribe(name, taker, type_name=kind, node=self.node)
+        name, kind, receiver = bridge.read(self.resolve(topic), type_name, callback)
+        subscription = self.graph.subscribe(name, receiver, type_name=kind, node=self.node)
         subscription.on_error = lambda _, error: self.part.fail(self, error)
         self.keep(subscription)
 
@@ -174,12 +175,13 @@ class Plugin(Generic[C]):
         *,
         threaded: bool = False,
     ) -> bool:
-        """A service that closes with the plugin; left to another that offers it already.
+        """Offers a service, which is withdrawn with the plugin.
 
-        Two robots of one kind can share topics, and a service must not keep the second out.
+        If another plugin already offers the service, a warning is reported: two robots of the same
+        kind can share topics, and a service must not prevent the second one from loading.
 
         Returns:
-            Whether it is offered.
+            Whether the service is offered.
         """
         try:
             service = self.graph.serve(
@@ -187,7 +189,7 @@ class Plugin(Generic[C]):
             )
         except GraphError as error:
             if not self._crowded:
-                # Plugins that share one name share most: one warning is enough.
+                # Plugins that share one name usually share several: one warning is enough.
                 self._crowded = True
                 self.warn(
                     running.SERVICE_TAKEN,
@@ -202,16 +204,16 @@ class Plugin(Generic[C]):
     def take_positions(
         self, joints: Sequence[str], put: Callable[[Mapping[str, float], float], None]
     ) -> None:
-        """Takes positions for joints by hand too, while the plugin lives; see `JointInput`."""
+        """Accepts manual joint positions while the plugin is loaded; see `JointInput`."""
         inputs = self.graph.joint_inputs
-        made = JointInput(
+        joint_input = JointInput(
             model=self.part.name,
             owner=self.tag.name or self.node,
             joints=tuple(joints),
             put=obeyable_positions(put, self.part),
         )
-        inputs.add(made)
-        self._open.callback(inputs.remove, made)
+        inputs.add(joint_input)
+        self._open.callback(inputs.remove, joint_input)
 
     def reconfigure(
         self,
@@ -222,9 +224,10 @@ class Plugin(Generic[C]):
         initial: Mapping[str, Value] | None = None,
         preset: bool = False,
     ) -> ReconfigureServer | None:
-        """Parameters to be set while it runs, as `ReconfigureServer` has them.
+        """Offers parameters that can be changed at run time, as a `ReconfigureServer`.
 
-        None where another offers them already, or where a preset value makes no sense.
+        Returns None, with a warning, if another server already offers them or a preset value is not
+        allowed.
         """
         full = self.resolve(name)
         try:
@@ -257,15 +260,15 @@ class Plugin(Generic[C]):
         values: Mapping[str, errors.Value] | None = None,
         severity: Severity = "warning",
     ) -> None:
-        """Reports something about this plugin.
+        """Reports a diagnostic about this plugin.
 
         Args:
-            code: Its kind. Plugins of other packages make their own: ``Code("ACME1", …)``.
+            code: Kind of the diagnostic. Other packages define their own: ``Code("ACME1", …)``.
             message: One sentence.
-            at: The element that it is about; by default the plugin's tag.
+            at: Place of the element in question; defaults to the plugin's tag.
             hint: The likely fix, as a sentence.
-            values: What the message names, for programs.
-            severity: By default a warning, whatever the code's is.
+            values: Names and numbers of the message, for programs.
+            severity: Defaults to a warning, regardless of the code's severity.
         """
         self.part.report(
             code.diagnostic(
@@ -278,16 +281,16 @@ class Plugin(Generic[C]):
         )
 
     def link_or_root(self, name: str) -> LinkHandle:
-        """The link of that name; the root where it is a frame's and no link's."""
+        """Returns the link with this name, or the root link if no link has it."""
         description = self.part.description
         known = description.link(name) is not None
         return self.part.link(name if known else description.canonical_link)
 
     def check_above_zero(self, **values: float) -> None:
-        """Refuses parameters, given by the names of their tags.
+        """Checks that parameters, given by the names of their tags, are positive.
 
         Raises:
-            PluginError: One is 0 or below, or so small that nothing can be divided by it.
+            PluginError: A value is 0 or negative, or too small to divide by.
         """
         for name, value in values.items():
             if value < SMALLEST:
@@ -295,12 +298,13 @@ class Plugin(Generic[C]):
                 raise invalid(name, value, least, self.place_of(name))
 
     def check_not_negative(self, *names: str) -> None:
-        """Refuses parameters below 0, given by the names of their fields, of those that it has.
+        """Checks that parameters, given by the names of their fields, are not negative.
 
-        Vectors are allowed: each of their numbers counts.
+        Names of fields that the plugin does not have are skipped. Each component of a vector is
+        checked.
 
         Raises:
-            PluginError: One of them is.
+            PluginError: A value is negative.
         """
         fields = {each.name: each for each in dataclasses.fields(self.parameters)}
         for name in names:
@@ -314,10 +318,10 @@ class Plugin(Generic[C]):
                 raise invalid(tag, float(least), "at least 0", self.place_of(tag))
 
     def check_lengths(self, **values: float) -> None:
-        """Refuses sizes of a drive in m, given by the names of their tags.
+        """Checks dimensions of a drive in m, given by the names of their tags.
 
         Raises:
-            PluginError: One is 0 or below, or not of a size that anything has.
+            PluginError: A value is 0 or negative, or larger than any robot.
         """
         self.check_above_zero(**values)
         for name, value in values.items():
@@ -325,20 +329,20 @@ class Plugin(Generic[C]):
                 raise invalid(name, value, f"at most {FARTHEST:g} m", self.place_of(name))
 
     def place_of(self, tag: str) -> Origin | None:
-        """Where a tag of the plugin is written, or the plugin itself."""
-        found = self.tag.element.find(tag)
-        return found.origin if found is not None else self.tag.origin
+        """Returns the place of a tag of the plugin, or the plugin's if the tag is missing."""
+        child = self.tag.element.find(tag)
+        return child.origin if child is not None else self.tag.origin
 
     @property
     def title(self) -> str:
-        """The plugin and its model, for messages."""
+        """Names the plugin and its model, for messages."""
         name = self.tag.filename or self.tag.name
         model = f' of model "{self.part.name}"' if self.part.name else ""
         return f'plugin "{name}"{model}' if self.tag.filename else f'sensor "{name}"{model}'
 
     @property
     def node(self) -> str:
-        """Who publishes, for listings."""
+        """Names the plugin as a node, for listings."""
         names = (self.part.name, self.tag.name)
         return "/".join(name for name in names if name) or "world"
 

@@ -1,4 +1,4 @@
-"""``gz-sim-linearbatteryplugin-system``: a battery that runs down."""
+"""``gz-sim-linearbatteryplugin-system``: a battery that discharges under load."""
 
 from __future__ import annotations
 
@@ -16,65 +16,89 @@ from cartwheel.plugins.gz_drive import gz_name
 from cartwheel.plugins.parameters import tag
 
 _RATE = 50.0
-"""Hz."""
+"""Rate of the state messages, Hz."""
 _CHARGED = 0.9
-"""Of the capacity, up to which it is charged."""
+"""Share of the capacity at which charging stops."""
 _HOUR = 3600.0
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class BatteryParameters:
-    name: str = tag("battery_name", doc="Of the battery.")
-    voltage: float = tag("voltage", unit="V", doc="At first.")
+    name: str = tag("battery_name", doc="Name of the battery.")
+    voltage: float = tag("voltage", unit="V", doc="Initial voltage.")
     constant: float | None = tag(
         "open_circuit_voltage_constant_coef",
         default=None,
         unit="V",
-        doc="Of a full battery; voltage when missing.",
+        doc="Open-circuit voltage of the full battery. Defaults to `<voltage>`.",
     )
     linear: float = tag(
         "open_circuit_voltage_linear_coef",
         default=0.0,
         unit="V",
-        doc="What an empty one has more: below 0.",
+        doc="Open-circuit voltage of the empty battery minus that of the full one. Normally "
+        "negative.",
     )
-    capacity: float = tag("capacity", unit="A h", doc="Of a full battery.")
+    capacity: float = tag("capacity", unit="A h", doc="Charge of the full battery.")
     charge: float | None = tag(
-        "initial_charge", default=None, unit="A h", doc="At first; full when missing."
+        "initial_charge", default=None, unit="A h", doc="Initial charge. Defaults to the capacity."
     )
-    resistance: float = tag("resistance", default=0.0, unit="Ω", doc="Inside it.")
+    resistance: float = tag("resistance", default=0.0, unit="Ω", doc="Internal resistance.")
     smoothing: float = tag(
-        "smooth_current_tau", default=1.0, unit="s", doc="Time constant of the current."
+        "smooth_current_tau",
+        default=1.0,
+        unit="s",
+        doc="Time constant of the low-pass filter of the current.",
     )
-    power: float = tag("power_load", default=0.0, unit="W", doc="What it gives while it drains.")
-    draining: bool = tag("start_draining", default=False, doc="Drain from the start.")
+    power: float = tag(
+        "power_load", default=0.0, unit="W", doc="Power drawn while the battery discharges."
+    )
+    draining: bool = tag("start_draining", default=False, doc="Discharge from the start.")
     drain_topics: tuple[str, ...] = tag(
         "power_draining_topic",
         default=(),
-        doc="Any message on it starts draining; of Empty where nobody else has the topic.",
+        doc="Topic on which any message starts discharging. Repeatable. The type is Empty if no "
+        "other plugin defines the topic.",
     )
     stop_topics: tuple[str, ...] = tag(
-        "stop_power_draining_topic", default=(), doc="Any message on it ends draining."
+        "stop_power_draining_topic",
+        default=(),
+        doc="Topic on which any message stops discharging. Repeatable.",
     )
     rechargeable: bool = tag(
-        "enable_recharge", default=False, doc="Charge it by recharge/start and recharge/stop."
+        "enable_recharge",
+        default=False,
+        doc="Charge the battery on messages on `recharge/start` until `recharge/stop`. Requires "
+        "charging_time.",
     )
-    by_topic: bool = tag("recharge_by_topic", default=False, doc="Accepted: they are topics.")
+    by_topic: bool = tag(
+        "recharge_by_topic",
+        default=False,
+        doc="Accepted for compatibility: recharging is always controlled by topics.",
+    )
     charging_time: float = tag(
-        "charging_time", default=0.0, unit="h", doc="From empty to full; with enable_recharge."
+        "charging_time",
+        default=0.0,
+        unit="h",
+        doc="Time to charge the empty battery, with enable_recharge.",
     )
     invert: bool = tag(
-        "invert_current_sign", default=False, doc="A current that drains is below 0, as ROS has it."
+        "invert_current_sign",
+        default=False,
+        doc="Publish a discharging current as negative, as sensor_msgs/BatteryState defines it.",
     )
-    fixed: bool = tag("fix_issue_225", default=False, doc="Accepted: it is always so.")
+    fixed: bool = tag(
+        "fix_issue_225", default=False, doc="Accepted for compatibility: the fix is always applied."
+    )
 
 
 class Battery(Plugin[BatteryParameters]):
-    """Runs a battery down by a constant power from the moment that the robot is driven.
+    """Simulates a battery that discharges at a constant power once the robot is driven.
 
-    ``open circuit voltage = constant + linear (1 - charge / capacity)``, less what the resistance
-    takes. The percentage is from 0 to 1, as ROS has it. An empty battery is told, and stops
-    nothing. Source: gz-sim, LinearBatteryPlugin.
+    ``voltage = constant + linear (1 - charge / capacity) - resistance * current``. Recharging stops
+    at 90 % of the capacity. BatteryState is published at 50 Hz on
+    ``/model/<model>/battery/<battery_name>/state``; its percentage is from 0 to 1, as in ROS. An
+    empty battery causes a warning and does not stop the robot. Source: gz-sim, LinearBatteryPlugin.
     """
 
     filenames: ClassVar[tuple[str, ...]] = (
@@ -123,11 +147,11 @@ class Battery(Plugin[BatteryParameters]):
     def reset(self) -> None:
         self._draining, self._charging = self.config.draining, False
         self._charge, self._voltage, self._current = self._first, self.config.voltage, 0.0
-        self._told_empty = False
+        self._reported_empty = False
         self._before_ns = self.part.time_ns
 
     def _watch_topics(self) -> None:
-        """Hears topics of any type, which is known once all plugins are made."""
+        """Subscribes to the topics of any type, which are known once all plugins are loaded."""
         config = self.config
         known = {topic.name: topic.type for topic in self.graph.topics()}
         for topics, on in ((config.drain_topics, True), (config.stop_topics, False)):
@@ -156,7 +180,7 @@ class Battery(Plugin[BatteryParameters]):
             self._publish()
 
     def _flow(self, seconds: float) -> None:
-        """Lets the current flow for a time."""
+        """Integrates the current over a time in s."""
         config = self.config
         empty = self._charge <= 0
         wanted = config.power / self._voltage if self._draining and not empty else 0.0
@@ -170,10 +194,10 @@ class Battery(Plugin[BatteryParameters]):
         left = self._charge / config.capacity
         full = config.voltage if config.constant is None else config.constant
         voltage = full + config.linear * (1 - left) - config.resistance * self._current
-        # A load beyond what it can give would turn it round.
+        # A load beyond the maximum power would make the voltage negative.
         self._voltage = max(voltage, 1e-3)
-        if self._charge <= 0 and not self._told_empty:
-            self._told_empty = True
+        if self._charge <= 0 and not self._reported_empty:
+            self._reported_empty = True
             self.warn(
                 running.BATTERY_EMPTY,
                 f'battery "{config.name}" of model "{self.part.name}" is empty',

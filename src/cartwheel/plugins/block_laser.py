@@ -1,4 +1,4 @@
-"""``libgazebo_ros_block_laser.so``: a laser with several rows, as a cloud of points."""
+"""``libgazebo_ros_block_laser.so``: a multi-row laser that publishes point clouds."""
 
 from __future__ import annotations
 
@@ -16,25 +16,40 @@ from cartwheel.plugins.scan_messages import point_cloud
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class BlockLaserParameters:
-    topic: str = tag("topicName", "topic_name", default="points", doc="PointCloud.")
+    topic: str = tag(
+        "topicName", "topic_name", default="points", doc="Topic of the PointCloud messages."
+    )
     frame: str = tag(
-        "frameName", "frame_name", default="", doc="Frame of the messages; the link's when empty."
+        "frameName",
+        "frame_name",
+        default="",
+        doc="Frame ID of the messages. Defaults to the sensor's link.",
     )
     noise: float = tag(
-        "gaussianNoise", default=0.0, unit="m", doc="Standard deviation of each coordinate."
+        "gaussianNoise",
+        default=0.0,
+        unit="m",
+        doc="Standard deviation of the noise of each coordinate.",
     )
     least_intensity: float = tag(
-        "hokuyoMinIntensity", default=101.0, doc="Accepted: Gazebo does nothing with it."
+        "hokuyoMinIntensity",
+        default=101.0,
+        doc="Accepted for compatibility; no effect, as in Gazebo.",
     )
     update_rate: float = tag(
-        "updateRate", "update_rate", default=0.0, unit="Hz", doc="Accepted: the sensor's counts."
+        "updateRate",
+        "update_rate",
+        default=0.0,
+        unit="Hz",
+        doc="Accepted for compatibility; the sensor's `<update_rate>` is used.",
     )
 
 
 class BlockLaser(Plugin[BlockLaserParameters]):
-    """Publishes the points that a ray sensor hits, z up.
+    """Publishes the points hit by a ray sensor as a PointCloud.
 
-    Source: gazebo_plugins, gazebo_ros_block_laser.
+    Points have x forward, y left and z up. Rays without a hit are left out. Source: gazebo_plugins,
+    gazebo_ros_block_laser.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_block_laser.so",)

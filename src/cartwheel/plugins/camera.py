@@ -1,4 +1,4 @@
-"""``libgazebo_ros_camera.so``: images, their calibration, and JPEGs of them."""
+"""``libgazebo_ros_camera.so``: raw and compressed images with their calibration."""
 
 from __future__ import annotations
 
@@ -23,65 +23,131 @@ _NINE = 9
 @dataclass(frozen=True, kw_only=True, slots=True)
 class CameraParameters:
     camera_name: str = tag(
-        "cameraName", "camera_name", default="", doc="Namespace of its topics; see above."
+        "cameraName", "camera_name", default="", doc="Namespace of the topics; see above."
     )
-    image_topic: str = tag("imageTopicName", default="image_raw", doc="Image.")
-    info_topic: str = tag("cameraInfoTopicName", default="camera_info", doc="CameraInfo.")
+    image_topic: str = tag("imageTopicName", default="image_raw", doc="Topic of the images.")
+    info_topic: str = tag(
+        "cameraInfoTopicName", default="camera_info", doc="Topic of the CameraInfo messages."
+    )
     frame: str = tag(
-        "frameName", "frame_name", default="", doc="Frame of the messages; the link's when empty."
+        "frameName",
+        "frame_name",
+        default="",
+        doc="Frame ID of the messages. Defaults to the sensor's link.",
     )
     update_rate: float = tag(
-        "updateRate", "update_rate", default=0.0, unit="Hz", doc="0 is the sensor's own."
+        "updateRate",
+        "update_rate",
+        default=0.0,
+        unit="Hz",
+        doc="Maximum frame rate. The lower of this and the sensor's `<update_rate>` applies; 0: "
+        "no limit.",
     )
     hack_baseline: float = tag(
-        "hackBaseline", "hack_baseline", default=0.0, unit="m", doc="Of a stereo pair, in P."
+        "hackBaseline",
+        "hack_baseline",
+        default=0.0,
+        unit="m",
+        doc="Distance to the left camera of a stereo pair, for the projection matrix P.",
     )
     focal_length: float = tag(
         "focalLength",
         "focal_length",
         default=0.0,
         unit="px",
-        doc="Told in K; 0 is that of the field of view.",
+        doc="Focal length in the camera matrix K. 0: computed from the field of view.",
     )
-    cx: float = tag("Cx", "cx", default=0.0, unit="px", doc="0 is (width + 1) / 2.")
-    cy: float = tag("Cy", "cy", default=0.0, unit="px", doc="0 is (height + 1) / 2.")
-    cx_prime: float = tag("CxPrime", "cx_prime", default=0.0, unit="px", doc="Accepted.")
+    cx: float = tag(
+        "Cx", "cx", default=0.0, unit="px", doc="Principal point in x. 0: (width + 1) / 2."
+    )
+    cy: float = tag(
+        "Cy", "cy", default=0.0, unit="px", doc="Principal point in y. 0: (height + 1) / 2."
+    )
+    cx_prime: float = tag(
+        "CxPrime", "cx_prime", default=0.0, unit="px", doc="Accepted for compatibility; no effect."
+    )
     k1: float = tag(
-        "distortionK1", "distortion_k1", default=0.0, most=MOST_BENT, doc="Radial; see above."
+        "distortionK1",
+        "distortion_k1",
+        default=0.0,
+        most=MOST_BENT,
+        doc="Radial distortion; see above.",
     )
-    k2: float = tag("distortionK2", "distortion_k2", default=0.0, most=MOST_BENT, doc="Radial.")
-    k3: float = tag("distortionK3", "distortion_k3", default=0.0, most=MOST_BENT, doc="Radial.")
-    t1: float = tag("distortionT1", "distortion_t1", default=0.0, most=MOST_BENT, doc="Tangential.")
-    t2: float = tag("distortionT2", "distortion_t2", default=0.0, most=MOST_BENT, doc="Tangential.")
+    k2: float = tag(
+        "distortionK2", "distortion_k2", default=0.0, most=MOST_BENT, doc="Radial distortion."
+    )
+    k3: float = tag(
+        "distortionK3", "distortion_k3", default=0.0, most=MOST_BENT, doc="Radial distortion."
+    )
+    t1: float = tag(
+        "distortionT1", "distortion_t1", default=0.0, most=MOST_BENT, doc="Tangential distortion."
+    )
+    t2: float = tag(
+        "distortionT2", "distortion_t2", default=0.0, most=MOST_BENT, doc="Tangential distortion."
+    )
     auto_distortion: bool = tag(
-        "autoDistortion", "auto_distortion", default=False, doc="Accepted: it is always so."
+        "autoDistortion",
+        "auto_distortion",
+        default=False,
+        doc="Accepted for compatibility: the image is always distorted.",
     )
     border_crop: bool = tag(
-        "borderCrop", "border_crop", default=True, doc="Accepted: there are no black borders."
+        "borderCrop",
+        "border_crop",
+        default=True,
+        doc="Accepted for compatibility: the image has no black borders.",
     )
     rectification: str = tag(
-        "rectification_matrix", default="", doc="Nine numbers, row by row: R (ROS 2)."
+        "rectification_matrix",
+        default="",
+        doc="Rectification matrix R: nine numbers, row by row (ROS 2). Default: identity.",
     )
-    p_fx: float | None = tag("P_fx", default=None, unit="px", doc="In P; that of K (ROS 2).")
-    p_fy: float | None = tag("P_fy", default=None, unit="px", doc="In P; that of K (ROS 2).")
-    p_cx: float | None = tag("P_cx", default=None, unit="px", doc="In P; that of K (ROS 2).")
-    p_cy: float | None = tag("P_cy", default=None, unit="px", doc="In P; that of K (ROS 2).")
-    p_tx: float | None = tag("Tx", default=None, doc="In P; -fx times the baseline (ROS 2).")
-    p_ty: float = tag("Ty", default=0.0, doc="In P (ROS 2).")
+    p_fx: float | None = tag(
+        "P_fx",
+        default=None,
+        unit="px",
+        doc="Entry of the projection matrix P (ROS 2). Defaults to that of K.",
+    )
+    p_fy: float | None = tag(
+        "P_fy",
+        default=None,
+        unit="px",
+        doc="Entry of the projection matrix P (ROS 2). Defaults to that of K.",
+    )
+    p_cx: float | None = tag(
+        "P_cx",
+        default=None,
+        unit="px",
+        doc="Entry of the projection matrix P (ROS 2). Defaults to that of K.",
+    )
+    p_cy: float | None = tag(
+        "P_cy",
+        default=None,
+        unit="px",
+        doc="Entry of the projection matrix P (ROS 2). Defaults to that of K.",
+    )
+    p_tx: float | None = tag(
+        "Tx",
+        default=None,
+        doc="Entry of the projection matrix P (ROS 2). Defaults to -fx times the baseline.",
+    )
+    p_ty: float = tag("Ty", default=0.0, doc="Entry of the projection matrix P (ROS 2).")
     trigger_topic: str = tag(
-        "triggerTopicName", default="image_trigger", doc="Empty, of a triggered camera."
+        "triggerTopicName",
+        default="image_trigger",
+        doc="Topic of the Empty messages that trigger an image.",
     )
-    triggered: bool = tag("triggered", default=False, doc="Images only on demand.")
+    triggered: bool = tag("triggered", default=False, doc="Publish an image only on a trigger.")
 
 
 P = TypeVar("P", bound=CameraParameters)
 
 
 class RosCamera(CameraBase[P]):
-    """A camera plugin of gazebo_plugins: what all of them read."""
+    """Base class of the camera plugins of gazebo_plugins."""
 
     waits: ClassVar[bool] = False
-    """Whether it always waits for its trigger."""
+    """Whether images are always triggered."""
 
     @property
     def is_ros2(self) -> bool:
@@ -95,7 +161,7 @@ class RosCamera(CameraBase[P]):
         return self.config.update_rate
 
     def _base(self) -> str:
-        """The namespace of all topics: ROS 2's default is the sensor's name, ROS 1's none."""
+        """Namespace of all topics: by default the sensor's name in ROS 2, and none in ROS 1."""
         assert self.sensor is not None
         if self.config.camera_name:
             return self.config.camera_name
@@ -105,7 +171,7 @@ class RosCamera(CameraBase[P]):
         return "" if written_for_ros1 else self.sensor.name
 
     def _lenses(self) -> Sequence[tuple[CameraIntrinsics, str]]:
-        """Each lens with the namespace of its topics."""
+        """Returns each lens with the namespace of its topics."""
         assert self.sensor is not None
         base = self._base()
         if self.sensor.type not in ("multicamera", "multi_camera"):
@@ -120,7 +186,9 @@ class RosCamera(CameraBase[P]):
 
     def _open_eyes(self) -> Iterator[Eye]:
         config, lenses = self.config, self._lenses()
-        told = Distortion(k1=config.k1, k2=config.k2, p1=config.t1, p2=config.t2, k3=config.k3)
+        distortion = Distortion(
+            k1=config.k1, k2=config.k2, p1=config.t1, p2=config.t2, k3=config.k3
+        )
         rectified = self._rectified()
         for lens, base in lenses:
             left = len(lenses) > 1 and "left" in lens.name
@@ -133,7 +201,7 @@ class RosCamera(CameraBase[P]):
                     adjustable=not self.is_ros2,
                 ),
                 frame=config.frame,
-                told=told,
+                distortion=distortion,
                 focal_length=config.focal_length,
                 centre=(config.cx, config.cy),
                 baseline=0.0 if left else config.hack_baseline,
@@ -160,7 +228,7 @@ class RosCamera(CameraBase[P]):
         config = self.config
         if not (self.waits or config.triggered):
             return []
-        # In ROS 2 one trigger is for all lenses.
+        # In ROS 2 all lenses share one trigger.
         bases = [self._base()] if self.is_ros2 else [base for _, base in self._lenses()]
         return [joined(base, config.trigger_topic) for base in bases]
 
@@ -168,27 +236,34 @@ class RosCamera(CameraBase[P]):
 @dataclass(frozen=True, kw_only=True, slots=True)
 class DepthByTypeParameters(CameraParameters):
     min_depth: float = tag(
-        "min_depth", default=0.4, unit="m", doc="Of a sensor of type depth: -inf is told below."
+        "min_depth",
+        default=0.4,
+        unit="m",
+        doc="For sensors of type depth: depths up to this are -inf.",
     )
     max_depth: float = tag(
-        "max_depth", default=math.inf, unit="m", doc="Of a sensor of type depth: inf beyond."
+        "max_depth",
+        default=math.inf,
+        unit="m",
+        doc="For sensors of type depth: depths from this on are inf.",
     )
 
 
 class Camera(RosCamera[DepthByTypeParameters]):
-    """Publishes what a camera sensor sees, and draws only what somebody reads.
+    """Publishes the images of a camera sensor.
 
-    The sensor looks along its x axis. Topics go under ``<cameraName>``. Without one they go under
-    the sensor's name, as in ROS 2, and where other tags are written as in ROS 1, under the
-    namespace alone. Of a sensor of type multicamera each camera has its own:
-    ``<cameraName>/left``. In one of type depth the plugin publishes depths and points besides.
+    The sensor looks along its x axis. An image is rendered only if a topic has subscribers. Topics
+    are under ``<cameraName>``. Without that tag they are under the sensor's name, as in ROS 2. If
+    other tags have ROS 1 spellings, they are directly under the namespace. Each camera of a
+    ``multicamera`` sensor has its own topics, such as ``<cameraName>/left``. For a ``depth``
+    sensor, the plugin also publishes depth images and points.
 
-    ``image_raw/compressed`` holds JPEGs or PNGs. ``set_camera_info`` changes what is told of the
-    camera. In ROS 1's way of writing, dynamic_reconfigure has ``imager_rate`` and what concerns
-    compression.
+    ``image_raw/compressed`` contains JPEG or PNG images. ``set_camera_info`` replaces the published
+    CameraInfo; the image does not change. If the tag is written for ROS 1, dynamic_reconfigure
+    offers ``imager_rate`` and the parameters of the compression.
 
-    The sensor's ``<distortion>`` bends the image, and where it has none the plugin's numbers do:
-    ``camera_info`` tells the same.
+    The image is distorted by the sensor's ``<distortion>``, or else by the plugin's coefficients.
+    ``camera_info`` contains the same coefficients.
 
     Source: gazebo_plugins, gazebo_ros_camera and gazebo_ros_camera_utils, of ROS 1 and ROS 2.
     """
@@ -216,9 +291,10 @@ class Camera(RosCamera[DepthByTypeParameters]):
 
 
 class TriggeredCamera(Camera):
-    """A camera that publishes one image for each message on ``<cameraName>/image_trigger``.
+    """Publishes one image for each message on ``<cameraName>/image_trigger``.
 
-    Source: gazebo_plugins, gazebo_ros_triggered_camera and gazebo_ros_triggered_multicamera.
+    In other respects the plugin is that of libgazebo_ros_camera.so. Source: gazebo_plugins,
+    gazebo_ros_triggered_camera and gazebo_ros_triggered_multicamera.
     """
 
     filenames: ClassVar[tuple[str, ...]] = (
@@ -230,13 +306,16 @@ class TriggeredCamera(Camera):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ProsilicaParameters(CameraParameters):
-    poll_service: str = tag("pollServiceName", default="request_image", doc="Not served.")
+    poll_service: str = tag(
+        "pollServiceName", default="request_image", doc="Not supported: the camera always streams."
+    )
 
 
 class Prosilica(RosCamera[ProsilicaParameters]):
-    """A camera in its streaming mode, with the topics of any other; polling is reported.
+    """Publishes the images of a Prosilica camera in streaming mode.
 
-    Source: gazebo_plugins, gazebo_ros_prosilica.
+    The topics are those of libgazebo_ros_camera.so. If the parameter ``trigger_mode`` is
+    ``polled``, a warning is reported. Source: gazebo_plugins, gazebo_ros_prosilica.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_prosilica.so",)

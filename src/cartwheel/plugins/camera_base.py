@@ -1,4 +1,4 @@
-"""What all plugins of cameras do: one or more eyes, drawn at a rate or on demand."""
+"""The base class of camera plugins: one or more lenses, rendered at a rate or on a trigger."""
 
 from __future__ import annotations
 
@@ -17,22 +17,22 @@ from cartwheel.plugins.camera_lens import Distortion, Lens
 from cartwheel.simulation.offscreen import NoOpenGLError
 
 _WIDEST_VIEW = 2.8
-"""rad; a pinhole's picture of more is nearly all edge."""
+"""Largest field of view, rad; a wider image of a pinhole camera is nearly all border."""
 _IDLE_RATE = 1.0
-"""Hz at which a camera that waits for its trigger is looked at."""
+"""Rate at which a triggered camera checks its trigger, Hz."""
 _LOST = {
     "lens": "the view of <horizontal_fov> counts",
     "save": "no pictures are saved",
     "visibility_mask": "all visuals are seen",
 }
-"""What SDF can say of a camera, and what counts instead."""
+"""Unsupported elements of SDF cameras, and what applies instead."""
 _WIDE = ("wideanglecamera", "wide_angle_camera")
 
 C = TypeVar("C")
 
 
 class CameraBase(Plugin[C]):
-    """A camera's sensor, its rate and its trigger; what its topics are called is a subclass's."""
+    """Base class of camera plugins: sensor, rate and trigger. Subclasses name the topics."""
 
     empty_is_model: ClassVar[bool] = True
     for_sensor: ClassVar[bool] = True
@@ -86,19 +86,19 @@ class CameraBase(Plugin[C]):
         )
 
     def _asked_rate(self) -> float:
-        """Hz that the plugin's own tags ask for; 0 is the sensor's."""
+        """Rate that the plugin's tags request, Hz; 0 for the sensor's rate."""
         return 0.0
 
     def _open_eyes(self) -> Iterator[Eye]:
-        """Makes each lens with its topics."""
+        """Creates an `Eye` for each lens."""
         raise NotImplementedError
 
     def _trigger_topics(self) -> list[str]:
-        """What it waits for; empty where it does not."""
+        """Returns the trigger topics; empty if the camera streams."""
         return []
 
     def _depth_options(self) -> DepthOptions | None:
-        """How depths are told; None where they are not."""
+        """Returns the options of the depth topics, or None without depths."""
         return None
 
     def _eye(
@@ -107,22 +107,22 @@ class CameraBase(Plugin[C]):
         topics: EyeTopics,
         *,
         frame: str,
-        told: Distortion | None = None,
+        distortion: Distortion | None = None,
         **calibration: Any,
     ) -> Eye:
-        """One lens.
+        """Creates the `Eye` of a lens.
 
         Args:
-            lens: As the sensor has it.
-            topics: Where it publishes.
-            frame: Of the messages; the link's where it is empty.
-            told: The distortion where the sensor has none.
+            lens: Intrinsics of the sensor.
+            topics: Names of the topics.
+            frame: Frame ID of the messages; empty for the sensor's link.
+            distortion: Used if the sensor has no distortion.
             calibration: See `Calibration`.
         """
         sensor = self.sensor
         assert sensor is not None
         lens = self._narrowed(lens)
-        bent = Lens(lens, self._distortion(lens, told or Distortion()))
+        bent = Lens(lens, self._distortion(lens, distortion or Distortion()))
         frame = self.frame(frame or sensor.link)
         return Eye(
             self,
@@ -147,12 +147,12 @@ class CameraBase(Plugin[C]):
         )
         return dataclasses.replace(lens, horizontal_fov=_WIDEST_VIEW)
 
-    def _distortion(self, lens: CameraIntrinsics, told: Distortion) -> Distortion:
-        """The sensor's own, else the plugin's: the image is drawn as camera_info tells it."""
+    def _distortion(self, lens: CameraIntrinsics, configured: Distortion) -> Distortion:
+        """Returns the sensor's distortion, or else the plugin's, for image and camera_info."""
         own = Distortion(k1=lens.k1, k2=lens.k2, p1=lens.p1, p2=lens.p2, k3=lens.k3)
         if not any(own.coefficients):
-            return told
-        if any(told.coefficients) and told != own:
+            return configured
+        if any(configured.coefficients) and configured != own:
             self.warn(
                 devices.PLUGIN_PARAMETER_IGNORED,
                 "the plugin's distortion has no effect: that of the sensor is used",
@@ -177,7 +177,7 @@ class CameraBase(Plugin[C]):
 
     def _trigger(self, _: Any) -> None:
         self._triggers += 1
-        # At the next step, whatever the sensor's rate is.
+        # At the next step, regardless of the sensor's rate.
         self._task = self.part.reschedule(self._task, 0.0)
 
     def _publish_once(self) -> None:
@@ -212,6 +212,6 @@ class CameraBase(Plugin[C]):
                     if eye.sees:
                         eye.publish(now, eye.picture())
         except NoOpenGLError as error:
-            # Reported once; everything but images goes on.
+            # Reported once; everything except images continues.
             self._blind = True
             self.warn(error.code, error.message, hint=error.hint or "", values=error.values)

@@ -1,4 +1,4 @@
-"""Images in fewer bytes, as image_transport's plugins publish them beside an image."""
+"""Compressed images on subtopics, like the plugins of image_transport."""
 
 from __future__ import annotations
 
@@ -20,18 +20,18 @@ from cartwheel.plugins.camera_formats import ImageFormat, Pixels
 COMPRESSED = "sensor_msgs/msg/CompressedImage"
 _FORMATS = ("jpeg", "png")
 _INVERSE = 1
-"""What the head of compressed depths says of how they are stored."""
+"""Value of the header of compressed depths that selects inverse quantisation."""
 
 PARAMETERS = (
     ReconfigureParameter(
-        name="enable", type="bool", default=True, description="Publish these images"
+        name="enable", type="bool", default=True, description="Publish compressed images"
     ),
     ReconfigureParameter(
         name="format",
         type="str",
         default="jpeg",
-        description="How images are compressed",
-        edit_method=choices(*_FORMATS, description="JPEG loses some detail, PNG none"),
+        description="Compression format",
+        edit_method=choices(*_FORMATS, description="JPEG is lossy, PNG is lossless"),
     ),
     ReconfigureParameter(
         name="jpeg_quality",
@@ -39,13 +39,13 @@ PARAMETERS = (
         default=80,
         minimum=1,
         maximum=100,
-        description="Quality of a JPEG, 100 is the best",
+        description="JPEG quality; 100 is the best",
     ),
     ReconfigureParameter(
         name="jpeg_progressive", type="bool", default=False, description="Progressive JPEG"
     ),
     ReconfigureParameter(
-        name="jpeg_optimize", type="bool", default=False, description="Smaller JPEG, slower"
+        name="jpeg_optimize", type="bool", default=False, description="Smaller but slower JPEG"
     ),
     ReconfigureParameter(
         name="jpeg_restart_interval",
@@ -53,7 +53,7 @@ PARAMETERS = (
         default=0,
         minimum=0,
         maximum=65535,
-        description="Blocks between restart markers of a JPEG, 0 is none",
+        description="Blocks between JPEG restart markers; 0 for no markers",
     ),
     ReconfigureParameter(
         name="png_level",
@@ -64,18 +64,18 @@ PARAMETERS = (
         description="Effort of PNG, 9 is the smallest",
     ),
 )
-"""Names, types, defaults and bounds as compressed_image_transport has them."""
+"""Names, types, defaults and limits are those of compressed_image_transport."""
 
 DEPTH_PARAMETERS = (
     ReconfigureParameter(
-        name="enable", type="bool", default=True, description="Publish these images"
+        name="enable", type="bool", default=True, description="Publish compressed depths"
     ),
     ReconfigureParameter(
         name="format",
         type="str",
         default="png",
-        description="How depths are compressed",
-        edit_method=choices("png", "rvl", description="Neither loses any detail"),
+        description="Compression format of depths",
+        edit_method=choices("png", "rvl", description="Both are lossless"),
     ),
     ReconfigureParameter(
         name="depth_max",
@@ -83,7 +83,7 @@ DEPTH_PARAMETERS = (
         default=10.0,
         minimum=1.0,
         maximum=100.0,
-        description="Largest depth, m",
+        description="Maximum depth, m",
     ),
     ReconfigureParameter(
         name="depth_quantization",
@@ -91,7 +91,7 @@ DEPTH_PARAMETERS = (
         default=100.0,
         minimum=1.0,
         maximum=150.0,
-        description="Depth at which a step is 1 m",
+        description="Depth at which the quantisation step is 1 m",
     ),
     ReconfigureParameter(
         name="png_level",
@@ -102,20 +102,20 @@ DEPTH_PARAMETERS = (
         description="Effort of PNG, 9 is the smallest",
     ),
 )
-"""As compressed_depth_image_transport has them."""
+"""Names, types, defaults and limits are those of compressed_depth_image_transport."""
 
 
 class CompressedImages:
-    """``<image>/compressed``, and what may be set of it while it runs.
+    """The topic ``<image>/compressed``, and its parameters that can be changed at run time.
 
     Source: compressed_image_transport.
 
     Args:
-        plugin: Which publishes.
+        plugin: The publishing plugin.
         image: Topic of the image.
-        form: Its format.
-        rate: Hz as listings tell it.
-        adjustable: Whether ``dynamic_reconfigure`` offers its parameters.
+        form: Format of the image.
+        rate: Publish rate for listings, Hz.
+        adjustable: Whether ``dynamic_reconfigure`` offers the parameters.
     """
 
     def __init__(
@@ -144,15 +144,15 @@ class CompressedImages:
         return self._publisher.wanted and bool(self._values["enable"])
 
     def publish(self, moment: Any, pixels: Pixels) -> None:
-        """Compresses RGB, shape (height, width, 3), in the image's format."""
+        """Compresses and publishes RGB pixels, shape (height, width, 3), in the image's format."""
         form = self._format
         kind = self._values["format"]
-        told = f"{form.encoding}; {kind} compressed {'bgr8' if form.colour else ''}"
+        transport = f"{form.encoding}; {kind} compressed {'bgr8' if form.colour else ''}"
         data = _packed(pixels if form.colour else form.encode(pixels), kind, self._values)
         self._publisher.publish(
             self._message(
                 header=moment,
-                format=told if kind == "jpeg" else told.rstrip(),
+                format=transport if kind == "jpeg" else transport.rstrip(),
                 data=np.frombuffer(data, dtype=np.uint8),
             )
         )
@@ -169,15 +169,15 @@ class CompressedImages:
 
 
 class CompressedDepths:
-    """``<image>/compressedDepth`` of an image of depths in m, as ROS 2 publishes it.
+    """The topic ``<image>/compressedDepth`` of an image of depths in m, as in ROS 2.
 
-    Depths are quantised inversely, finer the nearer; 0 is none. Source:
-    compressed_depth_image_transport.
+    Depths are quantised inversely, so that near depths have smaller steps; 0 means no depth.
+    Source: compressed_depth_image_transport.
 
     Args:
-        plugin: Which publishes.
+        plugin: The publishing plugin.
         image: Topic of the depths.
-        rate: Hz as listings tell it.
+        rate: Publish rate for listings, Hz.
     """
 
     def __init__(self, plugin: Plugin[Any], image: str, *, rate: float | None) -> None:
@@ -196,13 +196,16 @@ class CompressedDepths:
         return self._publisher.wanted
 
     def publish(self, moment: Any, depths: NDArray[np.float32]) -> None:
-        """Compresses depths in m, shape (height, width); what is not finite is none."""
+        """Compresses and publishes depths in m, shape (height, width).
+
+        Depths that are not finite, not positive or beyond the maximum are encoded as 0, no depth.
+        """
         from PIL import Image
 
-        told = np.isfinite(depths) & (depths > 0) & (depths < self._furthest)
+        valid = np.isfinite(depths) & (depths > 0) & (depths < self._furthest)
         steps = np.zeros(depths.shape, dtype=np.uint16)
-        inverse = self._factor / depths[told] + self._offset
-        steps[told] = np.minimum(inverse, np.iinfo(np.uint16).max)
+        inverse = self._factor / depths[valid] + self._offset
+        steps[valid] = np.minimum(inverse, np.iinfo(np.uint16).max)
         buffer = io.BytesIO()
         buffer.write(struct.pack("<iff", _INVERSE, self._factor, self._offset))
         Image.fromarray(steps).save(buffer, format="PNG", compress_level=self._level)
@@ -219,7 +222,7 @@ def _packed(pixels: NDArray[Any], kind: str, values: Mapping[str, Any]) -> bytes
     from PIL import Image
 
     if pixels.dtype != np.uint8:
-        # Their lower byte repeats the upper one.
+        # In 16-bit images the lower byte repeats the upper one.
         pixels = (pixels >> 8).astype(np.uint8)
     buffer = io.BytesIO()
     image = Image.fromarray(pixels)

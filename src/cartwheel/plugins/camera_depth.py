@@ -1,4 +1,4 @@
-"""Depths of a camera: as an image, and as coloured points."""
+"""Depth topics of a camera: an image, and coloured points."""
 
 from __future__ import annotations
 
@@ -27,41 +27,41 @@ POINT = np.dtype(
         "itemsize": 32,
     }
 )
-"""As sensor_msgs' PointCloud2Modifier lays ``xyz`` and ``rgb`` out."""
+"""Layout of ``xyz`` and ``rgb`` by sensor_msgs' PointCloud2Modifier."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class DepthOptions:
-    """How depths are told."""
+    """Topics, limits and encoding of depths."""
 
     depth: str
     points: str = ""
     info: str = ""
-    """Topics; "" is none."""
+    """Topics; empty ones are not published."""
     nearest: float = 0.0
     furthest: float = np.inf
-    """m; depths at or beyond are not told."""
+    """m; depths up to `nearest` and from `furthest` on are published as `beyond`."""
     points_nearest: float | None = None
     points_furthest: float | None = None
-    """m; the same of the points, where they have bounds of their own."""
+    """m; limits of the points, if they differ."""
     beyond: Literal["nan", "inf"] = "nan"
-    """What stands for them: nan, or -inf when too near and inf when too far (REP 118)."""
+    """Value outside the limits: nan, or -inf if too near and inf if too far (REP 118)."""
     millimetres: bool = False
-    """16UC1 in mm instead of 32FC1 in m; 0 stands for what is not told."""
+    """Publish 16UC1 in mm instead of 32FC1 in m; 0 means no depth."""
     compressed: bool = False
     """Whether ``<depth>/compressedDepth`` is published."""
     optical: bool = True
-    """Points with x right, y down, z ahead; else x ahead, y left, z up."""
+    """Points with x right, y down, z forward; otherwise x forward, y left, z up."""
 
 
 class Depths:
-    """The depth topics of an eye; its image and these come from one picture.
+    """The depth topics of an `Eye`. The colour image comes from the same rendering.
 
     Args:
-        plugin: Whose they are.
-        eye: Which sees them.
-        options: How they are told.
-        rate: Hz as listings tell it.
+        plugin: The publishing plugin.
+        eye: The lens.
+        options: Topics, limits and encoding.
+        rate: Publish rate for listings, Hz.
     """
 
     def __init__(
@@ -89,7 +89,7 @@ class Depths:
 
     @property
     def sees(self) -> bool:
-        """Whether somebody wants depths."""
+        """Whether a depth image or the points have subscribers."""
         packed = self._compressed is not None and self._compressed.wanted
         return packed or self._image.wanted or self._points_wanted()
 
@@ -98,46 +98,46 @@ class Depths:
         return self.sees or (self._info is not None and self._info.wanted)
 
     def publish_info(self, now: int) -> None:
-        """Tells the calibration, where somebody reads it."""
+        """Publishes the calibration if it has subscribers."""
         if self._info is not None and self._info.wanted:
             self._info.publish(self._eye.calibration.message(now))
 
     def publish(self, now: int, pixels: Pixels, depths: NDArray[np.float32]) -> None:
-        """Publishes depths in m and the colours that belong to them."""
+        """Publishes depths in m, and points with the colours of `pixels`."""
         moment = header(now, self._eye.frame)
         options = self._options
-        told = self._told(depths, options.nearest, options.furthest)
+        clipped = self._clip(depths, options.nearest, options.furthest)
         if self._image.wanted:
-            self._image.publish(self._depth_image(moment, told))
+            self._image.publish(self._depth_image(moment, clipped))
         if self._compressed is not None and self._compressed.wanted:
-            self._compressed.publish(moment, told)
+            self._compressed.publish(moment, clipped)
         if self._points is not None and self._points.wanted:
             near, far = options.points_nearest, options.points_furthest
             if near is not None or far is not None:
                 near = options.nearest if near is None else near
-                told = self._told(depths, near, options.furthest if far is None else far)
-            dense = bool(np.isfinite(told).all())
-            self._points.publish(point_cloud2(moment, self._cloud(pixels, told), dense=dense))
+                clipped = self._clip(depths, near, options.furthest if far is None else far)
+            dense = bool(np.isfinite(clipped).all())
+            self._points.publish(point_cloud2(moment, self._cloud(pixels, clipped), dense=dense))
 
     def _points_wanted(self) -> bool:
         return self._points is not None and self._points.wanted
 
-    def _told(
+    def _clip(
         self, depths: NDArray[np.float32], nearest: float, furthest: float
     ) -> NDArray[np.float32]:
-        # Limits beyond the depths' own type are those of the type.
+        # Limits are restricted to the range of float32.
         near = depths <= max(-_FURTHEST, min(nearest, _FURTHEST))
         far = depths >= max(-_FURTHEST, min(furthest, _FURTHEST))
         if self._options.beyond == "nan":
-            # Where nothing is there is no depth, and infinitely far is not below infinity.
+            # inf, where the ray hits nothing, also becomes nan if the limit is inf.
             return np.where(near | far, np.float32(np.nan), depths)
         return np.where(near, np.float32(-np.inf), np.where(far, np.float32(np.inf), depths))
 
-    def _depth_image(self, moment: Any, told: NDArray[np.float32]) -> Any:
-        height, width = told.shape
-        data: NDArray[Any] = told.astype("<f4", copy=False)
+    def _depth_image(self, moment: Any, clipped: NDArray[np.float32]) -> Any:
+        height, width = clipped.shape
+        data: NDArray[Any] = clipped.astype("<f4", copy=False)
         if self._options.millimetres:
-            whole = np.nan_to_num(told * _MILLIMETRES, nan=0.0, posinf=0.0, neginf=0.0)
+            whole = np.nan_to_num(clipped * _MILLIMETRES, nan=0.0, posinf=0.0, neginf=0.0)
             data = np.where(whole > np.iinfo(np.uint16).max, 0, whole).astype("<u2")
         return self._message(
             header=moment,
@@ -149,23 +149,24 @@ class Depths:
             data=np.ascontiguousarray(data).reshape(-1).view(np.uint8),
         )
 
-    def _cloud(self, pixels: Pixels, told: NDArray[np.float32]) -> NDArray[np.void]:
-        cloud = np.zeros(told.shape, dtype=POINT)
+    def _cloud(self, pixels: Pixels, clipped: NDArray[np.float32]) -> NDArray[np.void]:
+        cloud = np.zeros(clipped.shape, dtype=POINT)
         with np.errstate(invalid="ignore"):
-            right, down = self._right * told, self._down * told
+            right, down = self._right * clipped, self._down * clipped
         if self._options.beyond == "inf":
-            # All three alike: a ray to the left makes minus infinity of it, and one ahead nan.
-            lost = ~np.isfinite(told)
-            np.copyto(right, told if self._options.optical else -told, where=lost)
-            np.copyto(down, told if self._options.optical else -told, where=lost)
+            # All three coordinates get the same infinity: multiplying it by a ray's slope would
+            # give the opposite sign on the left, and nan in the centre.
+            lost = ~np.isfinite(clipped)
+            np.copyto(right, clipped if self._options.optical else -clipped, where=lost)
+            np.copyto(down, clipped if self._options.optical else -clipped, where=lost)
         if self._options.optical:
-            cloud["x"], cloud["y"], cloud["z"] = right, down, told
+            cloud["x"], cloud["y"], cloud["z"] = right, down, clipped
         else:
-            cloud["x"] = told
+            cloud["x"] = clipped
             np.negative(right, out=cloud["y"])
             np.negative(down, out=cloud["z"])
-        colours = np.zeros((*told.shape, 4), dtype=np.uint8)
-        # 0x00RRGGBB, its lowest byte first.
+        colours = np.zeros((*clipped.shape, 4), dtype=np.uint8)
+        # 0x00RRGGBB, little-endian.
         colours[..., 2], colours[..., 1], colours[..., 0] = np.moveaxis(pixels, -1, 0)
         cloud["rgb"] = colours.view("<f4")[..., 0]
         return cloud

@@ -1,4 +1,4 @@
-"""One lens of a camera with its topics: what it sees, and what is told of it."""
+"""One lens of a camera, with its images, calibration and topics."""
 
 from __future__ import annotations
 
@@ -32,37 +32,37 @@ _RATE = ReconfigureParameter(
     level=3,
     description="Images a second",
 )
-"""As gazebo_plugins' GazeboRosCamera.cfg has it."""
+"""From GazeboRosCamera.cfg of gazebo_plugins."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class EyeTopics:
-    """Where an eye publishes."""
+    """Topics and services of a lens."""
 
     image: str
-    """"" is without images."""
+    """Empty for no images."""
     info: str
     base: str
-    """Namespace of its services; "" is without those that need one."""
+    """Namespace of the services; empty without those that need one."""
     set_info: bool = True
     """Whether ``set_camera_info`` is offered."""
     adjustable: bool = True
-    """Whether ROS 1's dynamic_reconfigure is."""
+    """Whether ROS 1's dynamic_reconfigure is offered."""
 
 
 class Eye:
-    """Draws and publishes, when its plugin says so.
+    """Renders and publishes the images of one lens, when its plugin requests it.
 
     Args:
-        plugin: Whose it is.
-        sensor: That has the lens.
-        lens: As the description states it, with its pose in the sensor.
-        bent: The same with its distortion.
-        calibration: What is told of it.
-        topics: Where.
-        frame: Of the messages.
-        rate: Hz, 0 is every step.
-        on_rate: Called with another rate.
+        plugin: The publishing plugin.
+        sensor: The sensor of the lens.
+        lens: Intrinsics from the description, with the pose of the lens in the sensor.
+        bent: The lens with its distortion.
+        calibration: The published CameraInfo.
+        topics: Topics and services.
+        frame: Frame ID of the messages.
+        rate: Hz; 0 for every step.
+        on_rate: Called with a new rate.
     """
 
     def __init__(
@@ -88,13 +88,13 @@ class Eye:
             sensor.name, sensor.link, sensor.pose @ lens.pose, bent.drawn
         )
         self._message = message_class("sensor_msgs/msg/Image")
-        told = rate or None
-        self._info = plugin.advertise(topics.info, INFO, rate=told, qos="sensor")
+        listed_rate = rate or None
+        self._info = plugin.advertise(topics.info, INFO, rate=listed_rate, qos="sensor")
         self._image: Publisher | None = None
         self._compressed: CompressedImages | None = None
         if topics.image:
             self._image = plugin.advertise(
-                topics.image, "sensor_msgs/msg/Image", rate=told, qos="sensor"
+                topics.image, "sensor_msgs/msg/Image", rate=listed_rate, qos="sensor"
             )
         free = not topics.set_info or plugin.serve(
             joined(topics.base, "set_camera_info"), SET_INFO, calibration.set
@@ -102,10 +102,10 @@ class Eye:
         adjustable = topics.adjustable and free
         if topics.image:
             self._compressed = CompressedImages(
-                plugin, topics.image, self._format, rate=told, adjustable=adjustable
+                plugin, topics.image, self._format, rate=listed_rate, adjustable=adjustable
             )
         if adjustable:
-            # Listed by Gazebo for every camera; of colours there are no depths to compress.
+            # Gazebo lists this topic for every camera; colour images have no depths to publish.
             plugin.advertise(f"{topics.image}/compressedDepth", COMPRESSED, qos="sensor")
             plugin.reconfigure(
                 f"{topics.image}/compressedDepth", DEPTH_PARAMETERS, lambda _: None, preset=True
@@ -120,7 +120,7 @@ class Eye:
 
     @property
     def sees(self) -> bool:
-        """Whether somebody wants its image."""
+        """Whether the image has subscribers."""
         return (self._image is not None and self._image.wanted) or (
             self._compressed is not None and self._compressed.wanted
         )
@@ -130,29 +130,29 @@ class Eye:
         return self.sees or self._info.wanted
 
     def picture(self) -> Pixels:
-        """The image of now, RGB, shape (height, width, 3).
+        """Renders the current image: RGB, shape (height, width, 3).
 
         Raises:
-            SimulationError: No OpenGL, or opened before a fork.
+            SimulationError: OpenGL is not available, or was opened before a fork.
         """
         return self._noisy(self.lens.image(self._plugin.part.render(self._camera)))
 
     def picture_with_depth(self) -> tuple[Pixels, NDArray[np.float32]]:
-        """The same with the depths along the optical axis in m; inf where nothing is.
+        """Renders the image, and depths along the optical axis in m; inf without a hit.
 
         Raises:
-            SimulationError: No OpenGL, or opened before a fork.
+            SimulationError: OpenGL is not available, or was opened before a fork.
         """
         pixels, depths = self._plugin.part.render_with_depth(self._camera)
         return self._noisy(self.lens.image(pixels)), self.lens.depths(depths)
 
     def publish_info(self, now: int) -> None:
-        """Tells the calibration, where somebody reads it."""
+        """Publishes the calibration if it has subscribers."""
         if self._info.wanted:
             self._info.publish(self.calibration.message(now))
 
     def publish(self, now: int, pixels: Pixels) -> None:
-        """Publishes an image in every way that somebody reads."""
+        """Publishes an image in each encoding that has subscribers."""
         moment = header(now, self.frame)
         if self._image is not None and self._image.wanted:
             self._image.publish(self._raw(moment, pixels))
@@ -173,7 +173,7 @@ class Eye:
         )
 
     def _noisy(self, pixels: Pixels) -> Pixels:
-        """One random number for each pixel, the same for its three colours, as Gazebo has it."""
+        """Adds noise: one random number for each pixel, the same for all colours, as in Gazebo."""
         mean, spread = self._noise
         if spread <= 0 and mean == 0:
             return pixels
@@ -184,16 +184,16 @@ class Eye:
 
 
 def joined(base: str, topic: str) -> str:
-    """A topic under a namespace, unless it is a global one."""
+    """Returns a topic under a namespace, unless the topic is global."""
     return f"{base}/{topic}" if base and not topic.startswith("/") else topic
 
 
 def image_format(plugin: Plugin[Any], name: str) -> ImageFormat:
-    """The format of that name; colours, and a word of it, where there is none."""
+    """Returns the format with this name; colour, with a warning, if it is not supported."""
     known = FORMATS.get(name.strip().upper())
     if known is not None:
         return known
-    # One of floats is of a depth camera's depths, which are floats whatever is said.
+    # Float formats belong to depth cameras, whose depths are always floats.
     if "FLOAT" not in name.upper():
         plugin.warn(
             devices.IMAGE_FORMAT_UNKNOWN,

@@ -1,4 +1,4 @@
-"""SDF's image formats as the encodings of ``sensor_msgs/Image``."""
+"""Encodings of ``sensor_msgs/Image`` for SDF's image formats."""
 
 from __future__ import annotations
 
@@ -13,20 +13,20 @@ Pixels = NDArray[np.uint8]
 """RGB, shape (height, width, 3)."""
 
 _WEIGHTS = np.array([0.299, 0.587, 0.114], dtype=np.float32)
-"""Of red, green and blue in brightness. Source: ITU-R BT.601, as OpenCV has it."""
+"""Weights of red, green and blue in the brightness. Source: ITU-R BT.601, as in OpenCV."""
 _TO_16_BITS = 257
-"""So that 255 becomes 65535."""
+"""Maps 255 to 65535."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ImageFormat:
-    """How pixels are laid out."""
+    """Layout of pixels in a message."""
 
     encoding: str
     """Source: sensor_msgs/image_encodings."""
     bytes_per_pixel: int
     encode: Callable[[Pixels], NDArray[Any]]
-    """Takes RGB, gives what the message holds."""
+    """Converts RGB to the layout of the message."""
     colour: bool = True
     """Whether a pixel has all three colours."""
 
@@ -40,7 +40,7 @@ def _swap(pixels: Pixels) -> Pixels:
 
 
 def grey(pixels: Pixels) -> Pixels:
-    """Brightness, shape (height, width)."""
+    """Returns the brightness, shape (height, width)."""
     return (pixels @ _WEIGHTS).round().astype(np.uint8)
 
 
@@ -53,7 +53,7 @@ def _wide_grey(pixels: Pixels) -> NDArray[np.uint16]:
 
 
 def _bayer(pattern: str) -> Callable[[Pixels], Pixels]:
-    """The mosaic of a sensor whose 2 x 2 filters are `pattern`, row by row."""
+    """Returns an encoder for the mosaic of 2 x 2 filters, which `pattern` names row by row."""
     channels = ["RGB".index(letter) for letter in pattern]
 
     def encode(pixels: Pixels) -> Pixels:
@@ -97,4 +97,5 @@ FORMATS = {
     )
     for pattern in ("RGGB", "BGGR", "GBRG", "GRBG")
 }
-"""By SDF's word in capitals. Source: SDF, ``<camera><image><format>``; gazebo_ros_camera_utils."""
+"""By SDF's format in capitals. Source: SDF, ``<camera><image><format>``; gazebo_ros_camera_utils.
+"""

@@ -1,4 +1,4 @@
-"""What ``sensor_msgs/CameraInfo`` tells of a camera, until somebody calibrates it anew."""
+"""The published ``sensor_msgs/CameraInfo`` of a camera, which ``set_camera_info`` can replace."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ SET_INFO = "sensor_msgs/srv/SetCameraInfo"
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Rectified:
-    """What R and P tell where it is not the identity and K: None is that."""
+    """Entries of R and P; None for those of the identity and of K."""
 
     turn: tuple[float, ...] | None = None
     """R, row by row."""
@@ -28,22 +28,22 @@ class Rectified:
     """Pixels."""
     tx: float | None = None
     ty: float = 0.0
-    """The last column of P."""
+    """Last column of P."""
 
 
 _PLAIN = Rectified()
 
 
 class Calibration:
-    """The numbers of a lens: the pinhole's, with Gazebo's centre and its stereo term.
+    """CameraInfo of a lens: that of a pinhole camera, with Gazebo's centre and stereo baseline.
 
     Args:
-        lens: The one that draws the image.
-        frame: Of the messages.
-        focal_length: Pixels; 0 is that of the field of view.
-        centre: Pixels; a 0 is (size + 1) / 2.
-        baseline: m to the right of the pair's left camera.
-        rectified: What is told of the rectified image; the same as of the image otherwise.
+        lens: The rendered lens.
+        frame: Frame ID of the messages.
+        focal_length: Pixels; 0 to compute it from the field of view.
+        centre: Principal point in pixels; 0 for (size + 1) / 2.
+        baseline: Distance to the right of the left camera of a stereo pair, m.
+        rectified: Entries of R and P that differ from the identity and K.
     """
 
     def __init__(
@@ -61,7 +61,7 @@ class Calibration:
         focal = focal_length or lens.focal
         cx = centre[0] or (self.width + 1) / 2
         cy = centre[1] or (self.height + 1) / 2
-        self.told = message_class(INFO)(
+        self.info = message_class(INFO)(
             header=header(0, frame),
             height=self.height,
             width=self.width,
@@ -71,9 +71,14 @@ class Calibration:
             r=np.eye(3).ravel() if rectified.turn is None else np.array(rectified.turn),
             p=np.array(
                 [
-                    *(_told(rectified.fx, focal), 0, _told(rectified.cx, cx)),
-                    _told(rectified.tx, -focal * baseline),
-                    *(0, _told(rectified.fy, focal), _told(rectified.cy, cy), rectified.ty),
+                    *(_or_default(rectified.fx, focal), 0, _or_default(rectified.cx, cx)),
+                    _or_default(rectified.tx, -focal * baseline),
+                    *(
+                        0,
+                        _or_default(rectified.fy, focal),
+                        _or_default(rectified.cy, cy),
+                        rectified.ty,
+                    ),
                     *(0, 0, 1, 0),
                 ],
                 dtype=float,
@@ -84,15 +89,15 @@ class Calibration:
                 x_offset=0, y_offset=0, height=0, width=0, do_rectify=False
             ),
         )
-        """What is published, but for its stamp."""
+        """The published message without its stamp."""
         self._response = service_classes(SET_INFO)[1]
 
     def message(self, now: int) -> Any:
-        """The calibration at a time in ns."""
-        return dataclasses.replace(self.told, header=header(now, self._frame))
+        """Returns the message for a time in ns."""
+        return dataclasses.replace(self.info, header=header(now, self._frame))
 
     def set(self, request: Any) -> Any:
-        """Serves ``set_camera_info``: what is published from now on. The image stays as it is."""
+        """Serves ``set_camera_info``: replaces the published message. The image does not change."""
         given = request.camera_info
         if (given.width, given.height) != (self.width, self.height):
             return self._response(
@@ -100,9 +105,9 @@ class Calibration:
                 status_message=f"this is for {given.width} x {given.height} pixels, and the camera "
                 f"has {self.width} x {self.height}",
             )
-        self.told = given
+        self.info = given
         return self._response(success=True, status_message="")
 
 
-def _told(value: float | None, otherwise: float) -> float:
-    return otherwise if value is None else value
+def _or_default(value: float | None, default: float) -> float:
+    return default if value is None else value

@@ -1,4 +1,4 @@
-"""A lens: which pinhole picture is drawn for it, and which point of that each pixel shows."""
+"""A lens: the pinhole image to render, and the point of that image that each pixel shows."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ from cartwheel.description.model import CameraIntrinsics
 Floats = NDArray[np.float64]
 
 _INVISIBLE = 0.02
-"""Pixels: a distortion that moves nothing further than this is not drawn."""
+"""Pixels; smaller distortions are not rendered."""
 _WIDEST = 4
-"""The drawn picture is at most this many times as wide and as high as the image."""
+"""Maximum width and height of the rendered image, relative to the final image."""
 _ROUNDS = 40
 _CLOSE = 1e-10
 _ONE = 256
-"""A whole pixel's weight."""
+"""Weight of a whole pixel."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Distortion:
-    """Brown and Conrady's model, ``plumb_bob`` in ROS.
+    """Brown-Conrady distortion model, ``plumb_bob`` in ROS.
 
     Source: sensor_msgs/CameraInfo; OpenCV, Camera Calibration and 3D Reconstruction.
     """
@@ -38,11 +38,11 @@ class Distortion:
 
     @property
     def coefficients(self) -> tuple[float, float, float, float, float]:
-        """As `CameraInfo.d` holds them: k1, k2, t1, t2, k3."""
+        """In the order of `CameraInfo.d`: k1, k2, t1, t2, k3."""
         return (self.k1, self.k2, self.p1, self.p2, self.k3)
 
     def apply(self, x: Floats, y: Floats) -> tuple[Floats, Floats]:
-        """Where a point of the plane at depth 1 is seen, x to the right, y down."""
+        """Returns the distorted position of a point at depth 1, x to the right, y down."""
         r2 = x * x + y * y
         radial = 1 + r2 * (self.k1 + r2 * (self.k2 + r2 * self.k3))
         return (
@@ -51,9 +51,9 @@ class Distortion:
         )
 
     def invert(self, x: Floats, y: Floats) -> tuple[Floats, Floats]:
-        """The points that are seen at x, y; nan where no point is.
+        """Returns the undistorted points for x, y; nan if there is none.
 
-        A strong distortion folds the plane over; only what lies within the fold counts.
+        A strong distortion folds the plane; only points within the fold are returned.
         """
         fold = self._fold()
         u, v = x.copy(), y.copy()
@@ -79,14 +79,14 @@ class Distortion:
         return u, v
 
     def _fold(self) -> float:
-        """The radius at which what lies further out is seen further in again."""
+        """Radius of the fold: points beyond it are imaged further inside again."""
         roots = np.roots([7 * self.k3, 5 * self.k2, 3 * self.k1, 1.0])
         real = [root.real for root in roots if abs(root.imag) < 1e-9 and root.real > 0]
         return math.sqrt(min(real)) if real else math.inf
 
 
 def _within(u: Floats, v: Floats, radius: float) -> None:
-    """Draws what is further out than `radius` back to a little less."""
+    """Moves points beyond `radius` to slightly inside of it."""
     if math.isinf(radius):
         return
     far = np.hypot(u, v)
@@ -96,11 +96,11 @@ def _within(u: Floats, v: Floats, radius: float) -> None:
 
 
 class Lens:
-    """What becomes of a pinhole picture on its way through the lens.
+    """Maps the rendered pinhole image to the image of a lens with distortion.
 
     Args:
-        intrinsics: The image that is wanted; its own distortion does not count.
-        distortion: Of the lens.
+        intrinsics: The final image; its own distortion is ignored.
+        distortion: Distortion of the lens.
     """
 
     def __init__(self, intrinsics: CameraIntrinsics, distortion: Distortion) -> None:
@@ -108,9 +108,9 @@ class Lens:
         self.distortion = distortion
         width, height = intrinsics.width, intrinsics.height
         self.focal = width / (2 * math.tan(intrinsics.horizontal_fov / 2))
-        """Pixels."""
+        """Focal length, pixels."""
         self.drawn = intrinsics
-        """The picture that has to be drawn: wider than the image where that is bent inwards."""
+        """The pinhole image to render, larger than the final image for barrel distortion."""
         x = (np.arange(width) + 0.5 - width / 2) / self.focal
         y = (np.arange(height) + 0.5 - height / 2) / self.focal
         self._x, self._y = (
@@ -123,7 +123,7 @@ class Lens:
 
     def _bend(self) -> None:
         image = self.intrinsics
-        # What lies off the optical axis is bent about the centre that the description states.
+        # The distortion is centred at the point that the description states.
         cx = (image.distortion_center[0] - 0.5) * image.width / self.focal
         cy = (image.distortion_center[1] - 0.5) * image.height / self.focal
         x, y = self.distortion.invert(self._x - cx, self._y - cy)
@@ -143,17 +143,17 @@ class Lens:
         self._map = _Map(x * self.focal + width / 2, y * self.focal + height / 2, width, height)
 
     def rays(self) -> tuple[Floats, Floats]:
-        """What each pixel's middle looks at in the plane at depth 1: right and down."""
+        """Returns the direction of each pixel's centre, at depth 1: right and down."""
         return self._x, self._y
 
     def image(self, picture: NDArray[np.uint8]) -> NDArray[np.uint8]:
-        """The image of a drawn picture, shape (height, width, 3); black where no ray comes in."""
+        """Returns the distorted image, shape (height, width, 3); black where no ray enters."""
         return picture if self._map is None else self._map.blend(picture)
 
     def depths(self, picture: NDArray[np.float32]) -> NDArray[np.float32]:
-        """Depths in m, shape (height, width); nan where no ray comes in.
+        """Returns distorted depths in m, shape (height, width); nan where no ray enters.
 
-        Never a mixture of two: between a thing and what is behind it there is nothing.
+        Depths are not interpolated: between an object and its background there is no surface.
         """
         return picture if self._map is None else self._map.pick(picture)
 
@@ -163,19 +163,19 @@ def _reach(values: Floats) -> float:
 
 
 def _even(pixels: float, least: int) -> int:
-    """The drawn size for a reach in pixels, with one to blend with on each side."""
+    """Returns the even rendered size for a width in pixels, with a margin for interpolation."""
     most = _WIDEST * least
     return min(most, max(least, 2 * math.ceil(pixels / 2) + 2))
 
 
 class _Map:
-    """For each pixel the four of a picture that it lies between.
+    """The four neighbours of each pixel in the rendered image, for bilinear interpolation.
 
     Args:
-        u: From the picture's left edge, in pixels; nan for none.
-        v: From its upper edge.
-        width: Of the picture.
-        height: Of the picture.
+        u: Position from the left edge of the rendered image, pixels; nan for none.
+        v: Position from its upper edge, pixels.
+        width: Of the rendered image.
+        height: Of the rendered image.
     """
 
     def __init__(self, u: Floats, v: Floats, width: int, height: int) -> None:
@@ -213,7 +213,7 @@ class _Map:
         mixed = np.full(3 * self._nearest.size, _ONE // 2, dtype=np.uint16)
         product = np.empty_like(mixed)
         for index, weight in self._corners:
-            # Four weights are 256 together, and 256 times 255 fits.
+            # The four weights add up to 256, and 256 times 255 fits into 16 bits.
             np.multiply(flat.take(index, axis=0).ravel(), weight, out=product, dtype=np.uint16)
             mixed += product
         mixed //= _ONE

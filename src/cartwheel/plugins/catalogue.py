@@ -1,7 +1,7 @@
-"""Which plugin answers to which file name, and which serves which sensor.
+"""The plugins by file name and by sensor type.
 
-A plugin's module is imported when a model names it: all of them take as long as the rest of
-a start.
+The module of a plugin is imported when a model names it: importing all of them takes as long as the
+rest of the startup.
 """
 
 from __future__ import annotations
@@ -112,7 +112,7 @@ _FILES = {
     "gz_ros2_control-system": "control.ros2_control",
     "ign_ros2_control-system": "control.ros2_control",
 }
-"""Where in this package the plugin of a file name is, by its short name."""
+"""The module in this package that defines the plugin, by the plugin's short name."""
 _SENSORS = {
     "gpu_lidar": "gz_lidar",
     "lidar": "gz_lidar",
@@ -132,33 +132,33 @@ _SENSORS = {
     "contact": "gz_contact",
     "force_torque": "ft_sensor",
 }
-"""Where the plugin is that serves sensors of a type without a ``<plugin>``."""
+"""The module that defines the plugin for sensors without a ``<plugin>``, by sensor type."""
 
 
 def short_name(filename: str) -> str:
-    """A plugin's name without path, ``lib``, ``.so`` and the vendor's older spelling."""
+    """Returns a plugin's name without path, ``lib``, ``.so`` and outdated vendor prefixes."""
     stem = filename.rsplit("/", 1)[-1]
     stem = re.sub(r"\.(so|dylib|dll)$", "", stem)
     stem = stem.removeprefix("lib")
-    # Some name the library of one major version: ignition-gazebo6-, gz-sim8-.
+    # Some names contain a major version: ignition-gazebo6-, gz-sim8-.
     return re.sub(r"^(ignition-gazebo|gz-sim)\d*-", "gz-sim-", stem)
 
 
 def plugin_named(filename: str) -> type[Plugin[object]] | None:
-    """The plugin of a file name: of an installed package, else ours; None where there is none."""
+    """Returns the plugin of a file name, or None. Installed packages take precedence."""
     name = short_name(filename)
     for plugin in _third():
         if name in _names(plugin):
             return plugin
     if name not in _FILES and name.endswith(f"_{ROS_CONTROL}"):
-        # Makers derive theirs from it: Baxter, HSR, Schunk.
+        # Vendors derive their own plugins from it: Baxter, HSR, Schunk.
         name = ROS_CONTROL
     ours = _within(_FILES[name]) if name in _FILES else ()
     return next((plugin for plugin in ours if name in _names(plugin)), None)
 
 
 def plugin_serving(kind: str) -> type[Plugin[object]] | None:
-    """The plugin of sensors of a type that have no ``<plugin>``, if there is one."""
+    """Returns the plugin for sensors of a type without a ``<plugin>``, or None."""
     for plugin in _third():
         if kind in plugin.serves:
             return plugin
@@ -167,30 +167,30 @@ def plugin_serving(kind: str) -> type[Plugin[object]] | None:
 
 
 def plugin_names() -> list[str]:
-    """Short names of all plugins."""
+    """Returns the short names of all plugins."""
     return [*_FILES, *(name for plugin in _third() for name in _names(plugin))]
 
 
 def all_plugins() -> list[type[Plugin[object]]]:
-    """All plugins: those that have a file name, then those that serve sensors without one."""
-    found = [plugin_named(name) for name in plugin_names()]
-    found += [plugin_serving(kind) for kind in _SENSORS]
-    return list(dict.fromkeys(plugin for plugin in found if plugin is not None))
+    """Returns all plugins: those with a file name, then those for sensors without a plugin."""
+    plugins = [plugin_named(name) for name in plugin_names()]
+    plugins += [plugin_serving(kind) for kind in _SENSORS]
+    return list(dict.fromkeys(plugin for plugin in plugins if plugin is not None))
 
 
 def _third() -> tuple[type[Plugin[object]], ...]:
-    """Those of installed packages; of two with one name the later installed counts."""
+    """Plugins of installed packages. For equal names the last installed takes precedence."""
     return _installed()[0]
 
 
 def unloadable() -> tuple[str, ...]:
-    """What to say of installed plugins that cannot be loaded."""
+    """Returns a message for each installed plugin that cannot be loaded."""
     return _installed()[1]
 
 
 @functools.cache
 def _installed() -> tuple[tuple[type[Plugin[object]], ...], tuple[str, ...]]:
-    found: list[type[Plugin[object]]] = []
+    plugins: list[type[Plugin[object]]] = []
     broken: list[str] = []
     for entry in importlib.metadata.entry_points(group="cartwheel.plugins"):
         package = entry.dist.name if entry.dist else entry.value
@@ -205,14 +205,14 @@ def _installed() -> tuple[tuple[type[Plugin[object]], ...], tuple[str, ...]]:
                 raise TypeError(f"filenames or serves of {entry.value} are not strings")
             if not dataclasses.is_dataclass(plugin.parameters):
                 raise TypeError(f"parameters of {entry.value} is not a dataclass")
-        except (Exception, SystemExit) as error:  # noqa: BLE001 - another's package
+        except (Exception, SystemExit) as error:  # noqa: BLE001 - code of another package
             broken.append(
                 f'The plugin "{entry.name}" of the installed package "{package}" cannot be '
                 f"loaded: {type(error).__name__}: {error}."
             )
         else:
-            found.insert(0, plugin)
-    return tuple(found), tuple(broken)
+            plugins.insert(0, plugin)
+    return tuple(plugins), tuple(broken)
 
 
 def _names(plugin: type[Plugin[object]]) -> Iterator[str]:
@@ -221,13 +221,13 @@ def _names(plugin: type[Plugin[object]]) -> Iterator[str]:
 
 @functools.cache
 def _within(module: str) -> tuple[type[Plugin[object]], ...]:
-    """The plugins that a module of this package makes."""
-    made = importlib.import_module(f"cartwheel.plugins.{module}")
+    """The plugins that a module of this package defines."""
+    imported = importlib.import_module(f"cartwheel.plugins.{module}")
     return tuple(
         each
-        for each in vars(made).values()
+        for each in vars(imported).values()
         if isinstance(each, type)
         and issubclass(each, Plugin)
-        and each.__module__ == made.__name__
+        and each.__module__ == imported.__name__
         and hasattr(each, "filenames")
     )

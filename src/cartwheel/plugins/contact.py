@@ -1,4 +1,4 @@
-"""``libgazebo_ros_bumper.so``: what touches a collision, where and how hard."""
+"""``libgazebo_ros_bumper.so``: contacts of collisions, with positions and forces."""
 
 from __future__ import annotations
 
@@ -21,23 +21,31 @@ from cartwheel.world.entry import scoped
 @dataclass(frozen=True, kw_only=True, slots=True)
 class BumperParameters:
     topic: str = tag(
-        "bumperTopicName", "bumper_topic_name", default="bumper_states", doc="ContactsState."
+        "bumperTopicName",
+        "bumper_topic_name",
+        default="bumper_states",
+        doc="Topic of the ContactsState messages.",
     )
     frame: str = tag(
         "frameName",
         "frame_name",
         default="world",
-        doc="Frame id of the messages; their values are in the world, as Gazebo's are.",
+        doc="Frame ID of the messages. The values are always in the world frame, as in Gazebo.",
     )
     update_rate: float = tag(
-        "updateRate", "update_rate", default=0.0, unit="Hz", doc="0 is the sensor's own."
+        "updateRate",
+        "update_rate",
+        default=0.0,
+        unit="Hz",
+        doc="Publish rate. 0: the sensor's `<update_rate>`.",
     )
 
 
 class Bumper(Plugin[Any]):
-    """Publishes the contacts of a sensor's collisions; empty states while nothing touches.
+    """Publishes the contacts of a sensor's collisions as ContactsState messages.
 
-    Source: gazebo_plugins, gazebo_ros_bumper.
+    Without contacts, messages with empty ``states`` are published. Source: gazebo_plugins,
+    gazebo_ros_bumper.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_bumper.so",)
@@ -52,12 +60,12 @@ class Bumper(Plugin[Any]):
         self.publish_on(config.topic, frame=config.frame, rate=rate)
 
     def publish_on(self, topic: str, *, frame: str, rate: float) -> None:
-        """Resolves the collisions, advertises and schedules.
+        """Resolves the collisions, advertises the topic and schedules the publisher.
 
         Args:
-            topic: As `advertise` takes it.
-            frame: Of the messages.
-            rate: Hz; 0 is every step.
+            topic: Name as in `advertise`.
+            frame: Frame ID of the messages.
+            rate: Hz; 0 publishes at every step.
         """
         assert self.sensor is not None
         self._collisions = watched_collisions(self, self.sensor)
@@ -103,9 +111,9 @@ class Bumper(Plugin[Any]):
 
 
 def watched_collisions(plugin: Plugin[Any], sensor: Sensor) -> set[str]:
-    """``link::collision`` of all that a contact sensor names, in any of Gazebo's spellings.
+    """Returns ``link::collision`` of all collisions that a contact sensor names.
 
-    A name that is none is reported.
+    All spellings of Gazebo are accepted. Unknown names are reported.
     """
     spellings: dict[str, str] = {}
     for link in plugin.part.description.links:
@@ -113,12 +121,12 @@ def watched_collisions(plugin: Plugin[Any], sensor: Sensor) -> set[str]:
             for name in (*collision.aliases, collision.name):
                 spellings[name] = scoped(link.name, collision.name)
             spellings[scoped(link.name, collision.name)] = scoped(link.name, collision.name)
-    found = set()
+    collisions = set()
     for wanted in sensor.collisions:
         name = wanted.strip()
         bare = name.rsplit("::", 1)[-1]
         if name in spellings or bare in spellings:
-            found.add(spellings.get(name) or spellings[bare])
+            collisions.add(spellings.get(name) or spellings[bare])
         else:
             plugin.warn(
                 devices.CONTACT_COLLISION_UNKNOWN,
@@ -137,4 +145,4 @@ def watched_collisions(plugin: Plugin[Any], sensor: Sensor) -> set[str]:
             f'contact sensor "{sensor.name}" names no <collision>, so it never reports a contact',
             values={"sensor": sensor.name, "missing": "collision"},
         )
-    return found
+    return collisions

@@ -1,4 +1,4 @@
-"""The sensors of iRobot's Create 3, the base of the TurtleBot 4, as Gazebo Classic has them."""
+"""The sensors of iRobot's Create 3, the base of the TurtleBot 4, as in Gazebo Classic."""
 
 from __future__ import annotations
 
@@ -20,20 +20,20 @@ from cartwheel.plugins.scan import Scanner
 
 HAZARD = "irobot_create_msgs/msg/HazardDetection"
 _ZONES = ("bump_right", "bump_front_right", "bump_front_center", "bump_front_left", "bump_left")
-"""Of the bumper, each a fifth of its half circle, from the right to the left."""
+"""Zones of the bumper, each a fifth of its half circle, from right to left."""
 _BRIGHTEST = 3500.0
-"""What an infrared sensor reads of something that touches it."""
+"""Intensity that an infrared sensor measures at distance 0."""
 _DROPPED, _LIFTED = 0.95, 0.75
-"""Parts of the threshold at which a wheel counts as dropped, and as back."""
+"""Shares of the threshold at which a wheel counts as dropped, and as lifted again."""
 
 
 def out_topic(plugin: Plugin[Any]) -> str:
-    """``~/out``, which tags remap."""
+    """Returns ``~/out``, which tags can remap."""
     return "out" if plugin.remaps("out") else f"{plugin.tag.name}/out"
 
 
 class _Hazard(Plugin[Any]):
-    """Publishes a HazardDetection, at each turn as long as there is one."""
+    """Publishes a HazardDetection at each update while the hazard exists."""
 
     def _watch(self, rate: float) -> None:
         self._HazardDetection = message_class(HAZARD)
@@ -58,10 +58,10 @@ class Create3BumperParameters:
 
 
 class Create3Bumper(_Hazard):
-    """Tells which of five zones of the bumper something presses, as the frame of a BUMP.
+    """Publishes the pressed zone of the bumper as a HazardDetection of type BUMP.
 
-    Of several it is the one that is pressed in most. Source: irobot_create_gazebo_plugins,
-    gazebo_ros_bumper.
+    The frame ID names one of five zones, such as ``bump_front_left``. If several zones are pressed,
+    it is the one with the deepest contact. Source: irobot_create_gazebo_plugins, gazebo_ros_bumper.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_create_bumper.so",)
@@ -91,15 +91,19 @@ class Create3Bumper(_Hazard):
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Create3CliffParameters:
     threshold: float = tag(
-        "detection_threshold", default=0.01, unit="m", doc="A floor so far away is a cliff."
+        "detection_threshold",
+        default=0.01,
+        unit="m",
+        doc="Distance to the floor from which a cliff is reported.",
     )
-    frame: str = tag("frame_id", default="", doc="Frame of the messages.")
+    frame: str = tag("frame_id", default="", doc="Frame ID of the messages.")
 
 
 class Create3Cliff(_Hazard):
-    """Tells of a CLIFF while the nearest of a ray sensor's ranges is beyond its threshold.
+    """Publishes a HazardDetection of type CLIFF while the floor is too far from a ray sensor.
 
-    Source: irobot_create_gazebo_plugins, gazebo_ros_cliff_sensor.
+    The nearest range of the sensor is compared with the threshold. Source:
+    irobot_create_gazebo_plugins, gazebo_ros_cliff_sensor.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_create_cliff_sensor.so",)
@@ -119,13 +123,17 @@ class Create3Cliff(_Hazard):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Create3IntensityParameters:
-    frame: str = tag("frame_name", default="", doc="Frame of the messages; the link's when empty.")
+    frame: str = tag(
+        "frame_name", default="", doc="Frame ID of the messages. Defaults to the sensor's link."
+    )
 
 
 class Create3Intensity(Plugin[Create3IntensityParameters]):
-    """Publishes how much infrared light comes back: 3500 exp(-2 e d / range) at a distance d.
+    """Publishes the intensity of reflected infrared light.
 
-    Source: irobot_create_gazebo_plugins, gazebo_ros_ir_intensity_sensor.
+    The intensity is ``3500 exp(-2 e d / max)`` at the distance d of the nearest obstacle, where max
+    is the maximum range of the ray sensor. Source: irobot_create_gazebo_plugins,
+    gazebo_ros_ir_intensity_sensor.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_create_ir_intensity_sensor.so",)
@@ -158,20 +166,22 @@ class Create3Intensity(Plugin[Create3IntensityParameters]):
 
 
 def _nearest(scanner: Scanner) -> float:
-    """The least range, m, within what the sensor can tell."""
+    """Returns the nearest range, m, within the limits of the sensor."""
     least = float(scanner.measure().ranges.min())
     return float(np.clip(least, scanner.pattern.minimum, scanner.pattern.maximum))
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Create3ImuParameters:
-    frame: str = tag("frame_name", default="", doc="Frame of the messages; the link's when empty.")
+    frame: str = tag(
+        "frame_name", default="", doc="Frame ID of the messages. Defaults to the sensor's link."
+    )
 
 
 class Create3Imu(ImuBase):
-    """An IMU sensor whose acceleration is without gravity, as its plugin has it in Gazebo.
+    """Publishes the measurements of an IMU sensor, with accelerations that exclude gravity.
 
-    Source: irobot_create_gazebo_plugins, gazebo_ros_imu.
+    Gazebo's plugin excludes gravity as well. Source: irobot_create_gazebo_plugins, gazebo_ros_imu.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_create_imu.so",)
@@ -197,12 +207,12 @@ class Create3Imu(ImuBase):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Create3MouseParameters:
-    link: str = tag("link_name", doc="Link whose way is told.")
-    rate: float = tag("update_rate", default=62.0, unit="Hz", doc="Of what is told.")
+    link: str = tag("link_name", doc="Link whose travel is measured.")
+    rate: float = tag("update_rate", default=62.0, unit="Hz", doc="Publish rate.")
 
 
 class Create3Mouse(Plugin[Create3MouseParameters]):
-    """Publishes the way of a link along its own axes, summed up.
+    """Publishes the accumulated travel of a link along its own x and y axes, in m.
 
     Source: irobot_create_gazebo_plugins, gazebo_ros_optical_mouse.
     """
@@ -222,38 +232,39 @@ class Create3Mouse(Plugin[Create3MouseParameters]):
         self.reset()
 
     def reset(self) -> None:
-        self._was: Any = None
-        self._gone = [0.0, 0.0]
+        self._last_pose: Any = None
+        self._travel = [0.0, 0.0]
 
     def _publish(self) -> None:
         place, turned = self._link.place()
-        if self._was is not None:
-            before, axes = self._was
+        if self._last_pose is not None:
+            before, axes = self._last_pose
             way = [a - b for a, b in zip(place, before, strict=True)]
             x, y, _ = rotate(quat_conjugate(axes), way)
-            self._gone = [self._gone[0] + x, self._gone[1] + y]
-        self._was = (place, turned)
+            self._travel = [self._travel[0] + x, self._travel[1] + y]
+        self._last_pose = (place, turned)
         if self._publisher.wanted:
             moment = header(self.part.time_ns, self._frame)
-            # It never loses track, and sees the floor well.
-            self._publisher.publish(self._Mouse(moment, *self._gone, frame_id=0, last_squal=90))
+            # The surface quality is always good, and tracking is never lost.
+            self._publisher.publish(self._Mouse(moment, *self._travel, frame_id=0, last_squal=90))
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Create3WheelDropParameters:
-    joint: str = tag("joint_name", doc="By which the wheel drops out of the robot.")
+    joint: str = tag("joint_name", doc="Joint by which the wheel drops out of the robot.")
     threshold: float = tag(
         "detection_threshold",
         default=0.7,
         unit="m",
-        doc="Dropped from 95 % of this on, until it is below 75 %.",
+        doc="Joint position of a dropped wheel. The wheel counts as dropped from 95 % of this "
+        "value until it is below 75 %.",
     )
-    frame: str = tag("frame_id", default="", doc="Frame of the messages.")
-    rate: float = tag("update_rate", default=62.0, unit="Hz", doc="Of looking, and of telling.")
+    frame: str = tag("frame_id", default="", doc="Frame ID of the messages.")
+    rate: float = tag("update_rate", default=62.0, unit="Hz", doc="Rate of checks and messages.")
 
 
 class Create3WheelDrop(_Hazard):
-    """Tells of a WHEEL_DROP while a wheel hangs out of the robot.
+    """Publishes a HazardDetection of type WHEEL_DROP while a wheel hangs out of the robot.
 
     Source: irobot_create_gazebo_plugins, gazebo_ros_wheel_drop.
     """
@@ -272,7 +283,7 @@ class Create3WheelDrop(_Hazard):
         self._dropped = False
 
     def _looks(self) -> bool:
-        # Between its two bounds it is as it was, whoever listens.
+        # The hysteresis must not depend on the presence of subscribers.
         return True
 
     def _look(self) -> None:

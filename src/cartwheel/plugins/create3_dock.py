@@ -1,4 +1,4 @@
-"""What iRobot's Create 3 sees of its dock, and whether it stands in it."""
+"""Dock detection and docking status of iRobot's Create 3."""
 
 from __future__ import annotations
 
@@ -14,36 +14,40 @@ from cartwheel.plugins.parameters import tag
 
 OPCODE = "irobot_create_msgs/msg/IrOpcode"
 _CHECKS = 20.0
-"""Hz of looking; without a code in the time between the dock is not seen."""
+"""Rate of checks, Hz. The dock counts as visible if a code arrived within one period."""
 _NEAR, _AHEAD = 0.075, math.pi / 30
-"""m and rad between the two within which it is docked."""
+"""Maximum distance in m and angles in rad between robot and dock when docked."""
 _HALO = 0.6096
-"""m; reach of the light all around the dock."""
+"""Range of the dock's halo, which surrounds it, m."""
 _BUOYS, _OPENING, _SHARE = 1.0, math.radians(50), 0.6
-"""m and rad of the two lights ahead of it, each of which has that share, on its side."""
+"""Range in m and angle in rad of the dock's two buoys; each covers this share, on its side."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class _Dock:
     robot: str = tag(
-        "robot_model_name", default="", doc="Accepted: it is the robot that names the plugin."
+        "robot_model_name",
+        default="",
+        doc="Accepted for compatibility: the plugin's own model is the robot.",
     )
-    receiver: str = tag("receiver_link_name", doc="Link of the robot that sees.")
-    dock: str = tag("dock_model_name", default="", doc="The dock's model in the world.")
-    emitter: str = tag("emitter_link_name", default="", doc="Link of the dock that is seen.")
+    receiver: str = tag("receiver_link_name", doc="Link of the robot's infrared receiver.")
+    dock: str = tag("dock_model_name", default="", doc="Name of the dock's model in the world.")
+    emitter: str = tag("emitter_link_name", default="", doc="Link of the dock's infrared emitter.")
 
 
 class _Docking(Plugin[Any]):
-    """Where receiver and emitter are, each seen from the other."""
+    """Relative position of receiver and emitter."""
 
     def _find(self) -> None:
         self._receiver = self.part.link(self.config.receiver, origin=self.tag.origin)
         self._around = self.part.surroundings()
 
     def _seen(self) -> tuple[tuple[float, float], float] | None:
-        """Distance in m and azimuth of the emitter, and the receiver's azimuth there, rad.
+        """Returns the emitter in the receiver's frame, and the receiver in the emitter's frame.
 
-        None while there is no such dock.
+        Returns:
+            Distance in m and azimuth in rad of the emitter; azimuth in rad of the receiver. None if
+            the world has no such dock.
         """
         emitter = self._around.pose(self.config.dock, self.config.emitter)
         if emitter is None:
@@ -59,18 +63,26 @@ def _azimuth(pose: Pose) -> float:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Create3OpcodeParameters(_Dock):
-    rate: float = tag("update_rate", default=31.0, unit="Hz", doc="Of the codes.")
-    omni_opening: float = tag("sensor_0_fov", default=1.0, unit="rad", doc="Of the sensor above.")
-    omni_range: float = tag("sensor_0_range", default=1.0, unit="m", doc="Of the sensor above.")
-    front_opening: float = tag("sensor_1_fov", default=1.0, unit="rad", doc="Of the one ahead.")
-    front_range: float = tag("sensor_1_range", default=1.0, unit="m", doc="Of the one ahead.")
+    rate: float = tag("update_rate", default=31.0, unit="Hz", doc="Rate of the codes.")
+    omni_opening: float = tag(
+        "sensor_0_fov", default=1.0, unit="rad", doc="Field of view of the top receiver."
+    )
+    omni_range: float = tag(
+        "sensor_0_range", default=1.0, unit="m", doc="Range of the top receiver."
+    )
+    front_opening: float = tag(
+        "sensor_1_fov", default=1.0, unit="rad", doc="Field of view of the front receiver."
+    )
+    front_range: float = tag(
+        "sensor_1_range", default=1.0, unit="m", doc="Range of the front receiver."
+    )
 
 
 class Create3Opcode(_Docking):
-    """Publishes the codes that the robot's two receivers see: of the dock's halo and its buoys.
+    """Publishes the infrared codes of the dock that the robot's two receivers detect.
 
-    A sensor's range is added to that of the light. Source: irobot_create_gazebo_plugins,
-    gazebo_ros_ir_opcode.
+    The dock emits a halo and a red and a green buoy. The range of a receiver is added to the range
+    of the light. Source: irobot_create_gazebo_plugins, gazebo_ros_ir_opcode.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_create_ir_opcode.so",)
@@ -95,7 +107,7 @@ class Create3Opcode(_Docking):
         (distance, azimuth), back = seen
         for number, (opening, reach) in enumerate(self._sensors):
             if abs(azimuth) < opening / 2 and distance < reach + _HALO:
-                self._tell(number, self._IrOpcode.CODE_IR_FORCE_FIELD)
+                self._publish_code(number, self._IrOpcode.CODE_IR_FORCE_FIELD)
         for number, (opening, reach) in enumerate(self._sensors):
             if abs(azimuth) < opening / 2 and distance < reach + _BUOYS:
                 code = 0
@@ -104,9 +116,9 @@ class Create3Opcode(_Docking):
                 if (0.5 - _SHARE) * _OPENING < back < _OPENING / 2:
                     code |= self._IrOpcode.CODE_IR_BUOY_RED
                 if code:
-                    self._tell(number, code)
+                    self._publish_code(number, code)
 
-    def _tell(self, sensor: int, code: int) -> None:
+    def _publish_code(self, sensor: int, code: int) -> None:
         moment = header(self.part.time_ns, self.frame(self.config.receiver))
         self._publisher.publish(self._IrOpcode(moment, code, sensor))
 
@@ -114,15 +126,18 @@ class Create3Opcode(_Docking):
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Create3DockStatusParameters(_Dock):
     rate: float = tag(
-        "update_rate", default=1.0, unit="Hz", doc="Of the status; a change is told at once."
+        "update_rate",
+        default=1.0,
+        unit="Hz",
+        doc="Publish rate. Changes are published immediately.",
     )
 
 
 class Create3DockStatus(_Docking):
-    """Publishes whether the robot sees its dock, by ``ir_opcode``, and whether it stands in it.
+    """Publishes whether the robot detects its dock and whether it is docked.
 
-    Nothing while the world has no dock. Source: irobot_create_gazebo_plugins,
-    gazebo_ros_docking_status.
+    The dock counts as visible while its codes arrive on ``ir_opcode``. Nothing is published while
+    the world has no dock. Source: irobot_create_gazebo_plugins, gazebo_ros_docking_status.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_create_docking_status.so",)
@@ -140,13 +155,13 @@ class Create3DockStatus(_Docking):
         self.reset()
 
     def reset(self) -> None:
-        self._heard_ns: int | None = None
-        self._told: tuple[bool, bool] | None = None
-        self._told_ns = 0
+        self._opcode_ns: int | None = None
+        self._published: tuple[bool, bool] | None = None
+        self._published_ns = 0
 
     def _on_opcode(self, message: Any) -> None:
         known = message.opcode != message.CODE_IR_VIRTUAL_WALL
-        self._heard_ns = self.part.time_ns if known else None
+        self._opcode_ns = self.part.time_ns if known else None
 
     def _look(self) -> None:
         seen = self._seen()
@@ -154,10 +169,10 @@ class Create3DockStatus(_Docking):
             return
         (distance, azimuth), back = seen
         now = self.part.time_ns
-        visible = self._heard_ns is not None and now - self._heard_ns <= 1e9 / _CHECKS
+        visible = self._opcode_ns is not None and now - self._opcode_ns <= 1e9 / _CHECKS
         docked = distance < _NEAR and abs(azimuth) < _AHEAD and abs(back) < _AHEAD
-        due = now - self._told_ns >= 1e9 / self.config.rate
-        if due or (visible, docked) != self._told:
-            self._told, self._told_ns = (visible, docked), now
+        due = now - self._published_ns >= 1e9 / self.config.rate
+        if due or (visible, docked) != self._published:
+            self._published, self._published_ns = (visible, docked), now
             moment = header(now, self.frame("base_link"))
             self._publisher.publish(self._DockStatus(moment, visible, docked))

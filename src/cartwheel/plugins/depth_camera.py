@@ -1,4 +1,4 @@
-"""``libgazebo_ros_depth_camera.so`` and ``libgazebo_ros_openni_kinect.so``: colours and depths."""
+"""``libgazebo_ros_depth_camera.so`` and ``libgazebo_ros_openni_kinect.so``: depth cameras."""
 
 from __future__ import annotations
 
@@ -15,15 +15,25 @@ from cartwheel.plugins.parameters import tag
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class DepthCameraParameters(CameraParameters):
-    image_topic: str = tag("imageTopicName", default="ir/image_raw", doc="Image of colours.")
+    image_topic: str = tag(
+        "imageTopicName", default="ir/image_raw", doc="Topic of the colour images."
+    )
     info_topic: str = tag(
-        "cameraInfoTopicName", default="ir/camera_info", doc="CameraInfo of the image."
+        "cameraInfoTopicName",
+        default="ir/camera_info",
+        doc="Topic of the CameraInfo of the colour images.",
     )
-    depth_topic: str = tag("depthImageTopicName", default="depth/image_raw", doc="Image of depths.")
+    depth_topic: str = tag(
+        "depthImageTopicName", default="depth/image_raw", doc="Topic of the depth images."
+    )
     depth_info_topic: str = tag(
-        "depthImageCameraInfoTopicName", default="depth/camera_info", doc="CameraInfo of depths."
+        "depthImageCameraInfoTopicName",
+        default="depth/camera_info",
+        doc="Topic of the CameraInfo of the depth images.",
     )
-    points_topic: str = tag("pointCloudTopicName", default="points", doc="PointCloud2.")
+    points_topic: str = tag(
+        "pointCloudTopicName", default="points", doc="Topic of the points (PointCloud2)."
+    )
     nearest: float = tag(
         "pointCloudCutoff", default=0.4, unit="m", doc="Depths up to this are nan."
     )
@@ -31,20 +41,26 @@ class DepthCameraParameters(CameraParameters):
         "pointCloudCutoffMax", default=math.inf, unit="m", doc="Depths from this on are nan."
     )
     millimetres: bool = tag(
-        "useDepth16UC1Format", default=False, doc="Depths as 16UC1 in mm, 0 for nan."
+        "useDepth16UC1Format",
+        default=False,
+        doc="Publish depths as 16UC1 in mm, with 0 instead of nan.",
     )
-    baseline: float = tag("baseline", default=0.0, unit="m", doc="Accepted.")
-    reflectance_topic: str = tag("reflectanceTopicName", default="", doc="Not published.")
-    normals_topic: str = tag("normalsTopicName", default="", doc="Not published.")
-    reduce_normals: int = tag("reduceNormals", default=50, doc="Of the normals.")
+    baseline: float = tag(
+        "baseline", default=0.0, unit="m", doc="Accepted for compatibility; no effect."
+    )
+    reflectance_topic: str = tag("reflectanceTopicName", default="", doc="Not supported.")
+    normals_topic: str = tag("normalsTopicName", default="", doc="Not supported.")
+    reduce_normals: int = tag(
+        "reduceNormals", default=50, doc="Accepted for compatibility; no effect."
+    )
 
 
 class DepthCamera(RosCamera[DepthCameraParameters]):
-    """A camera that knows how far ahead each pixel is.
+    """Publishes colour images, depth images and points of a depth camera.
 
-    Depths are along the optical axis. Points have x right, y down and z ahead, in the frame that
-    ``<frameName>`` says: name an optical frame there. They are organised, one for each pixel, with
-    its colour in ``rgb``. Neither reflectance nor normals, as in Gazebo 11.
+    Depths are along the optical axis. Points have x right, y down and z forward, so ``<frameName>``
+    should name an optical frame. The point cloud is organised: it has one point for each pixel,
+    with its colour in ``rgb``. Reflectance and normals are not published, as in Gazebo 11.
 
     Source: gazebo_plugins, gazebo_ros_depth_camera; REP 103 and 118.
     """
@@ -86,9 +102,10 @@ class KinectParameters(DepthCameraParameters):
 
 
 class OpenniKinect(DepthCamera):
-    """A depth camera that sees no further than 5 m where nothing else is said.
+    """Publishes colour images, depth images and points of a Kinect, by default up to 5 m.
 
-    Source: gazebo_plugins, gazebo_ros_openni_kinect.
+    In other respects the plugin is that of libgazebo_ros_depth_camera.so. Source: gazebo_plugins,
+    gazebo_ros_openni_kinect.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_openni_kinect.so",)

@@ -1,4 +1,4 @@
-"""``gz-sim-detachable-joint-system``: a joint to another model, until it is told to part."""
+"""``gz-sim-detachable-joint-system``: a joint to another model that can be detached."""
 
 from __future__ import annotations
 
@@ -12,40 +12,43 @@ from cartwheel.plugins.gz_drive import gz_name
 from cartwheel.plugins.parameters import tag
 
 _OWN = "__model__"
-"""Names the plugin's own model."""
+"""Selects the plugin's own model."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class DetachableJointParameters:
     parent_link: str = tag("parent_link", doc="Link of this model.")
-    child_model: str = tag("child_model", doc="Model that is attached; `__model__` is this one.")
-    child_link: str = tag("child_link", doc="Its link.")
+    child_model: str = tag("child_model", doc="Model to attach. `__model__` is this model.")
+    child_link: str = tag("child_link", doc="Link of the child model.")
     detach_topic: str = tag(
         "detach_topic",
         "topic",
         default="",
-        doc="Empty that parts them; /model/<name>/detachable_joint/detach when empty.",
+        doc="Topic of the Empty messages that detach the child. Default: "
+        "`/model/<model>/detachable_joint/detach`.",
     )
     attach_topic: str = tag(
         "attach_topic",
         default="",
-        doc="Empty that joins them again; /model/<name>/detachable_joint/attach when empty.",
+        doc="Topic of the Empty messages that attach the child again. Default: "
+        "`/model/<model>/detachable_joint/attach`.",
     )
     output_topic: str = tag(
         "output_topic",
         default="",
-        doc="String, attached or detached, whenever it changes; "
-        "/model/<child_model>/detachable_joint/state when empty.",
+        doc="Topic of the state, a String `attached` or `detached`, published when it changes. "
+        "Default: `/model/<child_model>/detachable_joint/state`.",
     )
     quiet: bool = tag(
-        "suppress_child_warning", default=False, doc="Say nothing of a child that is not there."
+        "suppress_child_warning", default=False, doc="Do not warn if the child does not exist."
     )
 
 
 class DetachableJoint(Plugin[DetachableJointParameters]):
-    """Joins a link of its model to one of another model as they stand, from the start.
+    """Attaches a link of another model to the own model until a message detaches it.
 
-    A child that comes later is joined as soon as it is there. Source: gz-sim, DetachableJoint.
+    The links are attached from the start, in their current relative pose. A child that is spawned
+    later is attached as soon as it exists. Source: gz-sim, DetachableJoint.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("gz-sim-detachable-joint-system",)
@@ -85,21 +88,21 @@ class DetachableJoint(Plugin[DetachableJointParameters]):
     def _detach(self, _: Any) -> None:
         if self._joint.held is not None:
             self._joint.release()
-            self._tell("detached")
+            self._publish("detached")
 
     def _join(self) -> None:
         model = self.config.child_model
         own = self.part.name
         places = [
             (own if model == _OWN else model, self.config.child_link),
-            # A model in this model, whose links have its name before theirs.
+            # A nested model, whose links are prefixed with its name.
             (own, f"{model}::{self.config.child_link}"),
         ]
-        found = next((place for place in places if place in self._surroundings.links), None)
-        if found is not None:
-            self._joint.hold((own, self.config.parent_link), found)
+        link = next((place for place in places if place in self._surroundings.links), None)
+        if link is not None:
+            self._joint.hold((own, self.config.parent_link), link)
             self._wanted = False
-            self._tell("attached")
+            self._publish("attached")
         elif not self._missed and not self.config.quiet:
             self._missed = True
             self.warn(
@@ -108,6 +111,6 @@ class DetachableJoint(Plugin[DetachableJointParameters]):
                 values={"link": self.config.child_link, "model": model},
             )
 
-    def _tell(self, state: str) -> None:
+    def _publish(self, state: str) -> None:
         if self._state.wanted:
             self._state.publish(self._String(state))

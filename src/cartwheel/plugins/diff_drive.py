@@ -1,4 +1,4 @@
-"""``libgazebo_ros_diff_drive.so``: driven wheels in pairs, odometry, TF and joint states."""
+"""``libgazebo_ros_diff_drive.so``: differential drive with odometry, TF and joint states."""
 
 from __future__ import annotations
 
@@ -19,28 +19,30 @@ class DiffDriveParameters:
         "leftJoint",
         "left_joint",
         default=("left_joint",),
-        doc="Joint of the left wheel; once for each pair.",
+        doc="Joint of the left wheel. Repeat for each pair.",
     )
     right_joint: tuple[str, ...] = tag(
         "rightJoint",
         "right_joint",
         default=("right_joint",),
-        doc="Joint of the right wheel; once for each pair.",
+        doc="Joint of the right wheel. Repeat for each pair.",
     )
-    pairs: int = tag("num_wheel_pairs", default=1, doc="How many pairs there are.")
+    pairs: int = tag("num_wheel_pairs", default=1, doc="Number of wheel pairs.")
     wheel_separation: tuple[float, ...] = tag(
         "wheelSeparation",
         "wheel_separation",
         default=(0.34,),
         unit="m",
-        doc="Between the wheels; once for each pair, the last counts for those that follow.",
+        doc="Distance between the left and right wheel. Repeat for each pair; the last value "
+        "applies to the remaining pairs.",
     )
     wheel_diameter: tuple[float, ...] = tag(
         "wheelDiameter",
         "wheel_diameter",
         default=(0.15,),
         unit="m",
-        doc="Of both wheels; once for each pair, the last counts for those that follow.",
+        doc="Diameter of both wheels. Repeat for each pair; the last value applies to the "
+        "remaining pairs.",
     )
     wheel_torque: float = tag(
         "wheelTorque",
@@ -48,71 +50,96 @@ class DiffDriveParameters:
         "torque",
         default=5.0,
         unit="N m",
-        doc="The most that each wheel's motor gives. Gazebo 11 does not read torque.",
+        doc="Maximum torque of each wheel. Gazebo 11 ignores the spelling `<torque>`.",
     )
     wheel_acceleration: float = tag(
         "wheelAcceleration",
         "max_wheel_acceleration",
         default=0.0,
         unit="m/s²",
-        doc="Ramp of the wheels' commanded rim speed; 0 is none.",
+        doc="Maximum acceleration of the wheels' commanded rim speed. 0: no limit.",
     )
     command_topic: str = tag(
-        "commandTopic", "command_topic", default="cmd_vel", doc="Twist that drives."
+        "commandTopic", "command_topic", default="cmd_vel", doc="Topic of the Twist commands."
     )
-    odometry_topic: str = tag("odometryTopic", "odometry_topic", default="odom", doc="Odometry.")
+    odometry_topic: str = tag(
+        "odometryTopic", "odometry_topic", default="odom", doc="Topic of the odometry."
+    )
     odometry_frame: str = tag(
-        "odometryFrame", "odometry_frame", default="odom", doc="Frame of the odometry."
+        "odometryFrame", "odometry_frame", default="odom", doc="Frame ID of the odometry."
     )
     base_frame: str = tag(
         "robotBaseFrame",
         "robot_base_frame",
         default="base_footprint",
-        doc="Link whose pose is told; the root link where there is none of that name.",
+        doc="Link whose pose the odometry reports. Defaults to the root link if no link has this "
+        "name.",
     )
     update_rate: float = tag(
-        "updateRate", "update_rate", default=100.0, unit="Hz", doc="Of control and topics."
+        "updateRate",
+        "update_rate",
+        default=100.0,
+        unit="Hz",
+        doc="Rate of the control loop and of the topics. 0: every step.",
     )
     source: Literal["world", "encoder", "0", "1"] = tag(
         "odometrySource",
         "odometry_source",
         default="world",
-        doc="world: the true pose; encoder: what the wheels' turning gives.",
+        doc="Source of the odometry. `world` (or `1`): true pose in the world; `encoder` (or "
+        "`0`): wheel rotation.",
     )
     publish_tf: bool = tag(
-        "publishTf", "publishTF", default=True, doc="Publish odometry and its transform."
+        "publishTf", "publishTF", default=True, doc="Publish the odometry and its transform."
     )
     publish_odom: bool | None = tag(
-        "publish_odom", default=None, doc="Publish odometry: ROS 2's, where false is the default."
+        "publish_odom",
+        default=None,
+        doc="Publish the odometry. Defaults to false if the tag is written for ROS 2, otherwise "
+        "to true.",
     )
     publish_odom_tf: bool | None = tag(
         "publishOdomTF",
         "publish_odom_tf",
         default=None,
-        doc="Publish odometry's transform; true, and false in ROS 2's spelling.",
+        doc="Publish the transform of the odometry. Defaults to false if the tag is written for "
+        "ROS 2, otherwise to true.",
     )
     publish_wheel_tf: bool = tag(
-        "publishWheelTF", "publish_wheel_tf", default=False, doc="Publish the wheels' transforms."
+        "publishWheelTF",
+        "publish_wheel_tf",
+        default=False,
+        doc="Publish the transforms of the wheels.",
     )
     publish_joint_state: bool = tag(
         "publishWheelJointState",
         default=False,
-        doc="Publish the wheels' positions on joint_states.",
+        doc="Publish the positions and velocities of the wheels on `joint_states`.",
     )
-    covariance_x: float = tag("covariance_x", default=1e-5, unit="m²", doc="Of the odometry.")
-    covariance_y: float = tag("covariance_y", default=1e-5, unit="m²", doc="Of the odometry.")
-    covariance_yaw: float = tag("covariance_yaw", default=1e-3, unit="rad²", doc="Of the odometry.")
+    covariance_x: float = tag(
+        "covariance_x", default=1e-5, unit="m²", doc="Variance of the odometry in x."
+    )
+    covariance_y: float = tag(
+        "covariance_y", default=1e-5, unit="m²", doc="Variance of the odometry in y."
+    )
+    covariance_yaw: float = tag(
+        "covariance_yaw", default=1e-3, unit="rad²", doc="Variance of the odometry in yaw."
+    )
     legacy_mode: bool = tag(
-        "legacyMode", default=False, doc="Turn the other way, as an old release did."
+        "legacyMode",
+        default=False,
+        doc="Reverse the direction of turning, as in old releases of Gazebo's plugin.",
     )
 
 
 class DiffDrive(WheelDrive):
-    """Drives pairs of wheels by Twist, and tells where that took the robot.
+    """Drives pairs of wheels from Twist commands and publishes odometry.
 
-    Each wheel is a velocity servo that gives at most `wheel_torque`; a command holds until
-    the next one. In ROS 1's spelling, in a model of a world, its topics are under the model's
-    name where no ``<robotNamespace>`` is stated. Source: gazebo_plugins, gazebo_ros_diff_drive.
+    Each wheel is a velocity servo with the maximum torque `wheelTorque`. A command stays in effect
+    until the next one. In a model inside a world, the topics of a ROS 1 tag without
+    ``<robotNamespace>`` are placed under the model's name. A tag counts as written for ROS 2 if it
+    contains ``<ros>``, ``<left_joint>`` or ``<right_joint>``. Source: gazebo_plugins,
+    gazebo_ros_diff_drive.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_diff_drive.so",)
@@ -133,30 +160,30 @@ class DiffDrive(WheelDrive):
             )
         self._take_wheels(self._wheel_pairs(), torque=config.wheel_torque)
         rate = config.update_rate
-        # ROS 2's plugin of the same name publishes only what it is told to, under no model's name.
+        # The ROS 2 plugin of the same name publishes only on request, without the model's name.
         ros2 = any(element.find(name) for name in ("left_joint", "right_joint", "ros"))
         if not ros2:
             self.under_model()
-        told = not ros2 if config.publish_odom is None else config.publish_odom
-        moved = not ros2 if config.publish_odom_tf is None else config.publish_odom_tf
+        publishes_odom = not ros2 if config.publish_odom is None else config.publish_odom
+        publishes_tf = not ros2 if config.publish_odom_tf is None else config.publish_odom_tf
         covariance = planar_covariance(
             config.covariance_x, config.covariance_y, config.covariance_yaw
         )
         self.odometry = self.keep(
             Odometry(
                 self,
-                topic=config.odometry_topic if config.publish_tf and told else None,
+                topic=config.odometry_topic if config.publish_tf and publishes_odom else None,
                 frame=config.odometry_frame,
                 base=config.base_frame,
                 rate=rate,
-                transform=config.publish_tf and moved,
+                transform=config.publish_tf and publishes_tf,
                 wheels=WheelTransforms(self, self.joints) if config.publish_wheel_tf else None,
                 pose_covariance=covariance,
                 twist_covariance=covariance if ros2 else NO_COVARIANCE,
             )
         )
         if config.publish_joint_state:
-            # Gazebo's order, right before left.
+            # In Gazebo's order: right before left.
             order = [self.joints[i ^ 1] for i in range(len(self.joints))]
             self.joint_states = JointStates(self, order, rate=rate)
         self._run_wheels(

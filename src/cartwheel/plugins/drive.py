@@ -1,4 +1,4 @@
-"""What takes Twists and tells where that took the robot."""
+"""The base class of drives that follow Twist commands and publish odometry."""
 
 from __future__ import annotations
 
@@ -11,23 +11,23 @@ from cartwheel.plugins.wheel_states import JointStates
 
 
 class Drive(Plugin[Any]):
-    """Base of the drives on wheels.
+    """Base class of wheeled drives.
 
-    A subclass's `configure` takes joints, makes what tells, and calls `_run`; its `_aim` takes
-    a command, `_turn_wheels` obeys it, and `_motion` is where the robot is.
+    A subclass's `configure` acquires joints, creates the publishers and calls `_run`. Its `_aim`
+    stores a command, `_turn_wheels` executes it, and `_motion` returns the pose and velocity.
     """
 
     odometry: Odometry | None = None
     joint_states: JointStates | None = None
 
     def _run(self, *, command_topic: str, base: str, control_rate: float, rate: float) -> None:
-        """Subscribes and schedules.
+        """Subscribes to commands and schedules the control loop.
 
         Args:
-            command_topic: Twist.
-            base: Link whose true pose is told; the root where it is a frame's and no link's.
-            control_rate: Hz.
-            rate: Hz, of what is told.
+            command_topic: Topic of the Twist commands.
+            base: Link whose true pose is published; the root link if no link has this name.
+            control_rate: Rate of the control loop, Hz.
+            rate: Publish rate, Hz.
         """
         self._base = self.link_or_root(base)
         self.subscribe(command_topic, "geometry_msgs/msg/Twist", self._on_command)
@@ -42,7 +42,7 @@ class Drive(Plugin[Any]):
         self._aim(float(message.linear.x), float(message.angular.z))
 
     def _aim(self, forward: float, turn: float) -> None:
-        """Takes a command: m/s, and what the drive takes ``angular.z`` for."""
+        """Stores a command: m/s, and ``angular.z`` as the drive interprets it."""
         raise NotImplementedError
 
     def _control(self) -> None:
@@ -52,11 +52,11 @@ class Drive(Plugin[Any]):
         self._turn_wheels(seconds)
 
     def _turn_wheels(self, seconds: float) -> None:
-        """Commands the joints, `seconds` after the last time."""
+        """Commands the joints, `seconds` after the previous call."""
         raise NotImplementedError
 
     def _motion(self) -> tuple[Vec3, Quat, Vec3, Vec3]:
-        """As `planar_motion`; the true one."""
+        """Returns the true motion in the form of `planar_motion`."""
         return planar_motion(self._base)
 
     def _wanted(self) -> bool:

@@ -1,4 +1,4 @@
-"""``libgazebo_ros_elevator.so``: a car that goes to floors, with a door."""
+"""``libgazebo_ros_elevator.so``: an elevator with floors and a door."""
 
 from __future__ import annotations
 
@@ -14,37 +14,44 @@ from cartwheel.plugins.parameters import shown, tag
 from cartwheel.simulation.handles import JointHandle, MotorHandle
 
 _RATE = 100.0
-"""Hz of control."""
+"""Rate of the control loop, Hz."""
 _OPEN = 1.0
-"""m that the door opens, as in Gazebo; less where its joint ends before."""
+"""Travel of the opening door, m, as in Gazebo; less if the joint's limit is lower."""
 _LIFT_EFFORT = 1e5
-"""N where the joint states none."""
+"""N; used if the joint states no effort limit."""
 _DOOR_EFFORT = 100.0
 _LIFT_SPEED, _LIFT_ACCELERATION = 1.5, 1.0
-"""m/s and m/s²: what stands in the car keeps standing."""
+"""m/s and m/s²; low enough for passengers to remain standing."""
 _DOOR_SPEED, _DOOR_ACCELERATION = 0.5, 1.0
 _THERE = 1e-3
-"""m from the target, at which a motor is stopped."""
+"""Distance from the target at which a motor stops, m."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ElevatorParameters:
     lift_joint: str = tag("lift_joint", doc="Prismatic joint that moves the car.")
-    door_joint: str = tag("door_joint", doc="Prismatic joint of the door: 0 is closed.")
-    floor_height: float = tag("floor_height", default=3.0, unit="m", doc="From floor to floor.")
+    door_joint: str = tag("door_joint", doc="Prismatic joint of the door. Position 0 is closed.")
+    floor_height: float = tag("floor_height", default=3.0, unit="m", doc="Height of a floor.")
     door_wait_time: float = tag(
-        "door_wait_time", default=5.0, unit="s", doc="How long the door stays open."
+        "door_wait_time", default=5.0, unit="s", doc="Time for which the door stays open."
     )
-    topic: str = tag("topic", default="elevator", doc="String: the number of a floor.")
-    bottom_floor: int | None = tag("bottom_floor", default=None, doc="Lowest floor; none is lower.")
-    top_floor: int | None = tag("top_floor", default=None, doc="Highest floor; none is higher.")
+    topic: str = tag(
+        "topic",
+        default="elevator",
+        doc="Topic of the String messages with the number of the target floor.",
+    )
+    bottom_floor: int | None = tag(
+        "bottom_floor", default=None, doc="Lowest floor. Default: no limit."
+    )
+    top_floor: int | None = tag("top_floor", default=None, doc="Highest floor. Default: no limit.")
 
 
 class Elevator(Plugin[ElevatorParameters]):
-    """Takes its car to the floor that a message names: closes, moves, opens, waits, closes.
+    """Moves an elevator's car to the commanded floor and operates its door.
 
-    While it is busy it takes no other order. Floor n is at n times `floor_height` of the lift
-    joint. Source: gazebo_plugins, gazebo_ros_elevator; Gazebo, ElevatorPlugin.
+    The sequence is: close the door, move, open, wait, close. Commands are ignored until it is
+    finished. Floor n is at the position n times `floor_height` of the lift joint. Source:
+    gazebo_plugins, gazebo_ros_elevator; Gazebo, ElevatorPlugin.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_elevator.so", "libElevatorPlugin.so")
@@ -76,7 +83,7 @@ class Elevator(Plugin[ElevatorParameters]):
             drive.stop()
 
     def _drive(self, name: str, effort: float, speed: float, acceleration: float) -> _Drive:
-        """A motor for a joint, which may be written with the model's name before it."""
+        """Creates the drive of a joint, whose name may be prefixed with the model's name."""
         origin = self.tag.origin
         description = self.part.description
         if description.joint(name) is None:
@@ -89,7 +96,7 @@ class Elevator(Plugin[ElevatorParameters]):
         return _Drive(joint, motor, speed=speed, acceleration=acceleration, limits=(low, high))
 
     def _order(self, message: Any) -> None:
-        """A floor to go to; what is no floor is told and left."""
+        """Starts a trip to a floor. Invalid floors are ignored with a warning."""
         text = str(message.data).strip()
         config = self.config
         try:
@@ -146,7 +153,7 @@ class Elevator(Plugin[ElevatorParameters]):
 
 
 class _Drive:
-    """Moves a joint to a place at a limited speed and acceleration, and holds it there."""
+    """Moves a joint to a target position with limited speed and acceleration, and holds it."""
 
     def __init__(
         self,
@@ -166,21 +173,21 @@ class _Drive:
         self.target = 0.0
 
     def within(self, position: float) -> float:
-        """The nearest position that the joint's limits allow."""
+        """Returns the nearest position within the joint's limits."""
         return min(max(position, self._limits[0]), self._limits[1])
 
     def reached(self, target: float) -> bool:
-        """Sets the target; whether the joint stands there."""
+        """Sets the target and returns whether the joint has stopped there."""
         self.target = target
         return abs(target - self._joint.position) <= 2 * _THERE and self._velocity == 0.0
 
     def stop(self) -> None:
-        """Stands where it is."""
+        """Stops at the current position."""
         self._velocity = 0.0
         self._motor.command(0.0)
 
     def control(self) -> None:
-        """Commands the speed from which it can still stop at the target."""
+        """Commands the highest speed from which the joint can still stop at the target."""
         left = self.target - self._joint.position
         if abs(left) <= _THERE:
             self.stop()

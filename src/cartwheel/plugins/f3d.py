@@ -1,4 +1,4 @@
-"""``libgazebo_ros_f3d.so``: what acts on a link."""
+"""``libgazebo_ros_f3d.so``: the external force and torque on a link."""
 
 from __future__ import annotations
 
@@ -12,20 +12,23 @@ from cartwheel.plugins.parameters import tag
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class F3DParameters:
-    body: str = tag("bodyName", doc="Link.")
-    topic: str = tag("topicName", default="f3d", doc="WrenchStamped. Must be in Gazebo.")
+    body: str = tag("bodyName", doc="Link on which the force is measured.")
+    topic: str = tag(
+        "topicName", default="f3d", doc="Topic of the WrenchStamped messages. Required in Gazebo."
+    )
     frame: str = tag(
         "frameName",
         default="world",
-        doc="Frame id of the messages; their values are in the world's axes.",
+        doc="Frame ID of the messages. The values are always in the world's axes.",
     )
 
 
 class F3D(Plugin[F3DParameters]):
-    """Publishes what contacts, attachments and pushes exert on a link, at each step.
+    """Publishes the force and torque that contacts, attachments and wrenches exert on a link.
 
-    Force and torque about its centre of mass, in the world's axes; neither gravity nor what its
-    joints exert. Source: gazebo_plugins, gazebo_ros_f3d.
+    The torque is about the link's centre of mass, and both are in the world's axes. Gravity and the
+    forces of the link's joints are not included. A message is published at every step. Source:
+    gazebo_plugins, gazebo_ros_f3d.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_f3d.so",)

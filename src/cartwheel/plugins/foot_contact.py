@@ -1,4 +1,4 @@
-"""``libunitreeFootContactPlugin.so``: the force on a foot."""
+"""``libunitreeFootContactPlugin.so``: the contact force on a foot."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ class FootContactParameters:
 
 
 class FootContact(Plugin[FootContactParameters]):
-    """Publishes the force on a contact sensor's collisions, in the axes of its link.
+    """Publishes the contact force on a foot, in the axes of its link.
 
-    On ``/visual/<sensor>/the_force``; the sum of all contacts, where Gazebo tells their mean.
-    Source:
-    unitree_gazebo, foot_contact_plugin.
+    The topic is ``/visual/<sensor>/the_force``. The force is the sum over all contacts of the
+    contact sensor's collisions; Gazebo publishes their mean. Source: unitree_gazebo,
+    foot_contact_plugin.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libunitreeFootContactPlugin.so",)

@@ -1,4 +1,4 @@
-"""``libgazebo_ros_force.so``: a push on a link."""
+"""``libgazebo_ros_force.so``: a commanded force on a link."""
 
 from __future__ import annotations
 
@@ -12,17 +12,21 @@ from cartwheel.plugins.parameters import tag
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ForceParameters:
-    body: str = tag("bodyName", "body_name", "link_name", doc="Link that is pushed.")
-    topic: str = tag("topicName", "topic_name", default="gazebo_ros_force", doc="Wrench.")
+    body: str = tag(
+        "bodyName", "body_name", "link_name", doc="Link to which the wrench is applied."
+    )
+    topic: str = tag(
+        "topicName", "topic_name", default="gazebo_ros_force", doc="Topic of the Wrench messages."
+    )
     frame: Literal["world", "link"] = tag(
-        "force_frame", default="world", doc="In whose axes the force is told (ROS 2)."
+        "force_frame", default="world", doc="Axes of the commanded wrench (ROS 2)."
     )
 
 
 class Force(Plugin[ForceParameters]):
-    """Pushes a link with the last Wrench it heard, at its centre of mass, until the next.
+    """Applies the last received Wrench to a link, at its centre of mass.
 
-    Source: gazebo_plugins, gazebo_ros_force.
+    The wrench stays in effect until the next message. Source: gazebo_plugins, gazebo_ros_force.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_force.so",)

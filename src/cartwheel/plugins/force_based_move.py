@@ -1,4 +1,4 @@
-"""``libridgeback_ros_force_based_move.so``: a base that is pushed to its velocity."""
+"""``libridgeback_ros_force_based_move.so``: a base that is moved by forces."""
 
 from __future__ import annotations
 
@@ -14,49 +14,59 @@ from cartwheel.plugins.odometry import UNKNOWN, Odometry, planar_motion
 from cartwheel.plugins.parameters import tag
 
 _TURNS = 1e-4
-"""rad/s; what turns faster knows little of its heading."""
+"""rad/s; the heading's variance is large above this rate."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ForceBasedMoveParameters:
-    command_topic: str = tag("commandTopic", default="cmd_vel", doc="Twist.")
-    odometry_topic: str = tag("odometryTopic", default="odom", doc="Odometry.")
-    odometry_frame: str = tag("odometryFrame", default="odom", doc="Frame of the odometry.")
+    command_topic: str = tag("commandTopic", default="cmd_vel", doc="Topic of the Twist commands.")
+    odometry_topic: str = tag("odometryTopic", default="odom", doc="Topic of the odometry.")
+    odometry_frame: str = tag("odometryFrame", default="odom", doc="Frame ID of the odometry.")
     base_frame: str = tag(
         "robotBaseFrame",
         default="base_footprint",
-        doc="Link whose pose is told; the root link where there is none of that name.",
+        doc="Link whose pose the odometry reports. Defaults to the root link if no link has this "
+        "name.",
     )
     rate: float = tag(
-        "odometryRate", default=20.0, unit="Hz", doc="Of what is told; 0 or less is none of it."
+        "odometryRate",
+        default=20.0,
+        unit="Hz",
+        doc="Publish rate of the odometry. 0 or less: no odometry.",
     )
-    publish_tf: bool = tag("publishOdometryTf", default=True, doc="Publish odometry's transform.")
+    publish_tf: bool = tag(
+        "publishOdometryTf", default=True, doc="Publish the transform of the odometry."
+    )
     timeout: float = tag(
         "cmdVelTimeOut",
         "commandWatchdog",
         default=0.25,
         unit="s",
-        doc="After that long without a command it stands.",
+        doc="The robot stops if no command arrives for this time.",
     )
     x_gain: float = tag(
-        "x_velocity_p_gain", default=10000.0, unit="N s/m", doc="Force for a missing speed."
+        "x_velocity_p_gain", default=10000.0, unit="N s/m", doc="Force per velocity error."
     )
     y_gain: float = tag(
         "y_velocity_p_gain",
         default=10000.0,
         unit="N s/m",
-        doc="The same sideways; has to be as much.",
+        doc="Must equal x_velocity_p_gain, which is used for both directions.",
     )
     yaw_gain: float = tag(
-        "yaw_velocity_p_gain", default=100.0, unit="N m s/rad", doc="Torque for missing turning."
+        "yaw_velocity_p_gain",
+        default=100.0,
+        unit="N m s/rad",
+        doc="Torque per error of the angular velocity.",
     )
 
 
 class ForceBasedMove(Plugin[ForceBasedMoveParameters]):
-    """Pushes the robot along, sideways and around as Twist says, with forces as of a spring.
+    """Moves the robot in the plane by forces that follow Twist commands, and publishes odometry.
 
-    The force is the gain times what is missing of the velocity, at the centre of mass. The odometry
-    begins where the robot does. Source: ridgeback_gazebo_plugins; hector_gazebo_plugins.
+    Force and torque are the gain times the velocity error and act at the centre of mass.
+    ``linear.x``, ``linear.y`` and ``angular.z`` are used. The odometry starts at the robot's
+    initial pose. Source: ridgeback_gazebo_plugins; hector_gazebo_plugins.
     """
 
     filenames: ClassVar[tuple[str, ...]] = (
@@ -65,7 +75,7 @@ class ForceBasedMove(Plugin[ForceBasedMoveParameters]):
         "librobotnik_force_based_move.so",
     )
     parameters: ClassVar[type] = ForceBasedMoveParameters
-    _told: Odometry | None = None
+    _odometry: Odometry | None = None
 
     def configure(self) -> None:
         config, part, origin = self.config, self.part, self.tag.origin
@@ -83,7 +93,7 @@ class ForceBasedMove(Plugin[ForceBasedMoveParameters]):
         self.subscribe(config.command_topic, "geometry_msgs/msg/Twist", self._on_command)
         part.schedule(0, before=self._watch)
         if config.rate > 0:
-            told = self._told = Odometry(
+            odometry = self._odometry = Odometry(
                 self,
                 topic=config.odometry_topic,
                 frame=config.odometry_frame,
@@ -91,52 +101,55 @@ class ForceBasedMove(Plugin[ForceBasedMoveParameters]):
                 rate=config.rate,
                 transform=config.publish_tf,
             )
-            # Where it begins is known at its first turn, whoever listens.
+            # The initial pose must not depend on when the first subscriber appears.
             part.schedule(
                 config.rate,
                 after=self._publish,
-                active=lambda: self._start is None or told.wanted(),
+                active=lambda: self._start is None or odometry.wanted(),
             )
         self.reset()
 
     def reset(self) -> None:
         self._start = None
-        self._heard_ns: int | None = None
-        self._stand()
+        self._received_ns: int | None = None
+        self._stop()
 
     def close(self) -> None:
-        if self._told is not None:
-            self._told.close()
+        if self._odometry is not None:
+            self._odometry.close()
         super().close()
 
-    def _stand(self) -> None:
+    def _stop(self) -> None:
         self._drive.command((0.0, 0.0, None), (None, None, 0.0))
 
     def _on_command(self, message: Any) -> None:
         x, y, turn = float(message.linear.x), float(message.linear.y), float(message.angular.z)
-        self._heard_ns = self.part.time_ns
+        self._received_ns = self.part.time_ns
         self._drive.command((x, y, None), (None, None, turn))
 
     def _watch(self) -> None:
-        heard = self._heard_ns
-        if heard is not None and (self.part.time_ns - heard) * 1e-9 > self.config.timeout:
-            self._heard_ns = None
-            self._stand()
+        received_ns = self._received_ns
+        if (
+            received_ns is not None
+            and (self.part.time_ns - received_ns) * 1e-9 > self.config.timeout
+        ):
+            self._received_ns = None
+            self._stop()
 
     def _publish(self) -> None:
         place, turned, linear, angular = planar_motion(self._base)
         if self._start is None:
             self._start = Pose(place, turned)
-        told = self._told
-        if told is None or not told.wanted():
+        odometry = self._odometry
+        if odometry is None or not odometry.wanted():
             return
         pose = self._start.inverse() @ Pose(place, turned)
         turns = abs(angular[2]) >= _TURNS
-        told.pose_covariance = _covariance(UNKNOWN, turns=turns)
-        told.twist_covariance = _covariance(1e-3, turns=turns)
-        told.publish(self.part.time_ns, pose.position, pose.orientation, linear, angular)
+        odometry.pose_covariance = _covariance(UNKNOWN, turns=turns)
+        odometry.twist_covariance = _covariance(1e-3, turns=turns)
+        odometry.publish(self.part.time_ns, pose.position, pose.orientation, linear, angular)
 
 
 def _covariance(height: float, *, turns: bool) -> Array:
-    """Shape (36,), of a pose or a twist, as the original tells it."""
+    """Returns the covariance of a pose or a twist, shape (36,), as in the original plugin."""
     return np.diag([1e-3, 1e-3, height, UNKNOWN, UNKNOWN, 100.0 if turns else 0.01]).ravel()

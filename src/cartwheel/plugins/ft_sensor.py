@@ -1,4 +1,4 @@
-"""``libgazebo_ros_ft_sensor.so`` and ``force_torque`` sensors: what a joint bears."""
+"""``libgazebo_ros_ft_sensor.so`` and ``force_torque`` sensors: force and torque of a joint."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _AXES = "xyz"
 
 
 class _JointWrench(Plugin[Any]):
-    """Reads a wrench: what a joint bears, about its anchor, where nothing else is said."""
+    """Publishes a measured wrench; by default that of a joint, about its anchor."""
 
     def _take(self, name: str, *, topic: str, frame: str, rate: float) -> None:
         description = self.part.description
@@ -39,7 +39,7 @@ class _JointWrench(Plugin[Any]):
         self._offer(topic, frame=frame or joint.child, rate=rate)
 
     def _offer(self, topic: str, *, frame: str, rate: float) -> None:
-        """Advertises and schedules."""
+        """Advertises the topic and schedules the measurement."""
         self.check_not_negative("update_rate")
         self._frame = self.frame(frame)
         self._WrenchStamped = message_class("geometry_msgs/msg/WrenchStamped")
@@ -63,31 +63,50 @@ class _JointWrench(Plugin[Any]):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class FtSensorParameters:
-    joint: str = tag("jointName", "joint_name", default="", doc="Joint that bears the load.")
+    joint: str = tag(
+        "jointName",
+        "joint_name",
+        default="",
+        doc="Joint on which the wrench is measured. Defaults to the sensor's joint.",
+    )
     body: str = tag(
         "body_name",
         default="",
-        doc="Instead of a joint, a link: what acts on it from outside, as with f3d (ROS 2).",
+        doc="Link on which external forces are measured instead of a joint's, as by "
+        "libgazebo_ros_f3d.so (ROS 2).",
     )
-    topic: str = tag("topicName", "topic_name", default="wrench", doc="WrenchStamped.")
+    topic: str = tag(
+        "topicName", "topic_name", default="wrench", doc="Topic of the WrenchStamped messages."
+    )
     frame: str = tag(
         "frame_name",
         default="",
-        doc="Of a link's wrench; world when empty. A joint's is its child's, as in Gazebo.",
+        doc="Frame ID of a link's wrench. Default: `world`. A joint's wrench is in the frame of "
+        "its child link, as in Gazebo.",
     )
     noise: float = tag(
-        "gaussianNoise", "gaussian_noise", default=0.0, unit="N, N m", doc="Standard deviation."
+        "gaussianNoise",
+        "gaussian_noise",
+        default=0.0,
+        unit="N, N m",
+        doc="Standard deviation of the noise.",
     )
     update_rate: float = tag(
-        "updateRate", "update_rate", default=0.0, unit="Hz", doc="0 is every step."
+        "updateRate",
+        "update_rate",
+        default=0.0,
+        unit="Hz",
+        doc="Publish rate. 0: the `<update_rate>` of the sensor that contains the plugin, or "
+        "every step.",
     )
 
 
 class FtSensor(_JointWrench):
-    """Publishes what the child link exerts on its parent: for what hangs, a pull downwards.
+    """Publishes the force and torque that a joint's child link exerts on its parent.
 
-    In the child link's axes, the torque about the joint. A fixed joint is one as well: it needs
-    no <preserveFixedJoint> here. Source: gazebo_plugins, gazebo_ros_ft_sensor.
+    The wrench is in the axes of the child link, and the torque is about the joint. A hanging load
+    exerts a downward force. Fixed joints are supported without ``<preserveFixedJoint>``. Source:
+    gazebo_plugins, gazebo_ros_ft_sensor.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_ft_sensor.so",)
@@ -100,7 +119,7 @@ class FtSensor(_JointWrench):
         self.check_not_negative("noise")
         rate = config.update_rate or (self.sensor.update_rate if self.sensor is not None else 0.0)
         if config.body:
-            # Where both are named it is the link's in Gazebo too.
+            # If both are named, Gazebo uses the link as well.
             self._child = self.part.link(config.body, origin=self.tag.origin)
             self.part.feel(config.body)
             self._offer(config.topic, frame=config.frame or "world", rate=rate)
@@ -133,20 +152,20 @@ class FtSensor(_JointWrench):
 
 
 class JointLoad:
-    """What a ``force_torque`` sensor measures of its joint, as its ``<force_torque>`` says.
+    """Measures the wrench of a ``force_torque`` sensor's joint, as its ``<force_torque>`` states.
 
     Args:
-        part: The robot's.
-        sensor: Inside a joint.
+        part: The robot.
+        sensor: A sensor inside a joint.
 
     Raises:
-        PluginError: A word or a noise that there is not.
+        PluginError: A word or a noise is not allowed.
     """
 
     def __init__(self, part: Part, sensor: Sensor) -> None:
         element = sensor.element.find("force_torque") or sensor.element
         self.axes = _word(element, "frame", ("child", "parent", "sensor"))
-        """In whose axes it measures."""
+        """Axes of the measurement: child, parent or sensor."""
         self._sign = 1.0
         if _word(element, "measure_direction", ("child_to_parent", "parent_to_child")) == (
             "parent_to_child"
@@ -166,11 +185,11 @@ class JointLoad:
         known = part.description.link(joint.parent) is not None
         self._parent = part.link(joint.parent) if known else None
         self._anchor = joint.pose.position
-        # In the child, as every sensor's pose is in its link.
+        # The pose is relative to the child link.
         self._turn = quat_conjugate(sensor.pose.orientation)
 
     def measure(self) -> list[float]:
-        """Force in N, then torque in N m about the joint."""
+        """Returns the force in N, then the torque in N m about the joint."""
         force, torque = self._child.reaction(self._anchor)
         turn = (0.0, 0.0, 0.0, 1.0)
         if self.axes == "sensor":
@@ -185,17 +204,22 @@ class JointLoad:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class GzForceTorqueParameters:
-    topic: str = tag("topic", default="", doc="WrenchStamped; Gazebo's long name when empty.")
+    topic: str = tag(
+        "topic",
+        default="",
+        doc="Topic of the WrenchStamped messages. Default: "
+        "`/world/<world>/model/<model>/joint/<joint>/sensor/<sensor>/forcetorque`.",
+    )
     frame: str = frame_tag()
 
 
 class GzForceTorque(_JointWrench):
-    """Publishes what the joint that holds a ``force_torque`` sensor bears.
+    """Publishes the force and torque on the joint that contains a ``force_torque`` sensor.
 
-    ``<frame>`` says in whose axes (child, parent or sensor), ``<measure_direction>`` who pulls
-    (child_to_parent or parent_to_child), ``<force>`` and ``<torque>`` have noise by axis. The
-    messages' frame is that link; the sensor's name where it is turned on its link and counts.
-    Source: gz-sensors, ForceTorqueSensor; sdformat.
+    ``<frame>`` selects the axes (child, parent or sensor), and ``<measure_direction>`` the sign
+    (child_to_parent or parent_to_child). ``<force>`` and ``<torque>`` contain noise for each axis.
+    The frame ID of the messages is the selected link. It is the sensor's name if ``<frame>`` is
+    sensor and the sensor is rotated in its link. Source: gz-sensors, ForceTorqueSensor; sdformat.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ()

@@ -1,4 +1,4 @@
-"""Places on the Earth: from the axes of a world to latitude, longitude and height (WGS 84)."""
+"""Conversion of world positions to latitude, longitude and height (WGS 84)."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from cartwheel.geometry import Vec3
 from cartwheel.plugins.parameters import number as stated
 
 EQUATOR = 6378137.0
-"""m, the ellipsoid's larger half axis."""
+"""Equatorial radius of the ellipsoid, m."""
 FLATTENING = 1 / 298.257223563
 ECCENTRICITY2 = FLATTENING * (2 - FLATTENING)
 
 
 def to_earth(latitude: float, longitude: float, height: float) -> Vec3:
-    """Earth-centred coordinates in m of a place in rad, rad and m above the ellipsoid."""
+    """Returns Earth-centred coordinates in m; angles are in rad, the height is in m."""
     sin, cos = math.sin(latitude), math.cos(latitude)
     across = EQUATOR / math.sqrt(1 - ECCENTRICITY2 * sin * sin)
     return (
@@ -27,7 +27,7 @@ def to_earth(latitude: float, longitude: float, height: float) -> Vec3:
 
 
 def from_earth(x: float, y: float, z: float) -> Vec3:
-    """Latitude and longitude in rad and height in m; the inverse of `to_earth`."""
+    """Returns latitude and longitude in rad and height in m; the inverse of `to_earth`."""
     distance = math.hypot(x, y)
     latitude = math.atan2(z, distance * (1 - ECCENTRICITY2))
     for _ in range(6):
@@ -36,31 +36,31 @@ def from_earth(x: float, y: float, z: float) -> Vec3:
         latitude = math.atan2(z + ECCENTRICITY2 * across * sin, distance)
     sin, cos = math.sin(latitude), math.cos(latitude)
     across = EQUATOR / math.sqrt(1 - ECCENTRICITY2 * sin * sin)
-    # Along the normal: good at the poles as well.
+    # Measured along the normal, which is accurate at the poles as well.
     height = distance * cos + z * sin - across * (1 - ECCENTRICITY2 * sin * sin)
     return latitude, math.atan2(y, x), height
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Datum:
-    """Where a world's origin lies, and how its axes are turned."""
+    """Position and heading of a world's origin on the Earth."""
 
     latitude: float = 0.0
     longitude: float = 0.0
     """rad."""
     height: float = 0.0
-    """m."""
+    """m above the ellipsoid."""
     heading: float = 0.0
-    """rad by which the world's x axis is turned from the east towards the north."""
+    """Angle of the world's x axis from east towards north, rad."""
 
     def east_north(self, vector: Vec3) -> Vec3:
-        """A vector of the world along east, north and up."""
+        """Converts a vector from the world's axes to east, north and up."""
         x, y, z = vector
         cos, sin = math.cos(self.heading), math.sin(self.heading)
         return cos * x - sin * y, sin * x + cos * y, z
 
     def locate(self, place: Vec3) -> Vec3:
-        """Latitude and longitude in rad and height in m of a place in the world."""
+        """Returns latitude and longitude in rad and height in m of a position in the world."""
         east, north, up = self.east_north(place)
         sin_lat, cos_lat = math.sin(self.latitude), math.cos(self.latitude)
         sin_lon, cos_lon = math.sin(self.longitude), math.cos(self.longitude)
@@ -74,10 +74,10 @@ class Datum:
 
 
 def world_datum(spherical: Element | None) -> Datum | None:
-    """The origin that a world's ``<spherical_coordinates>`` states; None where it states none.
+    """Returns the origin of a world's ``<spherical_coordinates>``, or None without them.
 
     Raises:
-        PluginError: A number that is none.
+        PluginError: A value is not a number.
     """
     if spherical is None:
         return None

@@ -1,4 +1,4 @@
-"""Satellite navigation: hector's GPS, ROS 2's gps_sensor, and new Gazebo's ``navsat``."""
+"""Satellite navigation: hector's GPS, gps_sensor of ROS 2, and new Gazebo's ``navsat``."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _KNOWN_DIAGONAL = 2
 
 
 class _Receiver(Plugin[Any]):
-    """Makes fixes and velocities."""
+    """Base class of the receivers, with their message types."""
 
     def _load(self) -> None:
         self._NavSatFix = message_class("sensor_msgs/msg/NavSatFix")
@@ -35,68 +35,102 @@ class _Receiver(Plugin[Any]):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class HectorGpsParameters:
-    body: str = tag("bodyName", default="", doc="Link that carries it; the root when empty.")
-    topic: str = tag("topicName", default="fix", doc="NavSatFix.")
+    body: str = tag("bodyName", default="", doc="Link of the receiver. Defaults to the root link.")
+    topic: str = tag("topicName", default="fix", doc="Topic of the NavSatFix messages.")
     velocity_topic: str = tag(
-        "velocityTopicName", default="fix_velocity", doc="Vector3Stamped: north, west, up."
+        "velocityTopicName",
+        default="fix_velocity",
+        doc="Topic of the velocity (Vector3Stamped): north, west, up.",
     )
-    frame: str = tag("frameId", default="/world", doc="Frame of the messages.")
-    update_rate: float = tag("updateRate", default=4.0, unit="Hz", doc="0 is every step.")
+    frame: str = tag("frameId", default="/world", doc="Frame ID of the messages.")
+    update_rate: float = tag(
+        "updateRate", default=4.0, unit="Hz", doc="Publish rate. 0: every step."
+    )
     use_world: bool = tag(
-        "useWorldSphericalCoordinates", default=False, doc="Take the reference from the world."
+        "useWorldSphericalCoordinates",
+        default=False,
+        doc="Use the world's `<spherical_coordinates>` as reference.",
     )
     latitude: float | None = tag(
-        "referenceLatitude", default=None, unit="degrees", doc="Of the world's origin; 49.9."
+        "referenceLatitude",
+        default=None,
+        unit="degrees",
+        doc="Latitude of the world's origin. Default: 49.9, or the world's with "
+        "useWorldSphericalCoordinates.",
     )
     longitude: float | None = tag(
-        "referenceLongitude", default=None, unit="degrees", doc="Of the world's origin; 8.9."
+        "referenceLongitude",
+        default=None,
+        unit="degrees",
+        doc="Longitude of the world's origin. Default: 8.9, or the world's with "
+        "useWorldSphericalCoordinates.",
     )
     altitude: float | None = tag(
-        "referenceAltitude", default=None, unit="m", doc="Of the world's origin; 0."
+        "referenceAltitude",
+        default=None,
+        unit="m",
+        doc="Altitude of the world's origin. Default: 0, or the world's with "
+        "useWorldSphericalCoordinates.",
     )
     heading: float | None = tag(
         "referenceHeading",
         default=None,
         unit="degrees",
-        doc="Of the world's x axis, from the north to the east; 0: x is north, y is west.",
+        doc="Heading of the world's x axis, from north towards east. Default: 0 (x is north, y is "
+        "west), or the world's with useWorldSphericalCoordinates.",
     )
-    status: int = tag("status", default=0, doc="Of the NavSatStatus.")
-    service: int = tag("service", default=0, doc="Of the NavSatStatus.")
+    status: int = tag("status", default=0, doc="`status` of the NavSatStatus.")
+    service: int = tag("service", default=0, doc="`service` of the NavSatStatus.")
     offset: tuple[float, float, float] = tag(
-        "offset", default=_NONE, unit="m", doc="Constant error."
+        "offset", default=_NONE, unit="m", doc="Constant error of the position."
     )
     drift: tuple[float, float, float] = tag(
-        "drift", default=_NONE, unit="m", doc="Standard deviation of the drift."
+        "drift", default=_NONE, unit="m", doc="Standard deviation of the position's drift."
     )
     frequency: tuple[float, float, float] = tag(
-        "driftFrequency", default=_HOUR, unit="1/s", doc="Of the drift."
+        "driftFrequency",
+        default=_HOUR,
+        unit="1/s",
+        doc="Inverse of the time constant of the position's drift.",
     )
     noise: tuple[float, float, float] = tag(
-        "gaussianNoise", default=_NONE, unit="m", doc="Standard deviation."
+        "gaussianNoise", default=_NONE, unit="m", doc="Standard deviation of the position's noise."
     )
-    scale: tuple[float, float, float] = tag("scaleError", default=(1.0,) * 3, doc="Factor.")
+    scale: tuple[float, float, float] = tag(
+        "scaleError", default=(1.0,) * 3, doc="Scale factor of the position."
+    )
     velocity_offset: tuple[float, float, float] = tag(
-        "velocityOffset", default=_NONE, unit="m/s", doc="Constant error."
+        "velocityOffset", default=_NONE, unit="m/s", doc="Constant error of the velocity."
     )
     velocity_drift: tuple[float, float, float] = tag(
-        "velocityDrift", default=_NONE, unit="m/s", doc="Standard deviation of the drift."
+        "velocityDrift",
+        default=_NONE,
+        unit="m/s",
+        doc="Standard deviation of the velocity's drift.",
     )
     velocity_frequency: tuple[float, float, float] = tag(
-        "velocityDriftFrequency", default=_HOUR, unit="1/s", doc="Of the drift."
+        "velocityDriftFrequency",
+        default=_HOUR,
+        unit="1/s",
+        doc="Inverse of the time constant of the velocity's drift.",
     )
     velocity_noise: tuple[float, float, float] = tag(
-        "velocityGaussianNoise", default=_NONE, unit="m/s", doc="Standard deviation."
+        "velocityGaussianNoise",
+        default=_NONE,
+        unit="m/s",
+        doc="Standard deviation of the velocity's noise.",
     )
     velocity_scale: tuple[float, float, float] = tag(
-        "velocityScaleError", default=(1.0,) * 3, doc="Factor."
+        "velocityScaleError", default=(1.0,) * 3, doc="Scale factor of the velocity."
     )
 
 
 class HectorGps(_Receiver):
-    """Publishes latitude, longitude and height of a link, and its velocity.
+    """Publishes the latitude, longitude, altitude and velocity of a link.
 
-    Around the reference the Earth is taken for flat, as hector does: to a metre within a few
-    kilometres. Errors are those of `HectorImu`. Source: hector_gazebo_plugins, gazebo_ros_gps.
+    As in hector, the Earth is treated as flat around the reference; within a few kilometres the
+    error is below 1 m. Offset, drift, noise and scale are applied as in
+    libhector_gazebo_ros_imu.so. Source: hector_gazebo_plugins, gazebo_ros_gps.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libhector_gazebo_ros_gps.so",)
@@ -195,11 +229,13 @@ class HectorGps(_Receiver):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class GpsSensorParameters:
-    frame: str = tag("frame_name", default="", doc="Frame of the messages; the link's when empty.")
+    frame: str = tag(
+        "frame_name", default="", doc="Frame ID of the messages. Defaults to the sensor's link."
+    )
 
 
 class _GpsSensor(_Receiver):
-    """What sensors read of the world's ``<spherical_coordinates>``."""
+    """Base class of GPS sensors that use the world's ``<spherical_coordinates>``."""
 
     def _start(self, *, topic: str, frame: str, element: str, velocity_topic: str | None) -> None:
         sensor, part = self.sensor, self.part
@@ -235,7 +271,7 @@ class _GpsSensor(_Receiver):
         part.schedule(rate, after=self._measure, active=self._wanted)
 
     def _noises(self, element: str, what: str) -> VectorNoise:
-        """Noise along east, north and up."""
+        """Returns the noise along east, north and up."""
         assert self.sensor is not None
         of = self.sensor.element.find(f"{element}/{what}")
         both = [
@@ -255,7 +291,7 @@ class _GpsSensor(_Receiver):
         arm = np.array(pose.apply(self._mount)) - np.array(pose.position)
         x, y, z = (np.array(linear) + np.cross(angular, arm)).tolist()
         velocity: Vec3 = (x, y, z)
-        # In the world's axes, so that its heading turns noise and place alike.
+        # Noise is added in the world's axes, which are then rotated by the heading.
         px, py, pz = self._noise.add(pose.apply(self._mount))
         latitude, longitude, height = self._datum.locate((px, py, pz))
         head = header(self.part.time_ns, self._frame)
@@ -272,15 +308,16 @@ class _GpsSensor(_Receiver):
                 )
             )
         if self._velocities is not None and self._velocities.wanted:
-            told = self._velocity_noise.add(self._datum.east_north(velocity))
-            self._velocities.publish(self._Vector3Stamped(head, self._Vector3(*told)))
+            measured = self._velocity_noise.add(self._datum.east_north(velocity))
+            self._velocities.publish(self._Vector3Stamped(head, self._Vector3(*measured)))
 
 
 class GpsSensor(_GpsSensor):
-    """The plugin of a ``gps`` sensor: ``~/out`` NavSatFix, ``~/vel`` along east, north and up.
+    """Publishes the position of a ``gps`` sensor on the Earth, and its velocity.
 
-    Noise is that of the sensor's ``<gps>``, read as metres and m/s. Source: gazebo_plugins
-    (ROS 2), gazebo_ros_gps_sensor.
+    ``~/out`` is a NavSatFix; ``~/vel`` is the velocity along east, north and up. The noise of the
+    sensor's ``<gps>`` is applied, in m and m/s. The reference is the world's
+    ``<spherical_coordinates>``. Source: gazebo_plugins (ROS 2), gazebo_ros_gps_sensor.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_gps_sensor.so",)
@@ -301,14 +338,20 @@ class GpsSensor(_GpsSensor):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class GzNavSatParameters:
-    topic: str = tag("topic", default="", doc="NavSatFix; Gazebo's long name when empty.")
+    topic: str = tag(
+        "topic",
+        default="",
+        doc="Topic of the NavSatFix messages. Default: "
+        "`/world/<world>/model/<model>/link/<link>/sensor/<sensor>/navsat`.",
+    )
     frame: str = frame_tag()
 
 
 class GzNavSat(_GpsSensor):
-    """Publishes a ``navsat`` sensor's place on the world's Earth.
+    """Publishes the position of a ``navsat`` sensor on the Earth.
 
-    Noise is that of its ``<navsat>``, in m. Source: gz-sensors, NavSatSensor.
+    The reference is the world's ``<spherical_coordinates>``. The noise of the sensor's ``<navsat>``
+    is applied, in m. Source: gz-sensors, NavSatSensor.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ()

@@ -1,4 +1,4 @@
-"""``libgazebo_grasp_fix.so``: what fingers press from both sides is held in the palm."""
+"""``libgazebo_grasp_fix.so``: attaches objects to a hand that grips them."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ from cartwheel.plugins.parameters import invalid, missing, tag
 from cartwheel.simulation.handles import LinkHandle
 
 _LEAST_FORCE = 1e-4
-"""N; what presses less does not press."""
+"""N; smaller forces are ignored."""
 _LEAST_RATIO = 0.3
-"""Of two forces that hold something, the smaller one to the larger."""
+"""Minimum ratio of the smaller to the larger of two gripping forces."""
 _EVENTS = "/gazebo_grasp_plugin_event_republisher/grasp_events"
 Place = tuple[str, str]
-"""Model and link."""
+"""Names of a model and a link."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -31,41 +31,48 @@ class GraspFixParameters:
     arms: tuple[str, ...] = tag(
         "arm",
         default=(),
-        doc="For each hand: `<arm_name>`, `<palm_link>`, and a `<gripper_link>` for each finger.",
+        doc="A hand: `<arm_name>`, `<palm_link>`, and a `<gripper_link>` for each finger. Repeat "
+        "for each hand.",
     )
     angle: float = tag(
         "forces_angle_tolerance",
         default=120.0,
         unit="°",
-        doc="Forces of fingers that are further apart hold; 90 or more.",
+        doc="Angle between the forces of two fingers above which they grip. From 90 to 180.",
     )
-    rate: float = tag("update_rate", default=5.0, unit="Hz", doc="Of looking at the fingers.")
-    most: int = tag("max_grip_count", default=10, doc="As far as it counts.")
+    rate: float = tag("update_rate", default=5.0, unit="Hz", doc="Rate of checks.")
+    most: int = tag("max_grip_count", default=10, doc="Maximum of the grip counter.")
     threshold: int | None = tag(
         "grip_count_threshold",
         default=None,
-        doc="Looks in a row beyond which something is held; half of max_grip_count when missing.",
+        doc="An object is attached when the grip counter exceeds this. Defaults to half of "
+        "max_grip_count.",
     )
     tolerance: float = tag(
         "release_tolerance",
         default=0.005,
         unit="m",
-        doc="A finger that has moved so far from what it held releases it.",
+        doc="Change of a finger's distance to the object that releases it.",
     )
     pass_through: bool = tag(
-        "disable_collisions_on_attach", default=False, doc="What is held touches nothing."
+        "disable_collisions_on_attach",
+        default=False,
+        doc="Disable the collisions of the attached object.",
     )
-    contact_topic: str = tag("contact_topic", default="", doc="Has no effect.")
+    contact_topic: str = tag(
+        "contact_topic", default="", doc="Accepted for compatibility; no effect."
+    )
 
 
 class GraspFix(Plugin[GraspFixParameters]):
-    """Holds what a hand's fingers press from opposite sides in its palm, until they open.
+    """Attaches an object to the palm while fingers grip it from opposite sides.
 
-    Each look that finds two fingers' forces on a collision further apart than the angle, the
-    smaller one 0.3 of the larger or more, counts it up, and each other one down. Above the
-    threshold it is held as by a fixed joint; no longer above it, it is released when a finger has
-    moved. A hand holds one thing. Source: JenniferBuehler, gazebo_grasp_plugin, whose republisher's
-    topic is published.
+    At each check, a collision is gripped if the forces of two fingers on it are at an angle above
+    ``forces_angle_tolerance`` and the smaller force is at least 0.3 of the larger one. The counter
+    of a gripped collision is increased, that of others decreased. Above the threshold, the object
+    is attached to the palm as by a fixed joint. It is released when its counter is no longer above
+    the threshold and a finger has moved. A hand holds one object at a time. Events are published on
+    the topic of the original's republisher. Source: JenniferBuehler, gazebo_grasp_plugin.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_grasp_fix.so",)
@@ -95,10 +102,10 @@ class GraspFix(Plugin[GraspFixParameters]):
     def _hand(self, element: Element) -> _Hand:
         names = {}
         for name in ("arm_name", "palm_link"):
-            found = element.find(name)
-            if found is None:
+            child = element.find(name)
+            if child is None:
                 raise missing("arm", name, element.origin)
-            names[name] = found.text.strip()
+            names[name] = child.text.strip()
         fingers = [each.text.strip() for each in element.find_all("gripper_link")]
         if not fingers:
             raise missing("arm", "gripper_link", element.origin)
@@ -116,16 +123,16 @@ class GraspFix(Plugin[GraspFixParameters]):
                 count = hand.counts[name] = min(hand.counts.get(name, 0) + 1, self.config.most)
                 if count > self._threshold and hand.object is None:
                     hand.take(name, list(pressed[name]), collides=not self.config.pass_through)
-                    self._tell(hand, name, attached=True)
+                    self._publish_event(hand, name, attached=True)
             for name in hand.counts.keys() - gripped:
                 count = hand.counts[name] = max(hand.counts[name] - 1, 0)
                 let_go = name == hand.object and count <= self._threshold
                 if let_go and hand.opened(self.config.tolerance):
                     hand.release()
                     hand.counts[name] = 0
-                    self._tell(hand, name, attached=False)
+                    self._publish_event(hand, name, attached=False)
 
-    def _tell(self, hand: _Hand, name: str, *, attached: bool) -> None:
+    def _publish_event(self, hand: _Hand, name: str, *, attached: bool) -> None:
         if self._events.wanted:
             self._events.publish(self._Event(hand.name, name, attached))
 
@@ -138,9 +145,9 @@ class _Hand:
     ) -> None:
         self.name = name
         self.counts: dict[str, int] = {}
-        """By collision: how often it was found gripped."""
+        """Grip counters by collision."""
         self.object: str | None = None
-        """The collision that is held."""
+        """The attached collision."""
         self._part, self._palm = plugin.part, palm
         self._grip = plugin.part.attachment()
         description = plugin.part.description
@@ -152,26 +159,26 @@ class _Hand:
             for collision in link.collisions
         }
         self._marks: list[tuple[LinkHandle, Vec3, float]] = []
-        """Where fingers touched, in them, and how far that was from the object's frame."""
+        """Contact points in the fingers' frames, and their distance to the object's frame."""
         self._points: dict[tuple[str, str], Vec3] = {}
 
     def pressed(self, moving: frozenset[Place]) -> dict[str, dict[str, Array]]:
-        """What the fingers touch and can move: forces on it in N, by collision and finger's."""
-        found: dict[str, dict[str, Array]] = {}
+        """Returns the forces on movable collisions in N, by collision and finger."""
+        forces_by_collision: dict[str, dict[str, Array]] = {}
         self._points = {}
         for contact in self._part.contacts(self._fingers):
             model, _, link = contact.second.rpartition("::")[0].partition("::")
             if model == self._part.name or (model, link) not in moving:
                 continue
             finger = contact.first.partition("::")[2]
-            forces = found.setdefault(contact.second, {})
+            forces = forces_by_collision.setdefault(contact.second, {})
             forces[finger] = forces.get(finger, np.zeros(3)) - contact.force
             x, y, z = contact.position.tolist()
             self._points[contact.second, finger] = (x, y, z)
-        return found
+        return forces_by_collision
 
     def take(self, name: str, fingers: list[str], *, collides: bool) -> None:
-        """Holds a collision's link in the palm."""
+        """Attaches the link of a collision to the palm."""
         model, _, link = name.rpartition("::")[0].partition("::")
         self.object = name
         self._grip.hold((self._part.name, self._palm), (model, link), collides=collides)
@@ -183,7 +190,7 @@ class _Hand:
             self._marks.append((finger, local, math.dist(point, place)))
 
     def opened(self, tolerance: float) -> bool:
-        """Whether a finger has left what it held, or that is gone."""
+        """Whether a finger has left the object, or the object no longer exists."""
         if self._grip.held is None:
             return True
         place = self._grip.link_pose().position
@@ -193,18 +200,18 @@ class _Hand:
         )
 
     def release(self) -> None:
-        """Lets go."""
+        """Detaches the object."""
         self.object = None
         self._grip.release()
 
     def forget(self) -> None:
-        """After a reset."""
+        """Restores the initial state after a reset."""
         self.release()
         self.counts.clear()
 
 
 def _holds(forces: dict[str, Array], angle: float) -> bool:
-    """Whether two of the forces are opposite enough, and alike enough, to hold something."""
+    """Whether two of the forces are sufficiently opposite and similar in size to grip."""
     for one, two in itertools.combinations(forces.values(), 2):
         a, b = float(np.linalg.norm(one)), float(np.linalg.norm(two))
         if min(a, b) < _LEAST_FORCE or min(a, b) < _LEAST_RATIO * max(a, b):

@@ -1,4 +1,4 @@
-"""A configuration of ros_gz_bridge: names and types that new Gazebo's topics have in ROS."""
+"""A ros_gz_bridge configuration: names and types of new Gazebo's topics in ROS."""
 
 from __future__ import annotations
 
@@ -18,48 +18,49 @@ from cartwheel.messages.fields import fields
 
 CLOCK = "rosgraph_msgs/msg/Clock"
 IMAGES = ("/compressed", "/compressedDepth")
-"""What is published beside an image, under its name."""
+"""Subtopics of an image."""
 
 
 def gz_topic(name: str) -> str:
-    """A topic of new Gazebo's in ROS's letters: there it may hold dashes, and begin with digits."""
+    """Converts a topic name of new Gazebo, which may contain dashes and leading digits, to ROS."""
     parts = [re.sub(r"\W", "_", part, flags=re.ASCII) for part in name.strip("/").split("/")]
     return "".join(f"/_{part}" if part[:1].isdigit() else f"/{part}" for part in parts)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Bridged:
-    """One entry: a topic of Gazebo's, and what ROS knows of it."""
+    """One entry: a Gazebo topic, and its name and type in ROS."""
 
     gz: str
     ros: str
     type: str
-    """Of its messages in ROS, ``pkg/msg/Name``."""
+    """Message type in ROS, ``pkg/msg/Name``."""
     origin: Origin
 
 
 class GzBridge:
-    """The topics of a graph that have names of their own in ROS.
+    """The topics of a graph that a bridge renames in ROS.
 
-    Plugins ask it where to publish and to read, so that the graph is the one that the bridge makes.
+    Plugins look up the names of their topics here, so that the graph equals the one behind the
+    bridge.
     """
 
     def __init__(self) -> None:
         self._entries: dict[str, Bridged] = {}
         self._asked: dict[str, str] = {}
-        """The types of what plugins asked for, by Gazebo's names."""
+        """Types that plugins have requested, by Gazebo topic."""
         self._faults: list[Diagnostic] = []
 
     @classmethod
     def of(cls, graph: Graph) -> GzBridge:
-        """That of a graph, empty at first."""
-        found = _BY_GRAPH.get(graph)
-        if found is None:
-            found = _BY_GRAPH[graph] = cls()
-        return found
+        """Returns the bridge of a graph, which is created empty."""
+        bridge = _BY_GRAPH.get(graph)
+        if bridge is None:
+            bridge = _BY_GRAPH[graph] = cls()
+        return bridge
 
     def add(self, entries: Iterable[Bridged]) -> None:
-        """Takes what a file says; of two names for one topic the first counts."""
+        """Adds the entries of a file. If a topic has several names, the first one is used."""
         for entry in entries:
             first = self._entries.setdefault(entry.gz, entry)
             if first.ros != entry.ros:
@@ -67,7 +68,7 @@ class GzBridge:
                 self._faults.append(_warning(entry, f"{entry.ros} has no effect: {reason}"))
 
     def published(self, name: str, type_name: str) -> str:
-        """What ROS calls a topic that a plugin publishes."""
+        """Returns the ROS name of a topic that a plugin publishes."""
         entry = self._entry(name, type_name)
         if entry is not None:
             return entry.ros
@@ -80,9 +81,9 @@ class GzBridge:
     def read(
         self, name: str, type_name: str, callback: Callable[[Any], None]
     ) -> tuple[str, str, Callable[[Any], None]]:
-        """What ROS calls a topic that a plugin reads, its type there, and who takes its messages.
+        """Returns the ROS name, type and callback for a topic that a plugin subscribes to.
 
-        A type that is the plugin's own with a header, as TwistStamped is Twist's, is unpacked.
+        A type that adds a header to the plugin's type, such as TwistStamped to Twist, is unwrapped.
         """
         entry = self._entry(name, type_name)
         if entry is None:
@@ -93,10 +94,10 @@ class GzBridge:
         return entry.ros, entry.type, lambda message: callback(getattr(message, inside))
 
     def faults(self, topics: Collection[str]) -> Iterator[Diagnostic]:
-        """What the files say and does nothing here.
+        """Yields warnings about entries that have no effect.
 
         Args:
-            topics: Names of all that there are.
+            topics: Names of all topics in the graph.
         """
         yield from self._faults
         for entry in self._entries.values():
@@ -122,17 +123,17 @@ def _warning(entry: Bridged, message: str, hint: str = "") -> Diagnostic:
 
 
 def _inside(outer: str, inner: str) -> str | None:
-    """The field of a stamped message that is the message itself."""
+    """Returns the field of a stamped message that contains the inner message."""
     if outer != f"{inner}Stamped":
         return None
     return next((field.name for field in fields(outer) if field.type == inner), None)
 
 
 def read_bridge(path: Path) -> list[Bridged]:
-    """The entries of a file for ``parameter_bridge``.
+    """Reads the entries of a file for ``parameter_bridge``.
 
     Raises:
-        CartwheelError: It cannot be read, is no YAML, or holds no list of topics; with its place.
+        CartwheelError: The file cannot be read, is not valid YAML, or is not a list of topics.
     """
     import yaml
 
@@ -159,7 +160,7 @@ def read_bridge(path: Path) -> list[Bridged]:
 
 
 def _entries(loader: Any, root: Any) -> list[tuple[Any, int]] | None:
-    """A list's entries with their lines; None where it is no list."""
+    """Returns the entries of a list with their lines, or None if the file is not a list."""
     if root is None or (root.id == "scalar" and not root.value):
         return []
     if root.id != "sequence":
@@ -178,7 +179,7 @@ def _bridged(entry: Any, origin: Origin) -> Bridged:
         raise _invalid("an entry must be a mapping", origin)
     both = entry.get("topic_name")
     ros, gz = (entry.get(f"{which}_topic_name") or both for which in ("ros", "gz"))
-    # As the bridge: where one of the two is missing, they are the same.
+    # As in ros_gz_bridge: a missing name equals the other one.
     ros, gz = ros or gz, gz or ros
     kind = entry.get("ros_type_name")
     if not isinstance(gz, str) or not isinstance(ros, str) or not isinstance(kind, str):

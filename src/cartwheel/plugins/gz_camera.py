@@ -1,4 +1,4 @@
-"""Cameras as new Gazebo has them: a ``<sensor>`` that needs no plugin of its own."""
+"""Cameras of new Gazebo: sensors that need no plugin."""
 
 from __future__ import annotations
 
@@ -18,19 +18,29 @@ _DEPTHS = ("depth_camera", "depth")
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class GzCameraParameters:
-    topic: str = tag("topic", default="", doc="See above. Else Gazebo's long name.")
+    topic: str = tag(
+        "topic",
+        default="",
+        doc="Topic of the images; see above. Default: "
+        "`/world/<world>/model/<model>/link/<link>/sensor/<sensor>/image` for a camera, without "
+        "`/image` for an RGB-D camera, and with `/depth_image` for a depth camera.",
+    )
     frame: str = tag(
         "camera/optical_frame_id",
         "gz_frame_id",
         "ignition_frame_id",
         "frame_id",
         default="",
-        doc="Frame of the messages; the link's when empty.",
+        doc="Frame ID of the messages. Defaults to the sensor's link.",
     )
     info_topic: str = tag(
-        "camera/camera_info_topic", default="", doc="CameraInfo; else beside the image."
+        "camera/camera_info_topic",
+        default="",
+        doc="Topic of the CameraInfo. Default: `camera_info` beside the image.",
     )
-    triggered: bool = tag("camera/triggered", default=False, doc="Images only on demand.")
+    triggered: bool = tag(
+        "camera/triggered", default=False, doc="Publish an image only on a trigger."
+    )
     nearest: float = tag(
         "camera/depth_camera/clip/near", default=0.0, unit="m", doc="Depths up to this are -inf."
     )
@@ -41,17 +51,20 @@ class GzCameraParameters:
         doc="Depths from this on are inf.",
     )
     trigger_topic: str = tag(
-        "camera/trigger_topic", default="", doc="Empty; else `<topic>/trigger`."
+        "camera/trigger_topic",
+        default="",
+        doc="Topic of the Empty messages that trigger an image. Default: `<topic>/trigger`.",
     )
 
 
 class GzCamera(CameraBase[GzCameraParameters]):
-    """Publishes what the camera, depth_camera and rgbd_camera sensors of new Gazebo see.
+    """Publishes the images of camera, depth_camera and rgbd_camera sensors of new Gazebo.
 
-    A camera's image goes on ``<topic>``; an RGB-D camera's on ``<topic>/image``, with
-    ``<topic>/depth_image`` and ``<topic>/points``; a depth camera's depths on ``<topic>``, with
-    ``<topic>/points``. ``camera_info`` is beside the image. Depths are along the optical axis, inf
-    where nothing is. Points have x ahead, y left and z up, as new Gazebo makes them.
+    A camera publishes images on ``<topic>``. An RGB-D camera publishes images on ``<topic>/image``,
+    depths on ``<topic>/depth_image`` and points on ``<topic>/points``. A depth camera publishes
+    depths on ``<topic>`` and points on ``<topic>/points``. ``camera_info`` is beside the image.
+    Depths are along the optical axis, and inf without a hit. Points have x forward, y left and z
+    up, as in new Gazebo.
 
     Source: gz-sensors, CameraSensor, DepthCameraSensor, RgbdCameraSensor; ros_gz_bridge.
     """

@@ -1,4 +1,4 @@
-"""Contact sensors as new Gazebo has them: a ``<sensor>`` that needs no plugin of its own."""
+"""Contact sensors of new Gazebo, which need no plugin."""
 
 from __future__ import annotations
 
@@ -13,14 +13,17 @@ from cartwheel.plugins.parameters import tag
 @dataclass(frozen=True, kw_only=True, slots=True)
 class GzContactParameters:
     topic: str = tag(
-        "topic", default="", doc="ContactsState; the <contact>'s topic or Gazebo's name when empty."
+        "topic",
+        default="",
+        doc="Topic of the ContactsState messages. Defaults to the topic in `<contact>`, or else "
+        "to `/world/<world>/model/<model>/link/<link>/sensor/<sensor>/contact`.",
     )
 
 
 class GzContact(Bumper):
     """Publishes the contacts of a sensor's collisions as gazebo_msgs/ContactsState.
 
-    Source: gz-sim, Contact.
+    Without contacts, messages with empty ``states`` are published. Source: gz-sim, Contact.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ()

@@ -1,4 +1,4 @@
-"""``gz-sim-diff-drive-system``: wheels left and right, as new Gazebo drives them."""
+"""``gz-sim-diff-drive-system``: the differential drive of new Gazebo."""
 
 from __future__ import annotations
 
@@ -18,27 +18,30 @@ from cartwheel.plugins.parameters import tag
 from cartwheel.plugins.wheel_drive import WheelDrive, WheelPair
 
 CONTROL_RATE = 100.0
-"""Hz at which limits are kept."""
+"""Rate of the control loop, which applies the limits, Hz."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class GzDiffDriveParameters(GzLimitedParameters):
     left_joint: tuple[str, ...] = tag(
-        "left_joint", default=("left_joint",), doc="Joint of a left wheel; once for each."
+        "left_joint", default=("left_joint",), doc="Joint of a left wheel. Repeat for each wheel."
     )
     right_joint: tuple[str, ...] = tag(
-        "right_joint", default=("right_joint",), doc="Joint of a right wheel; once for each."
+        "right_joint",
+        default=("right_joint",),
+        doc="Joint of a right wheel. Repeat for each wheel.",
     )
     wheel_separation: float = tag(
-        "wheel_separation", default=1.0, unit="m", doc="Between left and right."
+        "wheel_separation", default=1.0, unit="m", doc="Distance between the left and right wheels."
     )
-    wheel_radius: float = tag("wheel_radius", default=0.2, unit="m", doc="Of all wheels.")
+    wheel_radius: float = tag("wheel_radius", default=0.2, unit="m", doc="Radius of all wheels.")
 
 
 class GzDiffDrive(WheelDrive):
-    """Drives wheels on the left and on the right by Twist; its odometry is what they turn.
+    """Drives left and right wheels from Twist commands and publishes odometry from their rotation.
 
-    The wheels' torque is limited by their joints' effort alone. Source: gz-sim, DiffDrive.
+    The torque of the wheels is limited only by the effort limits of their joints. Source: gz-sim,
+    DiffDrive.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("gz-sim-diff-drive-system",)

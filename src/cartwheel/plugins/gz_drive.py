@@ -1,4 +1,4 @@
-"""What the drives of new Gazebo share: topics under the model's name, limits, odometry."""
+"""Common parts of new Gazebo's drives: topics under the model's name, limits, odometry."""
 
 from __future__ import annotations
 
@@ -17,89 +17,112 @@ from cartwheel.plugins.parameters import tag
 @dataclass(frozen=True, kw_only=True, slots=True)
 class GzDriveParameters:
     topic: str = tag(
-        "topic", default="", doc="Twist that drives; /model/<name>/cmd_vel when empty."
+        "topic", default="", doc="Topic of the Twist commands. Default: `/model/<model>/cmd_vel`."
     )
     odom_topic: str = tag(
-        "odom_topic", default="", doc="Odometry; /model/<name>/odometry when empty."
+        "odom_topic", default="", doc="Topic of the odometry. Default: `/model/<model>/odometry`."
     )
     tf_topic: str = tag(
-        "tf_topic", default="", doc="TFMessage of the odometry; /model/<name>/tf when empty."
+        "tf_topic",
+        default="",
+        doc="Topic of the odometry's transform (TFMessage). Default: `/model/<model>/tf`.",
     )
-    frame: str = tag("frame_id", default="", doc="Of the odometry; <name>/odom when empty.")
+    frame: str = tag(
+        "frame_id", default="", doc="Frame ID of the odometry. Default: `<model>/odom`."
+    )
     child_frame: str = tag(
-        "child_frame_id", default="", doc="Of the robot; <name>/<root link> when empty."
+        "child_frame_id",
+        default="",
+        doc="Child frame ID of the odometry. Default: `<model>/<root link>`.",
     )
-    rate: float = tag("odom_publish_frequency", default=50.0, unit="Hz", doc="Of what is told.")
+    rate: float = tag(
+        "odom_publish_frequency",
+        default=50.0,
+        unit="Hz",
+        doc="Publish rate of the odometry. 0: every step.",
+    )
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class GzCommonLimits(GzDriveParameters):
-    """Of straight and turning motion alike."""
+    """Limits for linear and angular motion."""
 
     min_velocity: float | None = tag(
-        "min_velocity", default=None, unit="m/s, rad/s", doc="Of the command; none when missing."
+        "min_velocity",
+        default=None,
+        unit="m/s, rad/s",
+        doc="Minimum of the command. Default: no limit.",
     )
     max_velocity: float | None = tag(
-        "max_velocity", default=None, unit="m/s, rad/s", doc="Of the command; none when missing."
+        "max_velocity",
+        default=None,
+        unit="m/s, rad/s",
+        doc="Maximum of the command. Default: no limit.",
     )
     min_acceleration: float | None = tag(
-        "min_acceleration", default=None, unit="m/s², rad/s²", doc="Of the command."
+        "min_acceleration",
+        default=None,
+        unit="m/s², rad/s²",
+        doc="Minimum acceleration of the command. Default: no limit.",
     )
     max_acceleration: float | None = tag(
-        "max_acceleration", default=None, unit="m/s², rad/s²", doc="Of the command."
+        "max_acceleration",
+        default=None,
+        unit="m/s², rad/s²",
+        doc="Maximum acceleration of the command. Default: no limit.",
     )
-    min_jerk: float | None = tag("min_jerk", default=None, unit="m/s³", doc="Has no effect.")
-    max_jerk: float | None = tag("max_jerk", default=None, unit="m/s³", doc="Has no effect.")
+    min_jerk: float | None = tag("min_jerk", default=None, unit="m/s³", doc="Not supported.")
+    max_jerk: float | None = tag("max_jerk", default=None, unit="m/s³", doc="Not supported.")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class GzLimitedParameters(GzCommonLimits):
-    """Of each motion its own, where it is stated."""
+    """Separate limits for linear and angular motion, which override the common ones."""
 
     min_linear_velocity: float | None = tag(
-        "min_linear_velocity", default=None, unit="m/s", doc="In place of min_velocity."
+        "min_linear_velocity", default=None, unit="m/s", doc="Overrides min_velocity."
     )
     max_linear_velocity: float | None = tag(
-        "max_linear_velocity", default=None, unit="m/s", doc="In place of max_velocity."
+        "max_linear_velocity", default=None, unit="m/s", doc="Overrides max_velocity."
     )
     min_angular_velocity: float | None = tag(
-        "min_angular_velocity", default=None, unit="rad/s", doc="In place of min_velocity."
+        "min_angular_velocity", default=None, unit="rad/s", doc="Overrides min_velocity."
     )
     max_angular_velocity: float | None = tag(
-        "max_angular_velocity", default=None, unit="rad/s", doc="In place of max_velocity."
+        "max_angular_velocity", default=None, unit="rad/s", doc="Overrides max_velocity."
     )
     min_linear_acceleration: float | None = tag(
-        "min_linear_acceleration", default=None, unit="m/s²", doc="In place of min_acceleration."
+        "min_linear_acceleration", default=None, unit="m/s²", doc="Overrides min_acceleration."
     )
     max_linear_acceleration: float | None = tag(
-        "max_linear_acceleration", default=None, unit="m/s²", doc="In place of max_acceleration."
+        "max_linear_acceleration", default=None, unit="m/s²", doc="Overrides max_acceleration."
     )
     min_angular_acceleration: float | None = tag(
-        "min_angular_acceleration", default=None, unit="rad/s²", doc="In place of min_acceleration."
+        "min_angular_acceleration", default=None, unit="rad/s²", doc="Overrides min_acceleration."
     )
     max_angular_acceleration: float | None = tag(
-        "max_angular_acceleration", default=None, unit="rad/s²", doc="In place of max_acceleration."
+        "max_angular_acceleration", default=None, unit="rad/s²", doc="Overrides max_acceleration."
     )
     min_linear_jerk: float | None = tag(
-        "min_linear_jerk", default=None, unit="m/s³", doc="Has no effect."
+        "min_linear_jerk", default=None, unit="m/s³", doc="Not supported."
     )
     max_linear_jerk: float | None = tag(
-        "max_linear_jerk", default=None, unit="m/s³", doc="Has no effect."
+        "max_linear_jerk", default=None, unit="m/s³", doc="Not supported."
     )
     min_angular_jerk: float | None = tag(
-        "min_angular_jerk", default=None, unit="rad/s³", doc="Has no effect."
+        "min_angular_jerk", default=None, unit="rad/s³", doc="Not supported."
     )
     max_angular_jerk: float | None = tag(
-        "max_angular_jerk", default=None, unit="rad/s³", doc="Has no effect."
+        "max_angular_jerk", default=None, unit="rad/s³", doc="Not supported."
     )
 
 
 class Limiter:
-    """Keeps a commanded speed within its limits, and its change within those of acceleration.
+    """Limits a commanded speed and its acceleration.
 
     Args:
-        velocity: Least and most, m/s or rad/s; None is no limit.
-        acceleration: Least and most, m/s² or rad/s²; None is no limit.
+        velocity: Minimum and maximum, m/s or rad/s; None for no limit.
+        acceleration: Minimum and maximum, m/s² or rad/s²; None for no limit.
     """
 
     def __init__(
@@ -112,7 +135,7 @@ class Limiter:
 
     @classmethod
     def common(cls, limits: GzCommonLimits) -> Limiter:
-        """That of any motion."""
+        """Returns the limiter for any motion."""
         return cls(
             (limits.min_velocity, limits.max_velocity),
             (limits.min_acceleration, limits.max_acceleration),
@@ -120,7 +143,7 @@ class Limiter:
 
     @classmethod
     def of(cls, limits: GzLimitedParameters, kind: str) -> Limiter:
-        """That of ``linear`` or ``angular`` motion."""
+        """Returns the limiter for ``linear`` or ``angular`` motion."""
 
         def pair(what: str) -> tuple[float | None, float | None]:
             both = []
@@ -132,7 +155,7 @@ class Limiter:
         return cls(pair("velocity"), pair("acceleration"))
 
     def step(self, wanted: float, seconds: float) -> float:
-        """The speed after a time in s, on the way to the wanted one."""
+        """Returns the limited speed after a time step in s."""
         low, high = self._acceleration
         change = _clamp(
             wanted - self.value,
@@ -150,10 +173,10 @@ def _clamp(value: float, low: float | None, high: float | None) -> float:
 
 
 def report_limits(plugin: Plugin[Any], limits: GzCommonLimits) -> None:
-    """Tells of limits on jerk, which are not kept.
+    """Warns about jerk limits, which are not supported, and checks the others.
 
     Raises:
-        PluginError: A least above a most.
+        PluginError: A minimum exceeds its maximum.
     """
     for field in dataclasses.fields(limits):
         value = getattr(limits, field.name)
@@ -175,15 +198,15 @@ def report_limits(plugin: Plugin[Any], limits: GzCommonLimits) -> None:
 
 
 def gz_name(plugin: Plugin[Any], topic: str, default: str) -> str:
-    """A topic as new Gazebo names it: global, and under the model's name by default."""
+    """Returns the global topic name of new Gazebo; the default is under the model's name."""
     return gz_topic(topic.strip() or f"model/{plugin.part.name}/{default}")
 
 
 def gz_odometry(plugin: Plugin[Any], config: GzDriveParameters) -> Odometry:
-    """The odometry of a drive of new Gazebo.
+    """Creates the odometry of a drive of new Gazebo.
 
     Raises:
-        PluginError: A rate below 0.
+        PluginError: The rate is negative.
     """
     plugin.check_not_negative("rate")
     name = plugin.part.name

@@ -1,4 +1,4 @@
-"""Single joints as new Gazebo drives them: to a position, at a velocity, or by a force."""
+"""Controllers of new Gazebo for single joints: position, velocity or force."""
 
 from __future__ import annotations
 
@@ -22,43 +22,56 @@ _FLOAT = "std_msgs/msg/Float64"
 class _Gains:
     p: float = tag("p_gain", default=1.0, doc="Proportional gain.")
     i: float = tag("i_gain", default=0.0, doc="Integral gain.")
-    d: float = tag("d_gain", default=0.0, doc="Derivative gain: damps the joint.")
-    i_max: float = tag("i_max", default=1.0, doc="Most that the integral gives.")
-    i_min: float = tag("i_min", default=-1.0, doc="Least that the integral gives.")
-    cmd_max: float = tag("cmd_max", default=1000.0, doc="Most force, N m or N.")
-    cmd_min: float = tag("cmd_min", default=-1000.0, doc="Least force.")
-    cmd_offset: float = tag("cmd_offset", default=0.0, doc="Force that is always added.")
+    d: float = tag("d_gain", default=0.0, doc="Derivative gain, which damps the joint.")
+    i_max: float = tag("i_max", default=1.0, doc="Maximum of the integral term.")
+    i_min: float = tag("i_min", default=-1.0, doc="Minimum of the integral term.")
+    cmd_max: float = tag("cmd_max", default=1000.0, doc="Maximum force, N m or N.")
+    cmd_min: float = tag("cmd_min", default=-1000.0, doc="Minimum force, N m or N.")
+    cmd_offset: float = tag(
+        "cmd_offset", default=0.0, doc="Constant force added to the output, N m or N."
+    )
     actuators: bool = tag("use_actuator_msg", default=False, doc="Not supported.")
-    topic: str = tag("topic", default="", doc="Float64; Gazebo's long name when empty.")
-    sub_topic: str = tag("sub_topic", default="", doc="The same, under /model/<name>.")
-    joints: tuple[str, ...] = tag("joint_name", doc="Joint; once for each that moves alike.")
+    topic: str = tag(
+        "topic", default="", doc="Topic of the target (Float64); see above for the default."
+    )
+    sub_topic: str = tag(
+        "sub_topic", default="", doc="Topic below `/model/<model>`, if `<topic>` is empty."
+    )
+    joints: tuple[str, ...] = tag(
+        "joint_name", doc="Joint to control. Repeat for each joint with the same target."
+    )
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class JointPositionParameters(_Gains):
     i: float = tag("i_gain", default=0.1, doc="Integral gain.")
-    d: float = tag("d_gain", default=0.01, doc="Derivative gain: damps the joint.")
-    index: float = tag("joint_index", default=0.0, doc="Axis of the joint: 0.")
+    d: float = tag("d_gain", default=0.01, doc="Derivative gain, which damps the joint.")
+    index: float = tag("joint_index", default=0.0, doc="Axis of the joint. Must be 0.")
     velocity: bool = tag(
         "use_velocity_commands",
         default=False,
-        doc="Goes there at most at cmd_max, whatever the joint bears, instead of the PID.",
+        doc="Move to the target with a velocity of at most cmd_max, regardless of the load, "
+        "instead of by the PID controller.",
     )
     initial: float = tag(
-        "initial_position", default=0.0, most=FARTHEST, doc="Held from the start, rad or m."
+        "initial_position", default=0.0, most=FARTHEST, doc="Initial target, rad or m."
     )
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class JointVelocityParameters(_Gains):
     force: bool = tag(
-        "use_force_commands", default=False, doc="By the PID, instead of a servo that holds it."
+        "use_force_commands",
+        default=False,
+        doc="Control the velocity by the PID controller instead of a servo.",
     )
-    initial: float = tag("initial_velocity", default=0.0, most=FARTHEST, doc="Held from the start.")
+    initial: float = tag(
+        "initial_velocity", default=0.0, most=FARTHEST, doc="Initial target, rad/s or m/s."
+    )
 
 
 class PidGains(Protocol):
-    """What a `GzPid` is made of; bounds may be infinite."""
+    """Parameters of a `GzPid`; limits may be infinite."""
 
     @property
     def p(self) -> float: ...
@@ -77,14 +90,14 @@ class PidGains(Protocol):
 
 
 class GzPid:
-    """Force from an error, with an integral that is bounded."""
+    """A PI controller with a limited integral, whose output is a force."""
 
     def __init__(self, gains: PidGains) -> None:
         self._gains = gains
         self._integral = 0.0
 
     def force(self, error: float, seconds: float) -> float:
-        """N m or N; the derivative is a damping, which the joint's servo takes."""
+        """Returns the force in N m or N. The derivative gain is a damping of the joint's servo."""
         gains = self._gains
         if gains.i:
             self._integral += gains.i * error * seconds
@@ -94,7 +107,7 @@ class GzPid:
 
 
 class _JointController(Plugin[Any]):
-    """What both controllers share: a target that a topic sets, followed at each step."""
+    """Base class of controllers whose target is set by a topic and followed at each step."""
 
     def configure(self) -> None:
         config: _Gains = self.config
@@ -127,7 +140,7 @@ class _JointController(Plugin[Any]):
         if not topic and config.sub_topic:
             topic = f"/model/{part.name}/{config.sub_topic.strip().lstrip('/')}"
         topic = topic or f"/model/{part.name}/joint/{names[0]}/{self._default_topic()}"
-        # Gazebo puts the axis there, /0/cmd_pos, which is no name in ROS.
+        # Gazebo's topic contains the axis, as in /0/cmd_pos, which is not a valid name in ROS.
         topic = re.sub(r"/\d+(?=/)", "", topic)
         self._topic = gz_name(self, topic, "")
         self.subscribe(self._topic, _FLOAT, self._on_command)
@@ -146,7 +159,7 @@ class _JointController(Plugin[Any]):
         self._target = float(message.data)
 
     def _seconds(self) -> float:
-        """Since the last turn."""
+        """Returns the time since the previous step, s."""
         now = self.part.time_ns
         seconds = 0.0 if self._before_ns is None else (now - self._before_ns) * 1e-9
         self._before_ns = now
@@ -157,9 +170,10 @@ class _JointController(Plugin[Any]):
 
 
 class JointPositionController(_JointController):
-    """Holds a joint at the position that it last heard, from the start at an initial one.
+    """Moves a joint to the last commanded position and holds it there.
 
-    Source: gz-sim, JointPositionController.
+    Until the first command, the target is ``initial_position``. The default topic (Float64) is
+    ``/model/<model>/joint/<joint>/cmd_pos``. Source: gz-sim, JointPositionController.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("gz-sim-joint-position-controller-system",)
@@ -167,7 +181,7 @@ class JointPositionController(_JointController):
 
     def configure(self) -> None:
         super().configure()
-        # What moves alike is told once.
+        # Joints with the same target share one input.
         self.take_positions([self._joints[0][0].name], self._put)
 
     def _put(self, wanted: Mapping[str, float], seconds: float) -> None:  # noqa: ARG002
@@ -196,7 +210,11 @@ class JointPositionController(_JointController):
 
 
 class JointController(_JointController):
-    """Holds a joint at the velocity that it last heard. Source: gz-sim, JointController."""
+    """Holds a joint at the last commanded velocity.
+
+    Until the first command, the target is ``initial_velocity``. The default topic (Float64) is
+    ``/model/<model>/joint/<joint>/cmd_vel``. Source: gz-sim, JointController.
+    """
 
     filenames: ClassVar[tuple[str, ...]] = ("gz-sim-joint-controller-system",)
     parameters: ClassVar[type] = JointVelocityParameters
@@ -216,13 +234,14 @@ class JointController(_JointController):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ApplyJointForceParameters:
-    joint: str = tag("joint_name", doc="Joint.")
+    joint: str = tag("joint_name", doc="Joint to which the force is applied.")
 
 
 class ApplyJointForce(Plugin[ApplyJointForceParameters]):
-    """Gives a joint the force in N m or N that it last heard.
+    """Applies the last commanded force, in N m or N, to a joint.
 
-    On ``/model/<name>/joint/<joint>/cmd_force``. Source: gz-sim, ApplyJointForce.
+    The topic (Float64) is ``/model/<model>/joint/<joint>/cmd_force``. Source: gz-sim,
+    ApplyJointForce.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("gz-sim-apply-joint-force-system",)

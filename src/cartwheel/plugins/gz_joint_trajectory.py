@@ -24,7 +24,7 @@ _KINDS = ("position", "velocity")
 
 
 def _gains(kind: str, name: str, doc: str) -> Any:
-    return tag(f"{kind}_{name}", default=(), doc=f"{doc} of {kind}, for each joint.")
+    return tag(f"{kind}_{name}", default=(), doc=f"{doc} {kind} controller, for each joint.")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -32,44 +32,60 @@ class JointTrajectoryParameters:
     topic: str = tag(
         "topic",
         default="",
-        doc="JointTrajectory; /model/<name>/joint_trajectory when empty.",
+        doc="Topic of the JointTrajectory messages. Default: `/model/<model>/joint_trajectory`.",
     )
     header_start: bool = tag(
         "use_header_start_time",
         default=False,
-        doc="Times count from the header's stamp, not from when it is heard.",
+        doc="Start trajectories at the stamp of their header instead of on arrival.",
     )
     joints: tuple[str, ...] = tag(
-        "joint_name", default=(), doc="Joint; once for each. All of one axis when missing."
+        "joint_name",
+        default=(),
+        doc="Joint to control. Repeat for each joint. Default: all joints with one axis.",
     )
     initial: tuple[float, ...] = tag(
         "initial_position",
         default=(),
         unit="rad or m",
         most=FARTHEST,
-        doc="Held at first, for each joint; 0.",
+        doc="Initial target of each joint. Default: 0.",
     )
-    position_p_gain: tuple[float, ...] = _gains("position", "p_gain", "Proportional gain")
-    position_i_gain: tuple[float, ...] = _gains("position", "i_gain", "Integral gain")
-    position_d_gain: tuple[float, ...] = _gains("position", "d_gain", "Derivative gain")
-    position_i_min: tuple[float, ...] = _gains("position", "i_min", "Least that the integral gives")
-    position_i_max: tuple[float, ...] = _gains("position", "i_max", "Most that the integral gives")
-    position_cmd_min: tuple[float, ...] = _gains("position", "cmd_min", "Least force")
-    position_cmd_max: tuple[float, ...] = _gains("position", "cmd_max", "Most force")
-    position_cmd_offset: tuple[float, ...] = _gains("position", "cmd_offset", "Force always added")
-    velocity_p_gain: tuple[float, ...] = _gains("velocity", "p_gain", "Proportional gain")
-    velocity_i_gain: tuple[float, ...] = _gains("velocity", "i_gain", "Integral gain")
-    velocity_d_gain: tuple[float, ...] = _gains("velocity", "d_gain", "Derivative gain, no effect,")
-    velocity_i_min: tuple[float, ...] = _gains("velocity", "i_min", "Least that the integral gives")
-    velocity_i_max: tuple[float, ...] = _gains("velocity", "i_max", "Most that the integral gives")
-    velocity_cmd_min: tuple[float, ...] = _gains("velocity", "cmd_min", "Least force")
-    velocity_cmd_max: tuple[float, ...] = _gains("velocity", "cmd_max", "Most force")
-    velocity_cmd_offset: tuple[float, ...] = _gains("velocity", "cmd_offset", "Force always added")
+    position_p_gain: tuple[float, ...] = _gains("position", "p_gain", "Proportional gain of the")
+    position_i_gain: tuple[float, ...] = _gains("position", "i_gain", "Integral gain of the")
+    position_d_gain: tuple[float, ...] = _gains("position", "d_gain", "Derivative gain of the")
+    position_i_min: tuple[float, ...] = _gains(
+        "position", "i_min", "Minimum of the integral term of the"
+    )
+    position_i_max: tuple[float, ...] = _gains(
+        "position", "i_max", "Maximum of the integral term of the"
+    )
+    position_cmd_min: tuple[float, ...] = _gains("position", "cmd_min", "Minimum force of the")
+    position_cmd_max: tuple[float, ...] = _gains("position", "cmd_max", "Maximum force of the")
+    position_cmd_offset: tuple[float, ...] = _gains(
+        "position", "cmd_offset", "Constant force added by the"
+    )
+    velocity_p_gain: tuple[float, ...] = _gains("velocity", "p_gain", "Proportional gain of the")
+    velocity_i_gain: tuple[float, ...] = _gains("velocity", "i_gain", "Integral gain of the")
+    velocity_d_gain: tuple[float, ...] = _gains(
+        "velocity", "d_gain", "No effect: derivative gain of the"
+    )
+    velocity_i_min: tuple[float, ...] = _gains(
+        "velocity", "i_min", "Minimum of the integral term of the"
+    )
+    velocity_i_max: tuple[float, ...] = _gains(
+        "velocity", "i_max", "Maximum of the integral term of the"
+    )
+    velocity_cmd_min: tuple[float, ...] = _gains("velocity", "cmd_min", "Minimum force of the")
+    velocity_cmd_max: tuple[float, ...] = _gains("velocity", "cmd_max", "Maximum force of the")
+    velocity_cmd_offset: tuple[float, ...] = _gains(
+        "velocity", "cmd_offset", "Constant force added by the"
+    )
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class _Gains:
-    """Of one PID; a lower bound above its upper one is none."""
+    """Gains of one PID controller. Limits whose minimum exceeds the maximum are not applied."""
 
     p: float
     i: float
@@ -89,11 +105,12 @@ class _Target:
 
 
 class GzJointTrajectory(Plugin[JointTrajectoryParameters]):
-    """Drives joints to a trajectory's points, each until its time has come.
+    """Drives joints to the points of a trajectory, each until its time has passed.
 
-    Nothing lies between two points: send as many as shall be smooth. The forces of both PIDs and
-    the point's effort add up; a gain that is not stated is 0. ``<topic>_progress`` tells the share
-    of the points. Source: gz-sim, JointTrajectoryController.
+    Points are not interpolated: a smooth motion needs dense points. The forces of the position
+    controller, the velocity controller and the point's effort are added. Gains default to 0.
+    ``<topic>_progress`` (Float32) is the share of the points reached. Source: gz-sim,
+    JointTrajectoryController.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("gz-sim-joint-trajectory-controller-system",)
@@ -143,7 +160,7 @@ class GzJointTrajectory(Plugin[JointTrajectoryParameters]):
         self._before_ns: int | None = None
 
     def _read(self, kind: str, index: int) -> _Gains:
-        """The gains of a joint by its number; 0 where fewer are stated."""
+        """Returns the gains of a joint by its index; missing values are 0."""
 
         def number(name: str, default: float = 0.0) -> float:
             numbers: tuple[float, ...] = getattr(self.config, f"{kind}_{name}")
@@ -203,7 +220,7 @@ class GzJointTrajectory(Plugin[JointTrajectoryParameters]):
         self.graph.publish(self.resolve(topic), _TRAJECTORY, message)
 
     def _aim(self) -> None:
-        """Takes the present point for the target."""
+        """Sets the targets from the current point."""
         point = self._points[self._index]
         for number, name in enumerate(self._names):
             target = self._targets.get(name)
@@ -239,7 +256,7 @@ class GzJointTrajectory(Plugin[JointTrajectoryParameters]):
         effort = target.effort + position.force(target.position - joint.position, seconds)
         damping = gains[0].d
         if math.isinf(gains[1].cmd_max):
-            # A gain on the velocity is a damping, which the servo takes without delay.
+            # A velocity gain is a damping, which the servo applies without delay.
             damping += gains[1].p
             slowed = gains[1].p * joint.velocity
             effort += velocity.force(target.velocity - joint.velocity, seconds) + slowed

@@ -1,4 +1,4 @@
-"""Lidars as new Gazebo has them: a ``<sensor>`` that needs no plugin of its own."""
+"""Lidars of new Gazebo, which need no plugin."""
 
 from __future__ import annotations
 
@@ -22,28 +22,31 @@ _POINT = np.dtype(
         "itemsize": 32,
     }
 )
-"""As gz-sensors packs it."""
+"""Layout of gz-sensors."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class GzLidarParameters:
     topic: str = tag(
-        "topic", default="", doc="LaserScan; the points go on `<topic>/points`. Else Gazebo's name."
+        "topic",
+        default="",
+        doc="Topic of the LaserScan; the points are on `<topic>/points`. Default: "
+        "`/world/<world>/model/<model>/link/<link>/sensor/<sensor>/scan`.",
     )
     frame: str = tag(
         "gz_frame_id",
         "ignition_frame_id",
         "frame_id",
         default="",
-        doc="Frame of the messages; the link's when empty.",
+        doc="Frame ID of the messages. Defaults to the sensor's link.",
     )
 
 
 class GzLidar(Plugin[GzLidarParameters]):
-    """Publishes a lidar's middle row as a LaserScan and all of it as a PointCloud2.
+    """Publishes the middle row of a lidar as a LaserScan, and all rows as a PointCloud2.
 
-    The cloud is organised, the lowest row first; where nothing was hit its points are infinite.
-    ``gpu_lidar`` and ``gpu_ray`` see visuals, ``lidar`` and ``ray`` collisions.
+    The cloud is organised, starting with the lowest row; points without a hit are infinite.
+    ``gpu_lidar`` and ``gpu_ray`` detect visuals, ``lidar`` and ``ray`` collisions.
 
     Source: gz-sensors, GpuLidarSensor; ros_gz_bridge for the types.
     """
@@ -60,10 +63,12 @@ class GzLidar(Plugin[GzLidarParameters]):
         self._frame = self.frame(config.frame or sensor.link)
         topic = config.topic or default_topic(self.part, sensor, "scan")
         rate = sensor.update_rate
-        told = rate or None
-        self._scan = self.advertise(topic, "sensor_msgs/msg/LaserScan", rate=told, qos="sensor")
+        listed_rate = rate or None
+        self._scan = self.advertise(
+            topic, "sensor_msgs/msg/LaserScan", rate=listed_rate, qos="sensor"
+        )
         self._points = self.advertise(
-            f"{topic}/points", "sensor_msgs/msg/PointCloud2", rate=told, qos="sensor"
+            f"{topic}/points", "sensor_msgs/msg/PointCloud2", rate=listed_rate, qos="sensor"
         )
         self.part.schedule(
             rate,

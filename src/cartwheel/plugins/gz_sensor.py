@@ -1,4 +1,4 @@
-"""Sensors that need no plugin of their own: new Gazebo's systems serve all of a type."""
+"""Sensors without a plugin, which the systems of new Gazebo serve by type."""
 
 from __future__ import annotations
 
@@ -36,8 +36,9 @@ SYSTEMS = {
     "gz-sim-air-speed-system": ("air_speed",),
     "gz-sim-forcetorque-system": ("force_torque",),
 }
-"""What each system makes publish. Where one is named it has no more to do: Cartwheel's plugins
-serve the types themselves."""
+"""Sensor types that each system enables. Naming a system has no other effect: Cartwheel's plugins
+serve the types themselves.
+"""
 
 _NEW_TYPES = {
     "rgbd_camera",
@@ -50,28 +51,28 @@ _NEW_TYPES = {
     "air_pressure",
     "air_speed",
 }
-"""Those that Gazebo Classic does not know."""
+"""Types that Gazebo Classic does not have."""
 _NEW_TAGS = ("topic", "gz_frame_id", "ignition_frame_id")
 
 
 def frame_tag() -> Any:
-    """The tags by which new Gazebo's sensors name their frame."""
+    """Returns the field for the frame ID of new Gazebo's sensors."""
     return tag(
         "gz_frame_id",
         "ignition_frame_id",
         default="",
-        doc="Frame of the messages; the link's when empty.",
+        doc="Frame ID of the messages. Defaults to the sensor's link.",
     )
 
 
 def publishes(sensor: Sensor, systems: Iterable[str]) -> bool:
-    """Whether a sensor without a plugin is meant to publish.
+    """Whether a sensor without a plugin publishes.
 
-    It is where its system is named, and where it is written for new Gazebo: no world has to name
-    a system here. Gazebo Classic's sensors publish nothing to ROS without a plugin.
+    It does if its system is named, or if it is written for new Gazebo. Gazebo Classic's sensors
+    publish nothing to ROS without a plugin.
 
     Args:
-        sensor: One without a plugin.
+        sensor: A sensor without a plugin.
         systems: Short names of the systems that the world and the model name.
     """
     if any(sensor.type in SYSTEMS.get(system, ()) for system in systems):
@@ -80,7 +81,10 @@ def publishes(sensor: Sensor, systems: Iterable[str]) -> bool:
 
 
 def own_tag(sensor: Sensor, known: Iterable[str]) -> PluginTag:
-    """The sensor's element as the tag of the plugin that serves it, with what that one reads."""
+    """Returns the sensor's element as the tag of the plugin that serves it.
+
+    Only children that the plugin reads are kept.
+    """
     tops = {name.split("/")[0] for name in known}
     element = sensor.element
     children = tuple(
@@ -97,13 +101,13 @@ def own_tag(sensor: Sensor, known: Iterable[str]) -> PluginTag:
 
 
 def _spelt(topic: str) -> str:
-    """A topic in ROS's letters, as relative as it was."""
+    """Converts a topic to the characters of ROS names; a relative topic remains relative."""
     topic = topic.strip()
     spelt = gz_topic(topic) if topic else ""
     return spelt if topic.startswith("/") else spelt.removeprefix("/")
 
 
 def default_topic(part: Part, sensor: Sensor, last: str) -> str:
-    """Where a sensor publishes that names no topic: Gazebo's long name."""
+    """Returns the default topic of a sensor: Gazebo's scoped name, ending in `last`."""
     scope = ("world", part.world.name, "model", part.name, "link", sensor.link)
     return gz_topic("/".join((*scope, "sensor", sensor.name, last)))

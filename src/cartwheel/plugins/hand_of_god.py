@@ -1,4 +1,4 @@
-"""``libgazebo_ros_hand_of_god.so``: a link that is pulled to a frame."""
+"""``libgazebo_ros_hand_of_god.so``: a link that is pulled to a tf frame."""
 
 from __future__ import annotations
 
@@ -22,24 +22,28 @@ _WORLD = "world"
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class HandOfGodParameters:
-    link: str = tag("linkName", "link_name", doc="Link that is pulled; free of gravity.")
+    link: str = tag("linkName", "link_name", doc="Link to pull. Gravity does not act on it.")
     frame: str = tag(
         "frameId",
         "frame_id",
         default="hog",
-        doc="<frame>_desired is where to, <frame>_actual where it is; world in ROS 2.",
+        doc="Prefix of the frames `<frame>_desired` (target) and `<frame>_actual` (current pose). "
+        "If the tag is written for ROS 2, the default is `world`.",
     )
-    stiffness: float = tag("kl", default=200.0, unit="N/m", doc="Of the pull.")
+    stiffness: float = tag("kl", default=200.0, unit="N/m", doc="Stiffness of the linear spring.")
     turning: float = tag(
-        "ka", default=200.0, unit="N m/rad", doc="Of the turn: twice what it gives for a rad."
+        "ka",
+        default=200.0,
+        unit="N m/rad",
+        doc="Stiffness of the rotational spring; the torque is half of it for 1 rad.",
     )
 
 
 class HandOfGod(Plugin[HandOfGodParameters]):
-    """Pulls a link to a frame of tf like a spring, critically damped, against nothing.
+    """Pulls a link to a tf frame like a critically damped spring without counterforce.
 
-    It follows ``<frame>_desired`` in ``world`` as soon as tf knows it, and tells
-    ``<frame>_actual``. Source: gazebo_plugins, gazebo_ros_hand_of_god.
+    The target is ``<frame>_desired`` in ``world``, from the moment that tf provides it. The
+    transform to ``<frame>_actual`` is published. Source: gazebo_plugins, gazebo_ros_hand_of_god.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_hand_of_god.so",)
@@ -71,7 +75,7 @@ class HandOfGod(Plugin[HandOfGodParameters]):
         self._TFMessage = message_class("tf2_msgs/msg/TFMessage")
         self._publisher = self.advertise("/tf", "tf2_msgs/msg/TFMessage")
         part.schedule(0, before=self._pull)
-        part.schedule(0, after=self._tell, active=lambda: self._publisher.wanted)
+        part.schedule(0, after=self._publish, active=lambda: self._publisher.wanted)
 
     def reset(self) -> None:
         self._push.forget()
@@ -90,7 +94,7 @@ class HandOfGod(Plugin[HandOfGodParameters]):
         if wanted is None:
             self._push.apply((-weight).tolist(), (0.0, 0.0, 0.0))
             return
-        # A spring that looks a step back is unstable where it is stiff.
+        # A stiff spring that uses the previous step's state is unstable.
         self.part.locate()
         place, turned = link.place()
         linear, _ = link.motion(local=False)
@@ -100,12 +104,12 @@ class HandOfGod(Plugin[HandOfGodParameters]):
             np.subtract(wanted.position, place), linear, config.stiffness, link.mass, seconds
         )
         error = _logarithm(quat_multiply(quat_conjugate(turned), wanted.orientation))
-        # Gazebo damps all axes alike, as the first asks for.
+        # Gazebo damps all axes equally, by the inertia of the first one.
         torque = _pull(error, angular, config.turning, float(link.inertia[0]), seconds)
         self._push.apply((force - weight).tolist(), rotate(turned, torque.tolist()))
 
-    def _tell(self) -> None:
-        # What is heard here too, and leads nowhere: it hangs on the world.
+    def _publish(self) -> None:
+        # This plugin also receives this transform. It is harmless, since its parent is the world.
         place, turned = self._link.place()
         moved = self._Transform(self._Vector3(*place), self._Quaternion(*turned))
         head = header(self.part.time_ns, _WORLD)
@@ -117,7 +121,7 @@ class HandOfGod(Plugin[HandOfGodParameters]):
 def _pull(
     error: Array, speed: Sequence[float], stiffness: float, inertia: float, seconds: float
 ) -> Array:
-    """Of a critically damped spring at the end of a step, if nothing else acts: never unstable."""
+    """Returns the force of a critically damped, implicitly integrated spring, which is stable."""
     damping = 2.0 * math.sqrt(stiffness * inertia)
     now = np.asarray(speed, dtype=float)
     slowed = 1.0 + (damping + stiffness * seconds) * seconds / inertia
@@ -126,7 +130,7 @@ def _pull(
 
 
 def _logarithm(turn: Quat) -> Array:
-    """Half the rotation vector of a turn, rad, shape (3,), by the shorter way."""
+    """Returns half the rotation vector of a rotation, rad, shape (3,), by the shorter way."""
     x, y, z, w = turn
     vector = np.array([x, y, z]) * (1.0 if w >= 0 else -1.0)
     length = float(np.linalg.norm(vector))

@@ -1,4 +1,4 @@
-"""``libgazebo_ros_harness.so``: a robot that hangs on a winch."""
+"""``libgazebo_ros_harness.so``: a robot suspended from a winch."""
 
 from __future__ import annotations
 
@@ -26,14 +26,19 @@ class HarnessParameters:
     joints: tuple[str, ...] = tag(
         "joint",
         default=(),
-        doc="As in a model: prismatic, with the parent `world` and a `<child>` of this model.",
+        doc="Joint as in a model: prismatic, with the parent `world` and a `<child>` in this "
+        "model. Repeatable.",
     )
     winch: str = tag(
-        "winch", default="", doc="`<joint>`: the one that is wound. Its `<pid>` has no effect."
+        "winch", default="", doc="`<joint>` names the joint that is wound. `<pid>` has no effect."
     )
-    detach: str = tag("detach", default="", doc="The joint that ends when it is told to.")
+    detach: str = tag("detach", default="", doc="Joint that is removed by a message on `detach`.")
     velocity: float = tag(
-        "init_vel", default=0.0, unit="m/s", most=FARTHEST, doc="Of the winch at first (ROS 2)."
+        "init_vel",
+        default=0.0,
+        unit="m/s",
+        most=FARTHEST,
+        doc="Initial velocity of the winch (ROS 2).",
     )
 
 
@@ -42,29 +47,30 @@ class _Rope:
     link: LinkHandle
     joint: AttachmentHandle
     own_axis: Vec3
-    """In the link."""
+    """In the link's frame."""
     limits: tuple[float, float]
     """m."""
     attached: bool = False
     axis: Array = field(default_factory=lambda: np.zeros(3))
-    """In the world, since it was attached."""
+    """In the world, at the time of attachment."""
     start: float = 0.0
     end: float = 0.0
-    """m along the axis: where the link was, and where the rope ends."""
+    """Positions along the axis, m: the link's at attachment, and the rope's end."""
 
     @property
     def place(self) -> float:
-        """Of the link along the axis, m."""
+        """Position of the link along the axis, m."""
         return float(np.dot(self.link.place()[0], self.axis))
 
 
 class Harness(Plugin[HarnessParameters]):
-    """Hangs links of its model in the world, and winds one of them up and down.
+    """Suspends links of the model from the world, and winds one of them up and down.
 
-    Listens on ``/<model>/harness/velocity``, in m/s, and ``detach``: Bool, and Empty in ROS 2's
-    spelling. A rope pulls and never pushes: what stands on the ground hangs slack, and is held by
-    nothing until it is taut again. While it is taut it holds like the joint that it is.
-    Source: gazebo_plugins, gazebo_ros_harness; Gazebo, HarnessPlugin.
+    The winch follows ``/<model>/harness/velocity`` (Float32) in m/s. A message on
+    ``/<model>/harness/detach`` removes the joint: a Bool that is true, or an Empty if the tag is
+    written for ROS 2. A rope can only pull. While the robot stands on the ground, the rope is slack
+    and holds nothing; while it is taut, it acts as the joint. Source: gazebo_plugins,
+    gazebo_ros_harness; Gazebo, HarnessPlugin.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_harness.so", "libHarnessPlugin.so")
@@ -150,7 +156,7 @@ class Harness(Plugin[HarnessParameters]):
             self._velocity = float(message.data)
 
     def _on_detach(self, message: Any) -> None:
-        # Bool's false is no order; Empty has nothing to say no with.
+        # A Bool that is false is ignored; an Empty always detaches.
         if not getattr(message, "data", True):
             return
         rope = self._detached
@@ -183,7 +189,7 @@ class Harness(Plugin[HarnessParameters]):
         rope.attached = True
 
     def _pull(self, rope: _Rope, way: float) -> None:
-        """Moves the rope's end, and lets it go slack or taut."""
+        """Moves the rope's end, and updates whether the rope is slack or taut."""
         rope.end += way
         joint = rope.joint
         if joint.held is None:

@@ -1,4 +1,4 @@
-"""``libhector_gazebo_ros_baro.so``: a height by the pressure of the air."""
+"""``libhector_gazebo_ros_baro.so``: a barometric altimeter."""
 
 from __future__ import annotations
 
@@ -11,37 +11,51 @@ from cartwheel.plugins.noise import DriftingError
 from cartwheel.plugins.parameters import tag
 
 _SCALE_HEIGHT = 44330.0
-"""m: where the formula's pressure ends."""
+"""m; the pressure of the formula is 0 at this altitude."""
 _EXPONENT = 5.263157
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class HectorBaroParameters:
-    body: str = tag("bodyName", default="", doc="Link that carries it; the root when empty.")
+    body: str = tag("bodyName", default="", doc="Link of the barometer. Defaults to the root link.")
     topic: str = tag(
-        "topicName", default="pressure_height", doc="PointStamped, z is the height; none if empty."
+        "topicName",
+        default="pressure_height",
+        doc="Topic of the height (PointStamped, in z). Empty: not published.",
     )
     altimeter_topic: str = tag(
-        "altimeterTopicName", default="altimeter", doc="Altimeter; none if empty."
+        "altimeterTopicName",
+        default="altimeter",
+        doc="Topic of the Altimeter messages. Empty: not published.",
     )
-    frame: str = tag("frameId", default="", doc="Frame of the messages; the link's when empty.")
-    update_rate: float = tag("updateRate", default=0.0, unit="Hz", doc="0 is every step.")
+    frame: str = tag("frameId", default="", doc="Frame ID of the messages. Defaults to the link.")
+    update_rate: float = tag(
+        "updateRate", default=0.0, unit="Hz", doc="Publish rate. 0: every step."
+    )
     elevation: float = tag(
-        "elevation", default=0.0, unit="m", doc="Of the world's origin above the sea."
+        "elevation", default=0.0, unit="m", doc="Altitude of the world's origin above sea level."
     )
-    qnh: float = tag("qnh", default=1013.25, unit="hPa", doc="Pressure at the sea.")
-    offset: float = tag("offset", default=0.0, unit="m", doc="Constant error.")
+    qnh: float = tag("qnh", default=1013.25, unit="hPa", doc="Pressure at sea level.")
+    offset: float = tag("offset", default=0.0, unit="m", doc="Constant error of the height.")
     drift: float = tag("drift", default=0.0, unit="m", doc="Standard deviation of the drift.")
-    frequency: float = tag("driftFrequency", default=1 / 3600.0, unit="1/s", doc="Of the drift.")
-    noise: float = tag("gaussianNoise", default=0.0, unit="m", doc="Standard deviation.")
-    scale: float = tag("scaleError", default=1.0, doc="Factor.")
+    frequency: float = tag(
+        "driftFrequency",
+        default=1 / 3600.0,
+        unit="1/s",
+        doc="Inverse of the drift's time constant.",
+    )
+    noise: float = tag(
+        "gaussianNoise", default=0.0, unit="m", doc="Standard deviation of the noise."
+    )
+    scale: float = tag("scaleError", default=1.0, doc="Scale factor of the height.")
 
 
 class HectorBaro(Plugin[HectorBaroParameters]):
-    """Publishes a link's height in the world, and its altitude with the pressure there.
+    """Publishes the height of a link in the world, and its altitude with the air pressure.
 
-    ``pressure = qnh (1 - altitude / 44330 m) ^ 5.263157``, of the altitude that was measured.
-    Errors are those of `HectorImu`. Source: hector_quadrotor_gazebo_plugins, gazebo_ros_baro.
+    ``pressure = qnh (1 - altitude / 44330 m) ^ 5.263157``, from the measured altitude. Offset,
+    drift, noise and scale are applied as in libhector_gazebo_ros_imu.so. Source:
+    hector_quadrotor_gazebo_plugins, gazebo_ros_baro.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libhector_gazebo_ros_baro.so",)

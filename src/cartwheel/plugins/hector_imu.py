@@ -1,4 +1,4 @@
-"""``libhector_gazebo_ros_imu.so``: an inertial measurement unit that drifts."""
+"""``libhector_gazebo_ros_imu.so``: an inertial measurement unit with drift."""
 
 from __future__ import annotations
 
@@ -27,84 +27,126 @@ _HOUR = 1 / 3600.0
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class HectorImuParameters:
-    body: str = tag("bodyName", default="", doc="Link that carries it; the root when empty.")
-    topic: str = tag("topicName", default="imu", doc="Imu.")
+    body: str = tag("bodyName", default="", doc="Link of the IMU. Defaults to the root link.")
+    topic: str = tag("topicName", default="imu", doc="Topic of the Imu messages.")
     bias_topic: str | None = tag(
-        "biasTopicName", default=None, doc="Imu of the present errors; <topic>/bias when missing."
+        "biasTopicName",
+        default=None,
+        doc="Topic of the current errors (Imu). Default: `<topic>/bias`.",
     )
     service: str | None = tag(
         "serviceName",
         default=None,
-        doc="Empty: takes the rates' drift away; <topic>/calibrate when missing.",
+        doc="Service (Empty) that removes the drift of the angular velocity. Default: "
+        "`<topic>/calibrate`.",
     )
-    frame: str = tag("frameId", default="", doc="Frame of the messages; the link's when empty.")
-    update_rate: float = tag("updateRate", default=0.0, unit="Hz", doc="0 is every step.")
+    frame: str = tag("frameId", default="", doc="Frame ID of the messages. Defaults to the link.")
+    update_rate: float = tag(
+        "updateRate", default=0.0, unit="Hz", doc="Publish rate. 0: every step."
+    )
     xyz_offset: tuple[float, float, float] = tag(
-        "xyzOffset", "xyzOffsets", default=_NONE, unit="m", doc="Mounting."
+        "xyzOffset", "xyzOffsets", default=_NONE, unit="m", doc="Position of the IMU in the link."
     )
     rpy_offset: tuple[float, float, float] = tag(
-        "rpyOffset", "rpyOffsets", default=_NONE, unit="rad", doc="Mounting."
+        "rpyOffset",
+        "rpyOffsets",
+        default=_NONE,
+        unit="rad",
+        doc="Orientation of the IMU in the link, as roll, pitch, yaw.",
     )
     noise: float = tag(
         "gaussianNoise",
         default=0.0,
-        doc="Of rates and accelerations, in place of their own where above 0.",
+        doc="Standard deviation of the noise of angular velocity and acceleration. If positive, "
+        "it overrides accelGaussianNoise and rateGaussianNoise.",
     )
     accel_offset: tuple[float, float, float] = tag(
-        "accelOffset", default=_NONE, unit="m/s²", doc="Constant error."
+        "accelOffset", default=_NONE, unit="m/s²", doc="Constant error of the acceleration."
     )
     accel_drift: tuple[float, float, float] = tag(
-        "accelDrift", default=_NONE, unit="m/s²", doc="Standard deviation of the drift."
+        "accelDrift",
+        default=_NONE,
+        unit="m/s²",
+        doc="Standard deviation of the acceleration's drift.",
     )
     accel_frequency: tuple[float, float, float] = tag(
-        "accelDriftFrequency", default=(_HOUR,) * 3, unit="1/s", doc="Of the drift."
+        "accelDriftFrequency",
+        default=(_HOUR,) * 3,
+        unit="1/s",
+        doc="Inverse of the time constant of the acceleration's drift.",
     )
     accel_noise: tuple[float, float, float] = tag(
-        "accelGaussianNoise", default=_NONE, unit="m/s²", doc="Standard deviation."
+        "accelGaussianNoise",
+        default=_NONE,
+        unit="m/s²",
+        doc="Standard deviation of the acceleration's noise.",
     )
     accel_scale: tuple[float, float, float] = tag(
-        "accelScaleError", default=(1.0,) * 3, doc="Factor."
+        "accelScaleError", default=(1.0,) * 3, doc="Scale factor of the acceleration."
     )
     rate_offset: tuple[float, float, float] = tag(
-        "rateOffset", default=_NONE, unit="rad/s", doc="Constant error."
+        "rateOffset", default=_NONE, unit="rad/s", doc="Constant error of the angular velocity."
     )
     rate_drift: tuple[float, float, float] = tag(
-        "rateDrift", default=_NONE, unit="rad/s", doc="Standard deviation of the drift."
+        "rateDrift",
+        default=_NONE,
+        unit="rad/s",
+        doc="Standard deviation of the angular velocity's drift.",
     )
     rate_frequency: tuple[float, float, float] = tag(
-        "rateDriftFrequency", default=(_HOUR,) * 3, unit="1/s", doc="Of the drift."
+        "rateDriftFrequency",
+        default=(_HOUR,) * 3,
+        unit="1/s",
+        doc="Inverse of the time constant of the angular velocity's drift.",
     )
     rate_noise: tuple[float, float, float] = tag(
-        "rateGaussianNoise", default=_NONE, unit="rad/s", doc="Standard deviation."
+        "rateGaussianNoise",
+        default=_NONE,
+        unit="rad/s",
+        doc="Standard deviation of the angular velocity's noise.",
     )
     rate_scale: tuple[float, float, float] = tag(
-        "rateScaleError", default=(1.0,) * 3, doc="Factor."
+        "rateScaleError", default=(1.0,) * 3, doc="Scale factor of the angular velocity."
     )
     yaw_offset: float = tag(
-        "yawOffset", "headingOffset", default=0.0, unit="rad", doc="Constant error."
+        "yawOffset", "headingOffset", default=0.0, unit="rad", doc="Constant error of the yaw."
     )
     yaw_drift: float = tag(
-        "yawDrift", "headingDrift", default=0.0, unit="rad", doc="Standard deviation of the drift."
+        "yawDrift",
+        "headingDrift",
+        default=0.0,
+        unit="rad",
+        doc="Standard deviation of the yaw's drift.",
     )
     yaw_frequency: float = tag(
-        "yawDriftFrequency", "headingDriftFrequency", default=_HOUR, unit="1/s", doc="Of the drift."
+        "yawDriftFrequency",
+        "headingDriftFrequency",
+        default=_HOUR,
+        unit="1/s",
+        doc="Inverse of the time constant of the yaw's drift.",
     )
     yaw_noise: float = tag(
         "yawGaussianNoise",
         "headingGaussianNoise",
         default=0.0,
         unit="rad",
-        doc="Standard deviation.",
+        doc="Standard deviation of the yaw's noise.",
     )
-    yaw_scale: float = tag("yawScaleError", "headingScaleError", default=1.0, doc="Has no effect.")
+    yaw_scale: float = tag(
+        "yawScaleError",
+        "headingScaleError",
+        default=1.0,
+        doc="Accepted for compatibility; no effect.",
+    )
 
 
 class HectorImu(Plugin[HectorImuParameters]):
-    """Publishes rates, accelerations (gravity's reaction included) and orientation, with errors.
+    """Publishes angular velocity, acceleration and orientation of a link, with errors.
 
-    Each of them is off by a constant, by a slow drift of a standard deviation of its own, and
-    by noise; the accelerations' error tilts the orientation as well. The same seed gives the
-    same errors, whoever listens. Source: hector_gazebo_plugins, gazebo_ros_imu; REP 145.
+    The acceleration includes the reaction to gravity. Each quantity has a constant offset, a slow
+    drift with its own standard deviation, and noise. The error of the acceleration also tilts the
+    orientation. The same seed produces the same errors, regardless of subscribers. Source:
+    hector_gazebo_plugins, gazebo_ros_imu; REP 145.
     """
 
     filenames: ClassVar[tuple[str, ...]] = (
@@ -219,7 +261,7 @@ class HectorImu(Plugin[HectorImuParameters]):
         accel = self._accel.add(self._turn @ self._link.proper_acceleration(self._mount.position))
         rate = self._rate.add(self._turn @ np.array(turning))
         mounted = quat_multiply(turned, self._mount.orientation)
-        # An accelerometer that is off by b takes a direction that is b/g off for up.
+        # An accelerometer error of b tilts the estimated vertical by b/g.
         bias = self._accel.bias.tolist()
         x, y, _ = rotate(mounted, bias)
         g = self._gravity or math.inf
