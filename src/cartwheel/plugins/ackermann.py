@@ -81,7 +81,7 @@ class AckermannParameters:
         "max_steering_angle",
         default=7.85,
         unit="rad",
-        doc="Angle of the steering wheel at max_steer.",
+        doc="Angle of the steering wheel at `<max_steer>`.",
     )
     max_speed: float = tag("max_speed", default=20.0, unit="m/s", doc="Maximum commanded speed.")
     left_gain: tuple[float, float, float] | None = tag(

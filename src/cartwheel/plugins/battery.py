@@ -57,19 +57,20 @@ class BatteryParameters:
     drain_topics: tuple[str, ...] = tag(
         "power_draining_topic",
         default=(),
-        doc="Topic on which any message starts discharging. Repeatable. The type is Empty if no "
-        "other plugin defines the topic.",
+        doc="Topic on which any message starts discharging. Can be repeated. The type is Empty if "
+        "no other plugin defines the topic.",
     )
     stop_topics: tuple[str, ...] = tag(
         "stop_power_draining_topic",
         default=(),
-        doc="Topic on which any message stops discharging. Repeatable.",
+        doc="Topic on which any message stops discharging. Can be repeated.",
     )
     rechargeable: bool = tag(
         "enable_recharge",
         default=False,
-        doc="Charge the battery on messages on `recharge/start` until `recharge/stop`. Requires "
-        "charging_time.",
+        doc="Charge the battery after a message on "
+        "`/model/<model>/battery/<battery_name>/recharge/start`, until one on `…/recharge/stop`. "
+        "Requires `<charging_time>`.",
     )
     by_topic: bool = tag(
         "recharge_by_topic",
@@ -80,7 +81,7 @@ class BatteryParameters:
         "charging_time",
         default=0.0,
         unit="h",
-        doc="Time to charge the empty battery, with enable_recharge.",
+        doc="Time to charge the empty battery, with `<enable_recharge>`.",
     )
     invert: bool = tag(
         "invert_current_sign",

@@ -23,7 +23,11 @@ _NINE = 9
 @dataclass(frozen=True, kw_only=True, slots=True)
 class CameraParameters:
     camera_name: str = tag(
-        "cameraName", "camera_name", default="", doc="Namespace of the topics; see above."
+        "cameraName",
+        "camera_name",
+        default="",
+        doc="Namespace of the topics. Defaults to the sensor's name, or to none if other tags "
+        "have ROS 1 spellings.",
     )
     image_topic: str = tag("imageTopicName", default="image_raw", doc="Topic of the images.")
     info_topic: str = tag(
@@ -71,25 +75,41 @@ class CameraParameters:
         "distortion_k1",
         default=0.0,
         most=MOST_BENT,
-        doc="Radial distortion; see above.",
+        doc="Radial distortion coefficient k1. The sensor's `<distortion>` takes precedence.",
     )
     k2: float = tag(
-        "distortionK2", "distortion_k2", default=0.0, most=MOST_BENT, doc="Radial distortion."
+        "distortionK2",
+        "distortion_k2",
+        default=0.0,
+        most=MOST_BENT,
+        doc="Radial distortion coefficient k2.",
     )
     k3: float = tag(
-        "distortionK3", "distortion_k3", default=0.0, most=MOST_BENT, doc="Radial distortion."
+        "distortionK3",
+        "distortion_k3",
+        default=0.0,
+        most=MOST_BENT,
+        doc="Radial distortion coefficient k3.",
     )
     t1: float = tag(
-        "distortionT1", "distortion_t1", default=0.0, most=MOST_BENT, doc="Tangential distortion."
+        "distortionT1",
+        "distortion_t1",
+        default=0.0,
+        most=MOST_BENT,
+        doc="Tangential distortion coefficient t1.",
     )
     t2: float = tag(
-        "distortionT2", "distortion_t2", default=0.0, most=MOST_BENT, doc="Tangential distortion."
+        "distortionT2",
+        "distortion_t2",
+        default=0.0,
+        most=MOST_BENT,
+        doc="Tangential distortion coefficient t2.",
     )
     auto_distortion: bool = tag(
         "autoDistortion",
         "auto_distortion",
         default=False,
-        doc="Accepted for compatibility: the image is always distorted.",
+        doc="Accepted for compatibility: the distortion is always rendered.",
     )
     border_crop: bool = tag(
         "borderCrop",
@@ -106,32 +126,32 @@ class CameraParameters:
         "P_fx",
         default=None,
         unit="px",
-        doc="Entry of the projection matrix P (ROS 2). Defaults to that of K.",
+        doc="fx in the projection matrix P (ROS 2). Defaults to that of K.",
     )
     p_fy: float | None = tag(
         "P_fy",
         default=None,
         unit="px",
-        doc="Entry of the projection matrix P (ROS 2). Defaults to that of K.",
+        doc="fy in the projection matrix P (ROS 2). Defaults to that of K.",
     )
     p_cx: float | None = tag(
         "P_cx",
         default=None,
         unit="px",
-        doc="Entry of the projection matrix P (ROS 2). Defaults to that of K.",
+        doc="cx in the projection matrix P (ROS 2). Defaults to that of K.",
     )
     p_cy: float | None = tag(
         "P_cy",
         default=None,
         unit="px",
-        doc="Entry of the projection matrix P (ROS 2). Defaults to that of K.",
+        doc="cy in the projection matrix P (ROS 2). Defaults to that of K.",
     )
     p_tx: float | None = tag(
         "Tx",
         default=None,
-        doc="Entry of the projection matrix P (ROS 2). Defaults to -fx times the baseline.",
+        doc="Tx in the projection matrix P (ROS 2). Defaults to -fx times the baseline.",
     )
-    p_ty: float = tag("Ty", default=0.0, doc="Entry of the projection matrix P (ROS 2).")
+    p_ty: float = tag("Ty", default=0.0, doc="Ty in the projection matrix P (ROS 2).")
     trigger_topic: str = tag(
         "triggerTopicName",
         default="image_trigger",
@@ -253,10 +273,10 @@ class Camera(RosCamera[DepthByTypeParameters]):
     """Publishes the images of a camera sensor.
 
     The sensor looks along its x axis. An image is rendered only if a topic has subscribers. Topics
-    are under ``<cameraName>``. Without that tag they are under the sensor's name, as in ROS 2. If
-    other tags have ROS 1 spellings, they are directly under the namespace. Each camera of a
-    ``multicamera`` sensor has its own topics, such as ``<cameraName>/left``. For a ``depth``
-    sensor, the plugin also publishes depth images and points.
+    are under ``<cameraName>``. Without that tag they are under the sensor's name, or directly under
+    the namespace if other tags have ROS 1 spellings. Each camera of a ``multicamera`` sensor has
+    its own topics, such as ``<cameraName>/left/image_raw``. For a ``depth`` sensor, the plugin also
+    publishes depth images and points.
 
     ``image_raw/compressed`` contains JPEG or PNG images. ``set_camera_info`` replaces the published
     CameraInfo; the image does not change. If the tag is written for ROS 1, dynamic_reconfigure
@@ -293,7 +313,7 @@ class Camera(RosCamera[DepthByTypeParameters]):
 class TriggeredCamera(Camera):
     """Publishes one image for each message on ``<cameraName>/image_trigger``.
 
-    In other respects the plugin is that of libgazebo_ros_camera.so. Source: gazebo_plugins,
+    Its tags and topics are those of ``libgazebo_ros_camera.so``. Source: gazebo_plugins,
     gazebo_ros_triggered_camera and gazebo_ros_triggered_multicamera.
     """
 
@@ -314,7 +334,7 @@ class ProsilicaParameters(CameraParameters):
 class Prosilica(RosCamera[ProsilicaParameters]):
     """Publishes the images of a Prosilica camera in streaming mode.
 
-    The topics are those of libgazebo_ros_camera.so. If the parameter ``trigger_mode`` is
+    The topics are those of ``libgazebo_ros_camera.so``. If the parameter ``trigger_mode`` is
     ``polled``, a warning is reported. Source: gazebo_plugins, gazebo_ros_prosilica.
     """
 

@@ -104,7 +104,7 @@ class KinectParameters(DepthCameraParameters):
 class OpenniKinect(DepthCamera):
     """Publishes colour images, depth images and points of a Kinect, by default up to 5 m.
 
-    In other respects the plugin is that of libgazebo_ros_depth_camera.so. Source: gazebo_plugins,
+    Its tags and topics are those of ``libgazebo_ros_depth_camera.so``. Source: gazebo_plugins,
     gazebo_ros_openni_kinect.
     """
 

@@ -90,7 +90,11 @@ class DiffDriveParameters:
         "`0`): wheel rotation.",
     )
     publish_tf: bool = tag(
-        "publishTf", "publishTF", default=True, doc="Publish the odometry and its transform."
+        "publishTf",
+        "publishTF",
+        default=True,
+        doc="Publish the odometry and its transform. If false, `<publish_odom>` and "
+        "`<publishOdomTF>` have no effect.",
     )
     publish_odom: bool | None = tag(
         "publish_odom",
@@ -135,8 +139,8 @@ class DiffDriveParameters:
 class DiffDrive(WheelDrive):
     """Drives pairs of wheels from Twist commands and publishes odometry.
 
-    Each wheel is a velocity servo with the maximum torque `wheelTorque`. A command stays in effect
-    until the next one. In a model inside a world, the topics of a ROS 1 tag without
+    Each wheel is a velocity servo with the maximum torque ``<wheelTorque>``. A command stays in
+    effect until the next one. In a model inside a world, the topics of a ROS 1 tag without
     ``<robotNamespace>`` are placed under the model's name. A tag counts as written for ROS 2 if it
     contains ``<ros>``, ``<left_joint>`` or ``<right_joint>``. Source: gazebo_plugins,
     gazebo_ros_diff_drive.

@@ -50,7 +50,7 @@ class Elevator(Plugin[ElevatorParameters]):
     """Moves an elevator's car to the commanded floor and operates its door.
 
     The sequence is: close the door, move, open, wait, close. Commands are ignored until it is
-    finished. Floor n is at the position n times `floor_height` of the lift joint. Source:
+    finished. Floor n is at the position n times ``<floor_height>`` of the lift joint. Source:
     gazebo_plugins, gazebo_ros_elevator; Gazebo, ElevatorPlugin.
     """
 

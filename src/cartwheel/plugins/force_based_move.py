@@ -51,7 +51,7 @@ class ForceBasedMoveParameters:
         "y_velocity_p_gain",
         default=10000.0,
         unit="N s/m",
-        doc="Must equal x_velocity_p_gain, which is used for both directions.",
+        doc="Must equal `<x_velocity_p_gain>`, which is used for both directions.",
     )
     yaw_gain: float = tag(
         "yaw_velocity_p_gain",

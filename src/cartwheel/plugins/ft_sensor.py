@@ -73,7 +73,7 @@ class FtSensorParameters:
         "body_name",
         default="",
         doc="Link on which external forces are measured instead of a joint's, as by "
-        "libgazebo_ros_f3d.so (ROS 2).",
+        "`libgazebo_ros_f3d.so` (ROS 2).",
     )
     topic: str = tag(
         "topicName", "topic_name", default="wrench", doc="Topic of the WrenchStamped messages."

@@ -49,38 +49,38 @@ class HectorGpsParameters:
     use_world: bool = tag(
         "useWorldSphericalCoordinates",
         default=False,
-        doc="Use the world's `<spherical_coordinates>` as reference.",
+        doc="Use the world's `<spherical_coordinates>` as the default of the reference.",
     )
     latitude: float | None = tag(
         "referenceLatitude",
         default=None,
         unit="degrees",
         doc="Latitude of the world's origin. Default: 49.9, or the world's with "
-        "useWorldSphericalCoordinates.",
+        "`<useWorldSphericalCoordinates>`.",
     )
     longitude: float | None = tag(
         "referenceLongitude",
         default=None,
         unit="degrees",
         doc="Longitude of the world's origin. Default: 8.9, or the world's with "
-        "useWorldSphericalCoordinates.",
+        "`<useWorldSphericalCoordinates>`.",
     )
     altitude: float | None = tag(
         "referenceAltitude",
         default=None,
         unit="m",
         doc="Altitude of the world's origin. Default: 0, or the world's with "
-        "useWorldSphericalCoordinates.",
+        "`<useWorldSphericalCoordinates>`.",
     )
     heading: float | None = tag(
         "referenceHeading",
         default=None,
         unit="degrees",
         doc="Heading of the world's x axis, from north towards east. Default: 0 (x is north, y is "
-        "west), or the world's with useWorldSphericalCoordinates.",
+        "west), or the world's with `<useWorldSphericalCoordinates>`.",
     )
-    status: int = tag("status", default=0, doc="`status` of the NavSatStatus.")
-    service: int = tag("service", default=0, doc="`service` of the NavSatStatus.")
+    status: int = tag("status", default=0, doc="Field `status` of NavSatStatus.")
+    service: int = tag("service", default=0, doc="Field `service` of NavSatStatus.")
     offset: tuple[float, float, float] = tag(
         "offset", default=_NONE, unit="m", doc="Constant error of the position."
     )
@@ -130,7 +130,7 @@ class HectorGps(_Receiver):
 
     As in hector, the Earth is treated as flat around the reference; within a few kilometres the
     error is below 1 m. Offset, drift, noise and scale are applied as in
-    libhector_gazebo_ros_imu.so. Source: hector_gazebo_plugins, gazebo_ros_gps.
+    ``libhector_gazebo_ros_imu.so``. Source: hector_gazebo_plugins, gazebo_ros_gps.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libhector_gazebo_ros_gps.so",)

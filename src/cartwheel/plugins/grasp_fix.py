@@ -46,7 +46,7 @@ class GraspFixParameters:
         "grip_count_threshold",
         default=None,
         doc="An object is attached when the grip counter exceeds this. Defaults to half of "
-        "max_grip_count.",
+        "`<max_grip_count>`.",
     )
     tolerance: float = tag(
         "release_tolerance",
@@ -68,11 +68,14 @@ class GraspFix(Plugin[GraspFixParameters]):
     """Attaches an object to the palm while fingers grip it from opposite sides.
 
     At each check, a collision is gripped if the forces of two fingers on it are at an angle above
-    ``forces_angle_tolerance`` and the smaller force is at least 0.3 of the larger one. The counter
-    of a gripped collision is increased, that of others decreased. Above the threshold, the object
-    is attached to the palm as by a fixed joint. It is released when its counter is no longer above
-    the threshold and a finger has moved. A hand holds one object at a time. Events are published on
-    the topic of the original's republisher. Source: JenniferBuehler, gazebo_grasp_plugin.
+    ``<forces_angle_tolerance>`` and the smaller force is at least 0.3 times the larger one. The
+    counter of a gripped collision increases by 1, that of others decreases by 1. Above the
+    threshold, the object is attached to the palm as by a fixed joint. It is released when its
+    counter is no longer above the threshold and a finger has moved. A hand holds one object at a
+    time.
+
+    Events are published on ``/gazebo_grasp_plugin_event_republisher/grasp_events``, as by the
+    original's republisher. Source: JenniferBuehler, gazebo_grasp_plugin.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_grasp_fix.so",)

@@ -22,8 +22,8 @@ class GzCameraParameters:
         "topic",
         default="",
         doc="Topic of the images; see above. Default: "
-        "`/world/<world>/model/<model>/link/<link>/sensor/<sensor>/image` for a camera, without "
-        "`/image` for an RGB-D camera, and with `/depth_image` for a depth camera.",
+        "`/world/<world>/model/<model>/link/<link>/sensor/<sensor>`, for a camera followed by "
+        "`/image` and for a depth camera by `/depth_image`.",
     )
     frame: str = tag(
         "camera/optical_frame_id",

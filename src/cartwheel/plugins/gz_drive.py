@@ -80,28 +80,34 @@ class GzLimitedParameters(GzCommonLimits):
     """Separate limits for linear and angular motion, which override the common ones."""
 
     min_linear_velocity: float | None = tag(
-        "min_linear_velocity", default=None, unit="m/s", doc="Overrides min_velocity."
+        "min_linear_velocity", default=None, unit="m/s", doc="Overrides `<min_velocity>`."
     )
     max_linear_velocity: float | None = tag(
-        "max_linear_velocity", default=None, unit="m/s", doc="Overrides max_velocity."
+        "max_linear_velocity", default=None, unit="m/s", doc="Overrides `<max_velocity>`."
     )
     min_angular_velocity: float | None = tag(
-        "min_angular_velocity", default=None, unit="rad/s", doc="Overrides min_velocity."
+        "min_angular_velocity", default=None, unit="rad/s", doc="Overrides `<min_velocity>`."
     )
     max_angular_velocity: float | None = tag(
-        "max_angular_velocity", default=None, unit="rad/s", doc="Overrides max_velocity."
+        "max_angular_velocity", default=None, unit="rad/s", doc="Overrides `<max_velocity>`."
     )
     min_linear_acceleration: float | None = tag(
-        "min_linear_acceleration", default=None, unit="m/s²", doc="Overrides min_acceleration."
+        "min_linear_acceleration", default=None, unit="m/s²", doc="Overrides `<min_acceleration>`."
     )
     max_linear_acceleration: float | None = tag(
-        "max_linear_acceleration", default=None, unit="m/s²", doc="Overrides max_acceleration."
+        "max_linear_acceleration", default=None, unit="m/s²", doc="Overrides `<max_acceleration>`."
     )
     min_angular_acceleration: float | None = tag(
-        "min_angular_acceleration", default=None, unit="rad/s²", doc="Overrides min_acceleration."
+        "min_angular_acceleration",
+        default=None,
+        unit="rad/s²",
+        doc="Overrides `<min_acceleration>`.",
     )
     max_angular_acceleration: float | None = tag(
-        "max_angular_acceleration", default=None, unit="rad/s²", doc="Overrides max_acceleration."
+        "max_angular_acceleration",
+        default=None,
+        unit="rad/s²",
+        doc="Overrides `<max_acceleration>`.",
     )
     min_linear_jerk: float | None = tag(
         "min_linear_jerk", default=None, unit="m/s³", doc="Not supported."

@@ -50,7 +50,7 @@ class JointPositionParameters(_Gains):
     velocity: bool = tag(
         "use_velocity_commands",
         default=False,
-        doc="Move to the target with a velocity of at most cmd_max, regardless of the load, "
+        doc="Move to the target with a velocity of at most `<cmd_max>`, regardless of the load, "
         "instead of by the PID controller.",
     )
     initial: float = tag(
@@ -172,7 +172,7 @@ class _JointController(Plugin[Any]):
 class JointPositionController(_JointController):
     """Moves a joint to the last commanded position and holds it there.
 
-    Until the first command, the target is ``initial_position``. The default topic (Float64) is
+    Until the first command, the target is ``<initial_position>``. The default topic (Float64) is
     ``/model/<model>/joint/<joint>/cmd_pos``. Source: gz-sim, JointPositionController.
     """
 
@@ -212,7 +212,7 @@ class JointPositionController(_JointController):
 class JointController(_JointController):
     """Holds a joint at the last commanded velocity.
 
-    Until the first command, the target is ``initial_velocity``. The default topic (Float64) is
+    Until the first command, the target is ``<initial_velocity>``. The default topic (Float64) is
     ``/model/<model>/joint/<joint>/cmd_vel``. Source: gz-sim, JointController.
     """
 

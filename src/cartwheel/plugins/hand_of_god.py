@@ -28,7 +28,7 @@ class HandOfGodParameters:
         "frame_id",
         default="hog",
         doc="Prefix of the frames `<frame>_desired` (target) and `<frame>_actual` (current pose). "
-        "If the tag is written for ROS 2, the default is `world`.",
+        "If the tag contains `<ros>`, the default is `world`.",
     )
     stiffness: float = tag("kl", default=200.0, unit="N/m", doc="Stiffness of the linear spring.")
     turning: float = tag(

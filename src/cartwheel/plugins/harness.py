@@ -27,12 +27,16 @@ class HarnessParameters:
         "joint",
         default=(),
         doc="Joint as in a model: prismatic, with the parent `world` and a `<child>` in this "
-        "model. Repeatable.",
+        "model. Can be repeated.",
     )
     winch: str = tag(
-        "winch", default="", doc="`<joint>` names the joint that is wound. `<pid>` has no effect."
+        "winch",
+        default="",
+        doc="Its `<joint>` names the joint that is wound. Its `<pid>` has no effect.",
     )
-    detach: str = tag("detach", default="", doc="Joint that is removed by a message on `detach`.")
+    detach: str = tag(
+        "detach", default="", doc="Joint that is detached by a message on the topic `detach`."
+    )
     velocity: float = tag(
         "init_vel",
         default=0.0,
@@ -67,10 +71,12 @@ class Harness(Plugin[HarnessParameters]):
     """Suspends links of the model from the world, and winds one of them up and down.
 
     The winch follows ``/<model>/harness/velocity`` (Float32) in m/s. A message on
-    ``/<model>/harness/detach`` removes the joint: a Bool that is true, or an Empty if the tag is
-    written for ROS 2. A rope can only pull. While the robot stands on the ground, the rope is slack
-    and holds nothing; while it is taut, it acts as the joint. Source: gazebo_plugins,
-    gazebo_ros_harness; Gazebo, HarnessPlugin.
+    ``/<model>/harness/detach`` detaches the joint: a Bool that is true, or an Empty if the tag
+    contains ``<ros>``. In that case the topics are relative to the namespace.
+
+    A rope can only pull. While the robot stands on the ground, the rope is slack and holds nothing.
+    While it is taut, it holds the link rigidly, as the prismatic joint would. Source:
+    gazebo_plugins, gazebo_ros_harness; Gazebo, HarnessPlugin.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_harness.so", "libHarnessPlugin.so")

@@ -54,7 +54,7 @@ class HectorBaro(Plugin[HectorBaroParameters]):
     """Publishes the height of a link in the world, and its altitude with the air pressure.
 
     ``pressure = qnh (1 - altitude / 44330 m) ^ 5.263157``, from the measured altitude. Offset,
-    drift, noise and scale are applied as in libhector_gazebo_ros_imu.so. Source:
+    drift, noise and scale are applied as in ``libhector_gazebo_ros_imu.so``. Source:
     hector_quadrotor_gazebo_plugins, gazebo_ros_baro.
     """
 

@@ -58,7 +58,7 @@ class HectorImuParameters:
         "gaussianNoise",
         default=0.0,
         doc="Standard deviation of the noise of angular velocity and acceleration. If positive, "
-        "it overrides accelGaussianNoise and rateGaussianNoise.",
+        "it overrides `<accelGaussianNoise>` and `<rateGaussianNoise>`.",
     )
     accel_offset: tuple[float, float, float] = tag(
         "accelOffset", default=_NONE, unit="m/s²", doc="Constant error of the acceleration."
