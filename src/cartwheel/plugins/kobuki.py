@@ -46,7 +46,7 @@ class KobukiParameters:
     )
     cliff_left: str = tag("cliff_sensor_left_name", doc="Ray sensor that faces the floor, left.")
     cliff_center: str = tag(
-        "cliff_sensor_center_name", doc="Ray sensor that faces the floor, center."
+        "cliff_sensor_center_name", doc="Ray sensor that faces the floor, centre."
     )
     cliff_right: str = tag("cliff_sensor_right_name", doc="Ray sensor that faces the floor, right.")
     cliff_threshold: float = tag(
@@ -79,7 +79,7 @@ class Kobuki(WheelDrive):
     """Drives a Kobuki base and publishes its odometry, IMU, bumper, cliff and wheel drop sensors.
 
     The odometry combines the distance of the wheels with the rotation of the gyroscope. Contacts
-    press the center bumper up to 30° from straight ahead, and the left and right bumpers from there
+    press the centre bumper up to 30° from straight ahead, and the left and right bumpers from there
     to 90°. Bumper, cliff and wheel drop events are published when their state changes. The robot
     stops while its motor power is off. Source: kobuki_gazebo_plugins.
     """

@@ -1,4 +1,4 @@
-"""What a drive tells of where it is: odometry and its transform."""
+"""Odometry of drives: the message, the transform and dead reckoning."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ if TYPE_CHECKING:
 
 NO_COVARIANCE = np.zeros(36)
 UNKNOWN = 1e12
-"""Variance of what a drive on a plane does not know."""
+"""Variance of the degrees of freedom that planar odometry does not estimate."""
 
 
 def planar_covariance(x: float, y: float, yaw: float) -> Array:
-    """Shape (36,), of a pose or twist in the plane: m² or m²/s², rad² or rad²/s²."""
+    """Covariance of a planar pose (m², rad²) or twist (m²/s², rad²/s²), shape (36,)."""
     return np.diag([x, y, UNKNOWN, UNKNOWN, UNKNOWN, yaw]).ravel()
 
 
@@ -31,14 +31,14 @@ class Odometry:
     """Publishes ``nav_msgs/Odometry`` and the transform from the odometry frame to the robot.
 
     Args:
-        plugin: Whose namespace and frames count.
-        topic: Of the odometry; None for none.
-        frame: In which the pose is told.
-        base: The frame whose pose and twist are told.
-        rate: Hz, for listings.
-        transform: Whether the transform is published.
-        tf_topic: Where.
-        wheels: Published along with it.
+        plugin: Provides the namespace and the frame prefix.
+        topic: Topic of the odometry; None: not published.
+        frame: Reference frame of the pose.
+        base: Frame whose pose and twist are published.
+        rate: Publish rate for listings, Hz.
+        transform: Whether to publish the transform.
+        tf_topic: Topic of the transforms.
+        wheels: Transforms of the wheels, published with the transform of the robot.
         pose_covariance: Shape (36,).
         twist_covariance: Shape (36,).
     """
@@ -82,7 +82,7 @@ class Odometry:
         self._moved = OdometryFrame(plugin, base) if transform else None
 
     def wanted(self) -> bool:
-        """Whether anybody reads any of it."""
+        """Whether one of the topics has subscribers."""
         if self._odometry is not None and self._odometry.wanted:
             return True
         return self._tf is not None and self._tf.wanted
@@ -90,18 +90,17 @@ class Odometry:
     def publish(
         self, time_ns: int, place: Vec3, turn: Quat, linear: Sequence[float], angular: Vec3
     ) -> None:
-        """Publishes what somebody reads.
+        """Publishes on the topics that have subscribers.
 
         Args:
-            time_ns: Of the state.
-            place: Of the base in the odometry frame, m.
-            turn: Of the base in the odometry frame.
-            linear: Velocity in the base's axes, m/s, three of them.
-            angular: Turning in the base's axes, rad/s.
+            time_ns: Time of the state.
+            place: Position of the base in the odometry frame, m.
+            turn: Orientation of the base in the odometry frame.
+            linear: Velocity in the base's axes, m/s, shape (3,).
+            angular: Angular velocity in the base's axes, rad/s.
         """
-        # The path of most messages. Fields are given by position, in the order of their
-        # definition, and parts that say the same are one object: both halve its cost. So
-        # does a class in a local name a little: Python looks up anew what is called by a dot.
+        # The hottest path of all messages. Positional fields and shared sub-messages halve its
+        # cost. Local names for the classes save attribute lookups.
         Vector3, Quaternion = self._Vector3, self._Quaternion
         head, rotation = header(time_ns, self._frame), Quaternion(*turn)
         if self._tf is not None and self._tf.wanted:
@@ -132,13 +131,13 @@ class Odometry:
             )
 
     def close(self) -> None:
-        """The robot leaves the world."""
+        """Stops publishing static transforms."""
         if self._moved is not None:
             self._moved.close()
 
 
 def planar_motion(base: LinkHandle) -> tuple[Vec3, Quat, Vec3, Vec3]:
-    """True pose of a link in the world, its velocity along its heading, its turning about z."""
+    """True pose of a link in the world; planar velocity along its heading, m/s; yaw rate, rad/s."""
     place, turned = base.place()
     (vx, vy, _), (_, _, turn_rate) = base.motion_at(place)
     yaw = yaw_of(turned)
@@ -147,18 +146,18 @@ def planar_motion(base: LinkHandle) -> tuple[Vec3, Quat, Vec3, Vec3]:
 
 
 class DeadReckoning:
-    """Where a drive believes it is, from what its wheels have turned."""
+    """Estimates the pose of a robot in the plane from the motion of its wheels."""
 
     def __init__(self) -> None:
         self.restart()
 
     def restart(self) -> None:
-        """At the origin, at rest."""
+        """Resets the estimate to the origin, at rest."""
         self.x = self.y = self.heading = 0.0
         self.forward = self.sideways = self.turn_rate = 0.0
 
     def go(self, forward: float, turn: float, seconds: float, *, sideways: float = 0.0) -> None:
-        """Goes on by a way in m and a turn in rad, along an arc, in a time in s."""
+        """Adds a motion along an arc: distance in m, rotation in rad, duration in s."""
         # Along the chord of the arc: exact for constant wheel speeds.
         shrunk = math.sin(turn / 2) / (turn / 2) if abs(turn) > 1e-9 else 1.0
         cos, sin = math.cos(self.heading + turn / 2), math.sin(self.heading + turn / 2)
@@ -170,7 +169,7 @@ class DeadReckoning:
             self.turn_rate = turn / seconds
 
     def motion(self) -> tuple[Vec3, Quat, Vec3, Vec3]:
-        """As `planar_motion`."""
+        """The estimate, in the form of `planar_motion`."""
         half = self.heading / 2
         return (
             (self.x, self.y, 0.0),
@@ -181,13 +180,13 @@ class DeadReckoning:
 
 
 class AxleReckoning(DeadReckoning):
-    """From what the two wheels of an axle have turned.
+    """Dead reckoning from the rotation of the two wheels of an axle.
 
     Args:
-        left: Joint of a wheel.
-        right: Joint of the other.
-        radius: m, of both wheels.
-        separation: m, between them.
+        left: Joint of the left wheel.
+        right: Joint of the right wheel.
+        radius: Radius of both wheels, m.
+        separation: Distance between the wheels, m.
     """
 
     def __init__(
@@ -199,16 +198,16 @@ class AxleReckoning(DeadReckoning):
         self.begin()
 
     def begin(self) -> None:
-        """At the origin, at rest, wherever the wheels were turned to."""
+        """Resets the estimate to the origin and ignores past rotation of the wheels."""
         self.restart()
         self._turned: tuple[float, float] | None = None
 
     def read(self, seconds: float, *, turn: float | None = None) -> None:
-        """Goes on by what the wheels have turned since the last time, s ago.
+        """Adds the motion of the wheels since the last call.
 
         Args:
-            seconds: Since then.
-            turn: rad, by which the robot turned, where a gyroscope knows it better.
+            seconds: Time since the last call, s.
+            turn: Rotation of the robot in rad, if a gyroscope measures it; None: from the wheels.
         """
         turned = (self._left.position, self._right.position)
         if self._turned is not None:

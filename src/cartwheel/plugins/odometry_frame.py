@@ -1,4 +1,4 @@
-"""The frame below ``odom``, so that all transforms of a robot stay one tree."""
+"""The child frame of ``odom``, chosen so that the transforms of a robot remain one tree."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ if TYPE_CHECKING:
 
 
 class OdometryFrame:
-    """Which frame a drive moves in ``odom``, and where it is.
+    """Child frame of a drive's transform, and its pose in ``odom``.
 
-    A drive tells where its base link is. robot_state_publisher tells where each link is in
-    its parent; so a base link that is fixed below the root would have two parents, and tf
-    would lose one of them. The transform told is that of the root then, to the same effect,
-    and the fixed ones between the two go to ``/tf_static``.
+    A drive publishes the pose of its base link, and robot_state_publisher that of each link in its
+    parent. A base link that is fixed to the root would therefore have two parents, and tf would
+    drop one of them. In this case the drive publishes the transform of the root link, which is
+    equivalent, and the fixed transforms between the two on ``/tf_static``.
 
     Args:
-        plugin: Of the drive.
-        base: The base link, or any other name of a frame.
+        plugin: The drive.
+        base: The base link, or any other frame name.
     """
 
     def __init__(self, plugin: Plugin[Any], base: str) -> None:
@@ -40,7 +40,7 @@ class OdometryFrame:
         self.child = plugin.frame(chain[0].parent)
         poses = link_poses(description, {})
         to_root = poses[base].inverse() @ poses[chain[0].parent]
-        # Bits are kept where the two coincide.
+        # If the two coincide, the pose is passed on bit for bit.
         self._to_root = None if to_root == Pose() else to_root
         self._turned = to_root.orientation != IDENTITY
         for joint in chain:
@@ -60,13 +60,13 @@ class OdometryFrame:
         StaticTransforms.of(self._graph).put(self, self._sent)
 
     def place(self, position: Vec3, orientation: Quat) -> tuple[Vec3, Quat]:
-        """Where `child` is, given where the base link is.
+        """Pose of `child`, given the pose of the base link.
 
-        An orientation that is the same is the very same tuple.
+        An unchanged orientation is returned as the same object.
         """
         if self._to_root is None:
             return position, orientation
-        # As poses multiply, without making any: it is asked for each message.
+        # A product of poses, without creating them: this runs for each message.
         x, y, z = position
         dx, dy, dz = rotate(orientation, self._to_root.position)
         if self._turned:
@@ -74,6 +74,6 @@ class OdometryFrame:
         return (x + dx, y + dy, z + dz), orientation
 
     def close(self) -> None:
-        """The robot leaves the world."""
+        """Removes the static transforms."""
         if self._sent:
             StaticTransforms.of(self._graph).remove(self)

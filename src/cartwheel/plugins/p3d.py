@@ -29,13 +29,13 @@ _WORLD = {"world", "/world", "map", "/map"}
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class P3DParameters:
-    body: str = tag("bodyName", "body_name", doc="Link whose pose is told.")
-    topic: str = tag("topicName", "topic_name", default="odom", doc="Odometry.")
+    body: str = tag("bodyName", "body_name", doc="Link whose pose is published.")
+    topic: str = tag("topicName", "topic_name", default="odom", doc="Topic of the odometry.")
     frame: str = tag(
         "frameName",
         "frame_name",
         default="world",
-        doc="A link, or world or map: in whose axes pose and twist are told.",
+        doc="Reference frame of pose and twist: a link, `world` or `map`.",
     )
     xyz_offset: tuple[float, float, float] = tag(
         "xyzOffset",
@@ -44,7 +44,7 @@ class P3DParameters:
         "xyz_offsets",
         default=(0.0, 0.0, 0.0),
         unit="m",
-        doc="Added to the position.",
+        doc="Added to the position, in the axes of the frame.",
     )
     rpy_offset: tuple[float, float, float] = tag(
         "rpyOffset",
@@ -53,33 +53,37 @@ class P3DParameters:
         "rpy_offsets",
         default=(0.0, 0.0, 0.0),
         unit="rad",
-        doc="Turns the orientation, in the frame's axes.",
+        doc="Rotation applied to the orientation, about the axes of the frame.",
     )
     noise: float = tag(
         "gaussianNoise",
         "gaussian_noise",
         default=0.0,
         unit="m/s, rad/s",
-        doc="Standard deviation of the twist.",
+        doc="Standard deviation of the noise on the twist.",
     )
     update_rate: float = tag(
-        "updateRate", "update_rate", default=0.0, unit="Hz", doc="0 is every step."
+        "updateRate",
+        "update_rate",
+        default=0.0,
+        unit="Hz",
+        doc="Publish rate; 0 publishes at every step.",
     )
 
 
 class P3D(Plugin[P3DParameters]):
-    """Publishes where a link truly is, as Odometry.
+    """Publishes the true pose and twist of a link as Odometry.
 
-    Its twist is in the axes of the frame, as Gazebo's is, not in those of the link. Source:
-    gazebo_plugins, gazebo_ros_p3d, which turns it the wrong way where the frame is a link.
+    As in Gazebo, the twist is in the axes of the frame, not in those of the link. Source:
+    gazebo_plugins, gazebo_ros_p3d, which rotates the twist the wrong way if the frame is a link.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_p3d.so",)
     parameters: ClassVar[type] = P3DParameters
     in_link: ClassVar[bool] = False
-    """Whether the twist is in the link's axes, and not in the frame's."""
+    """Whether the twist is in the axes of the link instead of the frame."""
     in_world: ClassVar[bool] = False
-    """Whether the frame is a name alone, for a pose in the world."""
+    """Whether the frame is only a name: the pose is always relative to the world."""
 
     def configure(self) -> None:
         config, part = self.config, self.part
@@ -136,12 +140,12 @@ class P3D(Plugin[P3DParameters]):
             linear, angular = linear + drawn[:3], angular + drawn[3:]
         Vector3 = self._Vector3
         twist = self._Twist(Vector3(*linear.tolist()), Vector3(*angular.tolist()))
-        pose_told = self._Pose(self._Point(*place), self._Quaternion(*turn))
+        pose_message = self._Pose(self._Point(*place), self._Quaternion(*turn))
         self._publisher.publish(
             self._Odometry(
                 header(self.part.time_ns, self._frame),
                 self._child,
-                self._PoseWithCovariance(pose_told, self._covariance),
+                self._PoseWithCovariance(pose_message, self._covariance),
                 self._TwistWithCovariance(twist, self._covariance),
             )
         )
@@ -153,17 +157,21 @@ class WorldOdometryParameters(P3DParameters):
         "bodyName",
         "body_name",
         default="",
-        doc="Link whose pose is told; the one that frameName names when empty.",
+        doc="Link whose pose is published. Defaults to the link that `<frameName>` names.",
     )
     frame: str = tag(
-        "frameName", "frame_name", default="world", doc="Frame of the messages, a name alone."
+        "frameName",
+        "frame_name",
+        default="world",
+        doc="Frame name in the messages. The pose is always relative to the world.",
     )
 
 
 class WorldOdometry(P3D):
-    """As libgazebo_ros_p3d.so, always in the world's axes, with the twist in the link's.
+    """Publishes the true pose of a link in the world, with the twist in the axes of the link.
 
-    Source: pal_gazebo_plugins, gazebo_world_odometry.
+    Like `libgazebo_ros_p3d.so` in all other respects. Source: pal_gazebo_plugins,
+    gazebo_world_odometry.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_world_odometry.so",)
@@ -174,34 +182,59 @@ class WorldOdometry(P3D):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class OdometryPublisherParameters:
-    frame: str = tag("odom_frame", default="", doc="Of the pose; <name>/odom when empty.")
-    base_frame: str = tag(
-        "robot_base_frame", default="", doc="Of the model; <name>/base_footprint when empty."
+    frame: str = tag(
+        "odom_frame", default="", doc="Reference frame of the pose. Defaults to `<model>/odom`."
     )
-    rate: float = tag("odom_publish_frequency", default=50.0, unit="Hz", doc="Of all topics.")
-    topic: str = tag("odom_topic", default="", doc="Odometry; /model/<name>/odometry when empty.")
+    base_frame: str = tag(
+        "robot_base_frame",
+        default="",
+        doc="Frame of the model. Defaults to `<model>/base_footprint`.",
+    )
+    rate: float = tag(
+        "odom_publish_frequency", default=50.0, unit="Hz", doc="Publish rate of all topics."
+    )
+    topic: str = tag(
+        "odom_topic",
+        default="",
+        doc="Topic of the odometry. Defaults to `/model/<model>/odometry`.",
+    )
     covariance_topic: str = tag(
         "odom_covariance_topic",
         default="",
-        doc="Odometry with covariance; /model/<name>/odometry_with_covariance when empty.",
+        doc="Topic of the odometry with covariance. "
+        "Defaults to `/model/<model>/odometry_with_covariance`.",
     )
-    tf_topic: str = tag("tf_topic", default="", doc="TFMessage; /model/<name>/pose when empty.")
+    tf_topic: str = tag(
+        "tf_topic",
+        default="",
+        doc="Topic of the TFMessage. Defaults to `/model/<model>/pose`.",
+    )
     dimensions: Literal["2", "3"] = tag(
-        "dimensions", default="2", doc="2: on the ground, with a heading; 3: anyhow."
+        "dimensions",
+        default="2",
+        doc="2: pose and twist in the ground plane (x, y, yaw); 3: in three dimensions.",
     )
     xyz_offset: tuple[float, float, float] = tag(
-        "xyz_offset", default=(0.0, 0.0, 0.0), unit="m", doc="Of the base in the model."
+        "xyz_offset",
+        default=(0.0, 0.0, 0.0),
+        unit="m",
+        doc="Position of the base frame in the model.",
     )
     rpy_offset: tuple[float, float, float] = tag(
-        "rpy_offset", default=(0.0, 0.0, 0.0), unit="rad", doc="Of the base in the model."
+        "rpy_offset",
+        default=(0.0, 0.0, 0.0),
+        unit="rad",
+        doc="Roll, pitch and yaw of the base frame in the model.",
     )
     noise: float = tag(
-        "gaussian_noise", default=0.0, doc="Standard deviation of the twist, m/s and rad/s."
+        "gaussian_noise",
+        default=0.0,
+        doc="Standard deviation of the noise on the twist, m/s and rad/s.",
     )
 
 
 class OdometryPublisher(Plugin[OdometryPublisherParameters]):
-    """Publishes where the model truly is in the world, with its velocity in its own axes.
+    """Publishes the true pose of the model in the world, with the twist in its own axes.
 
     Source: gz-sim, OdometryPublisher.
     """
@@ -219,7 +252,7 @@ class OdometryPublisher(Plugin[OdometryPublisherParameters]):
         frame = config.frame or f"{part.name}/odom"
         base = config.base_frame or f"{part.name}/base_footprint"
         covariance = np.diag([config.noise**2] * 6).ravel()
-        self._told = (
+        self._outputs = (
             self.keep(
                 Odometry(
                     self,
@@ -247,7 +280,7 @@ class OdometryPublisher(Plugin[OdometryPublisherParameters]):
         part.schedule(config.rate, after=self._publish, active=self._wanted)
 
     def _wanted(self) -> bool:
-        return any(odometry.wanted() for odometry in self._told)
+        return any(odometry.wanted() for odometry in self._outputs)
 
     def _publish(self) -> None:
         pose = self._link.pose @ self._offset
@@ -266,7 +299,7 @@ class OdometryPublisher(Plugin[OdometryPublisherParameters]):
             local = (np.array(local) + random.normal(0.0, self.config.noise, 6)).tolist()
         if self.config.dimensions == "2":
             local[2] = local[3] = local[4] = 0.0
-        for odometry in self._told:
+        for odometry in self._outputs:
             if odometry.wanted():
                 odometry.publish(
                     self.part.time_ns, place, turn, local[:3], (local[3], local[4], local[5])

@@ -1,4 +1,4 @@
-"""A plugin's XML parameters, read once into its frozen dataclass."""
+"""XML parameters of plugins, read once into frozen dataclasses."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from cartwheel.errors import Diagnostic, Origin, PluginError, Value, meant_one
 C = TypeVar("C")
 
 _COMMON = {"ros", "robotNamespace", "alwaysOn", "always_on", "robotParam", "rosDebugLevel"}
-"""Read for every plugin by its base, or without meaning here and harmless."""
+"""Tags that the base class of all plugins reads, or that have no effect and need no report."""
 _SHOWN = 80
-"""Characters of a value in an error."""
+"""Characters of a value that an error message shows."""
 SMALLEST = 1e-9
-"""Of what must be above 0, in SI units."""
+"""Smallest value of parameters that must be positive, in SI units."""
 _MOST_COUNT = 2**31 - 1
 _TRUE = {"true", "1", "yes", "on"}
 _FALSE = {"false", "0", "no", "off"}
@@ -33,14 +33,15 @@ def tag(
     most: float | None = None,
     doc: str,
 ) -> Any:
-    """A dataclass field that is read from the first of these tags that is written.
+    """Declares a dataclass field that is read from a tag.
 
     Args:
-        names: The tag and its other spellings; ``a/b`` for a nested one.
-        default: When none is written; without one the tag must be there.
-        unit: Of the value, SI.
-        most: The largest magnitude; else `LARGEST`, of whole numbers that of 32 bits.
-        doc: One line for the reference.
+        names: The tag and its other spellings; the first one that exists is read. ``a/b`` is a
+            nested tag.
+        default: Value if none of the tags exists. Without a default, the tag is required.
+        unit: SI unit of the value.
+        most: Largest magnitude. Defaults to `LARGEST`, and for integers to 2**31 - 1.
+        doc: Description for the plugin reference, one or two sentences.
     """
     metadata = {"tags": names, "unit": unit, "doc": doc, "most": most}
     if default is dataclasses.MISSING:
@@ -49,17 +50,25 @@ def tag(
 
 
 def tags_of(cls: type) -> set[str]:
-    """All tags that a parameter dataclass is read from."""
+    """All tags that a parameter dataclass reads."""
     return {name for item in dataclasses.fields(cls) for name in item.metadata["tags"]}
 
 
 def read(
     cls: type[C], element: Element, *, ignore: Iterable[str] = ()
 ) -> tuple[C, list[Diagnostic]]:
-    """Fills a parameter dataclass, and reports every tag that is not understood.
+    """Fills a parameter dataclass and reports unsupported tags.
+
+    Args:
+        cls: The dataclass, with fields made by `tag`.
+        element: The element that contains the tags.
+        ignore: Further tags to accept without a report.
+
+    Returns:
+        The parameters and the diagnostics.
 
     Raises:
-        PluginError: A value of the wrong kind, or a missing tag; with its place.
+        PluginError: A value has the wrong type, or a required tag is missing.
     """
     values: dict[str, Any] = {}
     diagnostics: list[Diagnostic] = []
@@ -68,12 +77,12 @@ def read(
     for item in dataclasses.fields(cls):  # type: ignore[arg-type]
         names: tuple[str, ...] = item.metadata["tags"]
         known |= {name.split("/")[0] for name in names}
-        found = next((child for name in names if (child := element.find(name)) is not None), None)
-        if found is not None:
+        stated = next((child for name in names if (child := element.find(name)) is not None), None)
+        if stated is not None:
             kind = hints[item.name]
-            if kind in (float, float | None) and len(found.text.split()) > 1:
-                found, told = _first(found)
-                diagnostics.append(told)
+            if kind in (float, float | None) and len(stated.text.split()) > 1:
+                stated, diagnostic = _first(stated)
+                diagnostics.append(diagnostic)
             if get_origin(kind) is tuple and Ellipsis in get_args(kind):
                 values[item.name] = tuple(
                     _value(get_args(kind)[0], child, item.metadata["most"])
@@ -81,7 +90,7 @@ def read(
                     for child in element.find_all(name)
                 )
             else:
-                values[item.name] = _value(kind, found, item.metadata["most"])
+                values[item.name] = _value(kind, stated, item.metadata["most"])
         elif item.default is dataclasses.MISSING:
             raise missing(element.tag, names[0], element.origin, hint=item.metadata["doc"])
     diagnostics += [_unknown(child, known) for child in element.children if child.tag not in known]
@@ -100,7 +109,7 @@ def _unknown(element: Element, known: Iterable[str]) -> Diagnostic:
 
 
 def _first(element: Element) -> tuple[Element, Diagnostic]:
-    """The element with the first word alone, which is what Gazebo reads where one is wanted."""
+    """The element with its first word only: Gazebo reads this one if it expects a single number."""
     word = element.text.split()[0]
     return dataclasses.replace(element, text=word), devices.PLUGIN_PARAMETER_NOT_SINGLE.diagnostic(
         f"<{element.tag}> must be one number, but states several: {word} is used",
@@ -114,10 +123,10 @@ def invalid(name: str, value: Value, wanted: str, origin: Origin | None) -> Plug
     """The error for a parameter whose value is not allowed.
 
     Args:
-        name: Its tag.
-        value: As it is stated.
-        wanted: What is allowed, behind "must be".
-        origin: The tag's place.
+        name: The tag.
+        value: The stated value.
+        wanted: The allowed values, as they follow "must be" in the message.
+        origin: File and line of the tag.
     """
     stated = f"{value:g}" if isinstance(value, float) else f'"{shown(str(value))}"'
     return PluginError(
@@ -130,7 +139,7 @@ def invalid(name: str, value: Value, wanted: str, origin: Origin | None) -> Plug
 
 
 def missing(parent: str, name: str, origin: Origin | None, *, hint: str = "") -> PluginError:
-    """The error for a tag that is needed inside another one, which is at `origin`."""
+    """The error for a required tag that is missing in its parent, which is at `origin`."""
     return PluginError(
         f"<{parent}> needs <{name}>",
         code=devices.PLUGIN_PARAMETER_MISSING,
@@ -147,25 +156,25 @@ def number(
     most: float = LARGEST,
     endless: bool = False,
 ) -> float:
-    """The number that an element states, for plugins and sensors alike.
+    """Reads the number in an element of a plugin or sensor.
 
     Args:
-        element: Its text is the number.
-        least: The smallest one that is allowed.
-        most: The largest one that is allowed.
-        endless: Whether a limit may be there: larger ones, and infinity, are then infinite.
+        element: The element whose text is the number.
+        least: Smallest allowed number.
+        most: Largest allowed number.
+        endless: Allow infinity. Numbers beyond `LARGEST` become infinite.
 
     Raises:
-        PluginError: It is not a number, or not from `least` to `most`; with its place.
+        PluginError: The text is not a number, or the number is not between `least` and `most`.
     """
     return _number(element, element.text.strip(), least, most, endless=endless)
 
 
 def vector(element: Element, size: int) -> tuple[float, ...]:
-    """The numbers that an element states, with white space between.
+    """Reads the numbers in an element, separated by white space.
 
     Raises:
-        PluginError: There are not `size` of them, or one is not allowed; see `number`.
+        PluginError: There are more or fewer than `size` numbers, or one is invalid; see `number`.
     """
     return _vector(element, size, LARGEST)
 
@@ -222,6 +231,6 @@ def _number(
 
 
 def shown(text: str) -> str:
-    """A value for an error, cut where it is long."""
+    """A value for an error message, shortened if it is long."""
     text = text.strip()
     return text if len(text) <= _SHOWN else f"{text[:_SHOWN]}…"

@@ -1,4 +1,4 @@
-"""``libgazebo_ros_planar_move.so`` and ``gz-sim-velocity-control-system``: no wheels needed."""
+"""``libgazebo_ros_planar_move.so``, ``gz-sim-velocity-control-system``: drives with no wheels."""
 
 from __future__ import annotations
 
@@ -16,8 +16,12 @@ from cartwheel.simulation.limits import FARTHEST
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class PlanarMoveParameters:
-    command_topic: str = tag("commandTopic", "command_topic", default="cmd_vel", doc="Twist.")
-    odometry_topic: str = tag("odometryTopic", "odometry_topic", default="odom", doc="Odometry.")
+    command_topic: str = tag(
+        "commandTopic", "command_topic", default="cmd_vel", doc="Topic of the Twist commands."
+    )
+    odometry_topic: str = tag(
+        "odometryTopic", "odometry_topic", default="odom", doc="Topic of the odometry."
+    )
     odometry_frame: str = tag(
         "odometryFrame", "odometry_frame", default="odom", doc="Frame of the odometry."
     )
@@ -25,36 +29,49 @@ class PlanarMoveParameters:
         "robotBaseFrame",
         "robot_base_frame",
         default="base_footprint",
-        doc="Link whose pose is told; the root link where there is none of that name.",
+        doc="Link whose pose the odometry reports. "
+        "Defaults to the root link if no link has this name.",
     )
     rate: float = tag(
         "odometryRate",
         "publish_rate",
         default=20.0,
         unit="Hz",
-        doc="Of odometry and transform; 0 or less is none of both.",
+        doc="Publish rate of odometry and transform; 0 or less publishes neither.",
     )
     update_rate: float = tag(
-        "update_rate", default=20.0, unit="Hz", doc="Accepted: the velocity is held all the time."
+        "update_rate",
+        default=20.0,
+        unit="Hz",
+        doc="No effect: the velocity is controlled at every step.",
     )
     timeout: float = tag(
         "cmdTimeout",
         "cmd_timeout",
         default=-1.0,
         unit="s",
-        doc="After that long without a command it stands; below 0 a command holds.",
+        doc="The robot stops after this time without a command; negative: no timeout.",
     )
-    publish_odom: bool = tag("publish_odom", default=True, doc="Publish odometry.")
-    publish_odom_tf: bool = tag("publish_odom_tf", default=True, doc="Publish its transform.")
-    covariance_x: float = tag("covariance_x", default=1e-5, unit="m²", doc="Of the odometry.")
-    covariance_y: float = tag("covariance_y", default=1e-5, unit="m²", doc="Of the odometry.")
-    covariance_yaw: float = tag("covariance_yaw", default=1e-3, unit="rad²", doc="Of the odometry.")
+    publish_odom: bool = tag("publish_odom", default=True, doc="Publish the odometry.")
+    publish_odom_tf: bool = tag(
+        "publish_odom_tf", default=True, doc="Publish the transform of the odometry."
+    )
+    covariance_x: float = tag(
+        "covariance_x", default=1e-5, unit="m²", doc="Variance of x in the odometry."
+    )
+    covariance_y: float = tag(
+        "covariance_y", default=1e-5, unit="m²", doc="Variance of y in the odometry."
+    )
+    covariance_yaw: float = tag(
+        "covariance_yaw", default=1e-3, unit="rad²", doc="Variance of yaw in the odometry."
+    )
 
 
 class PlanarMove(Plugin[PlanarMoveParameters]):
-    """Moves the robot along, sideways and around by Twist, whatever it stands on.
+    """Moves the robot in the plane from Twist commands and publishes odometry.
 
-    A servo pushes the whole robot, with at most five times its weight: a wall stops it.
+    It needs no wheels: a servo pushes the whole robot, with at most five times its weight, so that
+    a wall stops it. The odometry is the true pose.
     Source: gazebo_plugins, gazebo_ros_planar_move.
     """
 
@@ -70,15 +87,15 @@ class PlanarMove(Plugin[PlanarMoveParameters]):
         covariance = planar_covariance(
             config.covariance_x, config.covariance_y, config.covariance_yaw
         )
-        tells = config.rate > 0
+        publishes = config.rate > 0
         self._odometry = self.keep(
             Odometry(
                 self,
-                topic=config.odometry_topic if tells and config.publish_odom else None,
+                topic=config.odometry_topic if publishes and config.publish_odom else None,
                 frame=config.odometry_frame,
                 base=config.base_frame,
                 rate=config.rate,
-                transform=tells and config.publish_odom_tf,
+                transform=publishes and config.publish_odom_tf,
                 pose_covariance=covariance,
                 twist_covariance=covariance if ros2 else NO_COVARIANCE,
             )
@@ -86,7 +103,7 @@ class PlanarMove(Plugin[PlanarMoveParameters]):
         self.subscribe(config.command_topic, "geometry_msgs/msg/Twist", self._on_command)
         if config.timeout >= 0:
             part.schedule(0, before=self._watch)
-        if tells:
+        if publishes:
             part.schedule(config.rate, after=self._publish, active=self._odometry.wanted)
         self.reset()
 
@@ -114,27 +131,32 @@ class PlanarMove(Plugin[PlanarMoveParameters]):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class VelocityControlParameters:
-    topic: str = tag("topic", default="", doc="Twist; /model/<name>/cmd_vel when empty.")
+    topic: str = tag(
+        "topic",
+        default="",
+        doc="Topic of the Twist commands. Defaults to `/model/<model>/cmd_vel`.",
+    )
     initial_linear: tuple[float, float, float] | None = tag(
         "initial_linear",
         default=None,
         unit="m/s",
         most=FARTHEST,
-        doc="Velocity to begin with.",
+        doc="Initial linear velocity.",
     )
     initial_angular: tuple[float, float, float] | None = tag(
         "initial_angular",
         default=None,
         unit="rad/s",
         most=FARTHEST,
-        doc="Turning to begin with.",
+        doc="Initial angular velocity.",
     )
 
 
 class VelocityControl(Plugin[VelocityControlParameters]):
-    """Holds the model's velocity and turning in its own axes, up and down as well.
+    """Holds the model at the commanded linear and angular velocity, in its own axes.
 
-    It is free until the first command. Source: gz-sim, VelocityControl.
+    All six degrees of freedom are controlled. Without an initial velocity, the model moves freely
+    until the first command. Source: gz-sim, VelocityControl.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("gz-sim-velocity-control-system",)

@@ -1,4 +1,4 @@
-"""``gz-sim-pose-publisher-system``: where the parts of a model are in it."""
+"""``gz-sim-pose-publisher-system``: poses of the parts of a model."""
 
 from __future__ import annotations
 
@@ -16,47 +16,72 @@ from cartwheel.plugins.parameters import tag
 from cartwheel.simulation.handles import LinkHandle
 
 _Place = tuple[str, str, Callable[[], Pose]]
-"""Frame, child frame, and what tells the child's pose in the frame."""
+"""Frame, child frame, and a function that returns the pose of the child in the frame."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class PosePublisherParameters:
-    links: bool = tag("publish_link_pose", default=True, doc="Of links, in the model.")
-    visuals: bool = tag("publish_visual_pose", default=False, doc="Of visuals, in their links.")
-    collisions: bool = tag(
-        "publish_collision_pose", default=False, doc="Of collisions, in their links."
+    links: bool = tag(
+        "publish_link_pose", default=True, doc="Publish the poses of links, relative to the model."
     )
-    sensors: bool = tag("publish_sensor_pose", default=False, doc="Of sensors, in their links.")
+    visuals: bool = tag(
+        "publish_visual_pose",
+        default=False,
+        doc="Publish the poses of visuals, relative to their links.",
+    )
+    collisions: bool = tag(
+        "publish_collision_pose",
+        default=False,
+        doc="Publish the poses of collisions, relative to their links.",
+    )
+    sensors: bool = tag(
+        "publish_sensor_pose",
+        default=False,
+        doc="Publish the poses of sensors, relative to their links.",
+    )
     model: bool | None = tag(
-        "publish_model_pose", default=None, doc="Of the model in the world; as the next if missing."
+        "publish_model_pose",
+        default=None,
+        doc="Publish the pose of the model in the world. "
+        "Defaults to `<publish_nested_model_pose>`.",
     )
     nested: bool = tag(
         "publish_nested_model_pose",
         default=False,
-        doc="Of the model; models in it have no frame of their own here.",
+        doc="Publish the pose of the model. Models nested in it have no frames of their own.",
     )
     vector: bool = tag(
         "use_pose_vector_msg",
         default=False,
-        doc="All in one TFMessage, instead of a TransformStamped for each.",
+        doc="Publish one TFMessage with all poses instead of one TransformStamped per pose.",
     )
-    rate: float = tag("update_frequency", default=-1.0, unit="Hz", doc="0 or less is every step.")
+    rate: float = tag(
+        "update_frequency",
+        default=-1.0,
+        unit="Hz",
+        doc="Publish rate; 0 or less publishes at every step.",
+    )
     static: bool = tag(
         "static_publisher",
         default=False,
-        doc="What no joint moves goes on <topic>_static instead.",
+        doc="Publish poses that no joint can change on `<topic>_static` instead.",
     )
     static_rate: float | None = tag(
-        "static_update_frequency", default=None, unit="Hz", doc="Of that; update_frequency."
+        "static_update_frequency",
+        default=None,
+        unit="Hz",
+        doc="Publish rate of the static poses. Defaults to `<update_frequency>`.",
     )
-    topic: str = tag("topic", default="", doc="/model/<name>/pose when empty.")
+    topic: str = tag(
+        "topic", default="", doc="Topic of the poses. Defaults to `/model/<model>/pose`."
+    )
 
 
 class PosePublisher(Plugin[PosePublisherParameters]):
-    """Publishes the poses of the model's parts, each in the frame of what it belongs to.
+    """Publishes the poses of a model and of its links, visuals, collisions and sensors.
 
-    Frames are named <model>, <model>/<link> and <model>/<link>/<part>. Source: gz-sim,
-    PosePublisher; ros_gz_bridge for the types.
+    Each pose is relative to the parent. Frames are named ``<model>``, ``<model>/<link>``
+    and ``<model>/<link>/<part>``. Source: gz-sim, PosePublisher; ros_gz_bridge for the types.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("gz-sim-pose-publisher-system",)
@@ -128,7 +153,7 @@ class PosePublisher(Plugin[PosePublisherParameters]):
                     yield own, f"{own}/{_slashed(part.name)}", partial(_fixed, part.pose)
 
     def _moved(self) -> set[str]:
-        """Frames of links at joints that move; the canonical link is where the model is."""
+        """Frames of links at movable joints, except the canonical link, which is the reference."""
         description = self.part.description
         links = {
             link

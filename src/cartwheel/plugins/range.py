@@ -1,4 +1,4 @@
-"""``libgazebo_ros_range.so`` and hector's sonar: the distance of the nearest thing ahead."""
+"""``libgazebo_ros_range.so`` and hector's sonar: distance to the nearest object."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from cartwheel.plugins.scan_messages import range_reading
 
 
 class _RangeBase(Plugin[Any]):
-    """The least of a ray sensor's ranges."""
+    """Base of the plugins that publish the smallest range of a ray sensor."""
 
     def _start(
         self,
@@ -39,7 +39,7 @@ class _RangeBase(Plugin[Any]):
         self._frame = self.frame(frame or self.sensor.link)
         rates = [hertz for hertz in (rate, self.sensor.update_rate) if hertz > 0]
         slower = min(rates, default=0.0)
-        # Gazebo leaves the sensor's own noise out; who states that alone means it.
+        # Gazebo ignores the sensor's own noise. Here it applies unless the plugin states noise.
         self._own_noise = noise is None
         self._error = DriftingError(
             self.part,
@@ -76,28 +76,36 @@ class _RangeBase(Plugin[Any]):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class RangeParameters:
-    topic: str = tag("topicName", "topic_name", default="/range", doc="Range.")
-    frame: str = tag(
-        "frameName", "frame_name", default="", doc="Frame of the messages; the link's when empty."
+    topic: str = tag(
+        "topicName", "topic_name", default="/range", doc="Topic of the Range messages."
     )
-    fov: float = tag("fov", default=0.05, unit="rad", doc="What the messages say of the opening.")
+    frame: str = tag(
+        "frameName",
+        "frame_name",
+        default="",
+        doc="Frame of the messages. Defaults to the sensor's link.",
+    )
+    fov: float = tag("fov", default=0.05, unit="rad", doc="Field of view that the messages state.")
     radiation: Literal["ultrasound", "infrared"] = tag(
-        "radiation", default="ultrasound", doc="What the messages say of the kind."
+        "radiation", default="ultrasound", doc="Radiation type that the messages state."
     )
     noise: float | None = tag(
-        "gaussianNoise", default=None, unit="m", doc="Standard deviation; else the sensor's noise."
+        "gaussianNoise",
+        default=None,
+        unit="m",
+        doc="Standard deviation of the noise. Defaults to the sensor's `<noise>`.",
     )
     update_rate: float = tag(
         "updateRate",
         "update_rate",
         default=0.0,
         unit="Hz",
-        doc="The slower of this and the sensor's counts; 0 is the sensor's.",
+        doc="Publish rate. The lower of this and the sensor's rate applies; 0: the sensor's rate.",
     )
 
 
 class Range(_RangeBase):
-    """Publishes the nearest of a ray sensor's ranges; its maximum where there is nothing.
+    """Publishes the smallest range of a ray sensor, or its maximum range if no ray hits.
 
     Source: gazebo_plugins, gazebo_ros_range.
     """
@@ -121,32 +129,36 @@ class Range(_RangeBase):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class SonarParameters:
-    topic: str = tag("topicName", default="sonar", doc="Range.")
+    topic: str = tag("topicName", default="sonar", doc="Topic of the Range messages.")
     frame: str = tag(
-        "frameId", "frameName", default="", doc="Frame of the messages; the link's when empty."
+        "frameId",
+        "frameName",
+        default="",
+        doc="Frame of the messages. Defaults to the sensor's link.",
     )
     noise: float | None = tag(
-        "gaussianNoise", default=None, unit="m", doc="Standard deviation; else the sensor's noise."
+        "gaussianNoise",
+        default=None,
+        unit="m",
+        doc="Standard deviation of the noise. Defaults to the sensor's `<noise>`.",
     )
     offset: float = tag("offset", default=0.0, unit="m", doc="Added to each range.")
-    drift: float = tag(
-        "drift", default=0.0, unit="m", doc="Standard deviation of an error that wanders."
-    )
+    drift: float = tag("drift", default=0.0, unit="m", doc="Standard deviation of a slow drift.")
     drift_frequency: float = tag(
-        "driftFrequency", default=0.0, unit="1/s", doc="Inverse of the wandering's time constant."
+        "driftFrequency", default=0.0, unit="1/s", doc="Inverse of the drift's time constant."
     )
     update_rate: float = tag(
         "updateRate",
         default=0.0,
         unit="Hz",
-        doc="The slower of this and the sensor's counts; 0 is the sensor's.",
+        doc="Publish rate. The lower of this and the sensor's rate applies; 0: the sensor's rate.",
     )
 
 
 class HectorSonar(_RangeBase):
-    """Publishes the nearest of a ray sensor's ranges as ultrasound.
+    """Publishes the smallest range of a ray sensor as an ultrasound range.
 
-    Source: hector_gazebo_plugins, gazebo_ros_sonar.
+    If no ray hits, it publishes the maximum range. Source: hector_gazebo_plugins, gazebo_ros_sonar.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libhector_gazebo_ros_sonar.so",)

@@ -1,4 +1,4 @@
-"""``libgazebo_ros_ray_sensor.so``: one plugin for lasers, clouds and ranges, as ROS 2 has it."""
+"""``libgazebo_ros_ray_sensor.so``: one plugin for scans, point clouds and ranges (ROS 2)."""
 
 from __future__ import annotations
 
@@ -23,33 +23,45 @@ class RaySensorParameters:
         "output_type",
         "outputType",
         default="sensor_msgs/PointCloud2",
-        doc="sensor_msgs/LaserScan, PointCloud, PointCloud2 or Range.",
+        doc="Message type: `sensor_msgs/` and LaserScan, PointCloud, PointCloud2 or Range.",
     )
     topic: str = tag(
         "topicName",
         "topic_name",
         default="",
-        doc="Else `<plugin's name>/out`; a `<remapping>` of `~/out` counts before both.",
+        doc="Topic of the messages. Defaults to `<plugin name>/out`. "
+        "A `<remapping>` of `~/out` has priority.",
     )
     frame: str = tag(
-        "frame_name", "frameName", default="", doc="Frame of the messages; the link's when empty."
+        "frame_name",
+        "frameName",
+        default="",
+        doc="Frame of the messages. Defaults to the sensor's link.",
     )
     radiation: Literal["ultrasound", "infrared", "infared"] = tag(
-        "radiation_type", "radiationType", default="infrared", doc="Of a Range."
+        "radiation_type",
+        "radiationType",
+        default="infrared",
+        doc="Radiation type of Range messages.",
     )
     min_intensity: float = tag(
-        "min_intensity", "minIntensity", default=0.0, doc="The least intensity that is told."
+        "min_intensity", "minIntensity", default=0.0, doc="Lower intensities are raised to this."
     )
     update_rate: float = tag(
-        "updateRate", "update_rate", default=0.0, unit="Hz", doc="Accepted: the sensor's counts."
+        "updateRate",
+        "update_rate",
+        default=0.0,
+        unit="Hz",
+        doc="No effect: the sensor's `<update_rate>` applies.",
     )
 
 
 class RaySensor(Plugin[RaySensorParameters]):
-    """Publishes what a ray sensor measures, as the type that is asked for.
+    """Publishes the ranges of a ray sensor as LaserScan, PointCloud, PointCloud2 or Range.
 
-    A LaserScan is of the middle row. Clouds hold the points that were hit. A Range is the least of
-    all rays: inf where nothing was hit, -inf where something is too near (REP 117).
+    A LaserScan contains the middle row. Point clouds contain only the points that were hit. A Range
+    is the minimum of all rays: inf if nothing was hit, -inf if an object is closer than the minimum
+    range (REP 117).
 
     Source: gazebo_plugins for ROS 2, gazebo_ros_ray_sensor, and gazebo_ros's conversions.
     """

@@ -1,4 +1,4 @@
-"""``librealsense_gazebo_plugin.so``: a camera of colours, two of infrared, and one of depths."""
+"""``librealsense_gazebo_plugin.so``: a colour camera, two infrared cameras, a depth camera."""
 
 from __future__ import annotations
 
@@ -18,44 +18,98 @@ from cartwheel.simulation import Part
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class RealSenseParameters:
-    prefix: str = tag("prefix", default="", doc="Before the names of its sensors.")
-    color_topic: str = tag("colorTopicName", default="color", doc="Image of colours.")
-    infrared1_topic: str = tag("infrared1TopicName", default="infrared", doc="Image.")
-    infrared2_topic: str = tag("infrared2TopicName", default="infrared2", doc="Image.")
-    depth_topic: str = tag("depthTopicName", default="depth", doc="Image of depths, in mm.")
-    points_topic: str = tag("pointCloudTopicName", default="points", doc="PointCloud2.")
+    prefix: str = tag("prefix", default="", doc="Prefix of the names of the four sensors.")
+    color_topic: str = tag("colorTopicName", default="color", doc="Topic of the colour images.")
+    infrared1_topic: str = tag(
+        "infrared1TopicName", default="infrared", doc="Topic of the first infrared images."
+    )
+    infrared2_topic: str = tag(
+        "infrared2TopicName", default="infrared2", doc="Topic of the second infrared images."
+    )
+    depth_topic: str = tag(
+        "depthTopicName", default="depth", doc="Topic of the depth images, in mm."
+    )
+    points_topic: str = tag(
+        "pointCloudTopicName", default="points", doc="Topic of the PointCloud2 messages."
+    )
     color_frame: str = tag(
-        "colorOpticalframeName", default="", doc="Of the messages; the link's when empty."
+        "colorOpticalframeName",
+        default="",
+        doc="Frame of the colour images. Defaults to the sensor's link.",
     )
-    infrared1_frame: str = tag("infrared1OpticalframeName", default="", doc="The same.")
-    infrared2_frame: str = tag("infrared2OpticalframeName", default="", doc="The same.")
-    depth_frame: str = tag("depthOpticalframeName", default="", doc="The same, and the points'.")
+    infrared1_frame: str = tag(
+        "infrared1OpticalframeName",
+        default="",
+        doc="Frame of the first infrared images. Defaults to the sensor's link.",
+    )
+    infrared2_frame: str = tag(
+        "infrared2OpticalframeName",
+        default="",
+        doc="Frame of the second infrared images. Defaults to the sensor's link.",
+    )
+    depth_frame: str = tag(
+        "depthOpticalframeName",
+        default="",
+        doc="Frame of the depth images and points. Defaults to the sensor's link.",
+    )
     color_rate: float = tag(
-        "colorUpdateRate", default=0.0, unit="Hz", doc="No more than the sensor's; 0 is that."
+        "colorUpdateRate",
+        default=0.0,
+        unit="Hz",
+        doc="Rate of the colour images, at most the sensor's; 0: the sensor's rate.",
     )
-    infrared_rate: float = tag("infraredUpdateRate", default=0.0, unit="Hz", doc="The same.")
-    depth_rate: float = tag("depthUpdateRate", default=0.0, unit="Hz", doc="The same.")
-    nearest: float = tag("rangeMinDepth", default=0.0, unit="m", doc="Depths up to this are 0.")
+    infrared_rate: float = tag(
+        "infraredUpdateRate",
+        default=0.0,
+        unit="Hz",
+        doc="Rate of the infrared images, at most the sensor's; 0: the sensor's rate.",
+    )
+    depth_rate: float = tag(
+        "depthUpdateRate",
+        default=0.0,
+        unit="Hz",
+        doc="Rate of the depth images, at most the sensor's; 0: the sensor's rate.",
+    )
+    nearest: float = tag(
+        "rangeMinDepth", default=0.0, unit="m", doc="Depths up to this are published as 0."
+    )
     furthest: float = tag(
-        "rangeMaxDepth", default=65.535, unit="m", doc="Depths from this on are 0."
+        "rangeMaxDepth", default=65.535, unit="m", doc="Depths from this on are published as 0."
     )
-    points: bool = tag("pointCloud", default=False, doc="Publish points.")
+    points: bool = tag("pointCloud", default=False, doc="Publish point clouds.")
     points_nearest: float = tag(
-        "pointCloudCutoff", default=0.0, unit="m", doc="Points up to this are nan."
+        "pointCloudCutoff", default=0.0, unit="m", doc="Points at depths up to this are NaN."
     )
     points_furthest: float = tag(
-        "pointCloudCutoffMax", default=5.0, unit="m", doc="Points from this on are nan."
+        "pointCloudCutoffMax",
+        default=5.0,
+        unit="m",
+        doc="Points at depths from this on are NaN.",
     )
     color_info: str = tag(
-        "colorCameraInfoTopicName", default="", doc="Has no effect: it is beside the image."
+        "colorCameraInfoTopicName",
+        default="",
+        doc="No effect: `camera_info` is next to the image topic.",
     )
-    infrared1_info: str = tag("infrared1CameraInfoTopicName", default="", doc="The same.")
-    infrared2_info: str = tag("infrared2CameraInfoTopicName", default="", doc="The same.")
-    depth_info: str = tag("depthCameraInfoTopicName", default="", doc="The same.")
+    infrared1_info: str = tag(
+        "infrared1CameraInfoTopicName",
+        default="",
+        doc="No effect: `camera_info` is next to the image topic.",
+    )
+    infrared2_info: str = tag(
+        "infrared2CameraInfoTopicName",
+        default="",
+        doc="No effect: `camera_info` is next to the image topic.",
+    )
+    depth_info: str = tag(
+        "depthCameraInfoTopicName",
+        default="",
+        doc="No effect: `camera_info` is next to the image topic.",
+    )
 
 
 class _Stream(CameraBase[RealSenseParameters]):
-    """One of the four."""
+    """One of the four image streams."""
 
     parameters: ClassVar[type] = RealSenseParameters
 
@@ -71,12 +125,12 @@ class _Stream(CameraBase[RealSenseParameters]):
         rate: float,
         depth: DepthOptions | None,
     ) -> None:
-        self._image_topic, self._told_frame = topic, frame
-        self._told_rate, self._options = rate, depth
+        self._image_topic, self._stream_frame = topic, frame
+        self._stream_rate, self._options = rate, depth
         super().__init__(part, graph, tag, sensor)
 
     def _asked_rate(self) -> float:
-        return self._told_rate
+        return self._stream_rate
 
     def _open_eyes(self) -> Iterator[Eye]:
         assert self.sensor is not None
@@ -90,7 +144,7 @@ class _Stream(CameraBase[RealSenseParameters]):
             adjustable=False,
         )
         yield self._eye(
-            lens, topics, frame=self._told_frame, centre=(lens.width / 2, lens.height / 2)
+            lens, topics, frame=self._stream_frame, centre=(lens.width / 2, lens.height / 2)
         )
 
     def _depth_options(self) -> DepthOptions | None:
@@ -98,11 +152,12 @@ class _Stream(CameraBase[RealSenseParameters]):
 
 
 class RealSense(Plugin[RealSenseParameters]):
-    """Publishes what the four sensors of an Intel RealSense see, under the plugin's own name.
+    """Publishes the colour, infrared and depth images of an Intel RealSense.
 
-    They are the model's sensors ``<prefix>color``, ``ired1``, ``ired2`` and ``depth``; one that is
-    missing is told. ``camera_info`` is beside each image. Depths are 16UC1 in mm, 0 where there is
-    none. Source: pal-robotics, realsense_gazebo_plugin.
+    The images come from the sensors of the model named ``<prefix>color``, ``<prefix>ired1``,
+    ``<prefix>ired2`` and ``<prefix>depth``; missing ones cause a warning. Topics are below the name
+    of the plugin, with ``camera_info`` next to each image. Depth images have the encoding 16UC1 in
+    mm; 0 means no depth. Source: pal-robotics, realsense_gazebo_plugin.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("librealsense_gazebo_plugin.so",)
@@ -155,13 +210,13 @@ class RealSense(Plugin[RealSenseParameters]):
                     return sensor
         self.warn(
             running.UNKNOWN_SENSOR,
-            f'the sensor "{name}" does not exist, so this camera publishes nothing of it',
+            f'the sensor "{name}" does not exist, so its images are not published',
             values={"name": name},
         )
         return None
 
     def _quiet_tag(self) -> PluginTag:
-        """The tag without unknown elements, which were reported."""
+        """The tag without unsupported elements, which were reported already."""
         known = tags_of(RealSenseParameters) | {"robotNamespace", "ros"}
         element = self.tag.element
         children = tuple(child for child in element.children if child.tag in known)

@@ -1,4 +1,4 @@
-"""What a model's tags make: plugins, each told what is its own."""
+"""Creates the plugins of a model from its tags."""
 
 from __future__ import annotations
 
@@ -30,25 +30,25 @@ from cartwheel.simulation.resident import Behaviour
 _Faults = tuple[type[CartwheelError], ...]
 _ANY: _Faults = (CartwheelError,)
 _HARMLESS: _Faults = (StaticModelError,)
-"""Of which a plugin is left out wherever it is."""
+"""Errors after which any plugin is left out, with a report."""
 
 
 def attach(part: Part, graph: Graph, *, lenient: bool = False) -> list[Behaviour]:
-    """Makes the plugins of a model; what is not supported is reported, never passed over.
+    """Creates the plugins of a model and reports unsupported ones.
 
-    A plugin that cannot be made is an error of the model. A system of new Gazebo that a world's
-    model names costs itself alone, as there, and so does a sensor without a plugin: that is
-    reported.
+    A plugin that cannot be created is an error of the model. Exceptions are systems of new Gazebo
+    in a model of a world, as in Gazebo, and sensors without a plugin: they are left out, with a
+    report.
 
     Args:
-        part: Of the model.
+        part: The model's part of the simulation.
         graph: Where plugins publish.
-        lenient: A plugin costs itself alone, too, where it names what the model does not have.
+        lenient: Also leave out plugins that name an element which the model does not have.
 
     Raises:
-        CartwheelError: A plugin's parameters make no sense; those made before are closed.
+        CartwheelError: A plugin's parameters are invalid. Plugins created before it are closed.
     """
-    made: list[Plugin[object]] = []
+    plugins: list[Plugin[object]] = []
     sensors = [sensor for link in part.description.links for sensor in link.sensors]
     pairs: list[tuple[PluginTag, Sensor | None]] = [(tag, None) for tag in part.description.plugins]
     pairs += [(tag, sensor) for sensor in sensors for tag in sensor.plugins]
@@ -75,22 +75,22 @@ def attach(part: Part, graph: Graph, *, lenient: bool = False) -> list[Behaviour
                 )
             else:
                 forgiven = _ANY if own_system else (*_HARMLESS, *more)
-                made += _made(part, graph, plugin, tag, sensor, forgiven=forgiven)
+                plugins += _create(part, graph, plugin, tag, sensor, forgiven=forgiven)
         alone = [
             one
             for one in sensors
             if one.name not in part.read_sensors
             and not any(plugin_named(tag.filename) for tag in one.plugins)
         ]
-        made += _serve(part, graph, alone, systems)
+        plugins += _serve(part, graph, alone, systems)
     except Exception:
-        for plugin_made in made:
-            plugin_made.close()
+        for created in plugins:
+            created.close()
         raise
-    return list(made)
+    return list(plugins)
 
 
-def _made(
+def _create(
     part: Part,
     graph: Graph,
     plugin: type[Plugin[object]],
@@ -99,7 +99,7 @@ def _made(
     *,
     forgiven: _Faults,
 ) -> list[Plugin[object]]:
-    """The plugin; none where it cannot be made and that is reported."""
+    """A list of the plugin; empty if it cannot be created, which is reported."""
     try:
         return [part.made(lambda: plugin(part, graph, tag, sensor))]
     except CartwheelError as error:
@@ -114,16 +114,16 @@ def _made(
 def _serve(
     part: Part, graph: Graph, sensors: Iterable[Sensor], systems: Collection[str]
 ) -> Iterator[Plugin[object]]:
-    """The plugins of sensors that have none of their own."""
+    """Creates plugins for sensors that have no ``<plugin>``."""
     for sensor in sensors:
         plugin = plugin_serving(sensor.type)
         wanted = publishes(sensor, systems)
         if wanted and plugin is not None:
             tag = own_tag(sensor, tags_of(plugin.parameters))
-            yield from _made(part, graph, plugin, tag, sensor, forgiven=_ANY)
+            yield from _create(part, graph, plugin, tag, sensor, forgiven=_ANY)
             continue
         if sensor.plugins:
-            # The plugin's diagnostic says what is missing.
+            # The diagnostic about the plugin has reported it.
             continue
         reason = f' and type "{sensor.type}", which publishes nothing without one' if wanted else ""
         part.report(
@@ -137,7 +137,7 @@ def _serve(
 
 
 def _report_unknown(part: Part, tag: PluginTag) -> None:
-    # Only a spelling error has a likely meant name: other plugins share most of theirs.
+    # High cutoff: the names of different plugins are similar.
     meant = meant_one(tag.filename, [f"lib{name}.so" for name in plugin_names()], cutoff=0.92)
     broken = unloadable()
     suggested = f'Did you mean "{meant}"?' if meant else ""

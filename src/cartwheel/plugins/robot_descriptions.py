@@ -1,4 +1,4 @@
-"""What each robot is, for those who show it: ``/robot_description``."""
+"""Publishes the descriptions of robots: ``/robot_description``."""
 
 from __future__ import annotations
 
@@ -11,21 +11,22 @@ from cartwheel.simulation import Simulation
 
 STRING = "std_msgs/msg/String"
 TOPIC = "/robot_description"
-"""Of a robot without a namespace."""
+"""Topic of a robot without a namespace."""
 _RATE = 10.0
-"""Hz of simulated time at which new models are looked for."""
+"""Hz of simulated time at which new models are detected."""
 
 
 class RobotDescriptions:
-    """Publishes the expanded XML of each model that is a robot, latched.
+    """Publishes the expanded XML of each robot on a latched topic.
 
-    A topic is ``robot_description`` in the robot's namespace, as ROS's tools expect it; that of
-    a further robot there is ``/<model>/robot_description``. One of these does for all who show
-    robots: two would publish each of them twice. For the owner's thread.
+    The topic is ``robot_description`` in the robot's namespace, as ROS tools expect. Further robots
+    in the same namespace use ``/<model>/robot_description``. Create one instance per simulation:
+    two would publish each description twice. All calls belong on the thread that owns the
+    simulation.
 
     Args:
-        simulation: Whose models.
-        graph: To publish on.
+        simulation: The simulation that contains the models.
+        graph: Where descriptions are published.
     """
 
     def __init__(self, simulation: Simulation, graph: Graph) -> None:
@@ -37,13 +38,13 @@ class RobotDescriptions:
         self._task = simulation.schedule(_RATE, before=self._look)
 
     def topic(self, name: str) -> str | None:
-        """Where a model is described; None where that is no robot."""
+        """Topic of a model's description; None if the model is not a robot."""
         self._look()
-        found = self._published.get(name)
-        return found[1].topic if found else None
+        entry = self._published.get(name)
+        return entry[1].topic if entry else None
 
     def close(self) -> None:
-        """Takes them off the graph."""
+        """Stops publishing."""
         self._simulation.unschedule(self._task)
         for _, publisher in self._published.values():
             publisher.close()
@@ -76,7 +77,7 @@ class RobotDescriptions:
 
 
 def is_robot(description: RobotDescription) -> bool:
-    """Whether a model is more than a thing: it can move, and has joints, plugins or sensors."""
+    """Whether a model is a robot: not static, and with joints, plugins or sensors."""
     if description.static or not description.text:
         return False
     sensing = any(link.sensors for link in description.links)

@@ -1,4 +1,4 @@
-"""Whether the rollers of mecanum wheels are in a robot's description."""
+"""Detects the rollers of mecanum wheels in a robot's description."""
 
 from __future__ import annotations
 
@@ -6,10 +6,10 @@ from cartwheel.description.model import RobotDescription
 
 
 def has_rollers(description: RobotDescription) -> bool:
-    """Whether surfaces of it glide one way and grip the other, as seen from another link.
+    """Whether a collision has anisotropic friction that is fixed in the frame of another link.
 
-    That is how new Gazebo's mecanum wheels are written, ``fdir1`` with ``gz:expressed_in``: what
-    they touch takes the robot along. Others roll like any wheel, and something has to push it.
+    New Gazebo models mecanum wheels this way: ``fdir1`` with ``gz:expressed_in``. Their friction
+    moves the robot. Other wheels only roll forward, so the robot needs a drive that pushes it.
     """
     surfaces = [c.surface for link in description.links for c in link.collisions]
     return any(each.fdir1_frame is not None and each.mu1 != each.mu2 for each in surfaces)

@@ -1,4 +1,4 @@
-"""What rotors_simulator's multicopters have beside their propellers: commands, speeds, an IMU."""
+"""Plugins of rotors_simulator's multicopters: relay of commands, motor states, IMU."""
 
 from __future__ import annotations
 
@@ -23,24 +23,32 @@ _ROTOR = "rotor_"
 @dataclass(frozen=True, kw_only=True, slots=True)
 class RotorsControllerParameters:
     command_topic: str = tag(
-        "commandMotorSpeedSubTopic", default="command/motor_speed", doc="Speeds of all motors."
+        "commandMotorSpeedSubTopic",
+        default="command/motor_speed",
+        doc="Topic of the Actuators commands, with the speeds of all motors.",
     )
     motor_topic: str = tag(
         "motorSpeedCommandPubTopic",
         default="gazebo/command/motor_speed",
-        doc="Where the motors listen.",
+        doc="Topic on which commands are relayed to the motors.",
     )
     attitude_topic: str = tag(
-        "commandAttitudeThrustSubTopic", default="", doc="Accepted; nothing listens, as in Gazebo."
+        "commandAttitudeThrustSubTopic",
+        default="",
+        doc="No effect, as in Gazebo: the topic is not subscribed.",
     )
     rate_topic: str = tag(
-        "commandRateThrustSubTopic", default="", doc="Accepted; nothing listens, as in Gazebo."
+        "commandRateThrustSubTopic",
+        default="",
+        doc="No effect, as in Gazebo: the topic is not subscribed.",
     )
-    imu_topic: str = tag("imuSubTopic", default="", doc="Accepted; nothing listens, as in Gazebo.")
+    imu_topic: str = tag(
+        "imuSubTopic", default="", doc="No effect, as in Gazebo: the topic is not subscribed."
+    )
 
 
 class RotorsController(Plugin[RotorsControllerParameters]):
-    """Hands the commands of motor speeds on to the motors.
+    """Relays motor speed commands to the motors.
 
     Source: rotors_gazebo_plugins, gazebo_controller_interface.
     """
@@ -62,17 +70,24 @@ class RotorsController(Plugin[RotorsControllerParameters]):
 @dataclass(frozen=True, kw_only=True, slots=True)
 class RotorsBaseParameters:
     link: str = tag("linkName", doc="Link that carries the propellers.")
-    topic: str = tag("motorPubTopic", default="motor_speed", doc="Speeds of the propellers.")
-    joint_topic: str = tag("jointStatePubTopic", default="joint_states", doc="Their angles.")
+    topic: str = tag(
+        "motorPubTopic", default="motor_speed", doc="Topic of the speeds of the propellers."
+    )
+    joint_topic: str = tag(
+        "jointStatePubTopic", default="joint_states", doc="Topic of the angles of their joints."
+    )
     slowdown: float = tag(
-        "rotorVelocitySlowdownSim", default=SLOWDOWN, doc="Their joints turn so much slower."
+        "rotorVelocitySlowdownSim",
+        default=SLOWDOWN,
+        doc="Speed of the propellers divided by the speed of their joints.",
     )
 
 
 class RotorsBase(Plugin[RotorsBaseParameters]):
-    """Publishes speeds and angles of the propellers, links ``…rotor_<number>``, at each step.
+    """Publishes the speeds and angles of the propellers at every step.
 
-    Source: rotors_gazebo_plugins, gazebo_multirotor_base_plugin.
+    Propellers are the links named ``…rotor_<number>`` at movable joints of ``<linkName>``. Source:
+    rotors_gazebo_plugins, gazebo_multirotor_base_plugin.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("librotors_gazebo_multirotor_base_plugin.so",)
@@ -82,22 +97,22 @@ class RotorsBase(Plugin[RotorsBaseParameters]):
         config, part, origin = self.config, self.part, self.tag.origin
         self.check_above_zero(rotorVelocitySlowdownSim=config.slowdown)
         part.link(config.link, origin=origin)
-        found = {}
+        joints = {}
         for joint in part.description.joints:
             _, mark, number = joint.child.partition(_ROTOR)
             if mark and number.isdigit() and joint.parent == config.link and joint.drivable:
-                found[int(number)] = part.joint(joint.name, origin=origin)
-        self._joints = [found[number] for number in sorted(found)]
+                joints[int(number)] = part.joint(joint.name, origin=origin)
+        self._joints = [joints[number] for number in sorted(joints)]
         self._frame = self.frame(config.link)
         self._Actuators = message_class(ACTUATORS)
         self._JointState = message_class("sensor_msgs/msg/JointState")
         self._speeds = self.advertise(config.topic, ACTUATORS)
         self._states = self.advertise(config.joint_topic, "sensor_msgs/msg/JointState")
         part.schedule(
-            0, after=self._tell, active=lambda: self._speeds.wanted or self._states.wanted
+            0, after=self._publish, active=lambda: self._speeds.wanted or self._states.wanted
         )
 
-    def _tell(self) -> None:
+    def _publish(self) -> None:
         moment, none = header(self.part.time_ns, self._frame), np.zeros(0)
         if self._speeds.wanted:
             speeds = np.array([joint.velocity * self.config.slowdown for joint in self._joints])
@@ -110,43 +125,65 @@ class RotorsBase(Plugin[RotorsBaseParameters]):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class RotorsImuParameters:
-    link: str = tag("linkName", doc="Link that carries it; frame of the messages.")
-    topic: str = tag("imuTopic", default="imu", doc="Imu.")
+    link: str = tag("linkName", doc="Link that carries the IMU, and frame of the messages.")
+    topic: str = tag("imuTopic", default="imu", doc="Topic of the Imu messages.")
     rate_noise: float = tag(
-        "gyroscopeNoiseDensity", default=math.radians(70 / 3600), unit="rad/s/√Hz", doc="White."
+        "gyroscopeNoiseDensity",
+        default=math.radians(70 / 3600),
+        unit="rad/s/√Hz",
+        doc="White noise of the angular velocity.",
     )
     rate_walk: float = tag(
         "gyroscopeBiasRandomWalk",
         "gyroscopeRandomWalk",
         default=math.radians(8 / 3600),
         unit="rad/s²/√Hz",
-        doc="Of the bias.",
+        doc="Random walk of the gyroscope bias.",
     )
     rate_time: float = tag(
-        "gyroscopeBiasCorrelationTime", default=1000.0, unit="s", doc="Of the bias."
+        "gyroscopeBiasCorrelationTime",
+        default=1000.0,
+        unit="s",
+        doc="Correlation time of the gyroscope bias.",
     )
     rate_bias: float = tag(
-        "gyroscopeTurnOnBiasSigma", default=math.radians(0.5), unit="rad/s", doc="Constant error."
+        "gyroscopeTurnOnBiasSigma",
+        default=math.radians(0.5),
+        unit="rad/s",
+        doc="Standard deviation of the constant gyroscope bias.",
     )
     accel_noise: float = tag(
-        "accelerometerNoiseDensity", default=4e-3, unit="m/s²/√Hz", doc="White."
+        "accelerometerNoiseDensity",
+        default=4e-3,
+        unit="m/s²/√Hz",
+        doc="White noise of the acceleration.",
     )
     accel_walk: float = tag(
-        "accelerometerRandomWalk", default=6e-3, unit="m/s³/√Hz", doc="Of the bias."
+        "accelerometerRandomWalk",
+        default=6e-3,
+        unit="m/s³/√Hz",
+        doc="Random walk of the accelerometer bias.",
     )
     accel_time: float = tag(
-        "accelerometerBiasCorrelationTime", default=300.0, unit="s", doc="Of the bias."
+        "accelerometerBiasCorrelationTime",
+        default=300.0,
+        unit="s",
+        doc="Correlation time of the accelerometer bias.",
     )
     accel_bias: float = tag(
-        "accelerometerTurnOnBiasSigma", default=0.196, unit="m/s²", doc="Constant error."
+        "accelerometerTurnOnBiasSigma",
+        default=0.196,
+        unit="m/s²",
+        doc="Standard deviation of the constant accelerometer bias.",
     )
 
 
 class RotorsImu(ImuBase):
-    """An IMU at each step, with white noise, a bias that wanders and one that stays.
+    """Publishes the measurements of an IMU at every step, with white noise and drifting biases.
 
-    Standard deviations are those of the densities at the length of a step; the bias that wanders
-    begins as spread as it stays. Source: rotors_gazebo_plugins, gazebo_imu_plugin; REP 145.
+    Noise densities are converted to standard deviations for the length of a step. The bias is the
+    sum of a constant and a random walk, which starts from its stationary distribution. Source:
+    rotors_gazebo_plugins, gazebo_imu_plugin; REP 145.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("librotors_gazebo_imu_plugin.so",)

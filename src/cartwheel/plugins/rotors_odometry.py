@@ -1,4 +1,4 @@
-"""``librotors_gazebo_odometry_plugin.so``: where a link of a multicopter is, as it is measured."""
+"""``librotors_gazebo_odometry_plugin.so``: the measured pose of a link of a multicopter."""
 
 from __future__ import annotations
 
@@ -20,49 +20,86 @@ _NONE = (0.0, 0.0, 0.0)
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class RotorsOdometryParameters:
-    link: str = tag("linkName", doc="Link whose pose is told.")
-    pose_topic: str = tag("poseTopic", default="pose", doc="Pose.")
+    link: str = tag("linkName", doc="Link whose pose is published.")
+    pose_topic: str = tag("poseTopic", default="pose", doc="Topic of the Pose messages.")
     with_topic: str = tag(
-        "poseWithCovarianceTopic", default="pose_with_covariance", doc="The same, with a stamp."
+        "poseWithCovarianceTopic",
+        default="pose_with_covariance",
+        doc="Topic of the PoseWithCovarianceStamped messages.",
     )
-    position_topic: str = tag("positionTopic", default="position", doc="PointStamped.")
-    transform_topic: str = tag("transformTopic", default="transform", doc="TransformStamped.")
-    odometry_topic: str = tag("odometryTopic", default="odometry", doc="Odometry.")
-    parent: str = tag("parentFrameId", default="world", doc="Only the world is supported.")
-    child: str = tag("childFrameId", default="odometry_sensor", doc="What the link is called.")
-    divisor: int = tag("measurementDivisor", default=1, doc="Every so many steps it is told.")
-    delay: int = tag("measurementDelay", default=0, doc="Has no effect: it is told at once.")
-    unknown_delay: float = tag("unknownDelay", default=0.0, unit="s", doc="Added to the stamp.")
+    position_topic: str = tag(
+        "positionTopic", default="position", doc="Topic of the PointStamped messages."
+    )
+    transform_topic: str = tag(
+        "transformTopic", default="transform", doc="Topic of the TransformStamped messages."
+    )
+    odometry_topic: str = tag("odometryTopic", default="odometry", doc="Topic of the odometry.")
+    parent: str = tag(
+        "parentFrameId", default="world", doc="Reference frame; only `world` is supported."
+    )
+    child: str = tag(
+        "childFrameId", default="odometry_sensor", doc="Frame of the link in the messages."
+    )
+    divisor: int = tag("measurementDivisor", default=1, doc="Publish every N steps.")
+    delay: int = tag(
+        "measurementDelay", default=0, doc="No effect: measurements are published immediately."
+    )
+    unknown_delay: float = tag("unknownDelay", default=0.0, unit="s", doc="Added to the stamps.")
     normal_position: tuple[float, float, float] = tag(
-        "noiseNormalPosition", default=_NONE, unit="m", doc="Standard deviations."
+        "noiseNormalPosition",
+        default=_NONE,
+        unit="m",
+        doc="Standard deviation of Gaussian noise on the position.",
     )
     normal_turn: tuple[float, float, float] = tag(
-        "noiseNormalQuaternion", default=_NONE, unit="rad", doc="Standard deviations."
+        "noiseNormalQuaternion",
+        default=_NONE,
+        unit="rad",
+        doc="Standard deviation of Gaussian noise on the orientation.",
     )
     normal_linear: tuple[float, float, float] = tag(
-        "noiseNormalLinearVelocity", default=_NONE, unit="m/s", doc="Standard deviations."
+        "noiseNormalLinearVelocity",
+        default=_NONE,
+        unit="m/s",
+        doc="Standard deviation of Gaussian noise on the linear velocity.",
     )
     normal_angular: tuple[float, float, float] = tag(
-        "noiseNormalAngularVelocity", default=_NONE, unit="rad/s", doc="Standard deviations."
+        "noiseNormalAngularVelocity",
+        default=_NONE,
+        unit="rad/s",
+        doc="Standard deviation of Gaussian noise on the angular velocity.",
     )
     uniform_position: tuple[float, float, float] = tag(
-        "noiseUniformPosition", default=_NONE, unit="m", doc="Bounds, either side."
+        "noiseUniformPosition",
+        default=_NONE,
+        unit="m",
+        doc="Bound of uniform noise on the position, in both directions.",
     )
     uniform_turn: tuple[float, float, float] = tag(
-        "noiseUniformQuaternion", default=_NONE, unit="rad", doc="Bounds, either side."
+        "noiseUniformQuaternion",
+        default=_NONE,
+        unit="rad",
+        doc="Bound of uniform noise on the orientation, in both directions.",
     )
     uniform_linear: tuple[float, float, float] = tag(
-        "noiseUniformLinearVelocity", default=_NONE, unit="m/s", doc="Bounds, either side."
+        "noiseUniformLinearVelocity",
+        default=_NONE,
+        unit="m/s",
+        doc="Bound of uniform noise on the linear velocity, in both directions.",
     )
     uniform_angular: tuple[float, float, float] = tag(
-        "noiseUniformAngularVelocity", default=_NONE, unit="rad/s", doc="Bounds, either side."
+        "noiseUniformAngularVelocity",
+        default=_NONE,
+        unit="rad/s",
+        doc="Bound of uniform noise on the angular velocity, in both directions.",
     )
 
 
 class RotorsOdometry(Plugin[RotorsOdometryParameters]):
-    """Publishes where a link is in the world, with noise, in five forms and as a transform.
+    """Publishes the pose of a link in the world with noise, as five message types and a transform.
 
-    The twist is in the link's axes. Source: rotors_gazebo_plugins, gazebo_odometry_plugin.
+    The twist of the Odometry is in the axes of the link. Source:
+    rotors_gazebo_plugins, gazebo_odometry_plugin.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("librotors_gazebo_odometry_plugin.so",)
@@ -132,10 +169,10 @@ class RotorsOdometry(Plugin[RotorsOdometryParameters]):
 
     def _count(self) -> None:
         if self._steps % self.config.divisor == 0:
-            self._tell()
+            self._publish()
         self._steps += 1
 
-    def _tell(self) -> None:
+    def _publish(self) -> None:
         wanted = {kind for kind, publisher in self._others.items() if publisher.wanted}
         if not wanted and not self._odometry.wanted():
             return
@@ -151,24 +188,26 @@ class RotorsOdometry(Plugin[RotorsOdometryParameters]):
         )
         if not wanted:
             return
-        made = self._classes
+        classes = self._classes
         head = header(now, self._frames[0])
-        pose = made["Pose"](made["Point"](x, y, z), made["Quaternion"](*turn))
-        told: dict[str, Any] = {
+        pose = classes["Pose"](classes["Point"](x, y, z), classes["Quaternion"](*turn))
+        messages: dict[str, Any] = {
             "Pose": pose,
-            "PoseWithCovarianceStamped": made["PoseWithCovarianceStamped"](
-                head, made["PoseWithCovariance"](pose, self._covariance)
+            "PoseWithCovarianceStamped": classes["PoseWithCovarianceStamped"](
+                head, classes["PoseWithCovariance"](pose, self._covariance)
             ),
-            "PointStamped": made["PointStamped"](head, pose.position),
-            "TransformStamped": made["TransformStamped"](
-                head, self._frames[1], made["Transform"](made["Vector3"](x, y, z), pose.orientation)
+            "PointStamped": classes["PointStamped"](head, pose.position),
+            "TransformStamped": classes["TransformStamped"](
+                head,
+                self._frames[1],
+                classes["Transform"](classes["Vector3"](x, y, z), pose.orientation),
             ),
         }
         for kind in wanted:
-            self._others[kind].publish(told[kind])
+            self._others[kind].publish(messages[kind])
 
     def _error(self) -> Array:
-        """Of position, turning, velocity and turning rate, shape (12,)."""
+        """Noise on position, orientation, linear and angular velocity, shape (12,)."""
         if not (self._normal.any() or self._uniform.any()):
             return np.zeros(12)
         random = self.part.random(f"odometry {self.tag.name}")
@@ -177,7 +216,7 @@ class RotorsOdometry(Plugin[RotorsOdometryParameters]):
 
 
 def _tilted(turn: Quat, angles: Array) -> Quat:
-    """A rotation that is turned by small angles about its own axes."""
+    """An orientation, rotated by small angles about its own axes."""
     if not angles.any():
         return turn
     x, y, z = (angles / 2).tolist()

@@ -1,4 +1,4 @@
-"""What the plugins of ray sensors share: a scan's pattern, its measurement, its noise."""
+"""Shared parts of ray sensor plugins: pattern, measurement and noise of a scan."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from cartwheel.plugins.parameters import number
 from cartwheel.simulation import Part
 
 _MOST_RAYS = 1_000_000
-"""Of one scan; the densest real sensors have some 300,000. Each costs about 200 bytes."""
+"""Maximum rays of a scan. The densest real sensors have about 300,000; a ray needs 200 bytes."""
 _GPU_TYPES = {"gpu_ray", "gpu_lidar"}
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Sweep:
-    """The angles of a scan in one sense, even from first to last; clockwise where last is less."""
+    """Evenly spaced angles from first to last; if last is less, they decrease."""
 
     count: int
     first: float
@@ -31,11 +31,11 @@ class Sweep:
 
     @property
     def step(self) -> float:
-        """rad; 0 where there is one angle."""
+        """Angle between neighbours, rad; 0 for a single angle."""
         return (self.last - self.first) / (self.count - 1) if self.count > 1 else 0.0
 
     def angles(self) -> Array:
-        """rad, shape (count,)."""
+        """All angles, rad, shape (count,)."""
         return np.linspace(self.first, self.last, self.count)
 
 
@@ -44,7 +44,7 @@ _LEVEL = Sweep(count=1, first=0.0, last=0.0)
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ScanPattern:
-    """Where a ray sensor looks and how well it measures; source: SDF, ``<ray>`` and ``<lidar>``."""
+    """Directions, limits and noise of a ray sensor; source: SDF, ``<ray>`` and ``<lidar>``."""
 
     horizontal: Sweep
     vertical: Sweep
@@ -62,7 +62,7 @@ class ScanPattern:
         )
 
     def directions(self) -> Array:
-        """Unit vectors, x forward and z up, shape (rows, columns, 3); the lowest row first."""
+        """Unit vectors, x forward, z up, shape (rows, columns, 3), starting with the lowest row."""
         azimuth, elevation = np.meshgrid(self.horizontal.angles(), self.vertical.angles())
         level = np.cos(elevation)
         return np.stack(
@@ -71,14 +71,14 @@ class ScanPattern:
 
 
 def read_pattern(sensor: Sensor, report: Callable[[Diagnostic], None]) -> ScanPattern:
-    """What a sensor's ``<ray>`` or ``<lidar>`` says, with SDF's defaults.
+    """Reads a sensor's ``<ray>`` or ``<lidar>``, with SDF's defaults.
 
     Args:
-        sensor: With its elements.
-        report: Takes what is understood in another sense than it is written.
+        sensor: The sensor.
+        report: Receives diagnostics about values that are not used as stated.
 
     Raises:
-        PluginError: It has none, or one that no sensor can have; with its place.
+        PluginError: The element is missing or invalid.
     """
     ray = sensor.element.find("ray") or sensor.element.find("lidar")
     if ray is None:
@@ -141,7 +141,7 @@ def _sweep(element: Element, report: Callable[[Diagnostic], None], *, samples: i
             values={"parameter": "samples", "value": asked},
         )
     if asked != int(asked):
-        # A quotient of angles, mostly.
+        # Mostly the result of dividing angles.
         report(
             devices.SCAN_SAMPLES_INVALID.diagnostic(
                 f"<samples> must be a whole number (got {asked:g}): {int(asked)} is used",
@@ -168,7 +168,7 @@ def _sweep(element: Element, report: Callable[[Diagnostic], None], *, samples: i
             values={"parameter": "resolution", "value": resolution},
         )
     if last < first:
-        # As with Gazebo's rays.
+        # As in Gazebo.
         report(
             devices.SCAN_REVERSED.diagnostic(
                 f"<max_angle> {last:g} is below <min_angle> {first:g}, so the rays are in the "
@@ -195,20 +195,20 @@ def _number(element: Element | None, tag: str, default: float, *, endless: bool 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Scan:
-    """One measurement, row by row, the lowest row first."""
+    """One measurement, row by row, starting with the lowest row."""
 
     ranges: Array
-    """m, shape (rows, columns): -inf where something is too near, inf where nothing is near
-    enough (REP 117)."""
+    """Ranges in m, shape (rows, columns): -inf below the minimum range, inf if nothing is within
+    the maximum range (REP 117)."""
     intensities: Array
-    """The laser_retro of what was hit, shape (rows, columns)."""
+    """The laser_retro of the objects hit, shape (rows, columns)."""
 
     def points(self, directions: Array) -> Array:
-        """Where the ranges end, in the sensor's axes, in m, shape (rows, columns, 3).
+        """Points hit, in the sensor's axes, m, shape (rows, columns, 3).
 
-        Points that are not there are infinite.
+        Points without a finite range are infinite.
         """
-        # An infinite range along an axis would be no number in the others.
+        # An infinite range times a direction of 0 would be NaN.
         missing = ~np.isfinite(self.ranges)
         places: Array = directions * np.where(missing, 1.0, self.ranges)[..., None]
         places[missing] = np.inf
@@ -216,11 +216,12 @@ class Scan:
 
 
 class Scanner:
-    """Measures a sensor's scan, at most once for each moment.
+    """Measures the scans of a ray sensor.
 
     Args:
-        part: Of the model that carries the sensor.
-        sensor: With a ``<ray>`` or ``<lidar>``. One of a GPU type sees visuals, as a GPU does.
+        part: The model's part of the simulation.
+        sensor: Sensor with a ``<ray>`` or ``<lidar>``. GPU types detect visuals instead of
+            collisions, as in Gazebo.
 
     Raises:
         PluginError: See `read_pattern`.
@@ -240,10 +241,10 @@ class Scanner:
             visuals=sensor.type in _GPU_TYPES,
         )
         self.error = VectorNoise(part, self._name, [self.pattern.noise], rate=sensor.update_rate)
-        """That of one range; mean and bias are those of all rays."""
+        """Error of a single range. All rays share its mean and bias."""
 
     def measure(self, *, noisy: bool = True) -> Scan:
-        """The ranges of this moment, with the sensor's own noise where `noisy`."""
+        """The current scan, with the sensor's own noise if `noisy`."""
         ranges, intensities = self._rays.cast()
         if noisy:
             self._blur(ranges)
@@ -251,7 +252,7 @@ class Scanner:
         return Scan(ranges=ranges.reshape(shape), intensities=intensities.reshape(shape))
 
     def random(self, purpose: str) -> np.random.Generator:
-        """Noise of this moment for one purpose."""
+        """Random generator for the current time and a purpose."""
         return self._part.random(f"{self._name} {purpose}")
 
     def _blur(self, ranges: Array) -> None:
@@ -261,7 +262,7 @@ class Scanner:
         measured = np.isfinite(ranges)
         blurred = ranges + self.error.offset
         if noise.stddev > 0:
-            # One for each ray, so that what one ray meets changes no other's noise.
+            # One number per ray, so that a hit does not change the noise of other rays.
             blurred += self.random("noise").normal(0.0, noise.stddev, ranges.shape)
         if precision > 0:
             blurred = np.round(blurred / precision) * precision

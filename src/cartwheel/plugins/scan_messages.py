@@ -1,4 +1,4 @@
-"""A scan as the messages that ROS has for it."""
+"""ROS messages of scans."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ def laser_scan(moment: Any, pattern: ScanPattern, scan: Scan, *, floor: float = 
 
     Args:
         moment: The header.
-        pattern: Of the scan.
-        scan: What was measured.
-        floor: The least intensity that is told.
+        pattern: Pattern of the scan.
+        scan: The measurement.
+        floor: Lower intensities are raised to this.
     """
     sweep = pattern.horizontal
     row = pattern.vertical.count // 2
@@ -42,14 +42,14 @@ def laser_scan(moment: Any, pattern: ScanPattern, scan: Scan, *, floor: float = 
 def range_reading(
     moment: Any, pattern: ScanPattern, value: float, *, fov: float, infrared: bool
 ) -> Any:
-    """A Range.
+    """A Range message.
 
     Args:
         moment: The header.
-        pattern: Of the scan that it was made from.
-        value: m.
-        fov: Opening angle, rad.
-        infrared: Light; else sound.
+        pattern: Pattern of the scan, which provides the range limits.
+        value: Range, m.
+        fov: Field of view, rad.
+        infrared: State infrared as the radiation type, otherwise ultrasound.
     """
     kind = message_class("sensor_msgs/msg/Range")
     return kind(
@@ -68,8 +68,8 @@ def point_cloud(moment: Any, points: Array, intensities: Array) -> Any:
 
     Args:
         moment: The header.
-        points: m, shape (n, 3).
-        intensities: Shape (n,).
+        points: Points in m, shape (n, 3).
+        intensities: Intensities, shape (n,).
     """
     point = message_class("geometry_msgs/msg/Point32")
     return message_class("sensor_msgs/msg/PointCloud")(
@@ -88,8 +88,8 @@ def point_cloud2(moment: Any, cloud: Any, *, dense: bool) -> Any:
 
     Args:
         moment: The header.
-        cloud: Shape (n,), or (height, width) of an organised cloud.
-        dense: Whether every point is one.
+        cloud: The points, shape (n,), or (height, width) for an organised cloud.
+        dense: Whether all points are valid.
     """
     height, width = cloud.shape if cloud.ndim == 2 else (1, len(cloud))
     step = cloud.dtype.itemsize

@@ -12,39 +12,60 @@ from cartwheel.plugins.wheel_drive import WheelDrive, WheelPair
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class SkidSteerParameters:
-    left_front: str = tag("leftFrontJoint", default="left_front_joint", doc="Joint of that wheel.")
+    left_front: str = tag(
+        "leftFrontJoint", default="left_front_joint", doc="Joint of the left front wheel."
+    )
     right_front: str = tag(
-        "rightFrontJoint", default="right_front_joint", doc="Joint of that wheel."
+        "rightFrontJoint", default="right_front_joint", doc="Joint of the right front wheel."
     )
-    left_rear: str = tag("leftRearJoint", default="left_rear_joint", doc="Joint of that wheel.")
-    right_rear: str = tag("rightRearJoint", default="right_rear_joint", doc="Joint of that wheel.")
+    left_rear: str = tag(
+        "leftRearJoint", default="left_rear_joint", doc="Joint of the left rear wheel."
+    )
+    right_rear: str = tag(
+        "rightRearJoint", default="right_rear_joint", doc="Joint of the right rear wheel."
+    )
     wheel_separation: float = tag(
-        "wheelSeparation", default=0.4, unit="m", doc="Between left and right."
+        "wheelSeparation", default=0.4, unit="m", doc="Distance between left and right wheels."
     )
-    wheel_diameter: float = tag("wheelDiameter", default=0.15, unit="m", doc="Of all wheels.")
+    wheel_diameter: float = tag(
+        "wheelDiameter", default=0.15, unit="m", doc="Diameter of all wheels."
+    )
     torque: float = tag(
-        "torque", "wheelTorque", default=5.0, unit="N m", doc="The most that each motor gives."
+        "torque", "wheelTorque", default=5.0, unit="N m", doc="Maximum torque of each motor."
     )
-    command_topic: str = tag("commandTopic", "topicName", default="cmd_vel", doc="Twist.")
-    odometry_topic: str = tag("odometryTopic", default="odom", doc="Odometry.")
+    command_topic: str = tag(
+        "commandTopic", "topicName", default="cmd_vel", doc="Topic of the Twist commands."
+    )
+    odometry_topic: str = tag("odometryTopic", default="odom", doc="Topic of the odometry.")
     odometry_frame: str = tag("odometryFrame", default="odom", doc="Frame of the odometry.")
     base_frame: str = tag(
         "robotBaseFrame",
         default="base_footprint",
-        doc="Link whose pose is told; the root link where there is none of that name.",
+        doc="Link whose pose the odometry reports. "
+        "Defaults to the root link if no link has this name.",
     )
-    update_rate: float = tag("updateRate", default=100.0, unit="Hz", doc="Of control and topics.")
-    broadcast_tf: bool = tag("broadcastTF", default=False, doc="Publish odometry's transform.")
-    covariance_x: float = tag("covariance_x", default=1e-4, unit="m²", doc="Of the odometry.")
-    covariance_y: float = tag("covariance_y", default=1e-4, unit="m²", doc="Of the odometry.")
-    covariance_yaw: float = tag("covariance_yaw", default=1e-2, unit="rad²", doc="Of the odometry.")
+    update_rate: float = tag(
+        "updateRate", default=100.0, unit="Hz", doc="Rate of control and of all topics."
+    )
+    broadcast_tf: bool = tag(
+        "broadcastTF", default=False, doc="Publish the transform of the odometry."
+    )
+    covariance_x: float = tag(
+        "covariance_x", default=1e-4, unit="m²", doc="Variance of x in the odometry."
+    )
+    covariance_y: float = tag(
+        "covariance_y", default=1e-4, unit="m²", doc="Variance of y in the odometry."
+    )
+    covariance_yaw: float = tag(
+        "covariance_yaw", default=1e-2, unit="rad²", doc="Variance of yaw in the odometry."
+    )
 
 
 class SkidSteerDrive(WheelDrive):
-    """Drives four wheels by Twist; the odometry is the true pose.
+    """Drives a skid-steered robot with four wheels from Twist commands and publishes odometry.
 
-    Such a robot turns less than it is told: its tyres slide sideways, and lose as much of
-    their turning. Source: gazebo_plugins, gazebo_ros_skid_steer_drive.
+    The robot turns less than commanded, because its tyres slide sideways. The odometry is the true
+    pose. Source: gazebo_plugins, gazebo_ros_skid_steer_drive.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_skid_steer_drive.so",)

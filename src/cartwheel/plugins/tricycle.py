@@ -1,4 +1,4 @@
-"""``libgazebo_ros_tricycle_drive.so``: one wheel that drives and steers, two that roll."""
+"""``libgazebo_ros_tricycle_drive.so``: one driven and steered wheel, two that roll freely."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class TricycleParameters:
         "steeringJoint",
         "steering_joint",
         default="front_steering_joint",
-        doc="Turns the driven wheel's fork.",
+        doc="Joint that steers the driven wheel.",
     )
     wheel_joint: str = tag(
         "actuatedWheelJoint",
@@ -46,70 +46,72 @@ class TricycleParameters:
         "actuated_wheel_diameter",
         default=0.15,
         unit="m",
-        doc="Of the driven wheel.",
+        doc="Diameter of the driven wheel.",
     )
     encoder_diameter: float = tag(
         "encoderWheelDiameter",
         "encoder_wheel_diameter",
         default=0.15,
         unit="m",
-        doc="Of the rolling wheels.",
+        doc="Diameter of the rolling wheels.",
     )
     encoder_separation: float = tag(
         "encoderWheelSeparation",
         "wheel_separation",
         default=0.5,
         unit="m",
-        doc="Between the rolling wheels.",
+        doc="Distance between the rolling wheels.",
     )
     wheel_torque: float | None = tag(
         "wheelTorque",
         "max_wheel_torque",
         default=None,
         unit="N m",
-        doc="The most that each motor gives; 5, and 0.15 in ROS 2's spelling.",
+        doc="Maximum torque of each motor. Defaults to 5, or 0.15 with ROS 2 tags.",
     )
     wheel_acceleration: float = tag(
         "wheelAcceleration",
         "max_wheel_acceleration",
         default=0.0,
         unit="rad/s²",
-        doc="Ramp of the driven wheel's turning; 0 is none.",
+        doc="Maximum acceleration of the driven wheel; 0: no limit.",
     )
     wheel_deceleration: float | None = tag(
         "wheelDeceleration",
         "max_wheel_deceleration",
         default=None,
         unit="rad/s²",
-        doc="The same towards a stand; as wheelAcceleration when missing.",
+        doc="Maximum deceleration of the driven wheel. Defaults to `<wheelAcceleration>`, "
+        "without which it has no effect.",
     )
     wheel_tolerance: float = tag(
         "wheelSpeedTolerance",
         "max_wheel_speed_tolerance",
         default=0.01,
         unit="rad/s",
-        doc="Accepted: the ramp ends exactly.",
+        doc="No effect: the wheel reaches the commanded speed exactly.",
     )
     steering_speed: float = tag(
         "steeringSpeed",
         "max_steering_speed",
         default=0.0,
         unit="rad/s",
-        doc="Of the fork; 0 is at once.",
+        doc="Maximum steering rate; 0: no limit.",
     )
     steering_tolerance: float = tag(
         "steeringAngleTolerance",
         "max_steering_angle_tolerance",
         default=0.01,
         unit="rad",
-        doc="Accepted: the angle is exact.",
+        doc="No effect: the steering reaches the commanded angle exactly.",
     )
     command_topic: str = tag(
         "commandTopic",
         default="cmd_vel",
-        doc="Twist: linear.x is the driven wheel's speed, angular.z its steering angle in rad.",
+        doc="Topic of the Twist commands: linear.x is the speed of the driven wheel in m/s, "
+        "angular.z its steering angle in rad.",
     )
-    odometry_topic: str = tag("odometryTopic", default="odom", doc="Odometry.")
+    odometry_topic: str = tag("odometryTopic", default="odom", doc="Topic of the odometry.")
     odometry_frame: str = tag(
         "odometryFrame", "odometry_frame", default="odom", doc="Frame of the odometry."
     )
@@ -117,45 +119,50 @@ class TricycleParameters:
         "robotBaseFrame",
         "robot_base_frame",
         default="base_link",
-        doc="Link whose pose is told; the root link where there is none of that name.",
+        doc="Link whose pose the odometry reports. "
+        "Defaults to the root link if no link has this name.",
     )
     update_rate: float = tag(
-        "updateRate", "update_rate", default=100.0, unit="Hz", doc="Of control and topics."
+        "updateRate",
+        "update_rate",
+        default=100.0,
+        unit="Hz",
+        doc="Rate of control and of all topics.",
     )
     source: Literal["world", "encoder", "0", "1"] = tag(
         "odometrySource",
         "odometry_source",
         default="world",
-        doc="world or 1: the true pose; encoder or 0: what the rolling wheels' turning gives.",
+        doc="world or 1: the true pose; encoder or 0: dead reckoning from the rolling wheels.",
     )
     publish_odom: bool | None = tag(
         "publish_odom",
         default=None,
-        doc="Publish odometry and its transform; true, and false in ROS 2's spelling.",
+        doc="Publish the odometry and its transform. Defaults to true, or false with ROS 2 tags.",
     )
     publish_wheel_tf: bool = tag(
         "publishWheelTF",
         "publish_wheel_tf",
         default=False,
-        doc="Publish the joints' transforms.",
+        doc="Publish the transforms of the joints.",
     )
     publish_joint_state: bool = tag(
         "publishWheelJointState",
         "publish_wheel_joint_state",
         default=False,
-        doc="Publish the joints on joint_states.",
+        doc="Publish the joint states on `joint_states`.",
     )
 
 
 _ROS2 = {"ros"} | {name for name in tags_of(TricycleParameters) if name.islower()}
-"""What is written for ROS 2's plugin alone: its tags have no capitals, and ROS 1's have."""
+"""Tags of ROS 2's plugin: they have no capital letters, whereas ROS 1's have."""
 
 
 class TricycleDrive(SteeredDrive):
-    """Drives and steers one wheel by Twist, and tells where that took the robot.
+    """Drives and steers one wheel from Twist commands and publishes odometry.
 
-    In ROS 1's spelling, in a model of a world, its topics are under the model's name where no
-    ``<robotNamespace>`` is stated. Source: gazebo_plugins, gazebo_ros_tricycle_drive.
+    With ROS 1 tags, the topics of a model in a world are below the model's name unless
+    ``<robotNamespace>`` is set. Source: gazebo_plugins, gazebo_ros_tricycle_drive.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_tricycle_drive.so",)
@@ -166,12 +173,12 @@ class TricycleDrive(SteeredDrive):
     def configure(self) -> None:
         config: TricycleParameters = self.config
         origin, part = self.tag.origin, self.part
-        # ROS 2's plugin of the same name publishes only what it is told to, and is weaker; its
-        # topics are under no model's name.
+        # ROS 2's plugin of the same name publishes only what its tags enable, has less torque,
+        # and does not put its topics below the model's name.
         ros2 = any(child.tag in _ROS2 for child in self.tag.element.children)
         if not ros2:
             self.under_model()
-        told = not ros2 if config.publish_odom is None else config.publish_odom
+        publishes = not ros2 if config.publish_odom is None else config.publish_odom
         torque = config.wheel_torque
         if torque is None:
             torque = 0.15 if ros2 else 5.0
@@ -183,14 +190,14 @@ class TricycleDrive(SteeredDrive):
         )
         names = (config.steering_joint, config.wheel_joint, config.left_joint, config.right_joint)
         joints = [part.joint(name, origin=origin) for name in names]
-        # Gazebo takes the difference the other way round, and its odometry turns mirrored.
+        # Gazebo subtracts in the opposite order, so its odometry is mirrored.
         self._reckoning = AxleReckoning(
             joints[2],
             joints[3],
             radius=config.encoder_diameter / 2,
             separation=config.encoder_separation,
         )
-        # Gazebo sets the angle at once where no speed is given: nothing limits its torque.
+        # Without a steering speed, Gazebo sets the angle at once, with unlimited torque.
         strength = torque if config.steering_speed > 0 else None
         self._fork = part.servo(config.steering_joint, max_effort=strength, origin=origin)
         self._motor = part.velocity_motor(config.wheel_joint, max_effort=torque, origin=origin)
@@ -199,11 +206,11 @@ class TricycleDrive(SteeredDrive):
         self.odometry = self.keep(
             Odometry(
                 self,
-                topic=config.odometry_topic if told else None,
+                topic=config.odometry_topic if publishes else None,
                 frame=config.odometry_frame,
                 base=config.base_frame,
                 rate=rate,
-                transform=told,
+                transform=publishes,
                 wheels=WheelTransforms(self, joints) if config.publish_wheel_tf else None,
                 pose_covariance=planar_covariance(1e-5, 1e-5, 1e-3),
             )

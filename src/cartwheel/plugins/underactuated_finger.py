@@ -1,4 +1,4 @@
-"""``libgazebo_underactuated_finger.so``: a tendon that bends a finger's joints."""
+"""``libgazebo_underactuated_finger.so``: a tendon that bends the joints of a finger."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ _LEAST_SCALE = 1 / FARTHEST
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class UnderactuatedFingerParameters:
-    actuated_joint: str = tag("actuatedJoint", doc="Joint of the motor that pulls.")
+    actuated_joint: str = tag("actuatedJoint", doc="Joint of the motor that pulls the tendon.")
     joints: tuple[str, ...] = tag(
         "virtualJoint",
         default=(),
-        doc="`<name>` of a joint of the finger, and `<scale_factor>`: the motor's angle "
-        "divided by it is its share. `<pid_gains>` have no effect: a servo bends it.",
+        doc="A joint of the finger, by `<name>`. Its target is the motor's angle divided by "
+        "`<scale_factor>`. `<pid_gains>` has no effect: a servo bends the joint.",
     )
 
 
@@ -35,9 +35,9 @@ class _Phalanx:
 
 
 class UnderactuatedFinger(Plugin[UnderactuatedFingerParameters]):
-    """Bends each joint of a finger by its share of a motor's angle, within its limits.
+    """Bends the joints of a finger in proportion to a motor's angle, within their limits.
 
-    A joint that meets something gives it no more than its effort limit; the others go on. Source:
+    A joint that meets an obstacle exerts at most its effort limit; the others continue. Source:
     pal_gazebo_plugins, gazebo_underactuated_finger.
     """
 
@@ -56,17 +56,17 @@ class UnderactuatedFinger(Plugin[UnderactuatedFingerParameters]):
         self.part.schedule(0, before=self._bend)
 
     def _phalanx(self, element: Element) -> _Phalanx:
-        found = {}
+        children = {}
         for each in ("name", "scale_factor"):
             child = element.find(each)
             if child is None:
                 raise missing("virtualJoint", each, element.origin)
-            found[each] = child
-        scale = number(found["scale_factor"], least=-FARTHEST, most=FARTHEST)
+            children[each] = child
+        scale = number(children["scale_factor"], least=-FARTHEST, most=FARTHEST)
         if abs(scale) < _LEAST_SCALE:
             wanted = f"at least {_LEAST_SCALE:g} or at most {-_LEAST_SCALE:g}"
-            raise invalid("scale_factor", scale, wanted, found["scale_factor"].origin)
-        name = found["name"].text.strip()
+            raise invalid("scale_factor", scale, wanted, children["scale_factor"].origin)
+        name = children["name"].text.strip()
         servo = self.part.servo(name, max_effort=None, origin=element.origin)
         joint = self.part.description.joint(name)
         low, high = (joint.axis.lower, joint.axis.upper) if joint is not None else (None, None)

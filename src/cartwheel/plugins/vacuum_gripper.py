@@ -1,4 +1,4 @@
-"""``libgazebo_ros_vacuum_gripper.so``: a cup that holds what it is put on."""
+"""``libgazebo_ros_vacuum_gripper.so``: a suction cup."""
 
 from __future__ import annotations
 
@@ -12,25 +12,27 @@ from cartwheel.plugins.parameters import tag
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class VacuumGripperParameters:
-    link: str = tag("bodyName", "link_name", doc="Link of the cup.")
+    link: str = tag("bodyName", "link_name", doc="Link of the suction cup.")
     topic: str = tag(
-        "topicName", default="grasping", doc="Bool: whether it holds something. Must be in ROS 1."
+        "topicName",
+        default="grasping",
+        doc="Topic of a Bool: whether an object is held. ROS 1's plugin requires this tag.",
     )
     reach: float = tag(
         "max_distance",
         default=0.05,
         unit="m",
-        doc="From the cup's frame to the frame of what it takes.",
+        doc="Maximum distance between the frames of the cup and of the link that it grips.",
     )
-    fixed: tuple[str, ...] = tag("fixed", default=(), doc="Models or links that it does not take.")
+    fixed: tuple[str, ...] = tag("fixed", default=(), doc="Models or links that are never gripped.")
 
 
 class VacuumGripper(Plugin[VacuumGripperParameters]):
-    """Holds the nearest link of another model within its reach while it is on.
+    """Holds the nearest link of another model within reach while switched on.
 
-    It holds it as it is at that moment, as a fixed joint would; in Gazebo it is drawn to the cup.
-    `on` and `off` switch it, and in the spelling of ROS 2, where the link is `<link_name>`, the one
-    service `switch`. Source: gazebo_plugins, gazebo_ros_vacuum_gripper.
+    The held link keeps its pose relative to the cup, as with a fixed joint. (In Gazebo it is pulled
+    to the cup.) The services `on` and `off` switch the gripper; with ROS 2's `<link_name>`, the
+    service `switch` does. Source: gazebo_plugins, gazebo_ros_vacuum_gripper.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_vacuum_gripper.so",)
@@ -52,7 +54,7 @@ class VacuumGripper(Plugin[VacuumGripperParameters]):
             self.serve("on", "std_srvs/srv/Empty", lambda _: self._switched(on=True))
             self.serve("off", "std_srvs/srv/Empty", lambda _: self._switched(on=False))
         part.schedule(0, before=self._seek, active=lambda: self._on and self._grip.held is None)
-        part.schedule(0, after=self._tell, active=lambda: self._publisher.wanted)
+        part.schedule(0, after=self._publish, active=lambda: self._publisher.wanted)
 
     def reset(self) -> None:
         self._switch(on=False)
@@ -84,5 +86,5 @@ class VacuumGripper(Plugin[VacuumGripperParameters]):
                 self._grip.hold((self.part.name, self._link.name), place)
                 return
 
-    def _tell(self) -> None:
+    def _publish(self) -> None:
         self._publisher.publish(self._Bool(self._grip.held is not None))

@@ -1,4 +1,4 @@
-"""``libgazebo_ros_velodyne_laser.so`` and its GPU kind: lidars with many rings."""
+"""``libgazebo_ros_velodyne_laser.so`` and its GPU variant: lidars with many rings."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _POINT = np.dtype(
         ("time", "<f4"),
     ]
 )
-"""As the driver of the real one packs it: 22 bytes."""
+"""Layout of the points of the velodyne driver: 22 bytes."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -35,37 +35,47 @@ class VelodyneParameters:
         "topicName",
         "topic_name",
         default="/points",
-        doc="PointCloud2; a `<remapping>` of `~/out` counts before it.",
+        doc="Topic of the PointCloud2 messages. A `<remapping>` of `~/out` has priority.",
     )
     frame: str = tag(
-        "frameName", "frame_name", default="", doc="Frame of the messages; the link's when empty."
+        "frameName",
+        "frame_name",
+        default="",
+        doc="Frame of the messages. Defaults to the sensor's link.",
     )
     organize: bool = tag(
-        "organize_cloud", default=False, doc="One row a column of rays, NaN where nothing was hit."
+        "organize_cloud",
+        default=False,
+        doc="Publish an organised cloud: a row per column of rays, NaN for missing points.",
     )
-    min_range: float = tag("min_range", default=0.0, unit="m", doc="Nearer points are left out.")
+    min_range: float = tag("min_range", default=0.0, unit="m", doc="Nearer points are omitted.")
     max_range: float = tag(
-        "max_range", default=math.inf, unit="m", doc="Farther points are left out."
+        "max_range", default=math.inf, unit="m", doc="Farther points are omitted."
     )
     min_intensity: float | None = tag(
-        "min_intensity", default=None, doc="Points of less are left out."
+        "min_intensity", default=None, doc="Points with a lower intensity are omitted."
     )
     noise: float = tag(
         "gaussianNoise",
         "gaussian_noise",
         default=0.0,
         unit="m",
-        doc="Standard deviation of ranges.",
+        doc="Standard deviation of the noise on ranges, in addition to the sensor's.",
     )
     update_rate: float = tag(
-        "updateRate", "update_rate", default=0.0, unit="Hz", doc="Accepted: the sensor's counts."
+        "updateRate",
+        "update_rate",
+        default=0.0,
+        unit="Hz",
+        doc="No effect: the sensor's `<update_rate>` applies.",
     )
 
 
 class VelodyneLaser(Plugin[VelodyneParameters]):
-    """Publishes the points that a ray sensor hits, with the ring of each, the lowest being 0.
+    """Publishes the points that a ray sensor hits as a PointCloud2 with intensity and ring.
 
-    The points come column by column, and all of one moment: their ``time`` is 0.
+    Ring 0 is the lowest. Points are ordered column by column. All are measured at the same time, so
+    their ``time`` is 0.
 
     Source: velodyne_simulator, GazeboRosVelodyneLaser.
     """

@@ -1,4 +1,4 @@
-"""``libwarthog_suspension_plugin.so``: what bears the sides of Clearpath's Warthog."""
+"""``libwarthog_suspension_plugin.so``: the suspension of Clearpath's Warthog."""
 
 from __future__ import annotations
 
@@ -11,16 +11,18 @@ from cartwheel.plugins.parameters import tag
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class WarthogSuspensionParameters:
-    stiffness: float = tag("suspension_k", unit="N m/rad", doc="Towards 0, of each of the two.")
-    damping: float = tag("suspension_b", unit="N m s/rad", doc="Of each of the two.")
-    left: str = tag("left_joint", default="left_diff_unit_joint", doc="Joint of that side.")
-    right: str = tag("right_joint", default="right_diff_unit_joint", doc="Joint of that side.")
+    stiffness: float = tag(
+        "suspension_k", unit="N m/rad", doc="Stiffness of the spring of each joint, at rest at 0."
+    )
+    damping: float = tag("suspension_b", unit="N m s/rad", doc="Damping of each joint.")
+    left: str = tag("left_joint", default="left_diff_unit_joint", doc="Joint of the left side.")
+    right: str = tag("right_joint", default="right_diff_unit_joint", doc="Joint of the right side.")
 
 
 class WarthogSuspension(Plugin[WarthogSuspensionParameters]):
-    """Springs and dampers at the joints of both sides.
+    """Applies a spring and a damper to the suspension joint of each side.
 
-    Source: warthog_gazebo, warthog_suspension_plugin, which knows no other joints.
+    Source: warthog_gazebo, warthog_suspension_plugin, which supports only the default joints.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libwarthog_suspension_plugin.so",)

@@ -1,4 +1,4 @@
-"""Drives whose wheels stand in pairs, left and right, and turn by their difference."""
+"""Drives with pairs of left and right wheels, which turn by their difference in speed."""
 
 from __future__ import annotations
 
@@ -20,23 +20,28 @@ class WheelPair:
     """Two wheels of one axle."""
 
     left: str
-    """Joint."""
+    """Joint of the left wheel."""
     right: str
-    """Joint."""
+    """Joint of the right wheel."""
     separation: float
-    """m, between them."""
+    """Distance between the wheels, m."""
     diameter: float
-    """m."""
+    """Diameter of both wheels, m."""
 
 
 class WheelDrive(Drive):
-    """Drives pairs of wheels by Twist, and tells where that took the robot.
+    """Base of plugins that drive pairs of wheels from Twist commands and publish odometry.
 
-    A subclass's `configure` calls `_take_wheels`, makes what tells, and calls `_run_wheels`.
+    In `configure`, a subclass calls `_take_wheels`, creates its publishers and calls `_run_wheels`.
     """
 
     def _take_wheels(self, pairs: Sequence[WheelPair], *, torque: float | None) -> None:
-        """Takes joints and motors; `joints` is left, right, pair by pair."""
+        """Obtains joints and motors. `joints` is left, right, pair by pair.
+
+        Raises:
+            PluginError: A separation or diameter is not allowed.
+            UnknownNameError: A joint does not exist.
+        """
         origin = self.tag.origin
         for pair in pairs:
             for value, what in (
@@ -64,16 +69,16 @@ class WheelDrive(Drive):
             radius=self._radii[0],
             separation=pairs[0].separation,
         )
-        self._tell_sides(pairs)
+        self._check_sides(pairs)
 
-    def _tell_sides(self, pairs: Sequence[WheelPair]) -> None:
-        """Says where a left wheel stands on the right: the robot turns against its commands."""
+    def _check_sides(self, pairs: Sequence[WheelPair]) -> None:
+        """Reports a left wheel on the right side, since the robot then turns the wrong way."""
         description = self.part.description
         poses = link_poses(description, {})
         front = poses[description.canonical_link].inverse()
         for pair in pairs:
-            made = [description.joint(name) for name in (pair.left, pair.right)]
-            left, right = ((front @ poses[joint.child]).y for joint in made if joint is not None)
+            joints = [description.joint(name) for name in (pair.left, pair.right)]
+            left, right = ((front @ poses[joint.child]).y for joint in joints if joint is not None)
             if left < right:
                 self.warn(
                     robot.WHEELS_SWAPPED,
@@ -95,16 +100,16 @@ class WheelDrive(Drive):
         acceleration: float = 0.0,
         reverse: bool = False,
     ) -> None:
-        """Subscribes and schedules; see `Drive`.
+        """Subscribes to commands and schedules control and publishing; see `Drive`.
 
         Args:
-            command_topic: Twist.
-            base: Link whose true pose is told where the odometry is not `encoded`.
-            encoded: The odometry is what the first pair's turning gives.
-            control_rate: Hz.
-            rate: Hz, of what is told.
-            acceleration: m/s², of the wheels' rims; 0 is at once.
-            reverse: Turn the other way.
+            command_topic: Topic of the Twist commands.
+            base: Link whose true pose is published if the odometry is not `encoded`.
+            encoded: Odometry is dead reckoning from the first pair of wheels.
+            control_rate: Rate of control, Hz.
+            rate: Publish rate, Hz.
+            acceleration: Maximum acceleration of the rims, m/s²; 0: no limit.
+            reverse: Invert the turning direction.
         """
         self.check_not_negative("update_rate", "rate", "wheel_acceleration", "acceleration")
         self._encoded = encoded
@@ -121,14 +126,14 @@ class WheelDrive(Drive):
             motor.target = 0.0
 
     def _aim(self, forward: float, turn: float) -> None:
-        """Sets the rims' speeds: those of a body that goes at m/s and turns at rad/s."""
+        """Sets the target rim speeds for a forward velocity in m/s and a yaw rate in rad/s."""
         turn = -turn if self._reverse else turn
         self._target = [
             forward + sign * turn * pair.separation / 2 for pair in self._pairs for sign in (-1, 1)
         ]
 
     def _turn_wheels(self, seconds: float) -> None:
-        """Ramps the rim speeds towards the command; integrates the encoders."""
+        """Ramps the rim speeds toward the command and integrates the encoders."""
         ramp = self._acceleration
         limit = ramp * seconds
         for index, motor in enumerate(self._motors):

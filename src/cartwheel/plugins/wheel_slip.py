@@ -28,7 +28,7 @@ _PARAMETERS = tuple(
         minimum=-1.0,
         maximum=20.0,
         level=0,
-        description=f"Slip for friction of as much as the normal force, {sense}",
+        description=f"Slip ratio at a friction force equal to the normal force, {sense}",
     )
     for sense in _SENSES
 )
@@ -39,17 +39,21 @@ class WheelSlipParameters:
     wheels: tuple[str, ...] = tag(
         "wheel",
         default=(),
-        doc="With the attribute `link_name`: `<slip_compliance_lateral>`, "
-        "`<slip_compliance_longitudinal>`, `<wheel_normal_force>` in N, `<wheel_radius>` in m.",
+        doc="A wheel, by the attribute `link_name`, with `<slip_compliance_lateral>`, "
+        "`<slip_compliance_longitudinal>`, `<wheel_normal_force>` in N and `<wheel_radius>` in m "
+        "(default: the radius of its cylinder or sphere).",
     )
     tolerance: float = tag(
         "wheel_spin_tolerance",
         default=1e-3,
         unit="m/s",
-        doc="A rim that turns slower slips by nothing in wheel_slip.",
+        doc="Wheels with a lower rim speed publish a slip of 0.",
     )
     rate: float = tag(
-        "publisher_update_rate", default=100.0, unit="Hz", doc="Of wheel_slip; 0 is every step."
+        "publisher_update_rate",
+        default=100.0,
+        unit="Hz",
+        doc="Publish rate of `wheel_slip`; 0 publishes at every step.",
     )
 
 
@@ -59,17 +63,20 @@ class _Wheel:
     joint: JointHandle
     slip: SlipHandle
     normal: float
-    """N."""
+    """Normal force, N."""
     compliance: dict[str, float]
-    """Lateral and longitudinal: slip by rim speed, for friction by normal force."""
+    """Slip ratio at a friction force equal to the normal force, lateral and longitudinal."""
 
 
 class WheelSlip(Plugin[WheelSlipParameters]):
-    """Lets wheels slip: speed of slip by speed of rim is compliance by friction by normal force.
+    """Makes wheels slip in proportion to the friction force.
 
-    A wheel that stands does not slip. Nothing slips faster than friction allows. In the spelling
-    of ROS 2 ``wheel_slip`` tells the slip of each wheel: lateral as an angle, longitudinal as a
-    share of its speed. In that of ROS 1 the compliances of all wheels can be reconfigured under
+    The slip speed is: rim speed * slip compliance * friction force / normal force. A wheel that
+    does not turn does not slip. The coefficient of friction limits the force, and thereby the slip.
+
+    With ``<ros>`` (ROS 2), `libgazebo_ros_wheel_slip.so` publishes the slip of each wheel on
+    ``wheel_slip``: lateral as an angle in rad, longitudinal as a fraction of the rim speed. Without
+    it (ROS 1), the compliances of all wheels can be set by dynamic_reconfigure under
     ``/<model>/<robotNamespace>``, by default ``/<model>/wheel_slip``.
 
     Source: Gazebo, WheelSlipPlugin; gazebo_plugins, gazebo_ros_wheel_slip; gz-sim, WheelSlip.
@@ -89,14 +96,16 @@ class WheelSlip(Plugin[WheelSlipParameters]):
         if not self._wheels:
             self.warn(devices.PLUGIN_IDLE, "the plugin has no <wheel>, so nothing slips")
             return
-        self.part.schedule(0, before=self._give)
+        self.part.schedule(0, before=self._apply)
         if "gazebo_ros_wheel_slip" not in self.tag.filename:
             return
         if element.find("ros") is not None:
             self._WheelSlip = message_class("gazebo_msgs/msg/WheelSlip")
             rate = config.rate or None
             self._publisher = self.advertise("wheel_slip", "gazebo_msgs/msg/WheelSlip", rate=rate)
-            self.part.schedule(config.rate, after=self._tell, active=lambda: self._publisher.wanted)
+            self.part.schedule(
+                config.rate, after=self._publish, active=lambda: self._publisher.wanted
+            )
         else:
             plain = element.find("robotNamespace")
             name = (plain.text.strip().strip("/") if plain is not None else "") or "wheel_slip"
@@ -123,7 +132,7 @@ class WheelSlip(Plugin[WheelSlipParameters]):
             )
         slip = self.part.slip(name, radius=radius, origin=origin)
         joint = next(each for each in self.part.description.joints if each.child == name)
-        found = {}
+        compliance = {}
         for sense in _SENSES:
             value = _number(element, f"slip_compliance_{sense}")
             if value < 0:
@@ -133,17 +142,17 @@ class WheelSlip(Plugin[WheelSlipParameters]):
                     at=origin,
                     values={"parameter": f"slip_compliance_{sense}", "value": value},
                 )
-            found[sense] = max(value, 0.0)
+            compliance[sense] = max(value, 0.0)
         return _Wheel(
             link=name,
             joint=self.part.joint(joint.name, origin=origin),
             slip=slip,
             normal=normal,
-            compliance=found,
+            compliance=compliance,
         )
 
     def _radius(self, name: str) -> float:
-        """Of the wheel's own shape; 0 where it has none that is round."""
+        """Radius of the wheel's cylinder or sphere, m; 0 if it has neither."""
         link = self.part.description.link(name)
         shapes = [each.shape for each in link.collisions] if link is not None else []
         round_ones = [shape for shape in shapes if isinstance(shape, Cylinder | Sphere)]
@@ -156,12 +165,12 @@ class WheelSlip(Plugin[WheelSlipParameters]):
                 for wheel in self._wheels:
                     wheel.compliance[sense] = value
 
-    def _give(self) -> None:
+    def _apply(self) -> None:
         for wheel in self._wheels:
             speed = abs(wheel.joint.velocity) * wheel.slip.radius / wheel.normal
             wheel.slip.give(*(speed * wheel.compliance[sense] for sense in _SENSES))
 
-    def _tell(self) -> None:
+    def _publish(self) -> None:
         names, lateral, longitudinal = [], [], []
         for wheel in self._wheels:
             rim = wheel.joint.velocity * wheel.slip.radius
@@ -174,6 +183,6 @@ class WheelSlip(Plugin[WheelSlipParameters]):
 
 
 def _number(element: Element, name: str) -> float:
-    """A child's number; 0 where there is none."""
+    """The number in a child element; 0 if it does not exist."""
     child = element.find(name)
     return number(child) if child is not None else 0.0

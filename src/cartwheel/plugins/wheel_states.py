@@ -1,4 +1,4 @@
-"""What a drive tells of its wheels: transforms and joint states."""
+"""Transforms and joint states of a drive's wheels."""
 
 from __future__ import annotations
 
@@ -17,17 +17,21 @@ _NOTHING = np.zeros(0)
 
 
 class WheelTransforms:
-    """Transforms of joints' child links in their parents, where the joints are turned to.
+    """Current transforms from joints' parent links to their child links.
 
     Args:
-        plugin: Whose frames count.
-        joints: In the order of the transforms.
+        plugin: Provides the frame prefix.
+        joints: The joints, in the order of the transforms.
     """
 
     def __init__(self, plugin: Plugin[Any], joints: Sequence[JointHandle]) -> None:
-        made = {joint.name: joint for joint in plugin.part.description.joints}
+        described = {joint.name: joint for joint in plugin.part.description.joints}
         self._wheels = [
-            (handle, plugin.frame(made[handle.name].parent), plugin.frame(made[handle.name].child))
+            (
+                handle,
+                plugin.frame(described[handle.name].parent),
+                plugin.frame(described[handle.name].child),
+            )
             for handle in joints
         ]
         self._Vector3 = message_class("geometry_msgs/msg/Vector3")
@@ -36,14 +40,14 @@ class WheelTransforms:
         self._TransformStamped = message_class("geometry_msgs/msg/TransformStamped")
 
     def at(self, time_ns: int) -> list[Any]:
-        """``TransformStamped`` of the present state."""
+        """The current ``TransformStamped`` messages."""
         Vector3, Quaternion, Transform = self._Vector3, self._Quaternion, self._Transform
         TransformStamped = self._TransformStamped
         sent, of, head = [], None, None
         for joint, parent, child in self._wheels:
             if parent != of:
-                # robot_state_publisher makes transforms of the same wheels, stamped as our
-                # joint states: a nanosecond apart, neither is repeated data to tf.
+                # robot_state_publisher publishes transforms of the same wheels with the stamp of
+                # our joint states. A nanosecond apart, tf does not warn about repeated data.
                 of, head = parent, header(time_ns + 1, parent)
             where, turned = joint.child_place()
             moved = Transform(Vector3(*where), Quaternion(*turned))
@@ -52,16 +56,16 @@ class WheelTransforms:
 
 
 class JointStates:
-    """Publishes ``sensor_msgs/JointState`` of joints.
+    """Publishes ``sensor_msgs/JointState`` messages.
 
     Args:
-        plugin: Whose namespace counts.
-        joints: In the order of the message.
-        topic: Where.
-        rate: Hz, for listings.
-        velocities: Whether they are told.
-        efforts: Whether they are told.
-        frame: Of the messages.
+        plugin: Provides namespace and frame prefix.
+        joints: The joints, in the order of the message.
+        topic: The topic.
+        rate: Publish rate for listings, Hz.
+        velocities: Include velocities.
+        efforts: Include efforts.
+        frame: Frame of the messages.
     """
 
     def __init__(
@@ -83,11 +87,11 @@ class JointStates:
         self._publisher = plugin.advertise(topic, "sensor_msgs/msg/JointState", rate=rate)
 
     def wanted(self) -> bool:
-        """Whether anybody reads it."""
+        """Whether the topic has subscribers."""
         return self._publisher.wanted
 
     def publish(self, time_ns: int) -> None:
-        """Publishes the present state."""
+        """Publishes the current state."""
         joints, JointState = self._joints, self._JointState
         velocities = joints.velocities() if self._velocities else _NOTHING
         efforts = joints.efforts() if self._efforts else _NOTHING

@@ -1,4 +1,4 @@
-"""The ``<plugin>`` tags of worlds: those that act, what Cartwheel does anyway, and the rest."""
+"""The ``<plugin>`` tags of worlds: supported, built-in and unsupported plugins."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ BUILT_IN = {
     "gazebo_ros_api_plugin",
     "gazebo_ros_paths_plugin",
 }
-"""Physics, spawning, time and sensors need no plugin here, wherever one is named."""
+"""Plugins for physics, spawning, time and sensors, which Cartwheel always provides."""
 
 
 def left_out(tag: PluginTag, error: CartwheelError) -> Diagnostic:
-    """The diagnostic for a plugin or sensor that cannot be made."""
+    """The diagnostic for a plugin or sensor that cannot be created."""
     return running.PLUGIN_LEFT_OUT.diagnostic(
         f"{_title(tag)} is left out: {error.message}",
         origin=error.origin or tag.origin,
@@ -45,7 +45,7 @@ def left_out(tag: PluginTag, error: CartwheelError) -> Diagnostic:
 
 
 def failed(tag: PluginTag, error: Exception) -> Diagnostic:
-    """The diagnostic for a plugin or sensor whose code raises an exception while it is made."""
+    """The diagnostic for a plugin or sensor that raises an unexpected exception when created."""
     return fault(
         f"{_title(tag)} failed and is left out",
         error,
@@ -60,15 +60,15 @@ def _title(tag: PluginTag) -> str:
 
 
 def attach_world(part: Part, graph: Graph) -> list[Behaviour]:
-    """Makes the plugins of the world itself; one that does nothing here is reported.
+    """Creates the plugins of the world and reports those without effect.
 
-    A plugin that cannot be made costs the world that plugin, which is reported.
+    A plugin that cannot be created is left out, with a report.
 
     Args:
-        part: The world's own.
-        graph: Where they publish.
+        part: The world's part of the simulation.
+        graph: Where the plugins publish.
     """
-    made: list[Behaviour] = []
+    behaviours: list[Behaviour] = []
     for tag in part.world.plugins:
         name = short_name(tag.filename)
         if name in BUILT_IN:
@@ -94,9 +94,9 @@ def attach_world(part: Part, graph: Graph) -> list[Behaviour]:
             )
         else:
             try:
-                made.append(part.made(functools.partial(plugin, part, graph, tag, None)))
+                behaviours.append(part.made(functools.partial(plugin, part, graph, tag, None)))
             except CartwheelError as error:
                 part.report(left_out(tag, error))
             except Exception as error:  # noqa: BLE001 - a plugin's own
                 part.report(failed(tag, error))
-    return made
+    return behaviours
