@@ -34,7 +34,7 @@ KNOWN = {
 
 
 def section(kind):
-    text = PAGE.split(f"## Of a {kind}" if kind != "robot" else "## Of the robot")[1]
+    text = PAGE.split(f"## {kind.capitalize()} tags")[1]
     return ROW.findall(text.split("\n## ")[0])
 
 
