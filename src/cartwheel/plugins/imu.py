@@ -31,7 +31,7 @@ class ImuParameters:
         default="imu_service",
         doc="Service of type Empty. Calls succeed and have no effect.",
     )
-    frame: str = tag("frameName", default="", doc="Frame of the messages. Defaults to the link.")
+    frame: str = tag("frameName", default="", doc="Frame ID of the messages. Defaults to the link.")
     noise: float = tag(
         "gaussianNoise",
         default=0.0,
@@ -57,7 +57,7 @@ class ImuParameters:
         "update_rate",
         default=0.0,
         unit="Hz",
-        doc="Publish rate; 0 publishes at every step.",
+        doc="Publish rate. 0: every step.",
     )
 
 
@@ -112,7 +112,7 @@ class ImuBase(Plugin[Any]):
     def _blurred(
         self, rate: Sequence[float], acceleration: Sequence[float]
     ) -> tuple[Sequence[float], Sequence[float]]:
-        """Both with the errors that a subclass adds. Override to add some."""
+        """Adds the errors of a subclass to angular velocity and acceleration."""
         return rate, acceleration
 
     def _measure(self) -> None:
@@ -171,7 +171,7 @@ class ImuSensorParameters:
         "frameName",
         "frame_name",
         default="",
-        doc="Frame of the messages. Defaults to the sensor's link.",
+        doc="Frame ID of the messages. Defaults to the sensor's link.",
     )
     noise: float = tag(
         "gaussianNoise",
@@ -198,7 +198,7 @@ class ImuSensorParameters:
         "updateRate",
         default=0.0,
         unit="Hz",
-        doc="Publish rate. The lower of this and the sensor's rate applies; 0: the sensor's rate.",
+        doc="Publish rate. The lower of this and the sensor's rate applies. 0: the sensor's rate.",
     )
     initial_orientation: bool = tag(
         "initialOrientationAsReference",
@@ -252,7 +252,8 @@ class GzImuParameters:
     topic: str = tag(
         "topic",
         default="",
-        doc="Topic of the Imu messages. Defaults to `/world/<world>/…/sensor/<sensor>/imu`.",
+        doc="Topic of the Imu messages. Default: "
+        "`/world/<world>/model/<model>/link/<link>/sensor/<sensor>/imu`.",
     )
     frame: str = frame_tag()
 

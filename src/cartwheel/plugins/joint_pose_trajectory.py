@@ -30,7 +30,7 @@ class JointPoseTrajectoryParameters:
         "update_rate",
         default=0.0,
         unit="Hz",
-        doc="Rate at which due points are applied; 0 applies them at every step.",
+        doc="Rate at which due points are applied. 0: every step.",
     )
 
 

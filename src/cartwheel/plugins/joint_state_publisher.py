@@ -46,7 +46,7 @@ class JointStatePublisherParameters:
         "update_rate",
         default=100.0,
         unit="Hz",
-        doc="Publish rate; 0 publishes at every step.",
+        doc="Publish rate. 0: every step.",
     )
 
 
@@ -54,7 +54,8 @@ class JointStatePublisher(Plugin[JointStatePublisherParameters]):
     """Publishes positions and velocities of joints on ``joint_states``.
 
     In a model of a world, or with an empty ``<robotNamespace>``, the topic is
-    ``/<model>/joint_states``, as in Gazebo Classic. With ROS 2 tags it is ``/joint_states``.
+    ``/<model>/joint_states``, as in Gazebo Classic. A tag written for
+    ROS 2 (with ``<ros>``, ``<joint_name>`` or ``<update_rate>``) publishes on ``/joint_states``.
     Source: gazebo_plugins, gazebo_ros_joint_state_publisher.
     """
 
@@ -88,7 +89,7 @@ class GzJointStatePublisherParameters:
         "topic",
         default="",
         doc="Topic of the JointState messages. "
-        "Defaults to `/world/<world>/model/<model>/joint_state`.",
+        "Default: `/world/<world>/model/<model>/joint_state`.",
     )
     names: tuple[str, ...] = tag(
         "joint_name",
@@ -96,7 +97,7 @@ class GzJointStatePublisherParameters:
         doc="Joint, as a repeated tag for several. Defaults to all movable joints.",
     )
     update_rate: float = tag(
-        "update_rate", default=0.0, unit="Hz", doc="Publish rate; 0 publishes at every step."
+        "update_rate", default=0.0, unit="Hz", doc="Publish rate. 0: every step."
     )
 
 

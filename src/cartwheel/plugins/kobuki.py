@@ -71,7 +71,7 @@ class KobukiParameters:
         "update_rate",
         default=0.0,
         unit="Hz",
-        doc="Publish rate of all topics; 0 publishes at every step.",
+        doc="Publish rate of all topics. 0: every step.",
     )
 
 

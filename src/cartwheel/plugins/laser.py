@@ -20,7 +20,7 @@ class LaserParameters:
         "frameName",
         "frame_name",
         default="",
-        doc="Frame of the messages. Defaults to the sensor's link.",
+        doc="Frame ID of the messages. Defaults to the sensor's link.",
     )
     update_rate: float = tag(
         "updateRate",

@@ -24,7 +24,7 @@ class LogicalCameraParameters:
         "topic",
         default="",
         doc="Topic of the LogicalCameraImage messages. "
-        "Defaults to `/world/<world>/…/sensor/<sensor>/logical_camera`.",
+        "Default: `/world/<world>/model/<model>/link/<link>/sensor/<sensor>/logical_camera`.",
     )
     frame: str = frame_tag()
     near: float = tag(

@@ -31,9 +31,9 @@ class HectorMagneticParameters:
         default="magnetic",
         doc="Topic of the Vector3Stamped or MagneticField messages.",
     )
-    frame: str = tag("frameId", default="", doc="Frame of the messages. Defaults to the link.")
+    frame: str = tag("frameId", default="", doc="Frame ID of the messages. Defaults to the link.")
     update_rate: float = tag(
-        "updateRate", default=0.0, unit="Hz", doc="Publish rate; 0 publishes at every step."
+        "updateRate", default=0.0, unit="Hz", doc="Publish rate. 0: every step."
     )
     magnitude: float = tag(
         "magnitude", default=1.0, doc="Magnitude of the field. The messages use the same unit."
@@ -152,7 +152,7 @@ class GzMagnetometerParameters:
         "topic",
         default="",
         doc="Topic of the MagneticField messages. "
-        "Defaults to `/world/<world>/…/sensor/<sensor>/magnetometer`.",
+        "Default: `/world/<world>/model/<model>/link/<link>/sensor/<sensor>/magnetometer`.",
     )
     frame: str = frame_tag()
 

@@ -50,7 +50,7 @@ class MecanumParameters(GzCommonLimits):
         "wheelbase", default=1.0, unit="m", doc="Distance between the front and back axles."
     )
     wheel_separation: float = tag(
-        "wheel_separation", default=1.0, unit="m", doc="Distance between left and right wheels."
+        "wheel_separation", default=1.0, unit="m", doc="Distance between the left and right wheels."
     )
     wheel_radius: float = tag("wheel_radius", default=0.2, unit="m", doc="Radius of all wheels.")
 

@@ -22,13 +22,13 @@ class MultiWheelParameters:
         "rightJoints", default="right_joint", doc="Joints of the right wheels, separated by spaces."
     )
     separation: float = tag(
-        "wheelSeparation", default=0.34, unit="m", doc="Distance between left and right wheels."
+        "wheelSeparation", default=0.34, unit="m", doc="Distance between the left and right wheels."
     )
     diameter: float = tag("wheelDiameter", default=0.15, unit="m", doc="Diameter of all wheels.")
     torque: float = tag("torque", default=5.0, unit="N m", doc="Maximum torque of each motor.")
     command_topic: str = tag("commandTopic", default="cmd_vel", doc="Topic of the Twist commands.")
     odometry_topic: str = tag("odometryTopic", default="odom", doc="Topic of the odometry.")
-    odometry_frame: str = tag("odometryFrame", default="odom", doc="Frame of the odometry.")
+    odometry_frame: str = tag("odometryFrame", default="odom", doc="Frame ID of the odometry.")
     base_frame: str = tag(
         "robotBaseFrame",
         default="base_footprint",
@@ -36,7 +36,10 @@ class MultiWheelParameters:
         "Defaults to the root link if no link has this name.",
     )
     rate: float = tag(
-        "updateRate", default=100.0, unit="Hz", doc="Rate of control and of all topics."
+        "updateRate",
+        default=100.0,
+        unit="Hz",
+        doc="Rate of the control loop and of the topics. 0: every step.",
     )
     publish_tf: bool = tag(
         "publishOdometryTf", default=True, doc="Publish the transform of the odometry."

@@ -66,7 +66,7 @@ class OdometryFrame:
         """
         if self._to_root is None:
             return position, orientation
-        # A product of poses, without creating them: this runs for each message.
+        # The product of two poses, without creating objects: this runs for each message.
         x, y, z = position
         dx, dy, dz = rotate(orientation, self._to_root.position)
         if self._turned:

@@ -67,7 +67,7 @@ class P3DParameters:
         "update_rate",
         default=0.0,
         unit="Hz",
-        doc="Publish rate; 0 publishes at every step.",
+        doc="Publish rate. 0: every step.",
     )
 
 
@@ -183,12 +183,12 @@ class WorldOdometry(P3D):
 @dataclass(frozen=True, kw_only=True, slots=True)
 class OdometryPublisherParameters:
     frame: str = tag(
-        "odom_frame", default="", doc="Reference frame of the pose. Defaults to `<model>/odom`."
+        "odom_frame", default="", doc="Reference frame of the pose. Default: `<model>/odom`."
     )
     base_frame: str = tag(
         "robot_base_frame",
         default="",
-        doc="Frame of the model. Defaults to `<model>/base_footprint`.",
+        doc="Frame of the model. Default: `<model>/base_footprint`.",
     )
     rate: float = tag(
         "odom_publish_frequency", default=50.0, unit="Hz", doc="Publish rate of all topics."
@@ -196,18 +196,18 @@ class OdometryPublisherParameters:
     topic: str = tag(
         "odom_topic",
         default="",
-        doc="Topic of the odometry. Defaults to `/model/<model>/odometry`.",
+        doc="Topic of the odometry. Default: `/model/<model>/odometry`.",
     )
     covariance_topic: str = tag(
         "odom_covariance_topic",
         default="",
         doc="Topic of the odometry with covariance. "
-        "Defaults to `/model/<model>/odometry_with_covariance`.",
+        "Default: `/model/<model>/odometry_with_covariance`.",
     )
     tf_topic: str = tag(
         "tf_topic",
         default="",
-        doc="Topic of the TFMessage. Defaults to `/model/<model>/pose`.",
+        doc="Topic of the TFMessage. Default: `/model/<model>/pose`.",
     )
     dimensions: Literal["2", "3"] = tag(
         "dimensions",

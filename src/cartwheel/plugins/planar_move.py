@@ -23,7 +23,7 @@ class PlanarMoveParameters:
         "odometryTopic", "odometry_topic", default="odom", doc="Topic of the odometry."
     )
     odometry_frame: str = tag(
-        "odometryFrame", "odometry_frame", default="odom", doc="Frame of the odometry."
+        "odometryFrame", "odometry_frame", default="odom", doc="Frame ID of the odometry."
     )
     base_frame: str = tag(
         "robotBaseFrame",
@@ -37,7 +37,7 @@ class PlanarMoveParameters:
         "publish_rate",
         default=20.0,
         unit="Hz",
-        doc="Publish rate of odometry and transform; 0 or less publishes neither.",
+        doc="Publish rate of odometry and transform. 0 or less: neither is published.",
     )
     update_rate: float = tag(
         "update_rate",
@@ -50,20 +50,20 @@ class PlanarMoveParameters:
         "cmd_timeout",
         default=-1.0,
         unit="s",
-        doc="The robot stops after this time without a command; negative: no timeout.",
+        doc="The robot stops after this time without a command. Negative: no timeout.",
     )
     publish_odom: bool = tag("publish_odom", default=True, doc="Publish the odometry.")
     publish_odom_tf: bool = tag(
         "publish_odom_tf", default=True, doc="Publish the transform of the odometry."
     )
     covariance_x: float = tag(
-        "covariance_x", default=1e-5, unit="m²", doc="Variance of x in the odometry."
+        "covariance_x", default=1e-5, unit="m²", doc="Variance of the odometry in x."
     )
     covariance_y: float = tag(
-        "covariance_y", default=1e-5, unit="m²", doc="Variance of y in the odometry."
+        "covariance_y", default=1e-5, unit="m²", doc="Variance of the odometry in y."
     )
     covariance_yaw: float = tag(
-        "covariance_yaw", default=1e-3, unit="rad²", doc="Variance of yaw in the odometry."
+        "covariance_yaw", default=1e-3, unit="rad²", doc="Variance of the odometry in yaw."
     )
 
 
@@ -71,8 +71,8 @@ class PlanarMove(Plugin[PlanarMoveParameters]):
     """Moves the robot in the plane from Twist commands and publishes odometry.
 
     It needs no wheels: a servo pushes the whole robot, with at most five times its weight, so that
-    a wall stops it. The odometry is the true pose.
-    Source: gazebo_plugins, gazebo_ros_planar_move.
+    a wall stops it. The odometry is the true pose. Source: gazebo_plugins,
+    gazebo_ros_planar_move.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_planar_move.so",)
@@ -134,7 +134,7 @@ class VelocityControlParameters:
     topic: str = tag(
         "topic",
         default="",
-        doc="Topic of the Twist commands. Defaults to `/model/<model>/cmd_vel`.",
+        doc="Topic of the Twist commands. Default: `/model/<model>/cmd_vel`.",
     )
     initial_linear: tuple[float, float, float] | None = tag(
         "initial_linear",

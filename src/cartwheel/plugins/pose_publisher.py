@@ -59,7 +59,7 @@ class PosePublisherParameters:
         "update_frequency",
         default=-1.0,
         unit="Hz",
-        doc="Publish rate; 0 or less publishes at every step.",
+        doc="Publish rate. 0 or less: every step.",
     )
     static: bool = tag(
         "static_publisher",
@@ -72,9 +72,7 @@ class PosePublisherParameters:
         unit="Hz",
         doc="Publish rate of the static poses. Defaults to `<update_frequency>`.",
     )
-    topic: str = tag(
-        "topic", default="", doc="Topic of the poses. Defaults to `/model/<model>/pose`."
-    )
+    topic: str = tag("topic", default="", doc="Topic of the poses. Default: `/model/<model>/pose`.")
 
 
 class PosePublisher(Plugin[PosePublisherParameters]):

@@ -83,7 +83,7 @@ class RangeParameters:
         "frameName",
         "frame_name",
         default="",
-        doc="Frame of the messages. Defaults to the sensor's link.",
+        doc="Frame ID of the messages. Defaults to the sensor's link.",
     )
     fov: float = tag("fov", default=0.05, unit="rad", doc="Field of view that the messages state.")
     radiation: Literal["ultrasound", "infrared"] = tag(
@@ -100,7 +100,7 @@ class RangeParameters:
         "update_rate",
         default=0.0,
         unit="Hz",
-        doc="Publish rate. The lower of this and the sensor's rate applies; 0: the sensor's rate.",
+        doc="Publish rate. The lower of this and the sensor's rate applies. 0: the sensor's rate.",
     )
 
 
@@ -134,7 +134,7 @@ class SonarParameters:
         "frameId",
         "frameName",
         default="",
-        doc="Frame of the messages. Defaults to the sensor's link.",
+        doc="Frame ID of the messages. Defaults to the sensor's link.",
     )
     noise: float | None = tag(
         "gaussianNoise",
@@ -151,7 +151,7 @@ class SonarParameters:
         "updateRate",
         default=0.0,
         unit="Hz",
-        doc="Publish rate. The lower of this and the sensor's rate applies; 0: the sensor's rate.",
+        doc="Publish rate. The lower of this and the sensor's rate applies. 0: the sensor's rate.",
     )
 
 

@@ -36,7 +36,7 @@ class RaySensorParameters:
         "frame_name",
         "frameName",
         default="",
-        doc="Frame of the messages. Defaults to the sensor's link.",
+        doc="Frame ID of the messages. Defaults to the sensor's link.",
     )
     radiation: Literal["ultrasound", "infrared", "infared"] = tag(
         "radiation_type",

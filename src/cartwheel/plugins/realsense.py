@@ -56,19 +56,19 @@ class RealSenseParameters:
         "colorUpdateRate",
         default=0.0,
         unit="Hz",
-        doc="Rate of the colour images, at most the sensor's; 0: the sensor's rate.",
+        doc="Rate of the colour images, at most the sensor's. 0: the sensor's rate.",
     )
     infrared_rate: float = tag(
         "infraredUpdateRate",
         default=0.0,
         unit="Hz",
-        doc="Rate of the infrared images, at most the sensor's; 0: the sensor's rate.",
+        doc="Rate of the infrared images, at most the sensor's. 0: the sensor's rate.",
     )
     depth_rate: float = tag(
         "depthUpdateRate",
         default=0.0,
         unit="Hz",
-        doc="Rate of the depth images, at most the sensor's; 0: the sensor's rate.",
+        doc="Rate of the depth images, at most the sensor's. 0: the sensor's rate.",
     )
     nearest: float = tag(
         "rangeMinDepth", default=0.0, unit="m", doc="Depths up to this are published as 0."

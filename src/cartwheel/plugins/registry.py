@@ -36,9 +36,10 @@ _HARMLESS: _Faults = (StaticModelError,)
 def attach(part: Part, graph: Graph, *, lenient: bool = False) -> list[Behaviour]:
     """Creates the plugins of a model and reports unsupported ones.
 
-    A plugin that cannot be created is an error of the model. Exceptions are systems of new Gazebo
-    in a model of a world, as in Gazebo, and sensors without a plugin: they are left out, with a
-    report.
+    A plugin that cannot be created is an error of the model. Left out instead, with a report, are:
+    systems of new Gazebo in a model of a world, as in Gazebo; plugins of sensors without a
+    ``<plugin>``; plugins that would drive a joint of a static model; and plugins that raise an
+    unexpected exception.
 
     Args:
         part: The model's part of the simulation.
@@ -123,7 +124,7 @@ def _serve(
             yield from _create(part, graph, plugin, tag, sensor, forgiven=_ANY)
             continue
         if sensor.plugins:
-            # The diagnostic about the plugin has reported it.
+            # The diagnostic about the unsupported plugin covers the sensor.
             continue
         reason = f' and type "{sensor.type}", which publishes nothing without one' if wanted else ""
         part.report(

@@ -125,7 +125,7 @@ class RotorsBase(Plugin[RotorsBaseParameters]):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class RotorsImuParameters:
-    link: str = tag("linkName", doc="Link that carries the IMU, and frame of the messages.")
+    link: str = tag("linkName", doc="Link that carries the IMU, and frame ID of the messages.")
     topic: str = tag("imuTopic", default="imu", doc="Topic of the Imu messages.")
     rate_noise: float = tag(
         "gyroscopeNoiseDensity",

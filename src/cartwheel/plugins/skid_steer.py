@@ -25,7 +25,7 @@ class SkidSteerParameters:
         "rightRearJoint", default="right_rear_joint", doc="Joint of the right rear wheel."
     )
     wheel_separation: float = tag(
-        "wheelSeparation", default=0.4, unit="m", doc="Distance between left and right wheels."
+        "wheelSeparation", default=0.4, unit="m", doc="Distance between the left and right wheels."
     )
     wheel_diameter: float = tag(
         "wheelDiameter", default=0.15, unit="m", doc="Diameter of all wheels."
@@ -37,7 +37,7 @@ class SkidSteerParameters:
         "commandTopic", "topicName", default="cmd_vel", doc="Topic of the Twist commands."
     )
     odometry_topic: str = tag("odometryTopic", default="odom", doc="Topic of the odometry.")
-    odometry_frame: str = tag("odometryFrame", default="odom", doc="Frame of the odometry.")
+    odometry_frame: str = tag("odometryFrame", default="odom", doc="Frame ID of the odometry.")
     base_frame: str = tag(
         "robotBaseFrame",
         default="base_footprint",
@@ -45,19 +45,22 @@ class SkidSteerParameters:
         "Defaults to the root link if no link has this name.",
     )
     update_rate: float = tag(
-        "updateRate", default=100.0, unit="Hz", doc="Rate of control and of all topics."
+        "updateRate",
+        default=100.0,
+        unit="Hz",
+        doc="Rate of the control loop and of the topics. 0: every step.",
     )
     broadcast_tf: bool = tag(
         "broadcastTF", default=False, doc="Publish the transform of the odometry."
     )
     covariance_x: float = tag(
-        "covariance_x", default=1e-4, unit="m²", doc="Variance of x in the odometry."
+        "covariance_x", default=1e-4, unit="m²", doc="Variance of the odometry in x."
     )
     covariance_y: float = tag(
-        "covariance_y", default=1e-4, unit="m²", doc="Variance of y in the odometry."
+        "covariance_y", default=1e-4, unit="m²", doc="Variance of the odometry in y."
     )
     covariance_yaw: float = tag(
-        "covariance_yaw", default=1e-2, unit="rad²", doc="Variance of yaw in the odometry."
+        "covariance_yaw", default=1e-2, unit="rad²", doc="Variance of the odometry in yaw."
     )
 
 

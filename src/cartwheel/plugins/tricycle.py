@@ -67,14 +67,14 @@ class TricycleParameters:
         "max_wheel_torque",
         default=None,
         unit="N m",
-        doc="Maximum torque of each motor. Defaults to 5, or 0.15 with ROS 2 tags.",
+        doc="Maximum torque of each motor. Default: 5, or 0.15 if written for ROS 2.",
     )
     wheel_acceleration: float = tag(
         "wheelAcceleration",
         "max_wheel_acceleration",
         default=0.0,
         unit="rad/s²",
-        doc="Maximum acceleration of the driven wheel; 0: no limit.",
+        doc="Maximum acceleration of the driven wheel. 0: no limit.",
     )
     wheel_deceleration: float | None = tag(
         "wheelDeceleration",
@@ -96,7 +96,7 @@ class TricycleParameters:
         "max_steering_speed",
         default=0.0,
         unit="rad/s",
-        doc="Maximum steering rate; 0: no limit.",
+        doc="Maximum steering rate. 0: no limit.",
     )
     steering_tolerance: float = tag(
         "steeringAngleTolerance",
@@ -113,7 +113,7 @@ class TricycleParameters:
     )
     odometry_topic: str = tag("odometryTopic", default="odom", doc="Topic of the odometry.")
     odometry_frame: str = tag(
-        "odometryFrame", "odometry_frame", default="odom", doc="Frame of the odometry."
+        "odometryFrame", "odometry_frame", default="odom", doc="Frame ID of the odometry."
     )
     base_frame: str = tag(
         "robotBaseFrame",
@@ -127,7 +127,7 @@ class TricycleParameters:
         "update_rate",
         default=100.0,
         unit="Hz",
-        doc="Rate of control and of all topics.",
+        doc="Rate of the control loop and of the topics. 0: every step.",
     )
     source: Literal["world", "encoder", "0", "1"] = tag(
         "odometrySource",
@@ -138,7 +138,7 @@ class TricycleParameters:
     publish_odom: bool | None = tag(
         "publish_odom",
         default=None,
-        doc="Publish the odometry and its transform. Defaults to true, or false with ROS 2 tags.",
+        doc="Publish the odometry and its transform. Default: true, or false if written for ROS 2.",
     )
     publish_wheel_tf: bool = tag(
         "publishWheelTF",
@@ -159,10 +159,11 @@ _ROS2 = {"ros"} | {name for name in tags_of(TricycleParameters) if name.islower(
 
 
 class TricycleDrive(SteeredDrive):
-    """Drives and steers one wheel from Twist commands and publishes odometry.
+    """Drives a tricycle by its driven, steered wheel from Twist commands and publishes odometry.
 
-    With ROS 1 tags, the topics of a model in a world are below the model's name unless
-    ``<robotNamespace>`` is set. Source: gazebo_plugins, gazebo_ros_tricycle_drive.
+    In a model of a world, the topics of a tag written for ROS 1 are below the model's name unless
+    it has a ``<robotNamespace>``. A tag is written for ROS 2 if it contains ``<ros>`` or tags in
+    lower case, such as ``<steering_joint>``. Source: gazebo_plugins, gazebo_ros_tricycle_drive.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_tricycle_drive.so",)

@@ -47,13 +47,13 @@ class WheelSlipParameters:
         "wheel_spin_tolerance",
         default=1e-3,
         unit="m/s",
-        doc="Wheels with a lower rim speed publish a slip of 0.",
+        doc="Below this rim speed, the published slip is 0.",
     )
     rate: float = tag(
         "publisher_update_rate",
         default=100.0,
         unit="Hz",
-        doc="Publish rate of `wheel_slip`; 0 publishes at every step.",
+        doc="Publish rate of `wheel_slip`. 0: every step.",
     )
 
 
