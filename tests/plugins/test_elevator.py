@@ -27,6 +27,18 @@ def joint(world, name):
     return world.session.simulation.joint_position("elevator", name)
 
 
+def lift_model(make, plugin):
+    """A car on a prismatic joint, with a door and a plugin."""
+    inertial = "<inertial><mass>10</mass></inertial>"
+    slide = '<joint name="{0}" type="prismatic"><parent>{1}</parent><child>{2}</child>{3}</joint>'
+    return make.sdf(
+        f'<model name="car"><link name="cage">{inertial}</link><link name="leaf">{inertial}</link>'
+        + slide.format("lift", "world", "cage", "<axis><xyz>0 0 1</xyz></axis>")
+        + slide.format("door", "cage", "leaf", "<axis><xyz>0 1 0</xyz></axis>")
+        + f"{plugin}</model>"
+    )
+
+
 def way(distance, speed, acceleration):
     """Seconds for a distance at a limited speed and acceleration."""
     ramps = speed**2 / acceleration
@@ -75,6 +87,26 @@ def test_what_is_no_floor_is_told_and_left(world, text):
     assert joint(world, "lift") == pytest.approx(0.0, abs=1e-3)
 
 
+@pytest.mark.wording
+@pytest.mark.parametrize(
+    ("bound", "text", "message"),
+    [
+        ("<bottom_floor>0</bottom_floor>", "-1", "floor -1 is below the lowest floor 0"),
+        ("<top_floor>2</top_floor>", "3", "floor 3 is above the highest floor 2"),
+    ],
+)
+def test_the_warning_names_the_bound_that_the_floor_exceeds(make, bound, text, message):
+    plugin = f"""<plugin name="p" filename="libgazebo_ros_elevator.so">
+      <lift_joint>lift</lift_joint><door_joint>door</door_joint>
+      <floor_height>2</floor_height>{bound}</plugin>"""
+    world = make.world(lift_model(make, plugin), ground=None)
+    before = len(world.session.diagnostics)
+    order(world, text)
+    world.run(0.1)
+    (diagnostic,) = world.session.diagnostics[before:]
+    assert diagnostic.message == message
+
+
 def test_a_reset_takes_it_back_to_rest(world):
     order(world, "2")
     world.run(2.0)
@@ -88,17 +120,10 @@ def test_a_reset_takes_it_back_to_rest(world):
 
 def test_names_with_the_models_before_them_are_understood(make):
     """Gazebo's own elevator world writes ``elevator::lift``."""
-    inertial = "<inertial><mass>10</mass></inertial>"
     plugin = """<plugin name="p" filename="libgazebo_ros_elevator.so">
       <lift_joint>car::lift</lift_joint><door_joint>car::door</door_joint>
       <floor_height>2</floor_height><topic>~/elevator</topic></plugin>"""
-    slide = '<joint name="{0}" type="prismatic"><parent>{1}</parent><child>{2}</child>{3}</joint>'
-    model = make.sdf(
-        f'<model name="car"><link name="cage">{inertial}</link><link name="leaf">{inertial}</link>'
-        + slide.format("lift", "world", "cage", "<axis><xyz>0 0 1</xyz></axis>")
-        + slide.format("door", "cage", "leaf", "<axis><xyz>0 1 0</xyz></axis>")
-        + f"{plugin}</model>"
-    )
+    model = lift_model(make, plugin)
     world = make.world(model, ground=None)
     order(world, "1")
     world.run(way(2.0, 1.5, 1.0) + 0.5)

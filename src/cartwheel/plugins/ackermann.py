@@ -255,7 +255,10 @@ class AckermannDrive(SteeredDrive):
         self._wheel_base = math.dist(front, rear)
         if self._wheel_base <= 0 or self._track <= 0:
             raise PluginError(
-                "the wheels are all at the same place", code=running.NOT_A_WHEEL, origin=origin
+                "the wheel base and the track must be positive "
+                f"(got {self._wheel_base:g} m and {self._track:g} m)",
+                code=running.NOT_A_WHEEL,
+                origin=origin,
             )
 
     def reset(self) -> None:

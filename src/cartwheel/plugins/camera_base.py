@@ -21,9 +21,9 @@ _WIDEST_VIEW = 2.8
 _IDLE_RATE = 1.0
 """Rate at which a triggered camera checks its trigger, Hz."""
 _LOST = {
-    "lens": "the view of <horizontal_fov> counts",
-    "save": "no pictures are saved",
-    "visibility_mask": "all visuals are seen",
+    "lens": "the field of view is that of <horizontal_fov>",
+    "save": "images are not saved",
+    "visibility_mask": "all visuals are rendered",
 }
 """Unsupported elements of SDF cameras, and what applies instead."""
 _WIDE = ("wideanglecamera", "wide_angle_camera")
@@ -46,8 +46,9 @@ class CameraBase(Plugin[C]):
             lens = sensor.cameras[0]
             self.warn(
                 devices.SENSOR_INCOMPLETE,
-                f'sensor "{sensor.name}" has no <camera>, so it has the defaults of SDF: '
-                f"{lens.width} x {lens.height} pixels, {lens.horizontal_fov:g} rad wide",
+                f'sensor "{sensor.name}" has no <camera>: the defaults of SDF are used, '
+                f"{lens.width} x {lens.height} pixels and a field of view of "
+                f"{lens.horizontal_fov:g} rad",
                 at=sensor.origin,
                 values={"sensor": sensor.name, "missing": "camera"},
             )
@@ -142,7 +143,7 @@ class CameraBase(Plugin[C]):
         self.warn(
             devices.CAMERA_VIEW_NARROWED,
             f"the field of view of {lens.horizontal_fov:g} rad is rendered as {_WIDEST_VIEW:g} "
-            "rad, the most that a pinhole camera can have",
+            "rad, the maximum of a pinhole camera",
             values={"stated": lens.horizontal_fov, "used": _WIDEST_VIEW},
         )
         return dataclasses.replace(lens, horizontal_fov=_WIDEST_VIEW)
@@ -155,7 +156,7 @@ class CameraBase(Plugin[C]):
         if any(configured.coefficients) and configured != own:
             self.warn(
                 devices.PLUGIN_PARAMETER_IGNORED,
-                "the plugin's distortion has no effect: that of the sensor is used",
+                "the plugin's distortion has no effect: the sensor's <distortion> is used",
                 values={"parameter": "distortion"},
             )
         if lens.distortion_center != (0.5, 0.5):
@@ -169,7 +170,7 @@ class CameraBase(Plugin[C]):
     def _set_rate(self, rate: float) -> None:
         if self._waits:
             raise GraphError(
-                "a triggered camera has no rate to change", code=running.CAMERA_WITHOUT_RATE
+                "the rate of a triggered camera cannot be changed", code=running.CAMERA_WITHOUT_RATE
             )
         if rate != self._rate:
             self._rate = rate

@@ -102,8 +102,8 @@ class Calibration:
         if (given.width, given.height) != (self.width, self.height):
             return self._response(
                 success=False,
-                status_message=f"this is for {given.width} x {given.height} pixels, and the camera "
-                f"has {self.width} x {self.height}",
+                status_message=f"the calibration is for {given.width} x {given.height} pixels, "
+                f"but the camera has {self.width} x {self.height}",
             )
         self.info = given
         return self._response(success=True, status_message="")

@@ -107,7 +107,8 @@ class DetachableJoint(Plugin[DetachableJointParameters]):
             self._missed = True
             self.warn(
                 running.ATTACHMENT_FAILED,
-                f'there is no link "{self.config.child_link}" in a model "{model}" to attach',
+                f'link "{self.config.child_link}" of model "{model}" does not exist yet, so it is '
+                "not attached",
                 values={"link": self.config.child_link, "model": model},
             )
 

@@ -109,10 +109,15 @@ class Elevator(Plugin[ElevatorParameters]):
             )
             return
         lowest, highest = config.bottom_floor, config.top_floor
-        if (lowest is not None and floor < lowest) or (highest is not None and floor > highest):
+        fault = ""
+        if lowest is not None and floor < lowest:
+            fault = f"below the lowest floor {lowest}"
+        elif highest is not None and floor > highest:
+            fault = f"above the highest floor {highest}"
+        if fault:
             self.warn(
                 running.COMMAND_IGNORED,
-                f"floor {floor} does not exist: floors are from {lowest} to {highest}",
+                f"floor {floor} is {fault}",
                 values={"floor": str(floor)},
             )
             return

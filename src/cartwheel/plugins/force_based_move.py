@@ -83,7 +83,7 @@ class ForceBasedMove(Plugin[ForceBasedMoveParameters]):
         if config.y_gain != config.x_gain:
             self.warn(
                 devices.PLUGIN_PARAMETER_IGNORED,
-                "<y_velocity_p_gain> has no effect: that of x is used in both directions",
+                "<y_velocity_p_gain> has no effect: <x_velocity_p_gain> is used in both directions",
                 values={"parameter": "y_velocity_p_gain"},
             )
         known = part.description.link(config.base_frame) is not None

@@ -247,8 +247,8 @@ class _GpsSensor(_Receiver):
         if datum is None:
             part.report(
                 devices.COORDINATES_MISSING.diagnostic(
-                    f'sensor "{sensor.name}" is in a world without <spherical_coordinates>, '
-                    "whose origin is at latitude 0, longitude 0",
+                    f'the world of sensor "{sensor.name}" has no <spherical_coordinates>: its '
+                    "origin is placed at latitude 0, longitude 0",
                     origin=sensor.origin,
                     values={"sensor": sensor.name},
                 )

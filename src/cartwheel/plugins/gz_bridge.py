@@ -103,7 +103,7 @@ class GzBridge:
         for entry in self._entries.values():
             own = self._asked.get(entry.gz)
             if own is None and entry.gz not in topics and entry.type != CLOCK:
-                message = f'no plugin publishes or reads "{entry.gz}", so {entry.ros} has no effect'
+                message = f'no plugin uses the topic "{entry.gz}", so {entry.ros} has no effect'
                 yield _warning(entry, message, suggestion(entry.gz, sorted(self._asked)))
             elif own is not None and own != entry.type and _inside(entry.type, own) is None:
                 yield _warning(entry, f"{entry.ros} must have the type {own} (got {entry.type})")
@@ -154,7 +154,7 @@ def read_bridge(path: Path) -> list[Bridged]:
         raise _invalid(
             "the file is not a list of topics",
             origin,
-            "Name the file that the parameter config_file of ros_gz_bridge names.",
+            "Use the file of ros_gz_bridge's parameter config_file.",
         )
     return [_bridged(entry, Origin(file=str(path), line=line)) for entry, line in entries]
 

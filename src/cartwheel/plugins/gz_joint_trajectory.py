@@ -125,7 +125,7 @@ class GzJointTrajectory(Plugin[JointTrajectoryParameters]):
         ]
         if not names:
             raise PluginError(
-                "the model has no joint of one axis that could follow a trajectory",
+                "the model has no joint with one axis, so it cannot follow a trajectory",
                 code=devices.PLUGIN_IDLE,
                 origin=origin,
             )

@@ -86,7 +86,7 @@ class Harness(Plugin[HarnessParameters]):
         config, element = self.config, self.tag.element
         self._ropes = dict(self._rope(each) for each in element.find_all("joint"))
         if not self._ropes:
-            self.warn(devices.PLUGIN_IDLE, "the harness has no <joint>, so nothing hangs")
+            self.warn(devices.PLUGIN_IDLE, "the harness has no <joint>, so nothing is suspended")
         wound = element.find("winch/joint")
         self._winch = self._named(wound.text.strip()) if wound is not None else None
         self._detached = self._named(config.detach) if config.detach else None
@@ -128,7 +128,7 @@ class Harness(Plugin[HarnessParameters]):
         length = math.hypot(x, y, z)
         if length < _SHORTEST:
             axis_place = axis.origin if axis is not None else element.origin
-            raise invalid("xyz", texts["axis/xyz"], "a vector of some length", axis_place)
+            raise invalid("xyz", texts["axis/xyz"], "a vector with a positive length", axis_place)
         limits = [
             self._limit(element, f"axis/limit/{what}", default)
             for what, default in (("lower", -math.inf), ("upper", math.inf))
@@ -157,7 +157,9 @@ class Harness(Plugin[HarnessParameters]):
 
     def _on_velocity(self, message: Any) -> None:
         if self._winch is None:
-            self.warn(running.COMMAND_IGNORED, "the harness has no <winch> to turn")
+            self.warn(
+                running.COMMAND_IGNORED, "the harness has no <winch>, so the velocity is ignored"
+            )
         else:
             self._velocity = float(message.data)
 
@@ -167,7 +169,10 @@ class Harness(Plugin[HarnessParameters]):
             return
         rope = self._detached
         if rope is None or not rope.attached:
-            self.warn(running.ATTACHMENT_FAILED, "nothing is attached to the harness to detach")
+            self.warn(
+                running.ATTACHMENT_FAILED,
+                "the harness cannot detach anything, because nothing is attached",
+            )
         else:
             rope.attached = False
             rope.joint.release()
