@@ -204,7 +204,8 @@ class ImuSensorParameters:
         "initialOrientationAsReference",
         "initial_orientation_as_reference",
         default=False,
-        doc="Report orientation relative to the spawn orientation instead of the world (REP 145). "
+        doc="Publish orientation relative to the spawn orientation instead of the world "
+        "(REP 145). "
         "The sensor's `<orientation_reference_frame>` has priority.",
     )
 
@@ -215,8 +216,8 @@ class ImuSensor(ImuBase):
     With ``<ros>`` (ROS 2), the default topic is ``~/out``, which a ``<remapping>`` can rename.
     Without it (ROS 1), the topic of a model in a world is below the model's name unless
     ``<robotNamespace>`` is set. The orientation is relative to the world, or to the sensor's
-    ``<orientation_reference_frame>``. If ``<enable_orientation>`` is false, it is not measured.
-    Source: gazebo_plugins, gazebo_ros_imu_sensor; REP 145.
+    ``<orientation_reference_frame>``. If ``<enable_orientation>`` is false, it is not measured: the
+    first element of its covariance is -1. Source: gazebo_plugins, gazebo_ros_imu_sensor; REP 145.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_imu_sensor.so",)
@@ -262,7 +263,8 @@ class GzImu(ImuBase):
     """Publishes the measurements of an ``imu`` sensor, with the noise that its ``<imu>`` states.
 
     The orientation is relative to the world, or to ``<orientation_reference_frame>``. If
-    ``<enable_orientation>`` is false, it is not measured.
+    ``<enable_orientation>`` is false, it is not measured: the first element of its covariance is
+    -1.
 
     Source: gz-sensors, ImuSensor; REP 145.
     """

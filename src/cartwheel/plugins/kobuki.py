@@ -44,24 +44,28 @@ class KobukiParameters:
         unit="s",
         doc="The robot stops after this time without a command.",
     )
-    cliff_left: str = tag("cliff_sensor_left_name", doc="Ray sensor that faces the floor, left.")
-    cliff_center: str = tag(
-        "cliff_sensor_center_name", doc="Ray sensor that faces the floor, centre."
+    cliff_left: str = tag(
+        "cliff_sensor_left_name", doc="Name of the left ray sensor, which faces the floor."
     )
-    cliff_right: str = tag("cliff_sensor_right_name", doc="Ray sensor that faces the floor, right.")
+    cliff_center: str = tag(
+        "cliff_sensor_center_name", doc="Name of the centre ray sensor, which faces the floor."
+    )
+    cliff_right: str = tag(
+        "cliff_sensor_right_name", doc="Name of the right ray sensor, which faces the floor."
+    )
     cliff_threshold: float = tag(
         "cliff_detection_threshold",
         unit="m",
         doc="A cliff is reported if the distance to the floor is at least this.",
     )
-    bumper: str = tag("bumper_name", doc="Contact sensor of the bumper.")
+    bumper: str = tag("bumper_name", doc="Name of the contact sensor of the bumper.")
     drop_left: str = tag(
         "wheel_drop_left_sensor_name",
-        doc="Contact sensor of the left wheel, which has dropped while there is no contact.",
+        doc="Name of the left wheel's contact sensor. Without contact, the wheel has dropped.",
     )
     drop_right: str = tag(
         "wheel_drop_right_sensor_name",
-        doc="Contact sensor of the right wheel, which has dropped while there is no contact.",
+        doc="Name of the right wheel's contact sensor. Without contact, the wheel has dropped.",
     )
     imu: str = tag("imu_name", doc="Name of the imu sensor.")
     publish_tf: bool = tag(

@@ -80,7 +80,9 @@ class HectorMagneticParameters:
     noise: tuple[float, float, float] = tag(
         "gaussianNoise", default=_NONE, doc="Standard deviation of the noise."
     )
-    scale: tuple[float, float, float] = tag("scaleError", default=(1.0,) * 3, doc="Scale factor.")
+    scale: tuple[float, float, float] = tag(
+        "scaleError", default=(1.0,) * 3, doc="Factor on the measured field."
+    )
 
 
 class HectorMagnetic(Plugin[HectorMagneticParameters]):

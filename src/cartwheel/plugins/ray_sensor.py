@@ -23,7 +23,8 @@ class RaySensorParameters:
         "output_type",
         "outputType",
         default="sensor_msgs/PointCloud2",
-        doc="Message type: `sensor_msgs/` and LaserScan, PointCloud, PointCloud2 or Range.",
+        doc="Message type: `sensor_msgs/LaserScan`, `sensor_msgs/PointCloud`, "
+        "`sensor_msgs/PointCloud2` or `sensor_msgs/Range`.",
     )
     topic: str = tag(
         "topicName",
