@@ -44,8 +44,7 @@ class CameraParameters:
         "update_rate",
         default=0.0,
         unit="Hz",
-        doc="Maximum frame rate. The lower of this and the sensor's `<update_rate>` applies; 0: "
-        "no limit.",
+        doc="Frame rate. The lower of this and the sensor's rate applies. 0: the sensor's rate.",
     )
     hack_baseline: float = tag(
         "hackBaseline",

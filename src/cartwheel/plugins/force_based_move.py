@@ -32,7 +32,7 @@ class ForceBasedMoveParameters:
         "odometryRate",
         default=20.0,
         unit="Hz",
-        doc="Publish rate of the odometry. 0 or less: no odometry.",
+        doc="Publish rate of odometry and transform. 0 or less: neither is published.",
     )
     publish_tf: bool = tag(
         "publishOdometryTf", default=True, doc="Publish the transform of the odometry."
@@ -42,7 +42,7 @@ class ForceBasedMoveParameters:
         "commandWatchdog",
         default=0.25,
         unit="s",
-        doc="The robot stops if no command arrives for this time.",
+        doc="The robot stops after this time without a command.",
     )
     x_gain: float = tag(
         "x_velocity_p_gain", default=10000.0, unit="N s/m", doc="Force per velocity error."

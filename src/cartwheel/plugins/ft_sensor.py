@@ -210,16 +210,19 @@ class GzForceTorqueParameters:
         doc="Topic of the WrenchStamped messages. Default: "
         "`/world/<world>/model/<model>/joint/<joint>/sensor/<sensor>/forcetorque`.",
     )
-    frame: str = frame_tag()
+    frame: str = frame_tag("Frame ID of the messages. Defaults to the selected link; see above.")
 
 
 class GzForceTorque(_JointWrench):
     """Publishes the force and torque on the joint that contains a ``force_torque`` sensor.
 
-    ``<frame>`` selects the axes (child, parent or sensor), and ``<measure_direction>`` the sign
-    (child_to_parent or parent_to_child). ``<force>`` and ``<torque>`` contain noise for each axis.
-    The frame ID of the messages is the selected link. It is the sensor's name if ``<frame>`` is
-    sensor and the sensor is rotated in its link. Source: gz-sensors, ForceTorqueSensor; sdformat.
+    ``<frame>`` selects the axes: ``child`` (default), ``parent`` or ``sensor``.
+    ``<measure_direction>`` selects the sign: ``child_to_parent`` (default) or ``parent_to_child``.
+    ``<force>`` and ``<torque>`` can contain noise for each axis.
+
+    The default frame ID is the child or parent link. For ``sensor`` it is the child link, or the
+    sensor's name if the sensor is rotated in its link. Source: gz-sensors, ForceTorqueSensor;
+    sdformat.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ()
