@@ -62,6 +62,10 @@ _BODIES = {
     "contact": _CONTACT,
 }
 """What a sensor of a type holds."""
+_SIZES = {"separation": "0.4", "diameter": "0.2", "radius": "0.1"}
+"""m: of the robot below, by a word in the name of a required tag."""
+_VALUES = {"m": "0.05", "s": "0.5"}
+"""Of other required tags, by their unit."""
 _SENSOR_FIELD = re.compile(r"\b(ray|contact|imu|camera) sensor\b", re.IGNORECASE)
 """In the description of a tag that names a sensor: its type."""
 _GAZEBO_SYSTEM = ("gz-sim-", "-system")
@@ -124,7 +128,7 @@ def robot(plugin: type[Plugin[Any]], inside: str) -> str:
     ]
     for name in _joint_names(plugin):
         # Where its name says, so that a drive measures its axles apart.
-        x, y = (0.5 if "front" in name else -0.5), (0.5 if "left" in name else -0.5)
+        x, y = (0.2 if "front" in name else -0.2), (0.2 if "left" in name else -0.2)
         parts.append(
             f'<link name="{name}_wheel">{mass}<collision><geometry><sphere radius="0.1"/>'
             f'</geometry></collision></link><joint name="{name}" type="continuous">'
@@ -206,11 +210,14 @@ def _nested(lines: dict[str, str], plugin: type[Plugin[Any]]) -> str:
 
 def _required(item: dataclasses.Field[Any], kind: Any) -> str:
     if kind in (float, int):
-        return "1"
+        size = next((each for word, each in _SIZES.items() if word in item.name), None)
+        return size or _VALUES.get(item.metadata["unit"], "1")
     if typing.get_origin(kind) is typing.Literal:
         return str(typing.get_args(kind)[0])
     if "joint" in item.name:
         return _JOINTS[0]
+    if "model" in item.name:
+        return "other_model"
     sensor = _SENSOR_FIELD.search(item.metadata["doc"])
     return f"my_{sensor[1].lower()}_sensor" if sensor else LINK
 
