@@ -2,13 +2,16 @@
 
 import socket
 import threading
+import time
 from collections.abc import Iterator
 from concurrent.futures import Future
+from types import SimpleNamespace
 
 import pytest
 from tests.coded import raises
 
 from cartwheel.bridges.apart import link as link_module
+from cartwheel.bridges.apart import wires
 from cartwheel.bridges.apart import workers as workers_module
 from cartwheel.bridges.apart.link import Link
 from cartwheel.codes.wires import BRIDGE_ENDED, BRIDGE_RECOVERED, BRIDGE_SLOW, CALL_LIMIT
@@ -47,6 +50,40 @@ def test_calls_are_answered_and_tells_come_in_order(pair: Pair) -> None:
         pair.near.tell("note", number)
     assert pair.near.call("told").result(_PATIENCE) == list(range(500))
     assert pair.near.call("add", 2, 3).result(_PATIENCE) == 5
+
+
+def test_parameters_are_read_without_waiting(pair: Pair, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Nothing is sent or received while a bridge waits."""
+    monkeypatch.setattr(wires, "_STALE", 1e9)
+    here = {"speed": 1.0}
+    free = threading.Event()
+    free.set()
+
+    def values() -> tuple[int, dict[str, float]]:
+        answer = 5, dict(here)
+        free.wait(_PATIENCE)
+        return answer
+
+    pair.far.handle("values", values)
+    pair.far.handle("set_value", here.__setitem__)
+    pair.near.start()
+    pair.far.start()
+    graph = SimpleNamespace(time_ns=0)
+    read = wires._Values(pair.near, graph)  # type: ignore[arg-type]
+    assert read.get("speed") == 1.0
+    assert graph.time_ns == 5
+    free.clear()
+    here["speed"] = 2.0
+    time.sleep(2 * wires._FRESH)
+    # The answer to this request does not come before the event is set.
+    assert read.get("speed") == 1.0
+    free.set()
+    deadline = time.monotonic() + _PATIENCE
+    while read.get("speed") != 2.0:
+        assert time.monotonic() < deadline
+        time.sleep(0.01)
+    read.set("speed", 3.0)
+    assert read.get("speed") == 3.0
 
 
 def test_both_may_call_each_other_at_once_with_much(pair: Pair) -> None:

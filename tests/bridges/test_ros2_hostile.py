@@ -16,6 +16,7 @@ from tests.bridges.ros1_peers import wait_for
 from tests.bridges.ros2_peers import DOMAIN, REASON, Peer, Ros2Bridged
 from tests.coded import coded, raises
 
+from cartwheel.bridges.loop import Loop
 from cartwheel.bridges.ros2 import Ros2Bridge
 from cartwheel.bridges.ros2.dds import Dds
 from cartwheel.bridges.ros2.rtps import discovery, wire
@@ -23,6 +24,7 @@ from cartwheel.bridges.ros2.rtps import participant as participant_module
 from cartwheel.bridges.ros2.rtps.discovery import ParticipantData, encode_participant
 from cartwheel.bridges.ros2.rtps.network import Network, Reach, domain_id
 from cartwheel.bridges.ros2.rtps.outbox import Outbox
+from cartwheel.bridges.ros2.rtps.participant import Participant
 from cartwheel.bridges.ros2.rtps.reader import Reader, Taken
 from cartwheel.bridges.ros2.rtps.room import Room
 from cartwheel.bridges.ros2.rtps.writer import Writer
@@ -35,8 +37,10 @@ from cartwheel.codes.wires import (
 )
 from cartwheel.errors import CartwheelError
 from cartwheel.graph import Graph
+from cartwheel.messages.ros2_types import ros2_type
 
 QOS = discovery.EndpointQos()
+PATIENCE = 60.0
 
 
 @pytest.fixture(scope="module")
@@ -417,6 +421,112 @@ def test_who_asks_for_all_again_and_again_gets_it_at_a_bounded_pace() -> None:
     assert waits
     # Nothing sleeps: the loop does other things meanwhile.
     assert passed < 30
+
+
+class Rude:
+    """A participant with reliable readers that answers discovery and nothing else."""
+
+    def __init__(self, domain: int) -> None:
+        self.faults: list[Exception] = []
+        self._loop = Loop(self.faults.append, name="rude")
+        self._participant = Participant(
+            self._loop,
+            domain=domain,
+            reach=Reach.of(),
+            name="rude",
+            user_data=b"",
+            tell=lambda _: None,
+        )
+        self._count = 0
+        self._loop.start()
+        self.readers: list[Reader] = self._loop.call(self._begin).result(PATIENCE)
+
+    def _begin(self) -> list[Reader]:
+        self._participant.start()
+        qos = discovery.EndpointQos(reliable=True)
+        readers = [
+            self._participant.reader(f"rt{topic}", ros2_type(kind).dds, qos, lambda _: None)
+            for topic, kind in (
+                ("/odom", "nav_msgs/msg/Odometry"),
+                ("/joint_states", "sensor_msgs/msg/JointState"),
+                ("/clock", "rosgraph_msgs/msg/Clock"),
+            )
+            for _ in range(10)
+        ]
+        for each in readers:
+            each._send = lambda *_: True
+        return readers
+
+    @property
+    def writers(self) -> int:
+        """Those that it is connected with."""
+        return self._loop.call(lambda: sum(len(one.proxies) for one in self.readers)).result(
+            PATIENCE
+        )
+
+    def ask_for_all(self) -> None:
+        """Says of each writer that nothing of it has come, with a request for all of it."""
+        self._loop.call(self._ask).result(PATIENCE)
+
+    def _ask(self) -> None:
+        self._count += 1
+        for reader in self.readers:
+            for guid, proxy in reader.proxies.items():
+                first = max(1, proxy.next - 255)
+                told = wire.acknack(
+                    reader=reader.endpoint.guid[12:],
+                    writer=guid[12:],
+                    base=first,
+                    missing=range(first, proxy.next + 1),
+                    count=self._count,
+                    final=False,
+                )
+                message = wire.message(self._participant.prefix, told, to=guid[:12])
+                self._participant._send((message,), proxy.address)
+
+    def vanish(self) -> None:
+        """Leaves without a word."""
+
+        def end() -> None:
+            self._participant._closed = True
+            network = self._participant._network
+            for sock in (network.unicast, network.multicast):
+                if sock is not None:
+                    self._loop.forget(sock)
+            network.close()
+
+        self._loop.call(end).result(PATIENCE)
+        self._loop.stop()
+
+
+@pytest.mark.skipif(bool(REASON), reason=REASON)
+@pytest.mark.parametrize("way", ["never acknowledges", "asks for all again", "vanishes"])
+def test_readers_that_do_not_acknowledge_hold_up_nobody(way: str) -> None:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("ROS_DOMAIN_ID", str(DOMAIN + 6))
+        bridged = Ros2Bridged()
+        peer = Peer(DOMAIN + 6)
+        rude = [Rude(DOMAIN + 6)]
+    try:
+        peer.subscribe("/odom", "nav_msgs/msg/Odometry")
+        wait_for(lambda: peer.received("/odom"), "odometry")
+        wait_for(lambda: rude[0].writers == len(rude[0].readers), "the connection")
+        before, begin = memory(), bridged.simulation.time_ns
+        for _ in range(10):
+            count = len(peer.received("/odom"))
+            if way == "vanishes":
+                rude[-1].vanish()
+                rude.append(Rude(DOMAIN + 6))
+            attack = rude[-1].ask_for_all if way == "asks for all again" else lambda: None
+            wait_for(lambda: attack() or len(peer.received("/odom")) >= count + 30, "odometry")  # noqa: B023
+        assert bridged.simulation.time_ns > begin + 2_000_000_000
+        assert memory() - before < 40 << 20
+        assert not coded(bridged.reports, BRIDGE_FAULT)
+        assert [each.faults for each in rude] == [[]] * len(rude)
+    finally:
+        rude[-1].vanish()
+        peer.close()
+        bridged.close()
 
 
 def test_a_heartbeat_of_astronomical_numbers_costs_nothing(

@@ -10,6 +10,7 @@ import pytest
 
 from cartwheel.bridges.ros2.rtps import discovery, wire
 from cartwheel.bridges.ros2.rtps.discovery import Endpoint, EndpointQos
+from cartwheel.bridges.ros2.rtps.outbox import Outbox
 from cartwheel.bridges.ros2.rtps.reader import Reader, Taken
 from cartwheel.bridges.ros2.rtps.writer import Writer
 
@@ -143,7 +144,34 @@ def test_who_asks_for_what_is_no_more_is_told_and_it_is_counted() -> None:
     assert [each.number for each in contents if isinstance(each, wire.Data)] == [4, 5]
     (gap,) = [each for each in contents if isinstance(each, wire.Gap)]
     assert (gap.start, gap.base) == (1, 4)
-    assert told == [1, 2, 3]
+    # Once for all, and not again if it asks again.
+    assert told == [3]
+    for count in range(2, 5):
+        writer.take_acknack(
+            THEIRS + READER, wire.Acknack(READER, WRITER, 1, (1, 2, 3, 4, 5), count, True)
+        )
+    assert told == [3]
+
+
+def test_a_receiver_that_falls_behind_gets_the_latest_samples() -> None:
+    sent: list[bytes] = []
+    outbox = Outbox(lambda parts, _: not sent.append(b"".join(parts)), lambda _: None)  # type: ignore[func-returns-value]
+    writer = Writer(
+        endpoint(OURS + WRITER, reliable=False, depth=5), lambda *_: True, outbox=outbox
+    )
+    told: list[int] = []
+    writer.on_refusal = lambda: told.append(writer.dropped)
+    writer.match(endpoint(THEIRS + READER, reliable=False), HERE)
+    for number in range(50):
+        writer.write(bytes([number]) * 150_000)
+    while outbox._jobs:
+        outbox.tick()
+    contents = [each.content for data in sent for each in wire.read(memoryview(data))]
+    fragments = [each for each in contents if isinstance(each, wire.Data)]
+    assert list(dict.fromkeys(each.number for each in fragments)) == [1, 46, 47, 48, 49, 50]
+    # The one that was on its way is complete.
+    assert len(fragments) == 6 * 3
+    assert told == list(range(1, 45))
 
 
 def test_what_a_frozen_reader_misses_is_counted_once() -> None:

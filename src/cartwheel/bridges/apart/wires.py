@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
 import threading
 import time
 from collections.abc import Callable
+from concurrent.futures import Future
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -12,8 +14,8 @@ from cartwheel.bridges.apart.link import Link
 from cartwheel.bridges.apart.remote_graph import RemoteGraph
 from cartwheel.errors import Diagnostic, RecordingError
 
-_FRESH = 0.05
-"""s for which parameters that were asked for are taken for those of now."""
+_FRESH, _STALE = 0.05, 1.0
+"""s after which the values of parameters are asked for, and after which their reader waits."""
 
 
 class _Bridge(Protocol):
@@ -130,26 +132,47 @@ class Ros2Wire(_BridgeWire):
 
 
 class _Values:
-    """The node's parameters, which the simulation's process has; all are asked for at once."""
+    """The node's parameters, which the simulation's process has; all are asked for at once.
+
+    The bridge reads them regularly. It does not wait for the answer, since nothing is sent or
+    received meanwhile, and on a busy computer the answer takes as long as several images.
+    """
 
     def __init__(self, link: Link, graph: RemoteGraph) -> None:
         self._link = link
         self._graph = graph
         self._values: dict[str, Any] = {}
-        self._since = 0.0
+        self._since = -math.inf
+        self._asked: Future[Any] | None = None
+        """A request that is not answered yet, and was made after the last change here."""
         self._lock = threading.Lock()
+        """Held for an instant only; the answers come on the link's thread."""
 
     def get(self, name: str) -> Any:
-        with self._lock:
-            if time.monotonic() - self._since > _FRESH:
-                time_ns, self._values = self._link.ask("values")
-                self._graph.time_ns = time_ns
-                self._since = time.monotonic()
-            return self._values[name]
+        age = time.monotonic() - self._since
+        if age > _STALE:
+            self._take(self._link.ask("values"))
+        elif age > _FRESH and self._asked is None:
+            self._asked = asked = self._link.call("values")
+            asked.add_done_callback(self._answered)
+        return self._values[name]
 
     def set(self, name: str, value: Any) -> None:
         self._link.ask("set_value", name, value)
-        self._since = 0.0
+        with self._lock:
+            self._asked, self._since = None, -math.inf
+
+    def _answered(self, asked: Future[Any]) -> None:
+        """On the link's thread; a request that failed is made again."""
+        with self._lock:
+            if self._asked is asked:
+                self._asked = None
+                if asked.exception() is None:
+                    self._take(asked.result())
+
+    def _take(self, answer: tuple[int, dict[str, Any]]) -> None:
+        self._graph.time_ns, self._values = answer
+        self._since = time.monotonic()
 
 
 class FoxgloveWire(_BridgeWire):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import time
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
@@ -26,7 +27,7 @@ _WAITING = 64 << 20
 """Bytes that may wait for one receiver, where they are more than one sample."""
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False)
 class _Job:
     """A sample on its way to one receiver."""
 
@@ -62,7 +63,9 @@ class Outbox:
         pieces: Iterator[Parts],
         size: int,
         address: Address,
+        *,
         lost: Callable[[], None],
+        most: int,
     ) -> None:
         """Sends a sample after those that wait already.
 
@@ -72,6 +75,8 @@ class Outbox:
             size: Of all of them, in bytes.
             address: Of the receiver.
             lost: Called where the system did not take all of it, or too much waits already.
+            most: Samples of the source that may wait; the oldest is dropped for a new one. A
+                receiver that was slow for a while would else get only old samples from then on.
         """
         waiting = self._jobs.get(address)
         if waiting is None:
@@ -80,11 +85,22 @@ class Outbox:
         elif self._sizes[address] + size > _WAITING:
             lost()
             return
+        else:
+            self._drop_oldest(source, address, most)
         waiting.append(_Job(source, pieces, size, lost))
         self._sizes[address] += size
         if len(waiting) == 1:
             self._go_on(address)
             self._sleep()
+
+    def _drop_oldest(self, source: object, address: Address, most: int) -> None:
+        """Makes room for a sample of a source, if as many as may wait do. One is on its way."""
+        waiting = self._jobs[address]
+        own = [job for job in itertools.islice(waiting, 1, None) if job.source is source]
+        if len(own) >= most:
+            waiting.remove(own[0])
+            self._sizes[address] -= own[0].size
+            own[0].lost()
 
     def put_between(self, parts: Parts, address: Address, lost: Callable[[], None]) -> None:
         """Sends a datagram: at once, or where larger samples are under way, before their next part.

@@ -234,6 +234,7 @@ class Writer:
                 self._reply(proxy, ())
             return
         lost: list[int] = []
+        gone = self.dropped
         for number in told.missing:
             if number > self._last:
                 break
@@ -244,8 +245,11 @@ class Writer:
             else:
                 lost.append(number)
                 if number >= proxy.start and number > proxy.gone and sample is None:
+                    # Counted once, however often it is asked for.
+                    proxy.gone = number
                     self.dropped += 1
-                    self.on_drop()
+        if self.dropped > gone:
+            self.on_drop()
         self._send_again(proxy)
         if told.missing or not told.final:
             self._reply(proxy, lost)
@@ -371,7 +375,8 @@ class Writer:
             self._count_refused(prefix)
 
         if size > wire.LARGEST or self._outbox.is_sending(self, address):
-            self._outbox.put(self, pieces, size, address, lost)
+            depth = self.endpoint.qos.depth
+            self._outbox.put(self, pieces, size, address, lost=lost, most=depth)
         else:
             self._outbox.put_between(next(pieces), address, lost)
 
