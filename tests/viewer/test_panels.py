@@ -125,11 +125,36 @@ def test_thinning_keeps_the_newest_row():
 
 
 def test_the_light_names_the_models_hit_and_escapes_them():
-    lit = light_html(("wall::link::c", "a<b::l::c", "wall::link::d"))
+    contacts = [("/left", "wall::link::c"), ("/<i>", "a<b::l::c"), ("/left", "wall::link::d")]
+    lit = light_html(contacts)
     assert "cw-hit" in lit
-    assert "wall, a&lt;b" in lit
+    assert "Contact: <b>wall</b>, <b>a&lt;b</b></span>" in lit
     assert "<b::" not in lit
-    assert "cw-hit" not in light_html(())
+    assert "cw-hit" not in light_html([])
+    both = light_html(contacts, topics=True)
+    assert "Contact: <b>wall</b> (/left), <b>a&lt;b</b> (/&lt;i&gt;)</span>" in both
+
+
+def test_the_light_names_the_bumper_where_there_are_several():
+    graph, stage = Graph(), MagicMock()
+    stage.session.graph = graph
+    stage.page.clients = {1}
+    stage.seats = {}
+    light = stage.page.gui.add_html.return_value
+    panel = BumperPanel(stage)
+    left = graph.advertise("/left", CONTACTS)
+    panel.show_topics(graph.topics())
+
+    def publish(topic):
+        topic.publish(message_class(CONTACTS)(header=header(0, ""), states=[contact(1.0)]))
+        panel.update(None, 10.0)
+
+    publish(left)
+    assert "<b>post</b></span>" in light.content
+    right = graph.advertise("/right", CONTACTS)
+    panel.show_topics(graph.topics())
+    publish(right)
+    assert "<b>post</b> (/left), <b>post</b> (/right)</span>" in light.content
 
 
 def test_what_is_hit_is_not_the_sensors_own_collision():

@@ -21,13 +21,14 @@ _LONGEST = 0.8
 
 
 class BumperPanel(Panel):
-    """Lit while any ContactsState topic reports a touch, with the names of what was hit."""
+    """Lit while any ContactsState topic reports a contact, with the models that are hit."""
 
     def __init__(self, stage: Stage) -> None:
         super().__init__(stage)
         self._boxes: dict[str, Mailbox] = {}
         self._topics: tuple[str, ...] = ()
-        self._seen: dict[str, float] = {}
+        self._seen: dict[tuple[str, str], float] = {}
+        """When a topic last reported a contact with a collision, s of wall time."""
         self._states: dict[str, Sequence[Any]] = {}
         """The newest of each topic."""
         self._arrows: dict[int, Any] = {}
@@ -64,13 +65,13 @@ class BumperPanel(Panel):
             messages = box.drain()
             for message in messages:
                 for state in message.states:
-                    self._seen[other_side(state)] = now
+                    self._seen[topic, other_side(state)] = now
             if messages:
                 news = True
                 self._states[topic] = messages[-1].states
         self._show_forces(news)
-        self._seen = {name: at for name, at in self._seen.items() if now - at < LATCH}
-        content = light_html(tuple(sorted(self._seen)))
+        self._seen = {contact: at for contact, at in self._seen.items() if now - at < LATCH}
+        content = light_html(sorted(self._seen), topics=len(self._topics) > 1)
         if content != self._shown:
             self._light.content = self._shown = content
 
@@ -117,13 +118,22 @@ def other_side(state: Any) -> str:
     return str(state.collision2_name)
 
 
-def light_html(hit: Sequence[str]) -> str:
-    """The light: grey without a contact, red with names when touching."""
-    if hit:
-        models = ", ".join(dict.fromkeys(escape(name.split("::")[0]) for name in hit))
-        full = escape("\n".join(hit))
+def light_html(contacts: Sequence[tuple[str, str]], *, topics: bool = False) -> str:
+    """The light: grey without a contact, red with the models that are hit.
+
+    Args:
+        contacts: The topic of each contact, and the collision that is hit.
+        topics: Shows which topic reports the contact.
+    """
+    if contacts:
+        shown = (
+            f"<b>{escape(name.split('::')[0])}</b>" + (f" ({escape(topic)})" if topics else "")
+            for topic, name in contacts
+        )
+        models = ", ".join(dict.fromkeys(shown))
+        full = escape("\n".join(f"{topic}: {name}" for topic, name in contacts))
         return (
             f'<div class="cw"><div class="cw-bumper cw-hit" title="{full}">'
-            f"<i></i><span>Contact: <b>{models}</b></span></div></div>"
+            f"<i></i><span>Contact: {models}</span></div></div>"
         )
     return '<div class="cw"><div class="cw-bumper"><i></i><span>No contact</span></div></div>'
