@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import json
+from collections import Counter
+from pathlib import Path
 
 import pytest
+from tests.description.check.seeded import ROBOT
 
 import cartwheel
 from cartwheel.checks import check
@@ -12,6 +15,7 @@ from cartwheel.checks.baseline import write
 from cartwheel.checks.selection import codes_matching
 from cartwheel.checks.workspace import descriptions
 from cartwheel.codes import command, devices, robot
+from cartwheel.description import xml
 from cartwheel.errors import CartwheelError, UnknownNameError
 
 LINK = """  <link name="{name}">
@@ -55,6 +59,34 @@ def test_python_has_the_findings_of_plugins(file):
     assert finding.code is devices.PLUGIN_PARAMETER_UNKNOWN
     assert finding.instead == "<topicName>imu</topicName>"
     assert (result.count("warning"), result.complete) == (1, True)
+
+
+@pytest.mark.parametrize(
+    ("plugin", "default"),
+    [
+        ("libgazebo_ros_diff_drive.so", ("leftJoint", "left_joint")),
+        ("libgazebo_ros_skid_steer_drive.so", ("rightRearJoint", "right_rear_joint")),
+        ("libgazebo_ros_ackermann_drive.so", ("left_steering_joint", "left_steering_joint")),
+        ("gz-sim-diff-drive-system", ("left_joint", "left_joint")),
+    ],
+)
+def test_a_plugin_that_names_no_joints_needs_those_of_its_defaults(file, plugin, default):
+    tag = f'<gazebo><plugin name="p" filename="{plugin}"/></gazebo></robot>'
+    result = cartwheel.check(file(GOOD.replace("</robot>", tag)))
+    missing = [each for each in result.findings if each.code is devices.PLUGIN_PARAMETER_MISSING]
+    joints = {each.values["parameter"]: each.values["joint"] for each in missing}
+    assert default in joints.items()
+    assert "steering_wheel_joint" not in joints, "the plugin works without it"
+    ends = '<parent link="bar"/><child link="{0}"/>'
+    wheel = LINK.format(name="{0}", ixx=2) + f'<joint name="{{0}}" type="continuous">{ends}</joint>'
+    wheels = "".join(wheel.format(joint) for joint in joints.values())
+    there = file(GOOD.replace("</robot>", wheels + tag))
+    assert devices.PLUGIN_PARAMETER_MISSING not in codes(cartwheel.check(there))
+
+
+def test_a_misspelt_joint_tag_is_not_missing_as_well(file):
+    text = ROBOT.replace("leftJoint", "leftJiont")
+    assert codes(cartwheel.check(file(text))) == [devices.PLUGIN_PARAMETER_UNKNOWN]
 
 
 def test_codes_are_matched_by_number_name_former_name_and_prefix():
@@ -201,6 +233,24 @@ def test_what_two_robots_include_is_reported_once(workspace):
     assert [report.name for report in result.reports] == ["bar", "bar"]
     (finding,) = result.findings
     assert finding.origin.file.endswith("part.xacro")
+
+
+def test_a_file_of_many_robots_is_not_parsed_for_each_rule(workspace, file, monkeypatch):
+    for index in range(5):
+        text = (workspace / "src/arm/urdf/one.urdf.xacro").read_text()
+        file(text, f"src/arm/urdf/more_{index}.urdf.xacro")
+    parsed = Counter()
+    parse = xml.parse
+
+    def counted(text, name="<string>"):
+        parsed[Path(name).name] += 1
+        return parse(text, name)
+
+    monkeypatch.setattr(xml, "parse", counted)
+    robots = len(check(workspace, package_path=[workspace / "src"]).reports)
+    assert robots > 5
+    # Once to choose the robots, once for the package, and once for each robot that includes it.
+    assert parsed["part.xacro"] <= 2 + robots
 
 
 def test_a_comment_that_one_of_two_robots_needs_is_used(workspace):

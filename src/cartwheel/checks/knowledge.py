@@ -19,9 +19,18 @@ def knowledge() -> PluginKnowledge:
     return PluginKnowledge(
         filenames=tuple(sorted(names)),
         judge=_judge,
+        default_joints=_default_joints,
         controller_types=tuple(sorted(controller_types())),
         controller_files=files_for,
     )
+
+
+def _default_joints(tag: PluginTag) -> Iterable[tuple[tuple[str, ...], str]]:
+    from cartwheel.plugins.catalogue import plugin_named
+    from cartwheel.plugins.parameters import default_joints
+
+    plugin = plugin_named(tag.filename)
+    return () if plugin is None else default_joints(plugin.parameters, tag.element)
 
 
 def _judge(tag: PluginTag, _sensor: Sensor | None) -> Iterable[Diagnostic] | None:

@@ -122,7 +122,6 @@ def _report(
             file=str(file),
             name="",
             findings=(finding,),
-            ignored=0,
             complete=False,
             files=(str(file),),
         )

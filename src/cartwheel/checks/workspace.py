@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 
 from cartwheel.description import xml
 from cartwheel.description.node import Node
 from cartwheel.description.packages import IGNORE_MARKERS
-from cartwheel.errors import DescriptionError
 
 SUFFIXES = (".xacro", ".urdf", ".sdf", ".world")
 MOST = 5000
@@ -34,20 +34,30 @@ def descriptions(folder: Path) -> list[Path]:
     Build and hidden folders, and those with ``COLCON_IGNORE`` and the like, are not searched.
     A file that cannot be read counts, so that its error is reported.
     """
-    roots: dict[Path, Node | None] = {}
     walked = list(_walk(folder))
-    for path in _files(walked):
-        roots[path] = _root(path)
+    files = {path: _File.read(path) for path in _files(walked)}
     included: set[Path] = set()
     packages = {path.parent.name: path.parent for path in _manifests(folder, walked)}
-    for path, root in roots.items():
-        if root is not None:
-            included |= set(_included(path, root, packages, roots)) - {path}
-    return [
-        path
-        for path, root in roots.items()
-        if path not in included and (root is None or _describes(root))
-    ]
+    for path, file in files.items():
+        included |= set(_included(path, file.includes, packages, files)) - {path}
+    return [path for path, file in files.items() if path not in included and file.describes]
+
+
+@dataclass(frozen=True, slots=True)
+class _File:
+    """What the choice needs of a file: the trees of thousands of them would fill the memory."""
+
+    includes: tuple[str, ...]
+    """Names of files, as they are written."""
+    describes: bool
+    """Whether it describes something by itself, or cannot be read."""
+
+    @classmethod
+    def read(cls, path: Path) -> _File:
+        root = xml.readable_file(path)
+        if root is None:
+            return cls((), describes=True)
+        return cls(tuple(_includes(root)), describes=_describes(root))
 
 
 def _walk(folder: Path) -> Iterator[tuple[Path, list[str]]]:
@@ -73,23 +83,20 @@ def _manifests(folder: Path, walked: Walked) -> list[Path]:
     return [*(path for path in above if path.is_file()), *below]
 
 
-def _root(path: Path) -> Node | None:
-    try:
-        return xml.parse(xml.read_bytes(path), str(path))
-    except DescriptionError:
-        return None
-
-
-def _included(
-    path: Path, root: Node, packages: dict[str, Path], known: dict[Path, Node | None]
-) -> Iterator[Path]:
+def _includes(root: Node) -> Iterator[str]:
     waiting = [root]
     while waiting:
         node = waiting.pop()
         waiting += node.children
         name = node.attributes.get("filename", "")
-        if node.tag not in ("xacro:include", "include") or not name:
-            continue
+        if node.tag in ("xacro:include", "include") and name:
+            yield name
+
+
+def _included(
+    path: Path, names: Sequence[str], packages: Mapping[str, Path], known: Collection[Path]
+) -> Iterator[Path]:
+    for name in names:
         match = _FIND.match(name)
         if match is not None and "$" not in match[3]:
             package = packages.get(match[1] or match[2])

@@ -97,6 +97,14 @@ def read_file(path: Path) -> Node:
     return parse(read_bytes(path), shown_path(path))
 
 
+def readable_file(path: Path) -> Node | None:
+    """The tree of an XML file; None if it cannot be read."""
+    try:
+        return read_file(path)
+    except DescriptionError:
+        return None
+
+
 def parse(text: str | bytes, file: str = "<string>") -> Node:
     """The tree of an XML text.
 

@@ -71,6 +71,7 @@ class AckermannParameters:
     steering_wheel: str = tag(
         "steering_wheel_joint",
         default="steering_wheel_joint",
+        optional=True,
         doc="Joint of the steering wheel, which turns in proportion to the steering angle. "
         "Optional: ignored if no joint has this name.",
     )

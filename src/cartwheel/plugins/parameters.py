@@ -31,6 +31,7 @@ def tag(
     default: Any = dataclasses.MISSING,
     unit: str = "",
     most: float | None = None,
+    optional: bool = False,
     doc: str,
 ) -> Any:
     """Declares a dataclass field that is read from a tag.
@@ -41,9 +42,10 @@ def tag(
         default: Value if none of the tags exists. Without a default, the tag is required.
         unit: SI unit of the value.
         most: Largest magnitude. Defaults to `LARGEST`, and for integers to 2**31 - 1.
+        optional: Whether the plugin works without the joint that the default names.
         doc: Description for the plugin reference, one or two sentences.
     """
-    metadata = {"tags": names, "unit": unit, "doc": doc, "most": most}
+    metadata = {"tags": names, "unit": unit, "doc": doc, "most": most, "optional": optional}
     if default is dataclasses.MISSING:
         return dataclasses.field(metadata=metadata)
     return dataclasses.field(default=default, metadata=metadata)
@@ -52,6 +54,22 @@ def tag(
 def tags_of(cls: type) -> set[str]:
     """All tags that a parameter dataclass reads."""
     return {name for item in dataclasses.fields(cls) for name in item.metadata["tags"]}
+
+
+def default_joints(cls: type, element: Element) -> list[tuple[tuple[str, ...], str]]:
+    """The joints that a plugin uses because no tag names one.
+
+    Returns:
+        For each of them the tag's spellings and the joint's name.
+    """
+    joints = []
+    for item in dataclasses.fields(cls):
+        names: tuple[str, ...] = item.metadata["tags"]
+        defaults = item.default if isinstance(item.default, tuple) else (item.default,)
+        if item.metadata["optional"] or any(element.find(name) is not None for name in names):
+            continue
+        joints += [(names, each) for each in defaults if str(each).endswith("_joint")]
+    return joints
 
 
 def read(

@@ -238,6 +238,8 @@ WITH_ADVICE: dict[str, Case] = {
         'lower="1"', 'lower="-1" upper="1"'),
     "degrees": ("limit-in-degrees", [('lower="-1" upper="1"', 'lower="-90" upper="90"')],
         'lower="-90"', 'lower="-1.5708" upper="1.5708"'),
+    "a radian in degrees": ("limit-in-degrees", [('lower="-1" upper="1"', 'lower="-57.3" upper="57.2958"')],
+        'lower="-57.3"', 'upper="1"'),
     "effort 0": ("effort-zero", [('effort="5" velocity="20"', 'effort="0" velocity="20"')],
         'effort="0"', 'effort="10"'),
     "velocity 0": ("effort-zero", [('effort="5" velocity="20"', 'effort="5" velocity="0"')],

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
-from cartwheel.codes import code_named, codes_of
+from cartwheel.codes import codes_of
 from cartwheel.codes.tags import DEFAULT_USED
 from cartwheel.description.check import (
     control,
@@ -32,7 +32,7 @@ from cartwheel.description.check import (
 )
 from cartwheel.description.check.control_search import control_files
 from cartwheel.description.check.mending import displaced, mend
-from cartwheel.description.check.rule import Rule, limited
+from cartwheel.description.check.rule import Rule
 from cartwheel.description.check.subject import PluginKnowledge, Robot, Subject
 from cartwheel.description.loading import Opened, open_description, understand
 from cartwheel.description.model import RobotDescription, WorldDescription
@@ -76,8 +76,6 @@ class Report:
     """The robot's or world's; empty where it could not be read."""
     findings: tuple[Diagnostic, ...]
     """In the order of their places."""
-    ignored: int
-    """Findings of ignored codes."""
     files: tuple[str, ...] = ()
     """All files that were read for it: included ones, and those of controllers."""
     complete: bool
@@ -94,7 +92,6 @@ def check(
     arguments: Mapping[str, str] | None = None,
     package_path: Sequence[Path] = (),
     known: PluginKnowledge | None = None,
-    ignore: Collection[str] = (),
     controller_files: Sequence[Path] = (),
 ) -> Report:
     """Looks for what breaks or misleads in a description.
@@ -104,38 +101,33 @@ def check(
         arguments: The values of ``name:=value``.
         package_path: As for `load`.
         known: What is known of plugins; without it their parameters are not looked at.
-        ignore: Codes to ignore, by number or name.
         controller_files: Files of controllers, in place of those that lie near the robot.
 
     Raises:
         DescriptionError: it is no description, or its XML or xacro cannot be read.
-        UnknownNameError: A code to ignore does not exist.
     """
-    ignored = {code_named(name) for name in ignore}
     opened = open_description(path, arguments or {}, package_path)
     if nodes.children(opened.root, "light") and _is_empty(opened.root):
         # A lamp, which worlds include: there is nothing to say of it.
         name = nodes.name_of(nodes.children(opened.root, "light")[0])
-        return Report(file=opened.files[0], name=name, findings=(), ignored=0, complete=True)
+        return Report(file=opened.files[0], name=name, findings=(), complete=True)
     if opened.root.tag not in ("robot", "sdf", "gazebo") or _is_empty(opened.root):
         understand(opened)  # says what it is instead
     subject = _subject(opened, known, controller_files)
     # Numbers near the largest overflow; no finding comes of what is not a number.
     with np.errstate(all="ignore"):
-        found = _distinct(
+        findings = _distinct(
             [
-                *limited(tags.passed(subject)),
+                *tags.passed(subject),
                 *(one for each in RULES for one in each.apply(subject)),
             ]
         )
-    told = [finding for finding in found if finding.code not in ignored]
     order = {file: index for index, file in enumerate(subject.files)}
-    told.sort(key=lambda finding: place(finding, order))
+    findings.sort(key=lambda finding: place(finding, order))
     return Report(
         file=subject.files[0],
         name=subject.read.name if subject.read is not None else "",
-        findings=tuple(told),
-        ignored=len(found) - len(told),
+        findings=tuple(findings),
         complete=subject.read is not None,
         files=tuple(
             dict.fromkeys([*subject.files, *(str(own.path) for _, own in subject.control)])
@@ -209,13 +201,16 @@ def _read(
 
 def _left_out(root: Node, read: RobotDescription | WorldDescription | None) -> set[str]:
     """The links of SDF that lack what its readers left out."""
+    holders: dict[int, set[str]] = {}
+    for link in nodes.walk(root):
+        for node in nodes.walk(link) if link.tag == "link" else ():
+            holders.setdefault(id(node.origin), set()).add(nodes.name_of(link))
     links = set[str]()
     for diagnostic in read.diagnostics if read is not None else ():
         values = diagnostic.values
         lacks = "left_out" in values or (diagnostic.code is DEFAULT_USED and "shape" in values)
-        if lacks and diagnostic.origin is not None:
-            node = nodes.at(root, diagnostic.origin)
-            links |= _links_around(root, node) if node is not None else set()
+        if lacks:
+            links |= holders.get(id(diagnostic.origin), set())
     return links
 
 

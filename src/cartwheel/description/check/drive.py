@@ -8,6 +8,7 @@ import numpy as np
 
 from cartwheel.codes import robot as robot_codes
 from cartwheel.description.check import nodes, spelling
+from cartwheel.description.check.control import is_known
 from cartwheel.description.check.rule import rule
 from cartwheel.description.check.solids import Floats, Solid, bounds
 from cartwheel.description.check.subject import DRIVE_JOINT_TAGS, Drive, Robot, Subject
@@ -29,11 +30,9 @@ def drive_joint_unknown(subject: Subject) -> Iterator[Diagnostic]:
     for robot, drive in _drives(subject):
         for element in drive.tag.element.children:
             name = element.text.strip()
-            if element.tag not in DRIVE_JOINT_TAGS or name in robot.joints:
+            if element.tag not in DRIVE_JOINT_TAGS or is_known(name, robot, subject):
                 continue
-            if not subject.is_urdf and name in subject.joints_written:
-                continue  # it cannot be read, which is told there
-            near = spelling.meant(name, robot.joints)
+            near = spelling.meant(name, robot.joint_names)
             yield robot_codes.DRIVE_JOINT_UNKNOWN.diagnostic(
                 message=f'<{element.tag}> names the joint "{name}", which does not exist',
                 values={"tag": element.tag, "joint": name},
@@ -41,7 +40,7 @@ def drive_joint_unknown(subject: Subject) -> Iterator[Diagnostic]:
                 instead=nodes.written(element.tag, dict(element.attributes), near) if near else "",
                 place="element" if near else "",
                 mark=name,
-                hint="" if near else spelling.nearest(name, robot.joints),
+                hint="" if near else spelling.nearest(name, robot.joint_names),
             )
 
 

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from cartwheel.codes import robot as robot_codes
-from cartwheel.description.check import nodes
+from cartwheel.description.check import nodes, units
 from cartwheel.description.check.rule import rule
 from cartwheel.description.check.subject import Robot, Subject
 from cartwheel.description.node import Node
@@ -239,8 +239,8 @@ def _are_degrees(stated: list[float]) -> bool:
     """Whether absolute values other than 0 are such as people write in degrees."""
     if not stated or (len(set(stated)) == 1 and stated[0] in _ENDLESS):
         return False
-    return all(value % 5 == 0 and value <= _MOST_DEGREES for value in stated) and (
-        max(stated) >= _LEAST_DEGREES
+    return _LEAST_DEGREES <= max(stated) <= _MOST_DEGREES and all(
+        value % 5 == 0 or units.is_converted(value, 0.1) for value in stated
     )
 
 

@@ -90,7 +90,7 @@ def _absent(subject: Subject) -> Iterator[Diagnostic]:
 
 def _of_sdf(subject: Subject, diagnostic: Diagnostic) -> Diagnostic:
     """A reader's diagnostic of something that is not there, with the URI to write."""
-    node = nodes.at(subject.root, diagnostic.origin) if diagnostic.origin else None
+    node = subject.node_at(diagnostic.origin)
     uri = nodes.child(node, "uri") or (node if node and node.tag == "uri" else None)
     near = str(diagnostic.values.get("meant", ""))
     meant = _meant(subject, uri.text.strip(), uri, near) if uri is not None else ""

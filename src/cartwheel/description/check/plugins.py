@@ -7,7 +7,8 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from cartwheel.codes import devices as devices_codes
-from cartwheel.description.check import frames, nodes
+from cartwheel.description.check import frames, nodes, spelling
+from cartwheel.description.check.control import is_known
 from cartwheel.description.check.rule import rule
 from cartwheel.description.check.subject import Subject
 from cartwheel.description.model import Element, PluginTag
@@ -70,6 +71,30 @@ def plugin_parameter(subject: Subject) -> Iterator[Diagnostic]:
         for tag, sensor in robot.plugins():
             for diagnostic in subject.plugins.judge(tag, sensor) or ():
                 yield _advised(tag, diagnostic)
+
+
+@rule(devices_codes.PLUGIN_PARAMETER_MISSING)
+def joint_missing(subject: Subject) -> Iterator[Diagnostic]:
+    """Parameters that name no joint, where the plugin's default does not exist either."""
+    knowledge = subject.plugins
+    if knowledge is None or knowledge.default_joints is None:
+        return
+    for robot in subject.robots:
+        for tag, sensor in robot.plugins():
+            defaults = [*knowledge.default_joints(tag)]
+            if all(is_known(joint, robot, subject) for _, joint in defaults):
+                continue
+            # A misspelt tag is reported itself.
+            misspelt = {each.values.get("meant") for each in knowledge.judge(tag, sensor) or ()}
+            for spellings, joint in defaults:
+                if not is_known(joint, robot, subject) and misspelt.isdisjoint(spellings):
+                    yield devices_codes.PLUGIN_PARAMETER_MISSING.diagnostic(
+                        f'<{spellings[0]}> is missing, and its default, the joint "{joint}", '
+                        "does not exist",
+                        values={"parameter": spellings[0], "joint": joint},
+                        origin=tag.origin,
+                        hint=spelling.nearest(joint, robot.joint_names),
+                    )
 
 
 @rule(devices_codes.PLUGIN_PARAMETER_OBSOLETE)
@@ -136,4 +161,4 @@ def _all(element: Element) -> Iterator[Element]:
         yield from _all(child)
 
 
-RULES = (plugin_unknown, plugin_parameter, plugin_obsolete)
+RULES = (plugin_unknown, plugin_parameter, joint_missing, plugin_obsolete)

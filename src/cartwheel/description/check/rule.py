@@ -34,13 +34,20 @@ class Rule:
         ]
 
 
-def limited(findings: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
-    """At most `MOST_FINDINGS` of each code, and one that reports that there are more."""
+def limited(
+    findings: Iterable[Diagnostic], finish: Callable[[Diagnostic], Diagnostic]
+) -> Iterator[Diagnostic]:
+    """At most `MOST_FINDINGS` of each code, and one that reports that there are more.
+
+    Args:
+        findings: All of them.
+        finish: What completes those that are kept.
+    """
     counts: Counter[Code] = Counter()
     for each in findings:
         counts[each.code] += 1
         if counts[each.code] <= MOST_FINDINGS:
-            yield each
+            yield finish(each)
         elif counts[each.code] == MOST_FINDINGS + 1:
             yield _more(each.code, each.origin)
 

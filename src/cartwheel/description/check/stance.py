@@ -130,14 +130,18 @@ def wheels_off_ground(subject: Subject) -> Iterator[Diagnostic]:
     for robot in subject.robots:
         joints = wheel_joints(robot)
         parts = {name for joint in joints for name in wheel_links(robot, joint)}
-        heights = [lowest(robot, *wheel_links(robot, joint)) for joint in joints]
+        heights = [
+            lowest(robot, *wheel_links(robot, joint))
+            for joint in joints
+            if robot.whole(joint.child)
+        ]
         wheels = [height for height in heights if height is not None]
         if not wheels or robot.description.static or not robot.is_placed:
             continue
         bottom = min(wheels)
         radius = wheel_radius(robot, joints[0]) or 0.1
         for link in robot.description.links:
-            if link.name in parts or _rolls(robot, link):
+            if link.name in parts or link.name in robot.cut or _rolls(robot, link):
                 continue
             height = lowest(robot, link.name)
             if height is None or bottom - height <= max(0.1 * radius, 0.005):
@@ -159,6 +163,7 @@ def collisions_overlap(subject: Subject) -> Iterator[Diagnostic]:
             for link in robot.description.links
             if (robot.description.self_collide if link.self_collide is None else link.self_collide)
             and link.collisions
+            and link.name not in robot.cut
         ]
         if len(able) > 60 or robot.description.static or not robot.is_placed:
             continue

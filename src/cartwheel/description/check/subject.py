@@ -8,6 +8,7 @@ from functools import cached_property
 from pathlib import Path
 
 from cartwheel.codes.files import FILE_MISSING, FILE_ON_NETWORK
+from cartwheel.description import xml
 from cartwheel.description.check import nodes
 from cartwheel.description.check.control_files import ControlFile
 from cartwheel.description.check.solids import Floats, Solid, bounds, solid_of
@@ -35,6 +36,8 @@ class PluginKnowledge:
     """Such as ``libgazebo_ros_camera.so``."""
     judge: Callable[[PluginTag, Sensor | None], Iterable[Diagnostic] | None]
     """What is wrong with a plugin's parameters; None for a plugin that is not known."""
+    default_joints: Callable[[PluginTag], Iterable[tuple[tuple[str, ...], str]]] | None = None
+    """Joints that a plugin uses because no tag names one: the tag's spellings, and the joint."""
     controller_types: tuple[str, ...] = ()
     """Such as ``effort_controllers/JointPositionController``; empty where none is known."""
     controller_files: Callable[[Path, Sequence[str]], Sequence[Path]] | None = None
@@ -321,6 +324,41 @@ class Subject:
         tags = nodes.children(self.root, "gazebo")
         whole = [tag for tag in tags if not nodes.text_of(tag, "reference")]
         return frozenset(id(node.origin) for tag in whole for node in nodes.walk(tag))
+
+    @cached_property
+    def written(self) -> tuple[Node, ...]:
+        """Each file that xacro read, before its expansion; without those that cannot be read."""
+        trees = (xml.readable_file(Path(file)) for file in self.files)
+        return tuple(tree for tree in trees if tree is not None)
+
+    @cached_property
+    def macros(self) -> frozenset[str]:
+        """The names of the macros that its files define."""
+        return frozenset(
+            nodes.name_of(node).removeprefix("xacro:")
+            for tree in self.written
+            for node in nodes.walk(tree)
+            if node.tag == "xacro:macro"
+        )
+
+    def node_at(self, origin: Origin | None) -> Node | None:
+        """The element of that very place."""
+        return None if origin is None else self._at.get(id(origin))
+
+    def holder_of(self, node: Node) -> Node | None:
+        """The element that holds another."""
+        return self._holders.get(id(node))
+
+    @cached_property
+    def _at(self) -> dict[int, Node]:
+        found: dict[int, Node] = {}
+        for node in nodes.walk(self.root):
+            found.setdefault(id(node.origin), node)
+        return found
+
+    @cached_property
+    def _holders(self) -> dict[int, Node]:
+        return {id(child): node for node in nodes.walk(self.root) for child in node.children}
 
     @cached_property
     def joints_written(self) -> frozenset[str]:

@@ -9,11 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import partial
 
 from cartwheel.codes import codes_of, devices, files
 from cartwheel.codes import tags as codes
-from cartwheel.description.check import nodes, spelling, xacro_use
-from cartwheel.description.check.rule import rule
+from cartwheel.description.check import nodes, spelling
+from cartwheel.description.check.rule import limited, rule
 from cartwheel.description.check.subject import ABSENT, Subject
 from cartwheel.description.node import Node
 from cartwheel.errors import Diagnostic
@@ -65,14 +66,14 @@ def tag_misplaced(subject: Subject) -> Iterator[Diagnostic]:
     for diagnostic in _diagnostics(subject):
         if not _has_place(diagnostic):
             continue
-        node = nodes.at(subject.root, diagnostic.origin) if diagnostic.origin else None
-        block = nodes.parent_of(subject.root, node) if node is not None else None
+        node = subject.node_at(diagnostic.origin)
+        block = subject.holder_of(node) if node is not None else None
         if node is not None and block is not None:
             key = (id(block), str(diagnostic.values["needs"]))
             blocks.setdefault(key, []).append((node, diagnostic))
     for (_, needs), misplaced in blocks.items():
         first, diagnostic = misplaced[0]
-        block = nodes.parent_of(subject.root, first) or first
+        block = subject.holder_of(first) or first
         reference = str(diagnostic.values["reference"])
         meant = _meant_by(subject, nodes.text_of(block, "reference"), needs)
         alone = len(misplaced) == len(block.children)
@@ -117,26 +118,34 @@ def passed(subject: Subject) -> Iterator[Diagnostic]:
     for failure in subject.failures:
         if failure.code not in ABSENT and "moments" not in failure.values:
             yield failure
-    cut = {link for robot in subject.robots for link in robot.cut}
+    yield from limited(_relevant(subject), partial(_finished, subject))
+
+
+def _relevant(subject: Subject) -> Iterator[Diagnostic]:
+    """The readers' diagnostics that no rule has in more detail, as they are."""
+    lacking = {link for robot in subject.robots for link in robot.incomplete}
     for diagnostic in _diagnostics(subject):
         if diagnostic.code in ABSENT or _has_place(diagnostic):
             continue
-        if diagnostic.severity == "error":
-            yield _marked(subject, diagnostic)
-            continue
         # A link that lacks a part only because it could not be read is no news.
-        follows = "missing" in diagnostic.values and diagnostic.values.get("link") in cut
-        if diagnostic.code not in _ELSEWHERE and not follows:
-            yield _advised(subject, diagnostic)
+        follows = "missing" in diagnostic.values and diagnostic.values.get("link") in lacking
+        if diagnostic.severity == "error" or (diagnostic.code not in _ELSEWHERE and not follows):
+            yield diagnostic
 
 
 def _diagnostics(subject: Subject) -> tuple[Diagnostic, ...]:
     return () if subject.read is None else subject.read.diagnostics
 
 
+def _finished(subject: Subject, diagnostic: Diagnostic) -> Diagnostic:
+    """A reader's diagnostic with its mark, or with the text to write."""
+    finish = _marked if diagnostic.severity == "error" else _advised
+    return finish(subject, diagnostic)
+
+
 def _marked(subject: Subject, diagnostic: Diagnostic) -> Diagnostic:
     """An error with its place in the line, or with the end of the joint that is misspelt."""
-    node = nodes.at(subject.root, diagnostic.origin) if diagnostic.origin is not None else None
+    node = subject.node_at(diagnostic.origin)
     if node is None:
         return diagnostic
     values = diagnostic.values
@@ -162,7 +171,7 @@ def _advised(subject: Subject, diagnostic: Diagnostic) -> Diagnostic:
         return replace(diagnostic, severity="info")
     if diagnostic.code not in _GUESSED:
         return diagnostic
-    node = nodes.at(subject.root, diagnostic.origin) if diagnostic.origin is not None else None
+    node = subject.node_at(diagnostic.origin)
     values = diagnostic.values
     attribute = str(values.get("attribute", ""))
     if node is not None and attribute and (written := _from_urdf(subject, node)):
@@ -219,7 +228,7 @@ def _likely(node: Node | None, diagnostic: Diagnostic) -> str:
 
 def _calls_macro(subject: Subject, node: Node, diagnostic: Diagnostic) -> bool:
     in_robot = diagnostic.values.get("parent") == "robot"
-    return in_robot and node.tag in xacro_use.macro_names(subject)
+    return in_robot and node.tag in subject.macros
 
 
 def _from_urdf(subject: Subject, node: Node) -> str:

@@ -14,6 +14,8 @@ from cartwheel.errors import Diagnostic
 
 _ADDED = 4 * math.pi
 """rad: so far editors let angles run, past a turn."""
+_ROUNDED = 3e-4
+"""The relative error of degrees in four digits."""
 FARTHEST = 100.0
 """m between a link and its parent."""
 
@@ -68,9 +70,17 @@ def place_millimetres(subject: Subject) -> Iterator[Diagnostic]:
         )
 
 
+def is_converted(angle: float, step: float) -> bool:
+    """Whether an angle is that of a multiple of so many radians in degrees: 57.3 is 1 rad."""
+    steps = math.radians(angle) / step
+    return round(steps) != 0 and abs(steps / round(steps) - 1) < _ROUNDED
+
+
 def _is_degrees(value: float) -> bool:
-    """Whether an angle is more than a turn, and none that a program has added up."""
-    return abs(value) > 2 * math.pi + 0.01 and (abs(value) >= _ADDED or value == int(value))
+    """Whether an angle is more than a turn, but not one that an editor has added up."""
+    return abs(value) > 2 * math.pi + 0.01 and (
+        abs(value) >= _ADDED or value == int(value) or is_converted(value, 0.01)
+    )
 
 
 def _angles(subject: Subject, node: Node) -> tuple[str, bool]:

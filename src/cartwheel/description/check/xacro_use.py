@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 
 from cartwheel.codes import files as files_codes
@@ -13,7 +15,7 @@ from cartwheel.description.check.rule import rule
 from cartwheel.description.check.subject import Subject
 from cartwheel.description.node import Node
 from cartwheel.description.xacro_unprefixed import PREFIX
-from cartwheel.errors import DescriptionError, Diagnostic
+from cartwheel.errors import Diagnostic
 
 _WORD = re.compile(r"[A-Za-z_]\w*")
 _EXPRESSION = re.compile(r"\$\{([^}]*)\}|\$\(([^)]*)\)")
@@ -24,8 +26,8 @@ MAX_FILES = 200
 
 @rule(files_codes.ARGUMENT_UNUSED)
 def argument_unused(subject: Subject) -> Iterator[Diagnostic]:
-    used = _words(subject)
-    for tree in _trees(subject):
+    used = _uses(subject).words
+    for tree in subject.written:
         for node in nodes.walk(tree):
             name = nodes.name_of(node)
             if node.tag == "xacro:arg" and _is_plain(name) and name not in used:
@@ -40,7 +42,7 @@ def argument_unused(subject: Subject) -> Iterator[Diagnostic]:
 
 @rule(files_codes.PROPERTY_UNUSED)
 def property_unused(subject: Subject) -> Iterator[Diagnostic]:
-    used = _words(subject)
+    used = _uses(subject).words
     for tree in _own_trees(subject):
         for node in nodes.walk(tree):
             name = nodes.name_of(node)
@@ -56,7 +58,7 @@ def property_unused(subject: Subject) -> Iterator[Diagnostic]:
 
 @rule(files_codes.PROPERTY_OVERWRITTEN)
 def property_twice(subject: Subject) -> Iterator[Diagnostic]:
-    for tree in _trees(subject):
+    for tree in subject.written:
         for holder in nodes.walk(tree):
             waiting: dict[str, Node] = {}
             for node in holder.children:
@@ -82,18 +84,18 @@ def property_twice(subject: Subject) -> Iterator[Diagnostic]:
 
 @rule(files_codes.PARAMETER_UNUSED)
 def parameter_unused(subject: Subject) -> Iterator[Diagnostic]:
-    used, called = _words(subject), _calls(subject)
+    uses = _uses(subject)
     for tree in _own_trees(subject):
         for node in nodes.walk(tree):
             if (
                 node.tag != "xacro:macro"
-                or nodes.name_of(node).removeprefix("xacro:") not in called
+                or nodes.name_of(node).removeprefix("xacro:") not in uses.calls
             ):
                 continue
             for word in node.attributes.get("params", "").split():
                 name = _PARAMETER.match(word)
                 # What a macro calls sees its parameters too: any use anywhere counts.
-                if name is not None and name[1] not in used:
+                if name is not None and name[1] not in uses.words:
                     yield files_codes.PARAMETER_UNUSED.diagnostic(
                         message=f'macro "{nodes.name_of(node)}" never uses its parameter '
                         f'"{name[1]}"',
@@ -106,7 +108,7 @@ def parameter_unused(subject: Subject) -> Iterator[Diagnostic]:
 
 @rule(files_codes.MACRO_UNUSED)
 def macro_unused(subject: Subject) -> Iterator[Diagnostic]:
-    called = _calls(subject)
+    called = _uses(subject).calls
     for tree in _own_trees(subject):
         for node in nodes.walk(tree):
             name = nodes.name_of(node).removeprefix("xacro:")
@@ -121,49 +123,58 @@ def macro_unused(subject: Subject) -> Iterator[Diagnostic]:
                 )
 
 
-def macro_names(subject: Subject) -> set[str]:
-    """The macros that the description's files define."""
-    return {
-        nodes.name_of(node).removeprefix("xacro:")
-        for tree in _trees(subject)
-        for node in nodes.walk(tree)
-        if node.tag == "xacro:macro"
-    }
-
-
 def _is_plain(name: str) -> bool:
     """Whether it is a name itself, not made of others."""
     return bool(name) and "$" not in name
-
-
-def _trees(subject: Subject) -> list[Node]:
-    found = []
-    for file in subject.files:
-        tree = _parsed(Path(file))
-        if tree is not None:
-            found.append(tree)
-    return found
 
 
 def _own_trees(subject: Subject) -> list[Node]:
     """Those that make something of the robot themselves: a library defines more than one needs."""
     return [
         tree
-        for tree in _trees(subject)
+        for tree in subject.written
         if any(node.tag in ("link", "joint", "gazebo") or _is_call(node) for node in tree.children)
     ]
 
 
-def _around(subject: Subject) -> list[Node]:
-    """All files of the packages that the robot is made of: one of them may be for another robot."""
+@dataclass(frozen=True, slots=True)
+class _Uses:
+    """What a file uses of the names that files define."""
+
+    words: frozenset[str]
+    """Every word of every expression."""
+    calls: frozenset[str]
+    """The macros that it may call."""
+
+
+def _uses(subject: Subject) -> _Uses:
+    """Of all files of the robot's packages: a macro may be for another robot of a package."""
     folders = {_package(Path(file).absolute()) for file in subject.files}
     paths = dict.fromkeys(Path(file).absolute() for file in subject.files)
     for folder in sorted(folder for folder in folders if folder is not None):
         for suffix in _SUFFIXES:
             for _, path in zip(range(MAX_FILES), sorted(folder.rglob(f"*{suffix}")), strict=False):
                 paths.setdefault(path)
-    trees = [_parsed(path) for path in paths]
-    return [tree for tree in trees if tree is not None]
+    each = [_uses_of(path) for path in paths]
+    return _Uses(
+        words=frozenset().union(*(one.words for one in each)),
+        calls=frozenset().union(*(one.calls for one in each)),
+    )
+
+
+def _uses_of(path: Path) -> _Uses:
+    try:
+        state = path.stat()
+    except OSError:
+        return _NOTHING
+    return _uses_at(path, state.st_mtime_ns, state.st_size)
+
+
+@lru_cache(maxsize=5000)
+def _uses_at(path: Path, _modified: int, _size: int) -> _Uses:
+    """Those of a file in one state: all robots of a package need the same files."""
+    tree = xml.readable_file(path)
+    return _NOTHING if tree is None else _Uses(frozenset(_words(tree)), frozenset(_calls(tree)))
 
 
 def _package(file: Path) -> Path | None:
@@ -173,50 +184,42 @@ def _package(file: Path) -> Path | None:
     return None
 
 
-def _parsed(path: Path) -> Node | None:
-    try:
-        return xml.parse(xml.read_bytes(path), xml.shown_path(path))
-    except DescriptionError:
-        return None
-
-
-def _words(subject: Subject) -> set[str]:
+def _words(tree: Node) -> set[str]:
     """Every word of every expression."""
     found: set[str] = set()
-    for tree in _around(subject):
-        for node in nodes.walk(tree):
-            for text in (*node.attributes.values(), node.text):
-                if "$" in text:
-                    for match in _EXPRESSION.finditer(text):
-                        found.update(_WORD.findall(match[1] or match[2] or ""))
-            tag = node.tag.removeprefix(PREFIX)
-            if tag in ("if", "unless"):
-                found.update(_WORD.findall(node.attributes.get("value", "")))
-            elif tag == "insert_block":
-                found.add(nodes.name_of(node))
-            elif tag == "macro":
-                # A default such as ^ or ^|0 takes the property of the same name.
-                for word in node.attributes.get("params", "").split():
-                    name, separator, default = word.partition(":=")
-                    if separator and default.startswith("^"):
-                        found.add(name.lstrip("*"))
-                    found.update(_WORD.findall(default))
+    for node in nodes.walk(tree):
+        for text in (*node.attributes.values(), node.text):
+            if "$" in text:
+                for match in _EXPRESSION.finditer(text):
+                    found.update(_WORD.findall(match[1] or match[2] or ""))
+        tag = node.tag.removeprefix(PREFIX)
+        if tag in ("if", "unless"):
+            found.update(_WORD.findall(node.attributes.get("value", "")))
+        elif tag == "insert_block":
+            found.add(nodes.name_of(node))
+        elif tag == "macro":
+            # A default such as ^ or ^|0 takes the property of the same name.
+            for word in node.attributes.get("params", "").split():
+                name, separator, default = word.partition(":=")
+                if separator and default.startswith("^"):
+                    found.add(name.lstrip("*"))
+                found.update(_WORD.findall(default))
     return found
 
 
-def _calls(subject: Subject) -> set[str]:
+def _calls(tree: Node) -> set[str]:
     found: set[str] = set()
-    for tree in _around(subject):
-        for node in nodes.walk(tree):
-            if node.tag == "xacro:call":
-                found.update(_WORD.findall(node.attributes.get("macro", "")))
-            elif _is_call(node):
-                found.add(node.tag.removeprefix(PREFIX).rpartition(".")[2])
-            else:
-                found.add(node.tag)  # a call in the spelling without a prefix
+    for node in nodes.walk(tree):
+        if node.tag == "xacro:call":
+            found.update(_WORD.findall(node.attributes.get("macro", "")))
+        elif _is_call(node):
+            found.add(node.tag.removeprefix(PREFIX).rpartition(".")[2])
+        else:
+            found.add(node.tag)  # a call in the spelling without a prefix
     return found
 
 
+_NOTHING = _Uses(frozenset(), frozenset())
 _OWN = frozenset(
     f"xacro:{name}"
     for name in ("include", "arg", "property", "macro", "if", "unless", "insert_block", "call",
