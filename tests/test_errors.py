@@ -35,7 +35,7 @@ def test_a_name_of_megabytes_is_cut_and_compared_with_nothing(monkeypatch):
     error = UnknownNameError("model", "robot" * 1_000_000, ["robot", "post"])
     assert str(error).startswith('model "robotrobot')
     assert len(str(error)) < 1000
-    assert "There are: post, robot." in str(error)
+    assert "Valid names: post, robot." in str(error)
     assert likely("robot" * 1_000_000, ["robot"], cutoff=0.0) == ""
     assert 'Did you mean "robot"?' in str(UnknownNameError("model", "robott", ["robot"]))
     assert compared == [len("robott")]
@@ -66,7 +66,7 @@ def test_a_flood_of_warnings_is_shown_at_a_bounded_rate_and_counted(monkeypatch)
 def test_the_last_warning_before_the_bounded_rate_says_so():
     once = Once(1)
     assert str(once(warning("a")).message) == (
-        "a reads slowly (from now on at most one warning every 10 s is shown)"
+        "a reads slowly (from now on, at most one such warning is shown every 10 s)"
     )
 
 

@@ -417,13 +417,13 @@ class Once:
         if left_out is None:
             return None
         if left_out < 0:
-            more = f" (from now on at most one warning every {self.PAUSE:g} s is shown)"
+            more = f" (from now on, at most one such warning is shown every {self.PAUSE:g} s)"
             return replace(diagnostic, message=diagnostic.message + more)
         if not left_out:
             return diagnostic
         return replace(
             diagnostic,
-            message=f"{diagnostic.message} (warnings that are not shown: {left_out})",
+            message=f"{diagnostic.message} (warnings not shown: {left_out})",
             values={**diagnostic.values, "left_out": left_out},
         )
 
@@ -480,11 +480,11 @@ def suggestion(name: str, existing: Iterable[str]) -> str:
 
 def _suggested(close: Sequence[str], known: Sequence[str]) -> str:
     if not known:
-        return "There are none."
+        return "None exist."
     if close:
         return f'Did you mean "{close[0]}"?'
     shown = ", ".join(known[:12])
-    return f"There are: {shown}{', …' if len(known) > 12 else ''}."
+    return f"Valid names: {shown}{', …' if len(known) > 12 else ''}."
 
 
 def _close(name: str, known: list[str], cutoff: float) -> list[str]:

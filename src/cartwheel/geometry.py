@@ -87,7 +87,7 @@ def quat_normalize(q: Sequence[float]) -> Quat:
     """A unit quaternion; raises ValueError for one of length zero or not finite."""
     norm = math.sqrt(sum(c * c for c in q))
     if not math.isfinite(norm) or norm < 1e-12:
-        raise ValueError("a quaternion of length zero is no rotation")
+        raise ValueError("a quaternion of length zero is not a rotation")
     x, y, z, w = (float(c) / norm for c in q)
     return (x, y, z, w)
 
@@ -108,7 +108,7 @@ def quat_from_axis_angle(axis: Sequence[float], angle: float) -> Quat:
     """Rotation by `angle` radians about `axis`, of any length but zero."""
     norm = math.sqrt(sum(c * c for c in axis))
     if norm < 1e-12:
-        raise ValueError("an axis of length zero gives no direction")
+        raise ValueError("an axis of length zero has no direction")
     s = math.sin(angle / 2) / norm
     return (axis[0] * s, axis[1] * s, axis[2] * s, math.cos(angle / 2))
 

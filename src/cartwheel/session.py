@@ -111,8 +111,8 @@ class Session:
                 code=CONTROLLER_NOT_STARTED,
                 values={"model": spawned},
                 origin=description.origin,
-                hint="They need the plugin libgazebo_ros_control.so, libgazebo_ros2_control.so "
-                "or gz_ros2_control-system in a <gazebo> tag.",
+                hint="Add the plugin libgazebo_ros_control.so, libgazebo_ros2_control.so or "
+                "gz_ros2_control-system in a <gazebo> tag.",
             )
         try:
             self._check(before)

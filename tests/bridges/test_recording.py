@@ -650,7 +650,7 @@ def test_a_full_disk_ends_the_run_and_keeps_what_was_written(name: str, tmp_path
     assert run.returncode == 2, run.stderr
     assert "Traceback" not in run.stderr
     assert str(path) in run.stderr
-    (told,) = re.findall(r"broke off at ([\d.]+) s", run.stderr)
+    (told,) = re.findall(r"stopped at ([\d.]+) s", run.stderr)
     found = read_with_rosbags(path) if name != "drive.db3" else _read_broken(name, path)
     times = [t for t, _ in found["/clock"]]
     assert len(times) > 100
@@ -864,5 +864,5 @@ def test_one_file_for_two_recordings_is_refused(tmp_path: Path) -> None:
         cwd=tmp_path, capture_output=True, text=True, timeout=300, check=False,
     )  # fmt: skip
     assert done.returncode == 2
-    assert done.stderr.startswith('error: --record names "a.mcap" twice')
+    assert done.stderr.startswith('error: --record specifies "a.mcap" twice')
     assert not list(tmp_path.iterdir())

@@ -244,7 +244,7 @@ def test_entities_are_refused(bridge: Bridge) -> None:
         "</methodName></methodCall>"
     ).encode()
     deep = b"<methodCall>" + b"<value><array><data>" * 5000
-    for hostile, reason in ((body, b"document type"), (deep, b"nested elements")):
+    for hostile, reason in ((body, b"document type"), (deep, b"elements are nested")):
         with caller(run) as sock:
             head = f"POST / HTTP/1.1\r\nContent-Length: {len(hostile)}\r\n\r\n"
             sock.sendall(head.encode() + hostile)

@@ -68,7 +68,7 @@ def test_the_robot_is_described_and_its_links_placed(start: Start, peer: Peer) -
     process.send_signal(signal.SIGINT)
     out, errors = process.communicate(timeout=120)
     assert process.returncode == 0, errors
-    assert f"/gazebo on DDS domain {DOMAIN + 4}, seen by this computer" in out
+    assert f"/gazebo on DDS domain {DOMAIN + 4}, visible on this computer" in out
     assert "Traceback" not in errors
     # It takes its leave: nobody needs to wait for its silence.
     wait_for(lambda: ["NO_PARTICIPANT"] in peer.lines, "its farewell", 10.0)

@@ -259,7 +259,7 @@ def test_on_the_network_it_is_found_as_well(monkeypatch: pytest.MonkeyPatch) -> 
     with contextlib.ExitStack() as stack:
         made = Ros2Bridged()
         stack.callback(made.close)
-        assert "seen by the network" in made.bridge.description
+        assert "visible on the network" in made.bridge.description
         peer = Peer(DOMAIN + 5)
         stack.callback(peer.close)
         peer.subscribe("/odom", ODOMETRY)

@@ -64,7 +64,7 @@ def test_a_missing_mesh_costs_its_shape_alone(program, name):
     run = ("run", "bad.urdf", "--headless", "--for", "0.1", "--speed", "max")
     done = program(*run)
     assert said in done.stderr
-    assert 'of link "base" is left out' in done.stderr
+    assert 'of link "base" is ignored' in done.stderr
     assert "robot   box, 2 kg, 1 link, 0 joints" in done.stdout
     strict = program(*run, "--strict", status=2)
     assert said in strict.stderr
@@ -84,7 +84,7 @@ def test_a_name_used_twice(cart):
     (cart.folder / "box.urdf").write_text(BOX)
     cart("spawn", "box.urdf", "-x", "9")
     done = cart("spawn", "box.urdf", "-x", "9", status=2)
-    assert 'a model named "box" is in the world already' in done.stderr
+    assert 'a model named "box" is already in the world' in done.stderr
     assert "box_1" in done.stderr
     cart("delete", "box")
 

@@ -106,7 +106,7 @@ def test_a_wire_that_dies_is_told_and_the_simulation_goes_on(program: Program) -
     out, error = process.communicate(timeout=_PATIENCE)
     assert process.returncode == 0, error
     assert "simulated 6.000 s" in out
-    assert "the process of ROS 2 has ended" in error
+    assert "the process that runs ROS 2 has exited" in error
 
 
 def test_a_recorder_that_dies_ends_the_run(program: Program) -> None:
@@ -116,7 +116,7 @@ def test_a_recorder_that_dies_ends_the_run(program: Program) -> None:
     os.kill(child, signal.SIGKILL)
     _, error = process.communicate(timeout=_PATIENCE)
     assert process.returncode == 2
-    assert 'the recording "drive.mcap" broke off' in error
+    assert 'the recording "drive.mcap" stopped' in error
     assert "Traceback" not in error
 
 

@@ -48,7 +48,7 @@ def checked(program, tmp_path):
 
 
 def test_a_clean_description_ends_with_0_and_says_so(checked):
-    assert checked(GOOD, status=0).strip().endswith("bar.urdf: nothing found")
+    assert checked(GOOD, status=0).strip().endswith("bar.urdf: no problems found")
 
 
 @pytest.mark.parametrize("text", [WARNING, ERROR])
@@ -151,7 +151,7 @@ def test_the_same_of_several_lines_is_shown_once(checked):
     assert text.count('name="a"') == 3
     shown = checked(text, status=0)
     assert shown.count(" tag-ignored]") == 1
-    assert "and 2 more, in line 12, 15" in shown
+    assert "and 2 more, on lines 12, 15" in shown
     assert "3 notes" in shown
     assert len(json.loads(checked(text, "--json", status=0))["findings"]) == 3
 
@@ -191,7 +191,7 @@ def test_parameters_are_held_against_the_plugins(checked):
 
 
 def test_the_shipped_robot_has_nothing_to_note(program):
-    assert "nothing found" in program("check", "rosbots.xacro", "--strict").stdout
+    assert "no problems found" in program("check", "rosbots.xacro", "--strict").stdout
 
 
 def test_a_file_of_controllers_that_is_named_is_checked_too(checked, tmp_path):
@@ -205,5 +205,5 @@ def test_a_file_of_controllers_that_is_named_is_checked_too(checked, tmp_path):
 
 @pytest.mark.parametrize("system", ["gz-sim", "libignition-gazebo6"])
 def test_systems_that_need_no_plugin_here_are_no_note(checked, system):
-    assert checked(SYSTEM.format(system), status=0).endswith("bar.urdf: nothing found\n")
+    assert checked(SYSTEM.format(system), status=0).endswith("bar.urdf: no problems found\n")
     assert " plugin-unknown]" in checked(SYSTEM.format("other"), status=0)

@@ -157,7 +157,7 @@ def test_shown_is_said_where_a_browser_has_come(program, headless, monkeypatch, 
     program.environment.pop("SSH_CONNECTION", None)
     program.environment |= {"DISPLAY": ":99", "BROWSER": f"{browser} %s &"}
     client = program.start("gzclient")
-    assert client.stdout.readline().startswith("the page is at")
+    assert client.stdout.readline().startswith("web interface:")
     if shows:
         assert client.stdout.readline() == "shown in the browser\n"
     headless.send_signal(signal.SIGINT)

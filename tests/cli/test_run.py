@@ -187,7 +187,7 @@ def test_a_port_of_another_program_is_said(program):
     with socket.create_server(("127.0.0.1", 0)) as other:
         port = other.getsockname()[1]
         done = program("run", "--port", port, status=2)
-    assert f"[{PORT_TAKEN}]\n  Use another one: --port " in done.stderr
+    assert f"[{PORT_TAKEN}]\n  Use a different port: --port " in done.stderr
 
 
 def test_two_simulations_are_told_apart(program, ends):

@@ -81,7 +81,7 @@ def test_spawn_list_delete(client, tmp_path):
         client.request("spawn", file=file)
     client.request("delete", model="crate")
     assert client.request("status")["models"] == ["other"]
-    with pytest.raises(ControlError, match="There are: other"):
+    with pytest.raises(ControlError, match="Valid names: other"):
         client.request("delete", model="crate")
 
 

@@ -48,5 +48,7 @@ def test_special_characters_survive(tmp_path):
 def test_sdf_is_none(tmp_path):
     path = tmp_path / "m.sdf"
     path.write_text(SDF)
-    with pytest.raises(DescriptionError, match="the file is not a URDF: its root is <sdf>"):
+    with pytest.raises(
+        DescriptionError, match="the file is not a URDF file: its root element is <sdf>"
+    ):
         to_urdf(path)

@@ -130,11 +130,11 @@ def test_nor_can_one_of_eval(expression):
 _BITS = "the number has more than 4096 bits"
 _TEXT = "the text has more than 1,000,000 characters"
 _LIST = "the list has more than 100,000 items"
-_FIELD = "a field of a text is wider than 1000"
+_FIELD = "a format field is wider than 1000 characters"
 _VALUE = "the value has more than 1,000,000 characters"
 _ITEMS = "the value has more than 100,000 items"
-_TOTAL = "makes more than 100,000,000 characters"
-_WORK = "needs more than 20,000,000 operations"
+_TOTAL = "expands to more than 100,000,000 characters"
+_WORK = "requires more than 20,000,000 operations"
 _NESTED = "the expression is nested more than 100 deep"
 BOMBS = {
     "10**10**10": _BITS,
@@ -154,10 +154,10 @@ BOMBS = {
     "'%(a)s' * 90000 % dict(a='x'*90000)": _TEXT,
     "('x'*90000).replace('x', 'y'*90000)": _TEXT,
     "'a'.join(['b'*90000]*9000)": _VALUE,
-    "round(5, -10**9)": "takes no more than 400 digits",
-    "math.factorial(10**6)": "math.factorial takes no number above 500",
-    "math.comb(10**6, 5*10**5)": "math.comb takes no number above 500",
-    "math.perm(10**6, 5*10**5)": "math.perm takes no number above 500",
+    "round(5, -10**9)": "supports at most 400 digits",
+    "math.factorial(10**6)": "math.factorial supports numbers up to 500",
+    "math.comb(10**6, 5*10**5)": "math.comb supports numbers up to 500",
+    "math.perm(10**6, 5*10**5)": "math.perm supports numbers up to 500",
     "math.prod([2**4000]*1000)": _BITS,
     "math.lcm(*[2**4000-i for i in python.range(100)])": _BITS,
     "python.sum([[1]*9000]*9000, [])": _LIST,
@@ -171,7 +171,7 @@ BOMBS = {
     "python.repr([['x'*9000]*9000])": _VALUE,
     "[a for a in python.range(90000) for b in python.range(90000)]": _LIST,
     "int('f'*90000, 16)": _BITS,
-    "(lambda f: f(f))(lambda f: f(f))": "lambdas call each other more than 30 deep",
+    "(lambda f: f(f))(lambda f: f(f))": "lambda calls are nested more than 30 deep",
     "[" * 150 + "]" * 150: _NESTED,
     "-" * 4000 + "1": "the expression is nested too deeply",
     "not " * 1000 + "1": _NESTED,
@@ -181,7 +181,7 @@ BOMBS = {
     "('a'*200000).rfind('ab' + 'a'*150000)": _WORK,
     "('a'*200000).rsplit('ab' + 'a'*150000)": _WORK,
     "('a'*200000).strip('b'*150000 + 'a')": _WORK,
-    "'%(a(b))9999d' % dict([('a(b)', 5)])": "has a parenthesis",
+    "'%(a(b))9999d' % dict([('a(b)', 5)])": "contains a parenthesis",
     "'%(a)999s'*9000 % dict(a=1) and 0": _TEXT,
     "len([('ab '*99999).split() for i in python.range(33)])": _TOTAL,
     "len([[(1<<4000)+j for j in python.range(9000)] for i in python.range(20)])": _TOTAL,

@@ -109,7 +109,7 @@ def test_missing_file_suggests_near_names(folder):
     write(folder / "cart.urdf", URDF)
     assert hint("cart.udf") == 'Did you mean "cart.urdf"?'
     assert 'Did you mean "rosbots.xacro"?' in hint("robots.xacro")
-    assert "Shipped with Cartwheel are:" in hint("zzzzz")
+    assert "Descriptions shipped with Cartwheel:" in hint("zzzzz")
 
 
 @pytest.mark.parametrize("name", ["a\0b", "x" * 5000, "", "."])
@@ -131,7 +131,7 @@ def test_folders(folder):
     write(folder / "several" / "a.urdf", URDF)
     write(folder / "several" / "b.urdf", URDF)
     assert failure("several") == "several not-a-description"
-    assert hint("several") == "Name one of: a.urdf, b.urdf."
+    assert hint("several") == "Pass one of: a.urdf, b.urdf."
     (folder / "none").mkdir()
     assert failure("none") == "none not-a-description"
     write(folder / "broken" / "model.config", "<model><sdf>x.sdf</sdf></model>")

@@ -64,7 +64,7 @@ def test_spaces_in_a_list_of_what_is_installed():
 
 def test_long_names():
     names = [f"{'ab' * 3000}{i}" for i in range(300)]
-    assert suggestion("ba" * 3000, names).startswith("There are")
+    assert suggestion("ba" * 3000, names).startswith("Valid names")
     assert numbers.likely("ba" * 3000, names) is None
     assert spelling.meant("ba" * 3000, names) == ""
 

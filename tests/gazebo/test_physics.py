@@ -168,7 +168,7 @@ def test_the_rate_is_the_speed(falling, rate, speed):
 
 def test_odes_parameters_are_kept_and_that_is_said(falling):
     answer = change(falling, ode_config__sor_pgs_iters=300, ode_config__erp=0.5)
-    assert "sor_pgs_iters, erp kept, without effect" in answer.status_message
+    assert "sor_pgs_iters, erp: stored, but without effect" in answer.status_message
     ode = falling.done("get_physics_properties").ode_config
     assert (ode.sor_pgs_iters, ode.erp) == (300, 0.5)
     assert change(falling).status_message == "physics engine updated"
@@ -180,11 +180,11 @@ def test_odes_parameters_are_kept_and_that_is_said(falling):
     [
         ({"time_step": 0.0}, "time_step must be above 0"),
         ({"time_step": -0.001}, "above 0"),
-        ({"time_step": math.nan}, "time_step is nan"),
+        ({"time_step": math.nan}, "time_step must be a finite number (got nan)"),
         ({"time_step": 1.0}, "at most 0.1 s"),
-        ({"gravity__y": math.inf}, "gravity.y is inf"),
-        ({"max_update_rate": math.nan}, "max_update_rate is nan"),
-        ({"ode_config__cfm": math.nan}, "ode_config.cfm is nan"),
+        ({"gravity__y": math.inf}, "gravity.y must be a finite number (got inf)"),
+        ({"max_update_rate": math.nan}, "max_update_rate must be a finite number (got nan)"),
+        ({"ode_config__cfm": math.nan}, "ode_config.cfm must be a finite number (got nan)"),
     ],
 )
 @pytest.mark.wording

@@ -168,12 +168,15 @@ def contacts(api):
     [
         ({"mass": 0.0}, "mass must be above 0"),
         ({"mass": -1.0}, "mass must be above 0"),
-        ({"mass": math.nan}, "mass is nan"),
-        ({"ixx": 5.0}, "no body has this inertia"),
+        ({"mass": math.nan}, "mass must be a finite number (got nan)"),
+        ({"ixx": 5.0}, "no rigid body can have this inertia"),
         ({"ixx": -1.0}, "not positive definite"),
-        ({"iyz": math.inf}, "iyz is inf"),
+        ({"iyz": math.inf}, "iyz must be a finite number (got inf)"),
         ({"link_name": "cube::lank"}, 'Did you mean "cube::link"?'),
-        ({"com": {"position": {"z": math.nan}}}, "com.position.z is nan"),
+        (
+            {"com": {"position": {"z": math.nan}}},
+            "com.position.z must be a finite number (got nan)",
+        ),
     ],
 )
 @pytest.mark.wording
@@ -351,9 +354,13 @@ def test_joint_types(make, gazebo, rosbots):
         ("hing", {}, 'Did you mean "hinge"?'),
         ("arm", {}, "is a model, not a joint"),
         ("hinge", {"damping": [-1.0]}, "damping must be from 0"),
-        ("hinge", {"damping": [math.nan]}, "ode_joint_config.damping is nan"),
+        (
+            "hinge",
+            {"damping": [math.nan]},
+            "ode_joint_config.damping must be a finite number (got nan)",
+        ),
         ("hinge", {"fmax": [-1.0]}, "fmax must not be negative"),
-        ("hinge", {"vel": [math.inf]}, "ode_joint_config.vel is inf"),
+        ("hinge", {"vel": [math.inf]}, "ode_joint_config.vel must be a finite number (got inf)"),
         ("hinge", {"hiStop": [-1.0], "loStop": [1.0]}, "loStop 1 is above hiStop -1"),
     ],
 )
@@ -456,6 +463,6 @@ def test_delete_light(lit):
 @pytest.mark.wording
 def test_light_refusals(lit):
     message = lit.refused("set_light_properties", light_name="sun", attenuation_linear=math.inf)
-    assert "attenuation_linear is inf" in message
+    assert "attenuation_linear must be a finite number (got inf)" in message
     message = lit.refused("set_light_properties", light_name="son")
     assert 'Did you mean "sun"?' in message

@@ -167,7 +167,10 @@ def test_many_are_spawned_and_each_is_answered(make):
     made = api("spawn_entities", spawn_requests=[good, good, {**good, "allow_renaming": True}])
     assert [each.result.result for each in made.results] == [OK, 101, OK]
     assert [each.entity_name for each in made.results] == ["one", "", "one_1"]
-    assert (made.result.result, made.result.error_message) == (150, "1 of 3 were not spawned")
+    assert (made.result.result, made.result.error_message) == (
+        150,
+        "1 of 3 entities were not spawned",
+    )
     assert api.simulation.models == ("ground_plane", "one", "one_1")
     fine = api("spawn_entities", spawn_requests=[{**good, "name": "two"}])
     assert fine.result.result == OK

@@ -221,7 +221,7 @@ def test_a_push_that_diverges_takes_all_back_and_the_run_goes_on(make):
     assert abs(world.model("box").pose.z) < 10
     told = coded(world, world_codes.SIMULATION_RECOVERED)
     assert len(told) == 20
-    assert told[-1].hint.endswith("Further ones are not reported.")
+    assert told[-1].hint.endswith("From now on, divergence is not reported.")
     # Who sends such things must not fill the disk either.
     assert sum(bool(each.values["states"]) for each in told) == 3
 

@@ -36,7 +36,7 @@ def said(ros):
 
 def test_it_comes_up_shows_itself_and_leaves_nothing(ros, launch):
     process = launch()
-    found = ros.until(lambda: re.search(r"the page is at +\S*?(http://[\d.:]+)", said(ros)))
+    found = ros.until(lambda: re.search(r"web interface: +\S*?(http://[\d.:]+)", said(ros)))
     with urllib.request.urlopen(found[1], timeout=120) as page:
         assert page.status == 200
     assert len(ros.left()) >= 4  # roslaunch, the master, the server and the client
@@ -55,7 +55,7 @@ def test_what_the_arguments_do(ros, launch):
     )  # fmt: skip
     assert not any("gzclient" in line for line in ros.left())
     assert "page" not in said(ros)
-    assert said(ros).count("-e dart does not apply") == 1
+    assert said(ros).count("-e dart is ignored") == 1
     answer = ros.run("rosservice", "call", "/gazebo/get_physics_properties").stdout
     assert "pause: True" in answer
     ros.run("rosservice", "call", "/gazebo/unpause_physics")

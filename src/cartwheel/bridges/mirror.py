@@ -82,7 +82,7 @@ def asked(graph: BridgedGraph, service: str, request: Any) -> Any:
     except TimeoutError:
         future.cancel()
         raise GraphError(
-            f"the simulation did not answer {service} within {_CALL:g} s",
+            f"the simulation did not respond to {service} within {_CALL:g} s",
             code=SERVICE_TIMED_OUT,
             values={"service": service, "seconds": _CALL},
         ) from None
@@ -118,8 +118,8 @@ class Arrivals:
         if len(self._under_way) >= _BACKLOG or self._bytes + size > _BACKLOG_BYTES:
             self._tell(
                 INCOMING_DROPPED.diagnostic(
-                    "ROS nodes send messages faster than the simulation takes them: some are "
-                    "dropped"
+                    "ROS nodes send messages faster than the simulation processes them, so some "
+                    "messages are dropped"
                 )
             )
             return
@@ -130,7 +130,7 @@ class Arrivals:
         except CartwheelError as error:
             self._tell(
                 MALFORMED_MESSAGE.because(
-                    f"a message to {topic} cannot be used", error, values={"topic": topic}
+                    f"a message on {topic} is ignored", error, values={"topic": topic}
                 )
             )
 

@@ -95,7 +95,8 @@ class Tap:
             self._late = True
             self._tell(
                 PUBLISHED_TOO_FAST.diagnostic(
-                    f"{self._topic} is published faster than it can be sent: messages are dropped",
+                    f"{self._topic} is published faster than it can be sent, so messages are "
+                    "dropped",
                     values={"topic": self._topic},
                 )
             )

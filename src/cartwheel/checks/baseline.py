@@ -54,7 +54,7 @@ class Baseline:
                 f"the baseline cannot be read: {error}",
                 code=command.BASELINE_INVALID,
                 origin=Origin(file=str(file)),
-                hint="Write it anew with --write-baseline.",
+                hint="Write a new baseline with --write-baseline.",
             ) from error
         return cls(counts, file.absolute().parent)
 

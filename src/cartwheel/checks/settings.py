@@ -63,11 +63,11 @@ def _table(file: Path, keys: tuple[str, ...]) -> Any:
 
 def _settings(file: Path, table: Any) -> Settings:
     if not isinstance(table, dict):
-        raise _invalid(file, "the settings of check must be a table")
+        raise _invalid(file, "the check settings must be a table")
     for key, value in table.items():
         if key not in _KNOWN:
             near = meant(key, _KNOWN)
-            hint = f'Did you mean "{near}"?' if near else f"Settings are {', '.join(_KNOWN)}."
+            hint = f'Did you mean "{near}"?' if near else f"Valid settings: {', '.join(_KNOWN)}."
             raise _invalid(file, f'the setting "{key}" does not exist', hint, setting=key)
         if key in _LISTS and not (
             isinstance(value, list) and all(isinstance(each, str) for each in value)

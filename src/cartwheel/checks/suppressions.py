@@ -60,7 +60,7 @@ class Suppressions:
         """A note for each comment in these files that has suppressed nothing."""
         return [
             command.SUPPRESSION_UNUSED.diagnostic(
-                f"nothing at this place has the code {each.word}"
+                f"no finding on this line has the code {each.word}"
                 if each.codes
                 else f'the code "{each.word}" does not exist',
                 origin=Origin(file=each.file, line=each.line),

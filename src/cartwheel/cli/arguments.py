@@ -23,7 +23,8 @@ Sim = Annotated[
     typer.Option(
         "--sim",
         metavar="PID",
-        help=f"Process id of the simulation to use if several run. {VARIABLE} sets it too.",
+        help="Process ID of the simulation, if several are running. Can also be set with "
+        f"{VARIABLE}.",
     ),
 ]
 Names = Annotated[
@@ -78,8 +79,8 @@ Host = Annotated[
     str,
     typer.Option(
         metavar="ADDRESS",
-        help="Address that the page and Foxglove's server listen on. With 0.0.0.0 other"
-        " computers can connect; they need the token in the printed address.",
+        help="Address on which the web interface and the Foxglove server listen. With 0.0.0.0, "
+        "other computers can connect with the token in the printed address.",
         rich_help_panel=help.PAGE,
     ),
 ]
@@ -99,19 +100,20 @@ Port = Annotated[
         min=0,
         max=65535,
         metavar="PORT",
-        help="Port of the page; 0 selects a free port.",
+        help="Port of the web interface; 0 selects a free port.",
         rich_help_panel=help.PAGE,
     ),
 ]
 Headless = Annotated[
-    bool, typer.Option("--headless", help="Do not serve the page.", rich_help_panel=help.PAGE)
+    bool,
+    typer.Option("--headless", help="Run without the web interface.", rich_help_panel=help.PAGE),
 ]
 Paused = Annotated[bool, typer.Option("--paused", help="Start paused.", rich_help_panel=help.TIME)]
 OpenBrowser = Annotated[
     bool | None,
     typer.Option(
         "--open/--no-open",
-        help="Open the page in the browser. Default: only on a desktop.",
+        help="Open the web interface in a browser. Default: only on a desktop.",
         rich_help_panel=help.PAGE,
     ),
 ]
@@ -133,9 +135,9 @@ def split(words: Sequence[str] | None) -> tuple[str | None, dict[str, str]]:
             file = word
         else:
             raise CartwheelError(
-                f'"{word}" is one file too many after "{file}"',
+                f'only one file is allowed (got "{file}" and "{word}")',
                 code=USAGE,
-                hint=f"Write an argument of a xacro file as {word.partition('=')[0]}:=value.",
+                hint=f"Write a xacro argument as {word.partition('=')[0]}:=value.",
                 values={"argument": word},
             )
     return file, values
@@ -178,7 +180,7 @@ def needed(file: str | None) -> str:
     """
     if file is None:
         raise CartwheelError(
-            "a file is missing", code=USAGE, hint="Name a xacro, URDF or SDF file."
+            "a file argument is missing", code=USAGE, hint="Pass a xacro, URDF or SDF file."
         )
     return file
 

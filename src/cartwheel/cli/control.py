@@ -33,9 +33,9 @@ def parse_speed(text: str) -> float | None:
     # How large it may be is the simulation's to say: its rooms would take long to import.
     if not value > 0:
         raise CartwheelError(
-            f'the speed must be a number above 0, or max (got "{text}")',
+            f'the speed must be a positive number or max (got "{text}")',
             code=OPTION_INVALID,
-            hint="1 is real time, 2 is twice as fast; max is as fast as possible.",
+            hint="1 is real time, 2 is twice as fast, and max is as fast as possible.",
             values={"option": "speed", "value": text},
         )
     return value

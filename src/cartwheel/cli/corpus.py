@@ -26,7 +26,10 @@ def corpus(
     standing: Annotated[
         float,
         typer.Option(
-            "--for", metavar="SECONDS", min=1.0, help="Simulated time that each robot stands still."
+            "--for",
+            metavar="SECONDS",
+            min=1.0,
+            help="Simulated time for which each robot must stand still.",
         ),
     ] = 10.0,
     package_path: arguments.PackagePath = None,

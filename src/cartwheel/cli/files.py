@@ -32,7 +32,7 @@ def view(
     port: arguments.Port = 8080,
     package_path: arguments.PackagePath = None,
 ) -> None:
-    """Show a robot description: joints, frames, inertia; no physics."""
+    """View the joints, frames and inertia of a robot description, without physics."""
     from cartwheel.cli.commands import view as work
 
     file, values = arguments.split(words)

@@ -68,7 +68,7 @@ def run() -> int:
 
 _REMEDIES = {
     errno.EMFILE: "Raise the limit of open files: ulimit -n 1024",
-    errno.ENFILE: "The system has too many open files: end other programs.",
+    errno.ENFILE: "The system has too many open files. Close other programs.",
     errno.ENOMEM: "Free memory, or raise the limit: ulimit -v unlimited",
     errno.EFBIG: "Raise the limit of file sizes: ulimit -f unlimited",
     errno.ENOSPC: "Free space on the disk.",
@@ -104,7 +104,7 @@ def _report(error: Exception) -> None:
         INTERNAL_FAULT.because(
             "unexpected error in Cartwheel",
             error,
-            hint="Please report it, with the output of the same command and --verbose.",
+            hint="Please report this error with the output of the same command with --verbose.",
         )
     )
 

@@ -35,7 +35,7 @@ def play(
         typer.Option(
             "--start",
             metavar="SECONDS",
-            help="Start this long after the beginning.",
+            help="Start this long after the beginning of the recording.",
             rich_help_panel=help.TIME,
         ),
     ] = 0.0,

@@ -32,7 +32,7 @@ def run(
         typer.Option(
             min=0,
             metavar="N",
-            help="Seed of all sensor noise.",
+            help="Random seed for sensor noise.",
             rich_help_panel=help.WORLD,
         ),
     ] = 0,
@@ -54,8 +54,8 @@ def run(
         typer.Option(
             "--controllers",
             metavar="FILE",
-            help="Start the controllers of this ros_control or ros2_control YAML file."
-            " Can be repeated.",
+            help="Start the controllers in this ros_control or ros2_control YAML file. Can be "
+            "repeated.",
             rich_help_panel=help.ROBOT,
         ),
     ] = None,
@@ -95,7 +95,7 @@ def run(
         typer.Option(
             "--ros1-node",
             metavar="NAME",
-            help="Name of the ROS 1 node. __name:=NAME sets it too.",
+            help="Name of the ROS 1 node. Can also be set with __name:=NAME.",
             rich_help_panel=help.WIRES,
         ),
     ] = "gazebo",
@@ -130,7 +130,7 @@ def run(
         typer.Option(
             "--bridge",
             metavar="FILE",
-            help="Rename topics as this ros_gz_bridge YAML file configures. Can be repeated.",
+            help="Rename topics as configured in this ros_gz_bridge YAML file. Can be repeated.",
             rich_help_panel=help.WIRES,
         ),
     ] = None,
@@ -138,7 +138,7 @@ def run(
         bool,
         typer.Option(
             "--foxglove",
-            help="Serve Foxglove and Lichtblick on the address of --host.",
+            help="Let Foxglove and Lichtblick connect at the --host address.",
             rich_help_panel=help.WIRES,
         ),
     ] = False,
@@ -149,7 +149,7 @@ def run(
             min=0,
             max=65535,
             metavar="PORT",
-            help="Port of Foxglove's server; 0 selects a free port.",
+            help="Port of the Foxglove server; 0 selects a free port.",
             rich_help_panel=help.WIRES,
         ),
     ] = 8765,
@@ -177,7 +177,7 @@ def run(
         typer.Option(
             "--record-encoding",
             metavar="ros1|ros2",
-            help="Encoding of the messages in a .mcap file.",
+            help="Message encoding in a .mcap file.",
             rich_help_panel=help.RECORDING,
         ),
     ] = None,
@@ -185,7 +185,7 @@ def run(
         bool,
         typer.Option(
             "--overwrite",
-            help="Replace an existing recording of the same name.",
+            help="Replace an existing recording with the same name.",
             rich_help_panel=help.RECORDING,
         ),
     ] = False,
@@ -197,11 +197,11 @@ def run(
 ) -> None:
     """Simulate a robot, by default the shipped cart.
 
-    FILE can also be a world, which is then simulated without a robot. NAME:=VALUE sets an
-    argument of the xacro file; world:=FILE is the same as --world.
+    FILE can also be a world, which is then simulated without a robot. NAME:=VALUE sets a xacro
+    argument; world:=FILE is the same as --world.
 
-    With --ros1 the arguments of a ROS 1 node work too: __name:=NAME, _PARAMETER:=VALUE,
-    /TOPIC:=OTHER, and, if FILE is a world, TOPIC:=OTHER.
+    With --ros1, ROS 1 node arguments also work: __name:=NAME, _PARAMETER:=VALUE, /TOPIC:=OTHER,
+    and, if FILE is a world, TOPIC:=OTHER.
     """
     from cartwheel.cli.commands.options import Options
     from cartwheel.cli.commands.run import simulate

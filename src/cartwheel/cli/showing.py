@@ -56,7 +56,10 @@ def shown(
     if others:
         numbers = [str(one.origin.line) for one in others if one.origin is not None]
         more = ", …" if len(numbers) > _LINES_SHOWN else ""
-        lines.append(f"  and {len(others)} more, in line {', '.join(numbers[:_LINES_SHOWN])}{more}")
+        word = "line" if len(numbers) == 1 else "lines"
+        lines.append(
+            f"  and {len(others)} more, on {word} {', '.join(numbers[:_LINES_SHOWN])}{more}"
+        )
     if diagnostic.origin is not None:
         lines += [paint(f"  in {frame}", "dim", stream=out) for frame in diagnostic.origin.stack]
     return quiet("\n".join(lines))

@@ -23,7 +23,7 @@ MODULES = {
     "world": "World and physics",
     "graph": "Topics, services and messages",
     "wires": "ROS 1, ROS 2, Foxglove and network access",
-    "recording": "Recording, playback and the page",
+    "recording": "Recording, playback and the web interface",
 }
 """The modules with codes, in the order of their numbers, and their titles."""
 FORMER = {

@@ -17,22 +17,25 @@ SIMULATION_NOT_RUNNING = Code(
     "CW014",
     "simulation-not-running",
     "error",
-    "a command that needs a running simulation where there is none",
+    "a command that requires a running simulation, but none is running",
 )
 SIMULATION_AMBIGUOUS = Code(
-    "CW015", "simulation-ambiguous", "error", "a command for one simulation where several run"
+    "CW015",
+    "simulation-ambiguous",
+    "error",
+    "a command for one simulation while several are running",
 )
 SIMULATION_SILENT = Code(
-    "CW016", "simulation-silent", "error", "a running simulation that does not answer"
+    "CW016", "simulation-silent", "error", "a running simulation that does not respond"
 )
 SIMULATION_ENDED = Code(
-    "CW017", "simulation-ended", "error", "a simulation that ended before the command was done"
+    "CW017", "simulation-ended", "error", "a simulation that ended before the command completed"
 )
 CONTROL_MISMATCH = Code(
     "CW018",
     "control-mismatch",
     "error",
-    "messages on the control socket that are not of this version",
+    "control socket messages from a different version",
 )
 CONTROL_REQUEST_INVALID = Code(
     "CW019",
@@ -50,14 +53,14 @@ CONTROL_FOLDER_UNUSABLE = Code(
     "CW022",
     "control-folder-unusable",
     "error",
-    "a runtime folder in which no control socket can be made",
+    "a runtime folder in which no control socket can be created",
 )
 PORT_TAKEN = Code("CW023", "port-taken", "error", "a port that another program uses")
 NOTHING_TO_DRIVE = Code(
-    "CW024", "nothing-to-drive", "error", "a teleop command where no robot can be driven"
+    "CW024", "nothing-to-drive", "error", "a teleop command when no robot can be driven"
 )
 DRIVE_AMBIGUOUS = Code(
-    "CW025", "drive-ambiguous", "error", "a teleop command where several robots can be driven"
+    "CW025", "drive-ambiguous", "error", "a teleop command when several robots can be driven"
 )
 WORLD_NOT_FOUND = Code(
     "CW026", "world-not-found", "error", "a world that does not exist in any searched folder"
@@ -66,11 +69,11 @@ GAZEBO_OPTION_UNSUPPORTED = Code(
     "CW027",
     "gazebo-option-unsupported",
     "warning",
-    "an option of Gazebo's programs that has no effect here",
+    "a Gazebo command-line option that has no effect in Cartwheel",
 )
 NO_ROBOTS = Code("CW028", "no-robots", "error", "a folder without robot descriptions")
 OTHER_SIMULATION_RUNNING = Code(
-    "CW029", "other-simulation-running", "warning", "a second simulation of the same user"
+    "CW029", "other-simulation-running", "warning", "a second simulation started by the same user"
 )
 OUTPUT_SLOW = Code(
     "CW030", "output-slow", "warning", "messages that arrive faster than they are printed"
@@ -85,7 +88,9 @@ INTERNAL_FAULT = Code("CW033", "internal-fault", "error", "an unexpected error i
 FILE_TOO_DEEP = Code(
     "CW034", "file-too-deep", "error", "a file that is nested too deeply to be read"
 )
-NO_PAGE = Code("CW035", "no-page", "error", "a request for the page of a simulation that has none")
+NO_PAGE = Code(
+    "CW035", "no-page", "error", "a request for the web interface of a simulation that has none"
+)
 SETTINGS_INVALID = Code(
     "CW050", "settings-invalid", "error", "a settings file with an unknown or wrong entry"
 )

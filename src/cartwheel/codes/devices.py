@@ -6,7 +6,7 @@ VIEW_BLOCKED = Code(
     "CW401", "view-blocked", "warning", "the robot itself blocks the view of a camera or lidar"
 )
 RATE_ABOVE_PHYSICS = Code(
-    "CW402", "rate-above-physics", "warning", "an update rate is higher than that of the physics"
+    "CW402", "rate-above-physics", "warning", "an update rate is higher than the physics rate"
 )
 SENSOR_TYPE_UNKNOWN = Code(
     "CW403", "sensor-type-unknown", "error", "a sensor has a type that Gazebo does not support"
@@ -21,28 +21,28 @@ CONTACT_COLLISION_UNKNOWN = Code(
     "CW406",
     "contact-collision-unknown",
     "error",
-    "a contact sensor names a collision that does not exist",
+    "a contact sensor refers to a collision that does not exist",
 )
 CONTACT_NEVER_FIRES = Code(
     "CW407",
     "contact-never-fires",
     "warning",
-    "Gazebo renames the collision that a contact sensor names",
+    "Gazebo renames the collision that a contact sensor refers to",
 )
 LUMPED_JOINT = Code(
     "CW408", "lumped-joint", "warning", "a plugin measures a fixed joint that Gazebo removes"
 )
 LUMPED_LINK = Code(
-    "CW409", "lumped-link", "info", "a plugin names a link that Gazebo merges into another"
+    "CW409", "lumped-link", "info", "a plugin refers to a link that Gazebo merges into another link"
 )
 BODY_UNKNOWN = Code(
-    "CW410", "body-unknown", "error", "the body of a plugin is not a link of the robot"
+    "CW410", "body-unknown", "error", "the body of a plugin is not a link in the robot"
 )
 FRAME_UNKNOWN = Code(
     "CW411",
     "frame-unknown",
     "warning",
-    "the frame of a plugin's messages is not a link of the robot",
+    "the frame of a plugin's messages is not a link in the robot",
 )
 DUPLICATE_TOPIC = Code(
     "CW412", "duplicate-topic", "warning", "two plugins publish on the same topic"
@@ -63,19 +63,19 @@ PLUGIN_PARAMETER_OBSOLETE = Code(
     "Gazebo 11 ignores a parameter of older versions",
 )
 PLUGIN_JOINT_UNKNOWN = Code(
-    "CW417", "plugin-joint-unknown", "error", "a plugin names a joint that does not exist"
+    "CW417", "plugin-joint-unknown", "error", "a plugin refers to a joint that does not exist"
 )
 TRANSMISSION_JOINT_UNKNOWN = Code(
     "CW418",
     "transmission-joint-unknown",
     "error",
-    "a transmission names a joint that does not exist",
+    "a transmission refers to a joint that does not exist",
 )
 ROS2_CONTROL_JOINT_UNKNOWN = Code(
     "CW419",
     "ros2-control-joint-unknown",
     "warning",
-    "<ros2_control> names a joint that does not exist",
+    "<ros2_control> refers to a joint that does not exist",
 )
 INTERFACE_UNKNOWN = Code(
     "CW420", "interface-unknown", "warning", "the interface of a joint is misspelt"
@@ -87,7 +87,10 @@ CONTROLLERS_FILE_UNREADABLE = Code(
     "a controller file is missing or is not valid YAML",
 )
 CONTROLLER_JOINT_UNKNOWN = Code(
-    "CW422", "controller-joint-unknown", "error", "a controller names a joint that does not exist"
+    "CW422",
+    "controller-joint-unknown",
+    "error",
+    "a controller refers to a joint that does not exist",
 )
 CONTROLLER_TYPE_UNKNOWN = Code(
     "CW423", "controller-type-unknown", "error", "a controller type is misspelt or not simulated"
@@ -99,7 +102,7 @@ CONTROLLER_INTERFACE_MISMATCH = Code(
     "a controller commands an interface that its joint does not offer",
 )
 CONTROLLER_GAINS_MISSING = Code(
-    "CW425", "controller-gains-missing", "error", "the PID of a controller has no gains"
+    "CW425", "controller-gains-missing", "error", "a PID controller has no gains"
 )
 JOINT_CLAIMED_TWICE = Code(
     "CW426", "joint-claimed-twice", "info", "two controllers in one file command the same joint"
@@ -114,13 +117,13 @@ PLUGIN_PARAMETER_INVALID = Code(
     "the value of a plugin's or sensor's parameter is not allowed",
 )
 PLUGIN_PARAMETER_MISSING = Code(
-    "CW453", "plugin-parameter-missing", "error", "a plugin lacks a parameter that it needs"
+    "CW453", "plugin-parameter-missing", "error", "a required plugin parameter is missing"
 )
 PLUGIN_PARAMETER_NOT_SINGLE = Code(
     "CW454",
     "plugin-parameter-not-single",
     "warning",
-    "a parameter states several numbers where one is read",
+    "a parameter contains several numbers, but only one is used",
 )
 CONTROLLER_PARAMETER_UNKNOWN = Code(
     "CW455", "controller-parameter-unknown", "warning", "a controller does not read a parameter"
@@ -132,13 +135,13 @@ CONTROLLER_PARAMETER_INVALID = Code(
     "the value of a controller's parameter is not allowed",
 )
 CONTROLLER_PARAMETER_MISSING = Code(
-    "CW457", "controller-parameter-missing", "error", "a controller lacks a parameter it needs"
+    "CW457", "controller-parameter-missing", "error", "a required controller parameter is missing"
 )
 PLUGIN_PARAMETER_IGNORED = Code(
     "CW458",
     "plugin-parameter-ignored",
     "warning",
-    "a parameter has no effect in Cartwheel, or with the other parameters",
+    "a parameter has no effect in Cartwheel, or in combination with the other parameters",
 )
 PLUGIN_PARAMETER_UNSUPPORTED = Code(
     "CW459",
@@ -156,7 +159,7 @@ WHEELS_UNPAIRED = Code(
     "CW461", "wheels-unpaired", "error", "a drive does not have as many left wheels as right wheels"
 )
 PLUGIN_IDLE = Code(
-    "CW462", "plugin-idle", "warning", "a plugin has nothing to do as it is configured"
+    "CW462", "plugin-idle", "warning", "the configuration of a plugin leaves it without a function"
 )
 PLUGIN_MISPLACED = Code(
     "CW463", "plugin-misplaced", "warning", "a plugin is inside the wrong element"
@@ -165,7 +168,7 @@ SENSOR_WITHOUT_PLUGIN = Code(
     "CW464", "sensor-without-plugin", "info", "a sensor has no plugin, so it publishes nothing"
 )
 SENSOR_INCOMPLETE = Code(
-    "CW465", "sensor-incomplete", "error", "a sensor lacks an element that it needs"
+    "CW465", "sensor-incomplete", "error", "a required sensor element is missing"
 )
 SCAN_SAMPLES_INVALID = Code(
     "CW466", "scan-samples-invalid", "error", "a scan has no rays, too many, or a fraction of one"
@@ -174,7 +177,7 @@ SCAN_REVERSED = Code(
     "CW467", "scan-reversed", "info", "a scan runs from its larger angle to its smaller one"
 )
 SENSOR_SETTING_IGNORED = Code(
-    "CW468", "sensor-setting-ignored", "warning", "a setting of a sensor has no effect"
+    "CW468", "sensor-setting-ignored", "warning", "a sensor setting has no effect"
 )
 CAMERA_VIEW_NARROWED = Code(
     "CW469",
@@ -186,13 +189,13 @@ COORDINATES_MISSING = Code(
     "CW470",
     "coordinates-missing",
     "info",
-    "a sensor of positions on Earth is in a world without coordinates",
+    "a GPS sensor is in a world without geographic coordinates",
 )
 CONTROLLERS_FILE_MISMATCH = Code(
     "CW471",
     "controllers-file-mismatch",
     "error",
-    "a controller file is for the other ROS version than the robot",
+    "a controller file and the robot are for different ROS versions",
 )
 CONTROLLERS_FILE_WITHOUT_CONTROLLERS = Code(
     "CW472",
@@ -213,16 +216,16 @@ HARDWARE_NOT_SIMULATED = Code(
     "CW475",
     "hardware-not-simulated",
     "warning",
-    "the hardware of ros_control or ros2_control is not simulated",
+    "a hardware interface of ros_control or ros2_control is not simulated",
 )
 CONTROL_WITHOUT_JOINTS = Code(
-    "CW476", "control-without-joints", "warning", "no joint is offered to controllers"
+    "CW476", "control-without-joints", "warning", "no joint is available to controllers"
 )
 EFFORT_LIMIT_TOO_LOW = Code(
     "CW477",
     "effort-limit-too-low",
     "warning",
-    "a joint's effort limit cannot carry what hangs on it",
+    "a joint's effort limit is too low to hold its load",
 )
 BRIDGE_FILE_INVALID = Code(
     "CW478",

@@ -66,13 +66,13 @@ YAML_MALFORMED = Code(
     "CW111",
     "yaml-malformed",
     "error",
-    "a YAML file that xacro loads and that is not valid",
+    "an invalid YAML file that xacro loads",
 )
 XACRO_NOT_EXPANDED = Code(
     "CW112",
     "xacro-not-expanded",
     "error",
-    "xacro in text that came over a network",
+    "xacro in text received over the network",
 )
 XACRO_NOT_INSTALLED = Code(
     "CW113",
@@ -84,7 +84,7 @@ XACRO_NAME_UNKNOWN = Code(
     "CW114",
     "xacro-name-unknown",
     "error",
-    "a property, macro, block, argument or command that xacro does not know",
+    "an unknown xacro property, macro, block, argument or command",
 )
 MACRO_CALL_INVALID = Code(
     "CW115",
@@ -102,7 +102,7 @@ EXPANSION_TOO_LARGE = Code(
     "CW117",
     "expansion-too-large",
     "error",
-    "a xacro whose expansion exceeds a limit",
+    "a xacro file whose expansion exceeds a limit",
 )
 XACRO_INVALID = Code(
     "CW118",
@@ -114,19 +114,19 @@ XACRO_MESSAGE = Code(
     "CW119",
     "xacro-message",
     "warning",
-    "a warning of xacro, or a message that the description prints",
+    "a xacro warning, or a message that the description prints",
 )
 XACRO_DEPRECATED = Code(
     "CW120",
     "xacro-deprecated",
     "info",
-    "a spelling that xacro gives up",
+    "a deprecated xacro spelling",
 )
 XACRO_NAMESPACE = Code(
     "CW121",
     "xacro-namespace",
     "warning",
-    "the declaration of xacro's namespace is missing",
+    "the xacro namespace declaration is missing",
 )
 XACRO_PREFIX = Code(
     "CW122",
@@ -150,7 +150,7 @@ SDF_VERSION = Code(
     "CW125",
     "sdf-version",
     "error",
-    "a version of SDF that is missing, too old or newer than supported",
+    "an SDF version that is missing, too old or newer than supported",
 )
 ARGUMENT_UNUSED = Code("CW153", "argument-unused", "warning", "a xacro argument has no effect")
 PROPERTY_UNUSED = Code("CW154", "property-unused", "info", "a xacro property is never used")

@@ -8,10 +8,10 @@ TOPIC_TYPE_MISMATCH = Code(
 )
 SERVICE_UNKNOWN = Code("CW703", "service-unknown", "error", "a service that does not exist")
 SERVICE_TAKEN = Code(
-    "CW704", "service-name-taken", "error", "a service or action whose name is offered already"
+    "CW704", "service-name-taken", "error", "a service or action whose name is already in use"
 )
 SERVICE_TIMED_OUT = Code(
-    "CW705", "service-timed-out", "error", "a service that does not answer in time"
+    "CW705", "service-timed-out", "error", "a service that does not respond in time"
 )
 SERVICE_FAILED = Code("CW706", "service-failed", "warning", "a service request that failed")
 ACTION_GONE = Code("CW707", "action-gone", "error", "an action that no longer exists")
@@ -30,26 +30,29 @@ MESSAGE_NOT_ENCODABLE = Code(
     "CW713", "message-not-encodable", "error", "a message that cannot be encoded"
 )
 MESSAGE_NOT_DECODABLE = Code(
-    "CW714", "message-not-decodable", "error", "bytes that are not a message of their type"
+    "CW714",
+    "message-not-decodable",
+    "error",
+    "bytes that cannot be decoded as a message of their type",
 )
 MESSAGE_TEXT_INVALID = Code(
     "CW715", "message-text-invalid", "error", "a message on the command line that is not YAML"
 )
 PARAMETER_UNKNOWN = Code("CW716", "parameter-unknown", "error", "a parameter that does not exist")
 PARAMETER_VALUE_INVALID = Code(
-    "CW717", "parameter-value-invalid", "error", "a value that a parameter cannot have"
+    "CW717", "parameter-value-invalid", "error", "an invalid parameter value"
 )
 ENTITY_UNKNOWN = Code(
     "CW718",
     "entity-unknown",
     "error",
-    "a model, link, joint, light or frame that a service request names and that does not exist",
+    "a model, link, joint, light or frame in a service request that does not exist",
 )
 ENTITY_AMBIGUOUS = Code(
     "CW719",
     "entity-ambiguous",
     "error",
-    "a name in a service request that several models have, or of another kind of entity",
+    "a name in a service request that is ambiguous or belongs to a different kind of entity",
 )
 ENTITY_NAME_TAKEN = Code(
     "CW720", "entity-name-taken", "error", "a model or light that is spawned under a name in use"
@@ -74,8 +77,11 @@ REQUEST_STATE = Code(
     "CW726",
     "request-state",
     "error",
-    "a service request that the simulation's present state does not allow",
+    "a service request that the simulation's current state does not allow",
 )
 FRAMES_SHARED = Code(
-    "CW727", "frames-shared", "warning", "a robot whose frames have the same names as another one's"
+    "CW727",
+    "frames-shared",
+    "warning",
+    "a robot whose frames have the same names as another robot's frames",
 )

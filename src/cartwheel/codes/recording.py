@@ -1,4 +1,4 @@
-"""CW901 to CW999: recording, playback and the page."""
+"""CW901 to CW999: recording, playback and the web interface."""
 
 from cartwheel.errors import Code
 
@@ -18,19 +18,25 @@ RECORDING_VERSION_UNKNOWN = Code(
     "a recording of a format version that is not supported",
 )
 RECORDING_NOT_WRITABLE = Code(
-    "CW905", "recording-not-writable", "error", "a recording that cannot be written there"
+    "CW905", "recording-not-writable", "error", "a recording that cannot be written to its location"
 )
 RECORDING_EXISTS = Code(
-    "CW906", "recording-exists", "error", "a recording under a name that exists"
+    "CW906", "recording-exists", "error", "a recording whose file already exists"
 )
 RECORDING_NAME_INVALID = Code(
-    "CW907", "recording-name-invalid", "error", "a name that is not that of a recording format"
+    "CW907",
+    "recording-name-invalid",
+    "error",
+    "a file name without the extension of a recording format",
 )
 ENCODING_UNFIT = Code(
-    "CW908", "encoding-unfit", "error", "a message encoding that a recording's format does not hold"
+    "CW908",
+    "encoding-unfit",
+    "error",
+    "a message encoding that a recording's format does not support",
 )
 RECORDING_BROKE_OFF = Code(
-    "CW909", "recording-broke-off", "error", "a recording that ended before the simulation did"
+    "CW909", "recording-broke-off", "error", "a recording that stopped before the simulation"
 )
 TOPIC_PATTERN_INVALID = Code(
     "CW910", "topic-pattern-invalid", "error", "a topic pattern that is not a regular expression"
@@ -46,7 +52,10 @@ MESSAGE_NOT_RECORDED = Code(
     "messages that cannot be recorded in the recording's encoding",
 )
 RECORDING_SPLIT = Code(
-    "CW914", "recording-split", "info", "a new file, because simulation time went back"
+    "CW914",
+    "recording-split",
+    "info",
+    "a recording that continues in a new file because simulation time jumped back",
 )
 RECORDED_TYPE_UNUSABLE = Code(
     "CW915", "recorded-type-unusable", "error", "a recorded topic whose type cannot be used"
@@ -56,12 +65,12 @@ RECORDED_TOPIC_LEFT_OUT = Code(
 )
 RECORDING_EMPTY = Code("CW917", "recording-empty", "error", "a recording without messages")
 PLAYBACK_READ_ONLY = Code(
-    "CW918", "playback-read-only", "error", "a change of the world while a recording is played"
+    "CW918", "playback-read-only", "error", "a change to the world during playback"
 )
 RECORDED_ROBOT_NOT_SHOWN = Code(
     "CW919", "recorded-robot-not-shown", "warning", "a recorded robot that cannot be shown"
 )
 VIEWER_NOT_STARTED = Code("CW920", "viewer-not-started", "error", "a viewer that did not start")
 UPLOAD_REFUSED = Code(
-    "CW921", "upload-refused", "error", "a file uploaded to the page that is not accepted"
+    "CW921", "upload-refused", "error", "a file that was uploaded to the web interface and rejected"
 )

@@ -10,7 +10,7 @@ JOINT_LINK_UNKNOWN = Code(
     "CW203",
     "joint-link-unknown",
     "error",
-    "the parent or child of a joint is not a link of the robot",
+    "the parent or child of a joint is not a link in the robot",
 )
 WHEEL_SEPARATION_MISMATCH = Code(
     "CW204",
@@ -32,7 +32,10 @@ MIMIC_UNKNOWN = Code(
     "CW209", "mimic-unknown", "error", "a joint mimics itself, or a joint that does not exist"
 )
 REFERENCE_UNKNOWN = Code(
-    "CW210", "reference-unknown", "warning", "a <gazebo reference> names neither a link nor a joint"
+    "CW210",
+    "reference-unknown",
+    "warning",
+    "a <gazebo reference> refers to neither a link nor a joint",
 )
 LIMIT_MISSING = Code(
     "CW211", "limit-missing", "error", "a revolute or prismatic joint has no <limit>"
@@ -97,25 +100,25 @@ WHEEL_AXIS_MISALIGNED = Code(
     "CW229",
     "wheel-axis-misaligned",
     "warning",
-    "the axis of a driven wheel points backwards or not along the axle",
+    "the axis of a driven wheel points backwards or does not lie along the axle",
 )
 WHEEL_NOT_ROUND = Code(
     "CW230",
     "wheel-not-round",
     "warning",
-    "the collision of a driven wheel is not round about its axis",
+    "the collision of a driven wheel is not round around its axis",
 )
 WHEEL_BASE_MISMATCH = Code(
     "CW231",
     "wheel-base-mismatch",
     "warning",
-    "a stated wheel base differs from the distance between the axles",
+    "a specified wheel base differs from the distance between the axles",
 )
 WHEEL_DIAMETER_MISMATCH = Code(
     "CW232",
     "wheel-diameter-mismatch",
     "warning",
-    "a stated wheel diameter or radius differs from that of the wheels",
+    "a specified wheel diameter or radius differs from that of the wheels",
 )
 WHEEL_FRICTIONLESS = Code(
     "CW233", "wheel-frictionless", "warning", "a driven wheel has no friction"
@@ -134,7 +137,10 @@ WHEELS_OFF_GROUND = Code(
     "the body of the robot reaches lower than its driven wheels",
 )
 OVERLAPPING_COLLISIONS = Code(
-    "CW238", "overlapping-collisions", "warning", "links that can collide overlap at zero position"
+    "CW238",
+    "overlapping-collisions",
+    "warning",
+    "links that can collide overlap at the zero position",
 )
 SHAPE_OUT_OF_SCALE = Code(
     "CW239",

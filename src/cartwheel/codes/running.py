@@ -23,12 +23,12 @@ PLUGIN_LEFT_OUT = Code(
     "CW508",
     "plugin-left-out",
     "error",
-    "a plugin cannot be used, and the rest of the model goes on without it",
+    "a plugin cannot be used, and the rest of the model works without it",
 )
 PLUGIN_FAILED = Code(
     "CW509", "plugin-failed", "error", "a plugin raised an exception and is disabled"
 )
-SERVICE_TAKEN = Code("CW510", "service-taken", "warning", "a service of this name exists already")
+SERVICE_TAKEN = Code("CW510", "service-taken", "warning", "a service with this name already exists")
 RECONFIGURE_UNAVAILABLE = Code(
     "CW511",
     "reconfigure-unavailable",
@@ -64,10 +64,13 @@ CONTROLLER_STATE = Code(
     "CW520", "controller-state", "error", "a request does not fit the state of a controller"
 )
 CONTROLLER_CONFLICT = Code(
-    "CW521", "controller-conflict", "error", "a controller cannot run beside another one"
+    "CW521",
+    "controller-conflict",
+    "error",
+    "a controller cannot run at the same time as another controller",
 )
 CONTROLLER_TYPE_MISSING = Code(
-    "CW522", "controller-type-missing", "error", "the type of a controller to load is not stated"
+    "CW522", "controller-type-missing", "error", "the type of a controller to load is not specified"
 )
 HARDWARE_COMPONENT = Code(
     "CW523", "hardware-component", "error", "a request does not fit a hardware component"
@@ -76,7 +79,7 @@ WHEELS_WITHOUT_ROLLERS = Code(
     "CW524",
     "wheels-without-rollers",
     "warning",
-    "the wheels of a mecanum drive roll like ordinary ones",
+    "the wheels of a mecanum drive roll like ordinary wheels",
 )
 SIMULATION_UNRESPONSIVE = Code(
     "CW525", "simulation-unresponsive", "error", "the simulation does not respond to a request"

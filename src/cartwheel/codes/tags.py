@@ -12,19 +12,19 @@ TAG_MISPLACED = Code(
     "CW302",
     "tag-misplaced",
     "warning",
-    "a tag at a place where it has no effect",
+    "a tag in a position where it has no effect",
 )
 TAG_REPEATED = Code(
     "CW303",
     "tag-repeated",
     "warning",
-    "a repeated tag of which only the first counts",
+    "a repeated tag, of which only the first is used",
 )
 TAG_EMPTY = Code(
     "CW304",
     "tag-empty",
     "warning",
-    "an empty tag: its default counts",
+    "an empty tag, whose default is used",
 )
 TAG_MISSING = Code(
     "CW305",
@@ -42,7 +42,7 @@ NOT_SIMULATED = Code(
     "CW307",
     "not-simulated",
     "info",
-    "something valid that Cartwheel does not simulate",
+    "a valid element that Cartwheel does not simulate",
 )
 VALUE_IGNORED = Code(
     "CW308",
@@ -66,13 +66,13 @@ NAME_TAKEN = Code(
     "CW311",
     "name-taken",
     "error",
-    "two elements of one scope with the same name",
+    "two elements with the same name in one scope",
 )
 SENSOR_TWICE = Code(
     "CW312",
     "sensor-twice",
     "warning",
-    "two sensors of one link with the same name",
+    "two sensors with the same name on one link",
 )
 MATERIAL_UNKNOWN = Code(
     "CW313",
@@ -96,19 +96,19 @@ FRAMES_CIRCULAR = Code(
     "CW316",
     "frames-circular",
     "error",
-    "frames that are relative or attached to each other in a circle",
+    "frames that are relative or attached to each other in a cycle",
 )
 DEFAULT_USED = Code(
     "CW317",
     "default-used",
     "warning",
-    "a missing tag whose default is unlikely to be meant",
+    "a missing tag whose default is unlikely to be intended",
 )
 ELEMENT_LEFT_OUT = Code(
     "CW318",
     "element-left-out",
     "warning",
-    "an element that is left out because something else is missing",
+    "an element that is ignored because something that it requires is missing",
 )
 MODEL_EMPTY = Code(
     "CW319",

@@ -6,7 +6,7 @@ ROS_ARGUMENT_INVALID = Code(
     "CW801",
     "ros-argument-invalid",
     "error",
-    "a ROS argument that is not `name:=value`, or names nothing that ROS can remap",
+    "a ROS argument that is not `name:=value`, or is not a name that ROS can remap",
 )
 ROS_NODE_NAME_INVALID = Code(
     "CW802", "ros-node-name-invalid", "error", "a node name or namespace that ROS does not allow"
@@ -18,16 +18,18 @@ ROS_MASTER_UNAVAILABLE = Code(
     "CW804",
     "ros-master-unavailable",
     "error",
-    "a ROS master that does not answer and cannot be started",
+    "a ROS master that does not respond and cannot be started",
 )
 ROS_MASTER_NOT_STARTED = Code(
     "CW805",
     "ros-master-not-started",
     "error",
-    "a ROS master of the simulation's own that does not start",
+    "a ROS master that the simulation started and that does not respond",
 )
-ROS_MASTER_LOST = Code("CW806", "ros-master-lost", "warning", "a ROS master that stopped answering")
-ROS_MASTER_BACK = Code("CW807", "ros-master-back", "info", "a ROS master that answers again")
+ROS_MASTER_LOST = Code(
+    "CW806", "ros-master-lost", "warning", "a ROS master that stopped responding"
+)
+ROS_MASTER_BACK = Code("CW807", "ros-master-back", "info", "a ROS master that responds again")
 ROS_NODE_ENDED = Code(
     "CW808",
     "ros-node-ended",
@@ -35,13 +37,13 @@ ROS_NODE_ENDED = Code(
     "a shutdown of the simulation's ROS node by ROS or by another node",
 )
 ROS_CALL_FAILED = Code(
-    "CW809", "ros-call-failed", "error", "a call of a ROS master or node that got no valid answer"
+    "CW809", "ros-call-failed", "error", "a call to a ROS master or node that got no valid response"
 )
 TYPE_UNSUPPORTED = Code(
     "CW810",
     "type-unsupported",
     "warning",
-    "a topic or service whose type the other side does not have",
+    "a topic or service whose type the other side does not support",
 )
 MALFORMED_MESSAGE = Code(
     "CW811",
@@ -68,22 +70,22 @@ INCOMING_DROPPED = Code(
     "CW815",
     "incoming-dropped",
     "warning",
-    "messages from other programs that arrive faster than the simulation takes them",
+    "messages from other programs that arrive faster than the simulation processes them",
 )
 NETWORK_FULL = Code(
     "CW816",
     "network-full",
     "warning",
-    "messages that the operating system's send buffer does not take",
+    "messages dropped because the operating system's send buffer is full",
 )
 PEER_LIMIT = Code(
-    "CW817", "peer-limit", "warning", "more connections, publishers or subscribers than are served"
+    "CW817", "peer-limit", "warning", "more connections, publishers or subscribers than the limit"
 )
 CALL_LIMIT = Code(
     "CW818",
     "call-limit",
     "warning",
-    "more service calls or result requests at a time than are served",
+    "more concurrent service calls or result requests than the limit",
 )
 PEER_ADDRESS_INVALID = Code(
     "CW819", "peer-address-invalid", "warning", "a publisher whose address is invalid"
@@ -98,7 +100,7 @@ QOS_INCOMPATIBLE = Code(
     "CW821",
     "qos-incompatible",
     "warning",
-    "another node that requests a quality of service which is not offered",
+    "another node that requests a quality of service that is not offered",
 )
 MESSAGE_NOT_SENT = Code(
     "CW822", "message-not-sent", "warning", "a message that cannot be encoded for the other side"
@@ -119,7 +121,7 @@ PACKAGE_MISSING = Code(
     "CW827",
     "package-missing",
     "error",
-    "an option that needs a Python package which is not installed",
+    "an option that requires a Python package that is not installed",
 )
 ZENOH_NOT_OPENED = Code(
     "CW828",
@@ -134,7 +136,7 @@ CLIENT_REQUEST_IGNORED = Code(
     "CW830",
     "client-request-ignored",
     "warning",
-    "a request or message of a Foxglove client that is malformed or exceeds a limit",
+    "a request or message from a Foxglove client that is malformed or exceeds a limit",
 )
 PARAMETER_REFUSED = Code(
     "CW831", "parameter-refused", "warning", "a parameter that a client may not set to this value"
@@ -154,7 +156,7 @@ BRIDGE_SLOW = Code(
     "CW836",
     "bridge-slow",
     "warning",
-    "a bridge process that does not answer or does not read its messages",
+    "a bridge process that does not respond or does not read its messages",
 )
 BRIDGE_RECOVERED = Code(
     "CW837",

@@ -11,13 +11,13 @@ REAL_TIME_FACTOR_INVALID = Code(
     "CW604", "real-time-factor-invalid", "error", "a real-time factor that cannot be kept"
 )
 STEP_COUNT_INVALID = Code(
-    "CW605", "step-count-invalid", "error", "a number of single steps that cannot be made"
+    "CW605", "step-count-invalid", "error", "an invalid number of simulation steps"
 )
 MODEL_NAME_INVALID = Code(
     "CW606", "model-name-invalid", "error", "a model name that is empty or contains ::"
 )
 MODEL_NAME_TAKEN = Code(
-    "CW607", "model-name-taken", "error", "a model of this name is in the world already"
+    "CW607", "model-name-taken", "error", "a model with this name is already in the world"
 )
 JOINT_DRIVEN_BY_PLUGIN = Code(
     "CW608", "joint-driven-by-plugin", "error", "a joint that a plugin drives by effort or position"
@@ -40,9 +40,9 @@ FRICTION_DIRECTION_UNSUPPORTED = Code(
     "CW614",
     "friction-direction-unsupported",
     "warning",
-    "friction cannot differ by direction with this MuJoCo",
+    "friction cannot differ by direction with this MuJoCo version",
 )
-MODELS_OVERLAP = Code("CW615", "models-overlap", "warning", "a model was put into another one")
+MODELS_OVERLAP = Code("CW615", "models-overlap", "warning", "a model overlaps another model")
 CHAIN_TOO_LONG = Code(
     "CW616", "chain-too-long", "error", "a chain of links is too long to simulate"
 )
@@ -53,7 +53,7 @@ LOOP_WITHOUT_ROOT = Code(
     "a link is part of a loop of joints that is connected to nothing else",
 )
 PLANE_NOT_STATIC = Code(
-    "CW618", "plane-not-static", "error", "an endless plane is part of a model that moves"
+    "CW618", "plane-not-static", "error", "an infinite plane is part of a model that moves"
 )
 MODEL_NOT_BUILT = Code("CW619", "model-not-built", "error", "the physics engine refuses a model")
 PHYSICS_SETTING_IGNORED = Code(

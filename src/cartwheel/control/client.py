@@ -15,7 +15,7 @@ from cartwheel.control.protocol import PATIENCE, Connection, Frame
 from cartwheel.control.registry import Running, find
 from cartwheel.errors import ControlError
 
-_HUNG_UP = "the simulation has ended, or serves too many clients"
+_HUNG_UP = "the simulation has ended, or too many clients are connected"
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -179,7 +179,7 @@ def _connect(simulation: Running) -> Connection:
                 time.sleep(0.01)
                 continue
             raise ControlError(
-                f"simulation {simulation.pid} does not answer: {error}",
+                f"simulation {simulation.pid} does not respond: {error}",
                 code=SIMULATION_SILENT,
                 values={"pid": simulation.pid},
             ) from error
@@ -195,7 +195,7 @@ def _ask(
         # Longer than the simulation itself waits, so that its own words arrive.
         frame: Frame | None = connection.receive(None if name == "step" else PATIENCE + 60)
     except TimeoutError as error:
-        raise ControlError("the simulation does not answer", code=SIMULATION_SILENT) from error
+        raise ControlError("the simulation does not respond", code=SIMULATION_SILENT) from error
     except OSError as error:
         raise ControlError(_HUNG_UP, code=SIMULATION_ENDED) from error
     if frame is None:

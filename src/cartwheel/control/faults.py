@@ -109,7 +109,7 @@ def _code(number: str, name: str, severity: Severity) -> Code:
     for code in all_codes():
         if code.number == number:
             return code
-    return Code(number, name, severity, "a code of another release")
+    return Code(number, name, severity, "a code from a different release")
 
 
 def _text(given: Mapping[str, Any], name: str) -> str:

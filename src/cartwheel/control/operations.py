@@ -238,9 +238,7 @@ class Operations:
         """The URL of the viewer, which is brought up where it is not, and its browsers."""
         offer = _in_time(self._page, cancel=False)
         if offer is None:
-            raise ControlError(
-                "this simulation has no page: it runs without a viewer", code=NO_PAGE
-            )
+            raise ControlError("this simulation has no web interface", code=NO_PAGE)
         return {"url": offer.show(), "browsers": offer.browsers()}
 
     def offer_page(self, offer: PageOffer | None) -> None:
@@ -268,7 +266,7 @@ def _in_time(future: Future[T], *, cancel: bool = True) -> T:
         if cancel:
             future.cancel()
         raise ControlError(
-            f"the simulation did not answer within {PATIENCE:.0f} s", code=SIMULATION_SILENT
+            f"the simulation did not respond within {PATIENCE:.0f} s", code=SIMULATION_SILENT
         ) from error
 
 

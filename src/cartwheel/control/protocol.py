@@ -51,7 +51,7 @@ def pack(header: dict[str, Any], payload: bytes = b"") -> bytes:
     text = json.dumps(header, separators=(",", ":")).encode()
     if len(text) > MAX_HEADER or len(payload) > MAX_PAYLOAD:
         raise ControlError(
-            f"{max(len(text), len(payload)) / 1e6:.0f} MB are too much for one message",
+            f"a {max(len(text), len(payload)) / 1e6:.0f} MB message exceeds the maximum size",
             code=CONTROL_LIMIT,
             values={"bytes": max(len(text), len(payload))},
         )
@@ -106,15 +106,15 @@ class Connection:
         magic, version, header_size, payload_size = _START.unpack(start)
         if magic != _MAGIC:
             raise ControlError(
-                "the bytes on the control socket are not Cartwheel's protocol",
+                "the bytes received on the control socket do not follow Cartwheel's protocol",
                 code=CONTROL_MISMATCH,
             )
         if version != VERSION:
             raise ControlError(
-                f"the other side uses version {version} of the protocol, this one version "
+                f"the other side uses protocol version {version}, but this side uses version "
                 f"{VERSION}",
                 code=CONTROL_MISMATCH,
-                hint="The simulation and the command come from different releases of Cartwheel.",
+                hint="Use the same release of Cartwheel for the simulation and the command.",
                 values={"version": version},
             )
         if header_size > MAX_HEADER or payload_size > MAX_PAYLOAD:
@@ -152,10 +152,12 @@ class Connection:
         while len(data) < size:
             left = deadline - time.monotonic()
             if left <= 0:
-                raise TimeoutError("a frame was not finished in time")
+                raise TimeoutError("a frame was not completed in time")
             self.sock.settimeout(left)
             chunk = self.sock.recv(min(size - len(data), _CHUNK))
             if not chunk:
-                raise ConnectionResetError("the other side closed in the middle of a frame")
+                raise ConnectionResetError(
+                    "the other side closed the connection in the middle of a frame"
+                )
             data += chunk
         return data

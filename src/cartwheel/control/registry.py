@@ -78,7 +78,7 @@ def folder() -> Path:
         raise ControlError(
             f"{chosen} belongs to another user",
             code=CONTROL_FOLDER_UNUSABLE,
-            hint="Set XDG_RUNTIME_DIR to a folder of your own.",
+            hint="Set XDG_RUNTIME_DIR to a folder that you own.",
             values={"path": str(chosen)},
         )
     if found.st_mode & 0o077:
@@ -116,7 +116,7 @@ def find(pid: int | None = None) -> Running:
             if entry.pid == pid:
                 return entry
         raise ControlError(
-            f"no simulation runs as process {pid}",
+            f"no simulation is running as process {pid}",
             code=SIMULATION_NOT_RUNNING,
             hint=_listing(known),
             values={"pid": pid},
@@ -129,7 +129,7 @@ def find(pid: int | None = None) -> Running:
         )
     if len(known) > 1:
         raise ControlError(
-            f"{len(known)} simulations are running; name one with --sim PID",
+            f"{len(known)} simulations are running; select one with --sim PID",
             code=SIMULATION_AMBIGUOUS,
             hint=_listing(known),
             values={"count": len(known)},
@@ -155,7 +155,9 @@ def listen() -> tuple[socket.socket, Path]:
         server.listen(128)
         return server, path
     raise ControlError(
-        f"no socket can be made in {base}", code=CONTROL_FOLDER_UNUSABLE, values={"path": str(base)}
+        f"no socket can be created in {base}",
+        code=CONTROL_FOLDER_UNUSABLE,
+        values={"path": str(base)},
     )
 
 
@@ -202,7 +204,7 @@ def _pid_of_environment() -> int | None:
         return None
     if not text.isdecimal():
         raise ControlError(
-            f'{VARIABLE} must be a process number (got "{text}")',
+            f'{VARIABLE} must be a process ID (got "{text}")',
             code=OPTION_INVALID,
             values={"option": VARIABLE, "value": text},
         )
@@ -210,4 +212,8 @@ def _pid_of_environment() -> int | None:
 
 
 def _listing(known: Iterable[Running]) -> str:
-    return "Running are:\n" + "\n".join(f"    {entry}" for entry in known) if known else "None is."
+    return (
+        ("Running simulations:\n") + "\n".join(f"    {entry}" for entry in known)
+        if known
+        else ("No simulation is running.")
+    )

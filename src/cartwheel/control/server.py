@@ -120,7 +120,9 @@ class ControlServer:
             client = Connection(sock)
             if not self._admit(client):
                 client.refuse(
-                    ControlError("the simulation serves too many clients", code=CONTROL_LIMIT)
+                    ControlError(
+                        "too many clients are connected to the simulation", code=CONTROL_LIMIT
+                    )
                 )
                 continue
             if self._closed.is_set():

@@ -33,7 +33,7 @@ def to_urdf(
     read = open_description(path, arguments or {}, package_path)
     if read.root.tag != "robot":
         raise DescriptionError(
-            f"the file is not a URDF: its root is <{read.root.tag}>",
+            f"the file is not a URDF file: its root element is <{read.root.tag}>",
             code=WRONG_KIND,
             origin=read.root.origin,
             values={"kind": read.root.tag},

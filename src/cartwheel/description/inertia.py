@@ -66,13 +66,13 @@ def impossibility(moments: Vec3) -> tuple[str, str] | None:
     if a <= 0 or a < 1e-12 * c:
         return (
             f"the inertia is not positive definite: its principal moments are {shown}",
-            "All of ixx, iyy and izz are above 0, and the products of inertia are smaller.",
+            "ixx, iyy and izz must be above 0, and the products of inertia must be smaller.",
         )
     if a + b < c * (1 - TOLERANCE):
         return (
-            f"no body has this inertia: of its principal moments {shown}, "
-            f"the two smaller add up to {a + b:.4g}, less than the largest",
-            "A solid box has ixx = mass / 12 (y² + z²), and so on round the axes.",
+            f"no rigid body can have this inertia: of its principal moments {shown}, the two "
+            f"smaller add up to {a + b:.4g}, which is less than the largest",
+            "For a solid box, ixx = mass / 12 (y² + z²), and likewise for iyy and izz.",
         )
     return None
 

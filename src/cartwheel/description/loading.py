@@ -18,9 +18,9 @@ from cartwheel.description.xml_text import write_xml
 from cartwheel.errors import DescriptionError, Diagnostic, Origin
 
 _OTHER_KINDS = {
-    "launch": ("a launch file", "Name the description that it loads."),
-    "package": ("a package manifest", "Name a description of the package."),
-    "COLLADA": ("a mesh", "Name the description that uses it."),
+    "launch": ("a launch file", "Pass the description that it loads."),
+    "package": ("a package manifest", "Pass a description from the package."),
+    "COLLADA": ("a mesh", "Pass the description that uses it."),
     "model": ("a model.config, or a <model> without <sdf> around it", ""),
     "world": ("a <world> without <sdf> around it", ""),
     "mujoco": ("a MuJoCo model, not a ROS or Gazebo description", ""),
@@ -225,7 +225,7 @@ def understand(opened: Opened) -> RobotDescription | WorldDescription:
         return replace(found, diagnostics=(*opened.diagnostics, *found.diagnostics))
     kind, hint = _OTHER_KINDS.get(root.tag, ("", ""))
     raise root.fail(
-        f"the file is {kind}" if kind else f"the root <{root.tag}> is not a description's",
-        hint or "The root of a description is <robot> (xacro, URDF) or <sdf> (SDF, world).",
+        f"the file is {kind}" if kind else f"the root element <{root.tag}> is not supported",
+        hint or "The root element must be <robot> (xacro, URDF) or <sdf> (SDF, world).",
         code=codes.NOT_A_DESCRIPTION,
     )

@@ -128,7 +128,7 @@ def unknown_material(name: str, origin: Origin) -> Diagnostic:
     near = numbers.likely(name.rpartition("/")[2], short)
     meant = f"{_PREFIX}{near}" if near else ""
     return MATERIAL_UNKNOWN.diagnostic(
-        f'Gazebo has no material "{name}": the colour stays as it is',
+        f'Gazebo has no material "{name}", so the colour is unchanged',
         origin=origin,
         hint=f'Did you mean "{meant}"?' if meant else "",
         values={"name": name, "meant": meant},

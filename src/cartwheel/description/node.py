@@ -345,7 +345,7 @@ def unread(
         values = {"tag": child.tag, "parent": node.tag}
         if reason is None and child.tag in node._asked_children:
             yield codes.TAG_REPEATED.diagnostic(
-                f"<{child.tag}> is repeated in <{node.tag}>: only the first one counts",
+                f"<{child.tag}> is repeated in <{node.tag}>: only the first one is used",
                 origin=child.origin,
                 values=values,
             )
@@ -385,7 +385,7 @@ def _ignored(
 def _foreign(name: str, origin: Origin) -> Diagnostic:
     """Names with a prefix are left to whichever program knows them, as SDF says."""
     return codes.NOT_SIMULATED.diagnostic(
-        f"{name} is for other programs", origin=origin, values={"tag": name}
+        f"{name} is intended for other programs", origin=origin, values={"tag": name}
     )
 
 

@@ -100,7 +100,9 @@ def fill(edges: Sequence[Edge]) -> list[Loop]:
     # Cut into strips at the y of every corner and crossing: in a strip all is trapezoids.
     slanting = _slanting(edges)
     if len(edges) > MOST_EDGES:
-        raise OutlineError(f"the outlines have {len(edges)} points, at most {MOST_EDGES} are built")
+        raise OutlineError(
+            f"the outlines have {len(edges)} points, but at most {MOST_EDGES} are supported"
+        )
     levels = _levels(edges)
     open_pieces: dict[tuple[Edge, Edge], tuple[float, float]] = {}
     done: list[Loop] = []

@@ -254,11 +254,11 @@ class Packages:
                 yield downloaded
                 return
             raise DescriptionError(
-                f'"{uri}" is on the network, and nothing is downloaded',
+                f'"{uri}" is on the network and is not downloaded',
                 code=codes.FILE_ON_NETWORK,
                 values={"kind": "file", "name": uri},
                 origin=origin,
-                hint="Download it, and name it by model:// or package://.",
+                hint="Download it, and refer to it with model:// or package://.",
             )
         if scheme == "file":
             yield from self._relative(rest, origin)
@@ -274,7 +274,7 @@ class Packages:
             )
         if not name:
             raise DescriptionError(
-                f'"{uri}" does not name a {scheme}',
+                f'"{uri}" does not contain the name of a {scheme}',
                 code=VALUE_INVALID,
                 values={"name": uri},
                 origin=origin,

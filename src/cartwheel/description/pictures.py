@@ -39,7 +39,7 @@ class PictureError(DescriptionError):
     ) -> None:
         self.name, self.reason = name, reason
         super().__init__(
-            f'the picture "{name}" cannot be read: {reason}',
+            f'the image "{name}" cannot be read: {reason}',
             code=code,
             hint=hint,
             values={"kind": "picture", "name": name},
@@ -73,7 +73,7 @@ def open_picture(source: Path | bytes) -> Iterator[Any]:
     except UnidentifiedImageError:
         known = ", ".join(FORMATS)
         raise PictureError(
-            name, "its format is not supported", f"Convert it to one of: {known}."
+            name, "its format is not supported", f"Convert it to a supported format: {known}."
         ) from None
     except Image.DecompressionBombError:
         raise _too_large(name, "") from None
@@ -104,7 +104,7 @@ def _too_large(name: str, size: str) -> PictureError:
     return PictureError(
         name,
         f"it is too large{f': {size}' if size else ''}",
-        f"The limit is {MOST_PIXELS // 1_000_000} million pixels: scale it down.",
+        f"The limit is {MOST_PIXELS // 1_000_000} million pixels. Scale the image down.",
     )
 
 

@@ -85,9 +85,10 @@ def _found(text: str, node: Node, packages: Packages) -> str:
 
 def _refuse(what: str, origin: Origin) -> NoReturn:
     raise DescriptionError(
-        f"the text contains {what}, but xacro in text from a network is not expanded",
+        f"the text contains {what}, but xacro in text received over the network is not expanded",
         code=XACRO_NOT_EXPANDED,
         values={"name": what},
         origin=origin,
-        hint="Expand the file first, xacro FILE, or spawn the file: cartwheel spawn FILE.xacro.",
+        hint="Expand the file first with xacro FILE, or spawn the file with cartwheel spawn "
+        "FILE.xacro.",
     )

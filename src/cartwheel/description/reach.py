@@ -10,8 +10,8 @@ from pathlib import Path
 
 ALLOW = "Allow its folder: start the simulation with --allow-path FOLDER."
 NAME_IT = (
-    "A description reads files of its own workspace and of packages, and those that "
-    "an argument names on the command line."
+    "A description may read files in its workspace and in packages, and files in arguments on the "
+    "command line."
 )
 
 

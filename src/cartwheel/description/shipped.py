@@ -110,7 +110,7 @@ def _in_folder(folder: Path) -> Path:
                 return folder / name
         if sdfs:
             raise DescriptionError(
-                f'model.config names "{sdfs[-1]}", which does not exist',
+                f'model.config refers to "{sdfs[-1]}", which does not exist',
                 code=codes.FILE_MISSING,
                 origin=origin,
                 values={"kind": "model", "name": sdfs[-1]},
@@ -132,7 +132,7 @@ def _in_folder(folder: Path) -> Path:
         f"the folder contains {'several descriptions' if found else 'no description'}",
         code=codes.NOT_A_DESCRIPTION,
         origin=origin,
-        hint=f"Name one of: {names}." if found else "Put a model.sdf or a .urdf into it.",
+        hint=f"Pass one of: {names}." if found else "Add a model.sdf or a .urdf file to it.",
     )
 
 
@@ -147,4 +147,6 @@ def _meant(given: Path) -> str | None:
     near = numbers.likely(given.name, here | shipped)
     if near:
         return f'Did you mean "{near}"?'
-    return f"Shipped with Cartwheel are: {', '.join(sorted(shipped))}." if shipped else None
+    return (
+        (f"Descriptions shipped with Cartwheel: {', '.join(sorted(shipped))}.") if shipped else None
+    )

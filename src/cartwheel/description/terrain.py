@@ -53,7 +53,7 @@ def heights_of(
             f'the heightmap "{shape.path.name}" cannot be read: {reason}',
             origin=origin,
             values={"kind": "heightmap", "name": str(shape.path)},
-            hint=hint or "Save the heights as a PNG in grey.",
+            hint=hint or "Save the heights as a greyscale PNG.",
         ) from None
     return grey * shape.size[2] if shape.size[2] >= 0 else (1.0 - grey) * -shape.size[2]
 

@@ -221,7 +221,7 @@ class _Run:
         more = f" (and {number - 1} more in this file)" if number > 1 else ""
         self.diagnostics.append(
             codes.XACRO_PREFIX.diagnostic(
-                f"<{tag}> is read as <{PREFIX}{tag}>, but ROS ignores it since Noetic{more}",
+                f"<{tag}> is read as <{PREFIX}{tag}>, but ROS has ignored it since Noetic{more}",
                 origin=element.origin,
                 hint=f"Write <{PREFIX}{tag}>.",
                 values=values,
@@ -241,7 +241,8 @@ class _Run:
                 f"there are more than {MAX_CALLS:,} macro calls; the last is <{call.tagName}>",
                 code=codes.EXPANSION_TOO_LARGE,
                 origin=replace(call.origin, stack=call.origin.stack[:MAX_SHOWN]),
-                hint="Does a macro call itself, or another one, more often than needed?",
+                hint="Check whether a macro calls itself or another macro more often than "
+                "necessary.",
             )
         copy = _clone(body, (f"{call.origin} {call.tagName}", *call.origin.stack))
         self.count(copy)
@@ -259,7 +260,7 @@ class _Run:
         self.budget.make(characters)
         if self.made > MAX_ELEMENTS:
             raise DescriptionError(
-                f"the macros make more than {MAX_ELEMENTS} elements",
+                f"the macros expand to more than {MAX_ELEMENTS} elements",
                 code=codes.EXPANSION_TOO_LARGE,
                 origin=self.origin(),
             )
@@ -324,7 +325,7 @@ def _parse(content: bytes | str, file: str, run: _Run) -> _Document:
     ):
         run.diagnostics.append(
             codes.XACRO_NAMESPACE.diagnostic(
-                "the root element does not declare xmlns:xacro: ROS's own xacro refuses the file",
+                "the root element does not declare xmlns:xacro, so ROS xacro rejects the file",
                 origin=root.origin,
                 hint=f"Add {NAMESPACE} to it.",
             )
@@ -415,7 +416,7 @@ def _to_node(element: Any) -> Node:
     for each in (*values, *values.values(), text):
         if found := _NOT_XML.search(each):
             raise DescriptionError(
-                f"the expanded text has the character {found[0]!a}, which XML does not allow",
+                f"the expanded text contains the character {found[0]!a}, which XML does not allow",
                 code=codes.XACRO_INVALID,
                 origin=element.origin,
             )
@@ -483,7 +484,7 @@ def _bind(module: ModuleType, run: _Run) -> None:
         fixed = Path(re.split(r"[][*?]", pattern)[0] + "_").parent
         if ".." in Path(pattern[len(str(fixed)) :]).parts:
             raise DescriptionError(
-                f'"{pattern}" has .. after a wildcard', code=codes.FILE_NOT_ALLOWED
+                f'"{pattern}" contains .. after a wildcard', code=codes.FILE_NOT_ALLOWED
             )
         if fixed.exists():
             run.packages.require(fixed, "the folder", run.origin())
@@ -631,7 +632,7 @@ def _bind(module: ModuleType, run: _Run) -> None:
 
     def tokenize(text: str, sep: str = ",; ", skip_empty: bool = True) -> list[str]:
         if re.search(r"[][\\]", sep):
-            raise ExpressionError("the separators of xacro.tokenize have a bracket or backslash")
+            raise ExpressionError("the separators of xacro.tokenize contain a bracket or backslash")
         words = re.split(f"[{sep}]", text)
         return [word for word in words if word] if skip_empty else words
 

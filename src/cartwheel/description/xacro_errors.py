@@ -59,7 +59,7 @@ def explain(failure: Failure) -> DescriptionError:
 
     if isinstance(inner, RecursionError):
         return DescriptionError(
-            "macros, includes or properties use each other without end",
+            "macros, includes or properties refer to each other in an endless loop",
             code=codes.EXPANSION_TOO_LARGE,
             origin=Origin(file=origin.file, line=origin.line, stack=origin.stack[:6]),
         )
@@ -77,14 +77,14 @@ def explain(failure: Failure) -> DescriptionError:
         message = f'the property "{match[1]}" is not defined' + _expression(text)
         hint, near = _meant(match[1], [*failure.properties, *_FUNCTIONS])
         if match[1] in failure.arguments:
-            hint = f"It is an argument: write $(arg {match[1]})."
+            hint = f"It is an argument. Write $(arg {match[1]})."
         code, values = _unknown("property", match[1], near)
     elif match := _ARGUMENT.search(text):
         hint, near = _meant(match[1], failure.arguments)
         message = f'the argument "{match[1]}" {"is not declared" if hint else "has no value"}'
         hint = hint or (
-            f"Give it one on the command line, {match[1]}:=…, or in the file: "
-            f'<xacro:arg name="{match[1]}" default="…"/>.'
+            f"Set it on the command line, {match[1]}:=…, or in the file: <xacro:arg "
+            f'name="{match[1]}" default="…"/>.'
         )
         code, values = _unknown("argument", match[1], near)
     elif match := _BLOCK.search(text):
@@ -105,7 +105,7 @@ def explain(failure: Failure) -> DescriptionError:
         code, values = codes.MACRO_CALL_INVALID, {"missing": tuple(missing)}
     elif text.startswith(("Not enough blocks", "Unused block")):
         message = f"{failure.call_tag}: {message[0].lower()}{message[1:]}"
-        hint = "A macro takes one element in the call for each of its parameters with a *."
+        hint = "The call must contain one element for each macro parameter that starts with *."
         origin = failure.call or origin
         code = codes.MACRO_CALL_INVALID
     elif match := _CONDITION.search(text):
@@ -114,12 +114,12 @@ def explain(failure: Failure) -> DescriptionError:
         message = f'<{match[1]}> has no attribute "{match[2]}"'
         values = {"tag": match[1], "missing": match[2]}
     elif match := _COMMAND.search(text):
-        message = f"$({match[1]} …) is not a command of xacro"
+        message = f"$({match[1]} …) is not a xacro command"
         hint = suggestion(match[1], _COMMANDS)
         code, values = _unknown("command", match[1], meant(match[1], _COMMANDS))
     elif match := _ENVIRONMENT.search(text):
         message = f'the environment variable "{match[1]}" is not set'
-        hint = f"Write $(optenv {match[1]} default) to use a default where it is not set."
+        hint = f"Write $(optenv {match[1]} default) to use a default if it is not set."
         code, values = _unknown("environment variable", match[1], "")
     elif _EXPRESSION.search(text):
         reason = str(inner).splitlines()[0] if str(inner) else type(inner).__name__

@@ -58,7 +58,7 @@ def _folder() -> Path:
     raise DescriptionError(
         "the Python package xacro 2 is not installed",
         code=XACRO_NOT_INSTALLED,
-        hint="pip install 'xacro>=2.1', or install Cartwheel again.",
+        hint="Run pip install 'xacro>=2.1', or reinstall Cartwheel.",
     )
 
 

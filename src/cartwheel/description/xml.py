@@ -71,7 +71,7 @@ def read_bytes(path: Path) -> bytes:
         raise _unreadable(
             "is a binary file, not a description",
             origin,
-            "Name a xacro, URDF, SDF or world file, which is XML text.",
+            "Pass a xacro, URDF, SDF or world file, which is XML text.",
         )
     return content
 
@@ -209,7 +209,7 @@ def run_expat(text: str | bytes, file: str, handler: Handler) -> None:
         reason, hint = _explain(error, still_open)
         if error.code == _INVALID_TOKEN and byte > b"\x7f":
             reason = f"the byte 0x{byte.hex()} at column {error.offset + 1} is not UTF-8"
-            hint = f"Save the file as UTF-8, or state its encoding in line 1: {_DECLARATION}"
+            hint = f"Save the file as UTF-8, or declare its encoding in line 1: {_DECLARATION}"
         raise DescriptionError(
             reason, code=codes.XML_MALFORMED, origin=Origin(file=file, line=error.lineno), hint=hint
         ) from error
@@ -256,7 +256,7 @@ def _explain(error: expat.ExpatError, still_open: list[tuple[str, int]]) -> tupl
     codes = expat.errors.codes
     text = expat.ErrorString(error.code) or "unknown error"
     column = error.offset + 1
-    inner = f"<{still_open[-1][0]}> of line {still_open[-1][1]}" if still_open else ""
+    inner = f"<{still_open[-1][0]}> in line {still_open[-1][1]}" if still_open else ""
     if error.code == codes[expat.errors.XML_ERROR_TAG_MISMATCH]:
         return f"the closing tag does not match: {inner} is still open", None
     if error.code == codes[expat.errors.XML_ERROR_NO_ELEMENTS]:

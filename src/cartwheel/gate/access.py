@@ -117,22 +117,22 @@ class Access:
         if not self._knows(host):
             return Refusal(
                 status=403,
-                text=f"This server is not known as {asked.host}. "
-                f"To allow that name: --allow-origin http://{asked.host}",
+                text=f"This server does not accept the host name {asked.host}. To allow it: "
+                f"--allow-origin http://{asked.host}",
             )
         origin = asked.origin
         if origin is not None and not self._admits(origin.lower(), host, apps):
             remedy = "" if origin in _NOBODY else f" To allow them: --allow-origin {origin}"
             return Refusal(
                 status=403,
-                text=f"Web pages of the origin {origin} may not connect.{remedy}",
+                text=f"Web pages from the origin {origin} may not connect.{remedy}",
                 origin=origin,
             )
         if not self._has_token(asked, cookie):
             return Refusal(
                 status=403,
-                text="A token is needed: open the address that Cartwheel printed when it "
-                f"started, which ends in ?{PARAMETER}=...",
+                text="A token is required. Open the address that Cartwheel printed at startup, "
+                f"which ends in ?{PARAMETER}=...",
             )
         return None
 
@@ -178,7 +178,7 @@ def refused_page(title: str, origin: str) -> Diagnostic:
         origin: The page's, safe to print.
     """
     hint = "" if origin in _NOBODY else f"To allow it: --allow-origin {origin}"
-    message = f"{title} refused a web page of the origin {origin or '(empty)'}"
+    message = f"{title} rejected a web page from the origin {origin or '(empty)'}"
     return PAGE_REFUSED.diagnostic(message, hint=hint, values={"server": title, "origin": origin})
 
 

@@ -139,7 +139,7 @@ class Frames:
             return data
         kind, length = head[0] & 15, head[1] & 127
         if not head[1] & 128:
-            raise FrameError("a frame without a mask")
+            raise FrameError("a frame has no mask")
         if length == 126:
             length = int.from_bytes(head[2:4])
         elif length == 127:
@@ -147,16 +147,16 @@ class Frames:
         self._is_control = kind >= _CONTROL
         if self._is_control:
             if length > _LARGEST_CONTROL:
-                raise FrameError(f"a control frame of more than {_LARGEST_CONTROL} bytes")
+                raise FrameError(f"a control frame has more than {_LARGEST_CONTROL} bytes")
         elif self._is_open == bool(kind):
-            raise FrameError("a message within a message, or the rest of none")
+            raise FrameError("a frame starts or continues a message out of sequence")
         elif kind:
             self._is_open, self._is_text, self._size = True, kind == _TEXT, 0
         # The heads count as well: there may be any number of frames without content.
         self._size += length + len(head)
         most = _LARGEST_TEXT if self._is_text else _LARGEST
         if self._size > most:
-            raise FrameError(f"a message of more than {most} bytes")
+            raise FrameError(f"a message has more than {most} bytes")
         self._left = length
         self._is_held = self._is_text and not self._is_control
         self._is_last = bool(head[0] & 128)

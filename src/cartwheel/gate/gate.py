@@ -195,7 +195,7 @@ class Gate:
     def _refusal(self, request: Request) -> Refusal | None:
         found = self._access.refusal(request.asked, apps=self._apps, cookie=self._cookie)
         if found is None and self._admitted >= MOST_ADMITTED:
-            text = f"{MOST_ADMITTED} connections are open already"
+            text = f"{MOST_ADMITTED} connections are already open"
             return Refusal(status=503, text=text)
         if found is not None and found.origin is not None:
             # A stranger's text: it may hold anything, and be as long as a head.

@@ -54,7 +54,7 @@ def listen(host: str, port: int, *, title: str, option: str) -> socket.socket:
         raise ControlError(
             f"{title} cannot listen on {host}:{port}: {error}",
             code=ADDRESS_UNAVAILABLE,
-            hint=f"Another program may use it; choose another port with {option}.",
+            hint=f"Another program may be using the port. Choose a different port with {option}.",
             values={"server": title, "host": host, "port": port},
         ) from error
     made.setblocking(False)

@@ -106,23 +106,23 @@ def _checked(event: h11.Request, connection: h11.Connection) -> Request:
     size = len(event.target) + sum(len(name) + len(value) + 4 for name, value in event.headers)
     if size > HEAD_SIZE:
         status = HTTPStatus.REQUEST_HEADER_FIELDS_TOO_LARGE
-        raise RequestError(status, f"a request's head has at most {HEAD_SIZE} bytes")
+        raise RequestError(status, f"the request header exceeds {HEAD_SIZE} bytes")
     if event.http_version not in (b"1.0", b"1.1"):
-        raise RequestError(HTTPStatus.HTTP_VERSION_NOT_SUPPORTED, "only HTTP/1 is spoken here")
+        raise RequestError(HTTPStatus.HTTP_VERSION_NOT_SUPPORTED, "only HTTP/1 is supported")
     if event.method != b"GET":
-        raise RequestError(HTTPStatus.METHOD_NOT_ALLOWED, "only GET is answered")
+        raise RequestError(HTTPStatus.METHOD_NOT_ALLOWED, "only GET is supported")
     # Not an address in full: then two would say which server is meant.
     if not event.target.startswith(b"/"):
         raise RequestError(HTTPStatus.BAD_REQUEST, "the target must be a path")
     names = [name for name, _ in event.headers]
     if b"content-length" in names or b"transfer-encoding" in names:
-        raise RequestError(HTTPStatus.BAD_REQUEST, "a request has no body here")
+        raise RequestError(HTTPStatus.BAD_REQUEST, "request bodies are not supported")
     for name in (b"host", b"origin", b"upgrade", b"cookie"):
         if names.count(name) > 1:
-            raise RequestError(HTTPStatus.BAD_REQUEST, f"two {name.decode()} headers")
+            raise RequestError(HTTPStatus.BAD_REQUEST, f"there are two {name.decode()} headers")
     found = {name: value.decode("latin-1") for name, value in event.headers}
     if b"host" not in found:
-        raise RequestError(HTTPStatus.BAD_REQUEST, "no host header")
+        raise RequestError(HTTPStatus.BAD_REQUEST, "the host header is missing")
     # The end of the request: from then on a websocket may begin.
     connection.next_event()
     return Request(

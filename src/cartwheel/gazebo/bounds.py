@@ -139,7 +139,7 @@ def _of(link: str, parts: Any) -> Iterator[_Piece]:
 
 def _shape(asked: Any) -> tuple[Floats, float]:
     """Points in the world whose convex hull is meant, and how far beyond it reaches."""
-    needed = {BOX: "two points", SPHERE: "two points", CONVEX_HULL: "three points or more"}
+    needed = {BOX: "two points", SPHERE: "two points", CONVEX_HULL: "at least three points"}
     if asked.type not in needed:
         raise Refusal(UNSUPPORTED, f"bounds of type {asked.type} are not supported")
     given = [vector(point, f"points[{index}]") for index, point in enumerate(asked.points)]
@@ -149,7 +149,7 @@ def _shape(asked: Any) -> tuple[Floats, float]:
     if asked.type == SPHERE:
         radius = float(points[1, 0])
         if radius < 0:
-            raise Refusal(FAILED, f"a sphere's radius cannot be {radius:g}")
+            raise Refusal(FAILED, f"a sphere's radius must not be negative (got {radius:g})")
         return points[:1], radius
     if asked.type == BOX:
         points = _corners(*points.T)

@@ -125,9 +125,9 @@ class Entities:
         if alike:
             names = ", ".join(scoped(model, part.name) for model, part in alike)
             raise GraphError(
-                f'several models have a {kind} "{name}"',
+                f'several models contain a {kind} named "{name}"',
                 code=ENTITY_AMBIGUOUS,
-                hint=f"Name one: {names}.",
+                hint=f"Use one of these names: {names}.",
                 values={"kind": kind, "name": name},
             )
         if name in by_model:

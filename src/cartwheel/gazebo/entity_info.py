@@ -62,7 +62,7 @@ class EntityInfos:
             return said
         made = zero(f"{PACKAGE}/msg/EntityInfo")
         made.category.category = self._category(name, description)
-        made.description = f"{description.name} of {description.origin.file}"
+        made.description = f"{description.name} from {description.origin.file}"
         return made
 
     def filtered(self, filters: Any) -> list[str]:

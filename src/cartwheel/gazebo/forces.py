@@ -71,7 +71,7 @@ class Pushes:
         body = simulation.engine.body_id(model, link.name)
         if simulation.model.body_treeid[body] < 0:
             raise GraphError(
-                f'link "{link.name}" of "{model}" is fixed in the world',
+                f'link "{link.name}" of "{model}" is fixed to the world',
                 code=ENTITY_FIXED,
                 values={"model": model, "link": link.name},
             )
@@ -114,8 +114,8 @@ class Pushes:
         effort = number(request.effort, "effort", most=STRONGEST)
         if (model, joint.name) not in self._simulation.scene.joints:
             raise GraphError(
-                f'joint "{joint.name}" of "{model}" cannot be moved by an effort: it is '
-                f"{joint.type}, or its model is static",
+                f'joint "{joint.name}" of "{model}" cannot be moved by an effort because it is '
+                f"{joint.type} or its model is static",
                 code=ENTITY_FIXED,
                 values={"model": model, "joint": joint.name},
             )
@@ -123,7 +123,7 @@ class Pushes:
         limit = joint.axis.effort
         if limit is not None and 0 < limit < abs(effort):
             effort = float(np.copysign(limit, effort))
-            notes = (f"the joint's limit leaves {effort:g} of the effort",)
+            notes = (f"the joint's effort limit reduces the effort to {effort:g}",)
         start, duration = _span(request)
         self._simulation.forces.effort(
             model, joint.name, effort, start_ns=start, duration_ns=duration

@@ -149,4 +149,4 @@ class Physics:
             self.on_change()
         if not unlike:
             return ()
-        return (f"{', '.join(unlike)} kept, without effect on the solver used here",)
+        return (f"{', '.join(unlike)}: stored, but without effect in MuJoCo",)

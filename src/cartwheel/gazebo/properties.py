@@ -179,7 +179,7 @@ class Properties:
         if changed != link:
             links = tuple(changed if each is link else each for each in description.links)
             self._simulation.redescribe(model, dataclasses.replace(description, links=links))
-        notes = ("the model is static: nothing moves it",) if description.static else ()
+        notes = ("the model is static, so its links do not move",) if description.static else ()
         return Answer("SetLinkProperties: properties set", notes=notes)
 
     # -- joints
@@ -196,7 +196,7 @@ class Properties:
         }
         notes: tuple[str, ...] = ()
         if joint.type not in _JOINT_TYPES:
-            notes = (f"a {joint.type} joint has no number in this message",)
+            notes = (f"the response has no type number for a {joint.type} joint",)
         return Answer("GetJointProperties: got properties", fields, notes)
 
     def set_joint_properties(self, request: Any) -> Answer:
@@ -230,7 +230,10 @@ class Properties:
     def _drive(self, model: str, joint: Joint, driven: Mapping[str, float]) -> list[str]:
         """ODE's motor of a joint: fmax at most to reach vel. Returns what has no effect."""
         if (model, joint.name) not in self._simulation.scene.joints:
-            return ["fmax and vel have no effect: the joint does not move, or has no single axis"]
+            return [
+                "fmax and vel have no effect because the joint does not move or has more than "
+                "one axis"
+            ]
         try:
             self._simulation.drive(
                 model, joint.name, velocity=driven.get("vel"), max_effort=driven.get("fmax")
@@ -238,7 +241,7 @@ class Properties:
         except WorldError as error:
             return [f"fmax and vel have no effect: {error.message}"]
         if driven.get("vel") and not self._simulation.driven(model, joint.name):
-            return ["vel has no effect: a plugin drives the joint, or fmax is 0"]
+            return ["vel has no effect because a plugin drives the joint or fmax is 0"]
         return []
 
     # -- lights
@@ -265,7 +268,7 @@ class Properties:
             cast_shadows=bool(request.cast_shadows),
         )
         self._relight(light, changed)
-        notes = ("no shadows are drawn",) if request.cast_shadows else ()
+        notes = ("shadows are not rendered",) if request.cast_shadows else ()
         return Answer("SetLightProperties: properties set", notes=notes)
 
     def set_light(self, request: Any) -> Answer:
@@ -310,7 +313,7 @@ def _joint_with(joint: Joint, given: Mapping[str, Sequence[float]]) -> tuple[Joi
     notes: list[str] = []
     axes = [joint.axis] if joint.axis2 is None else [joint.axis, joint.axis2]
     if joint.type in ("fixed", "ball"):
-        return joint, [f"a {joint.type} joint has no axis: nothing was set"]
+        return joint, [f"a {joint.type} joint has no axis, so nothing was set"]
     for index, axis in enumerate(axes):
         changes: dict[str, float | None] = {}
         if index < len(given["damping"]):
@@ -336,7 +339,7 @@ def _joint_with(joint: Joint, given: Mapping[str, Sequence[float]]) -> tuple[Joi
                 values={"property": "loStop", "lower": lower, "upper": upper},
             )
     if joint.type == "continuous" and (given["hiStop"] or given["loStop"]):
-        notes.append("a continuous joint has no stops: hiStop and loStop have no effect")
+        notes.append("hiStop and loStop have no effect on a continuous joint")
     without = [
         field
         for field in ("erp", "cfm", "stop_erp", "stop_cfm", "fudge_factor")

@@ -11,7 +11,7 @@ from cartwheel.gazebo.physics import Physics
 from cartwheel.graph import Graph
 from cartwheel.graph.reconfigure import ReconfigureParameter, ReconfigureServer, Value
 
-_KEPT = "Kept and given back; the solver used here has no such parameter."
+_KEPT = "Stored and returned, but without effect in MuJoCo."
 
 
 def _double(
@@ -41,13 +41,13 @@ def _int(name: str, default: int, high: int) -> ReconfigureParameter:
 
 
 PARAMETERS = (
-    _double("time_step", 0.001, 0.0, 10.0, "Length of a step of the simulation in s."),
+    _double("time_step", 0.001, 0.0, 10.0, "Simulation time step in s."),
     _double(
         "max_update_rate",
         60.0,
         0.0,
         1000.0,
-        "Steps a second of wall time that are aimed at; 0 is as many as can be.",
+        "Target number of steps per second of wall time; 0 means as fast as possible.",
     ),
     _double("gravity_x", 0.0, -100.0, 100.0, "Gravity along the world's x axis in m/s²."),
     _double("gravity_y", 0.0, -100.0, 100.0, "Gravity along the world's y axis in m/s²."),

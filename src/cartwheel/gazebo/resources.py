@@ -100,7 +100,10 @@ class Resources:
         return wrong, found
 
     def _load(self, _: Any, __: Any) -> None:
-        raise Refusal(UNSUPPORTED, "another world cannot be loaded: start another simulation")
+        raise Refusal(
+            UNSUPPORTED,
+            "a different world cannot be loaded into a running simulation; start a new simulation",
+        )
 
 
 def _world(name: str, *, uri: str) -> Any:

@@ -140,8 +140,8 @@ class RobotStates:
                 self._warned.add(name)
                 self._simulation.engine.report(
                     FRAMES_SHARED.diagnostic(
-                        f'"{name}" has frames of the same names as "{other}", such as '
-                        f"{shared[0]}: its links are left out of /tf",
+                        f'"{name}" has frames with the same names as "{other}", such as '
+                        f"{shared[0]}, so its links are not published on /tf",
                         values={"model": name, "other": other, "frame": shared[0]},
                     )
                 )

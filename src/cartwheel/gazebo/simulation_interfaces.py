@@ -150,7 +150,7 @@ class SimulationInterfaces:
     def _set_state(self, request: Any, _: Any) -> None:
         self._entities.model(request.entity)
         if request.set_acceleration:
-            raise Refusal(UNSUPPORTED, "an acceleration cannot be set; push with a force")
+            raise Refusal(UNSUPPORTED, "an acceleration cannot be set; apply a force instead")
         state, frame = request.state, request.state.header.frame_id
         if not request.set_pose or not request.set_twist:
             self._simulation.refresh()
@@ -159,7 +159,7 @@ class SimulationInterfaces:
                 return
             if not request.set_pose:
                 if frame not in ("", "world"):
-                    raise Refusal(UNSUPPORTED, "a twist alone is set in the world's frame")
+                    raise Refusal(UNSUPPORTED, "a twist without a pose must be in the world frame")
                 state.pose = pose_message(motion.pose)
             else:
                 seen = motion.seen_from(self._entities.frame(frame))
@@ -173,7 +173,9 @@ class SimulationInterfaces:
             for part in (request.state.twist.linear, request.state.twist.angular)
         )
         if request.set_twist and moving and not self._simulation.moves(request.entity):
-            raise Refusal(FAILED, f'"{request.entity}" is fixed in the world and has no twist')
+            raise Refusal(
+                FAILED, f'"{request.entity}" is fixed to the world and cannot have a twist'
+            )
         self._states.put_model(request.entity, state.pose, state.twist, frame)
 
     # -- in and out
@@ -195,7 +197,7 @@ class SimulationInterfaces:
         wanted = name or description.name
         taken = self._spawning.on_owner(lambda: wanted in self._simulation.models)
         if taken and not request.allow_renaming:
-            raise Refusal(_NAME_NOT_UNIQUE, f'an entity "{wanted}" already exists')
+            raise Refusal(_NAME_NOT_UNIQUE, f'an entity named "{wanted}" already exists')
         response.entity_name = self._spawning.spawn(
             description,
             name=name,
@@ -214,7 +216,9 @@ class SimulationInterfaces:
             response.results.append(made)
         failed = sum(made.result.result != OK for made in response.results)
         if failed:
-            raise Refusal(_SOME_FAILED, f"{failed} of {len(response.results)} were not spawned")
+            raise Refusal(
+                _SOME_FAILED, f"{failed} of {len(response.results)} entities were not spawned"
+            )
 
     def _resource(self, name: str, resource: Any) -> RobotDescription:
         found: object
@@ -228,7 +232,7 @@ class SimulationInterfaces:
         except DescriptionError as error:
             raise Refusal(_PARSE_ERROR, one_line(error)) from None
         if not isinstance(found, RobotDescription):
-            raise Refusal(_PARSE_ERROR, "the resource describes no model")
+            raise Refusal(_PARSE_ERROR, "the resource does not describe a model")
         return found
 
     def _delete(self, request: Any, _: Any) -> None:
@@ -255,7 +259,7 @@ class SimulationInterfaces:
     def _set_run_state(self, request: Any, _: Any) -> None:
         wanted, simulation = request.state.state, self._simulation
         if wanted == self._run_state():
-            raise Refusal(_ALREADY, "the simulation is in that state already")
+            raise Refusal(_ALREADY, "the simulation is already in this state")
         self._stopped = wanted == _STOPPED
         if wanted == _PLAYING:
             simulation.resume()
@@ -275,7 +279,7 @@ class SimulationInterfaces:
             self._reset_all()
             return
         if scope & ~(_TIME | _STATE | _SPAWNED):
-            raise Refusal(UNSUPPORTED, f"there is no scope {scope}")
+            raise Refusal(UNSUPPORTED, f"scope {scope} does not exist")
         if scope & _TIME and not scope & _STATE:
             raise Refusal(UNSUPPORTED, "time cannot be reset without the state")
         if scope & _SPAWNED:

@@ -138,7 +138,7 @@ class Spawning:
             frame = self._entities.frame(reference_frame).pose
             placed = frame @ where @ description.pose
             for value in placed.position:
-                number(value, "the place in the world")
+                number(value, "the pose in the world")
             return self._session.spawn(
                 description,
                 name=wanted,

@@ -122,10 +122,10 @@ class States:
 
     def _put(self, model: str, target: Motion) -> tuple[str, ...]:
         for value in target.pose.position:
-            number(value, "the place in the world")
+            number(value, "the pose in the world")
         self._simulation.set_state(model, target.pose, linear=target.linear, angular=target.angular)
         if not self._simulation.moves(model) and any((*target.linear, *target.angular)):
-            return (f'model "{model}" is fixed in the world: its twist has no effect',)
+            return (f'the twist has no effect because model "{model}" is fixed to the world',)
         return ()
 
     def set_model_configuration(self, request: Any) -> Answer:
@@ -133,8 +133,7 @@ class States:
         names, positions = list(request.joint_names), list(request.joint_positions)
         if len(names) != len(positions):
             raise CartwheelError(
-                f"joint names and positions differ in number: {len(names)} names, "
-                f"{len(positions)} positions",
+                f"the request has {len(names)} joint names but {len(positions)} positions",
                 code=REQUEST_INVALID,
                 values={"names": len(names), "positions": len(positions)},
             )

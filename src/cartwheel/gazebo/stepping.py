@@ -17,7 +17,7 @@ from cartwheel.simulation import RunState
 
 _LOOK = 0.002
 """s between two looks whether steps were made."""
-_INTERRUPTED = "something else let the simulation go on, or reset it"
+_INTERRUPTED = "the simulation was resumed or reset by something else"
 _AT_A_TIME = 20
 """Steps of an action between two looks at whether it goes on."""
 
@@ -46,7 +46,7 @@ class Stepping:
             node=node,
             time_ns=lambda: self._simulation.time_ns,
             on_goal=self._simulate_steps,
-            on_cancel=lambda goal: goal.cancel(_ended(FAILED, "it was called off")),
+            on_cancel=lambda goal: goal.cancel(_ended(FAILED, "the goal was canceled")),
         )
 
     def close(self) -> None:
@@ -64,7 +64,7 @@ class Stepping:
 
         def begin() -> int:
             if simulation.run_state is not RunState.PAUSED:
-                raise Refusal(INCORRECT_STATE, "the simulation must be paused to make steps")
+                raise Refusal(INCORRECT_STATE, "the simulation must be paused to be stepped")
             simulation.step(steps)
             return simulation.current_step + steps
 
@@ -78,9 +78,9 @@ class Stepping:
         """Takes a goal of the action; on the owner's thread."""
         goal.accept()
         if self._simulation.run_state is not RunState.PAUSED:
-            goal.abort(_ended(FAILED, "steps are made while the simulation is paused"))
+            goal.abort(_ended(FAILED, "the simulation must be paused to be stepped"))
         elif self._stepping:
-            goal.abort(_ended(FAILED, "steps of another goal are being made"))
+            goal.abort(_ended(FAILED, "steps for a different goal are in progress"))
         else:
             self._stepping = True
             threading.Thread(

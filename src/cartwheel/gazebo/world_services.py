@@ -88,7 +88,9 @@ class WorldServices:
         if asked.sdf_filename:
             found = self._spawning.load(asked.sdf_filename)
             if not isinstance(found, RobotDescription):
-                raise GraphError("sdf_filename names a world, not a model", code=SPAWN_INVALID)
+                raise GraphError(
+                    "the file in sdf_filename describes a world, not a model", code=SPAWN_INVALID
+                )
             return found
         return self._spawning.on_owner(lambda: self._entities.model(asked.clone_name))
 
@@ -128,7 +130,7 @@ class WorldServices:
         if asked.seed:
             self._tell(
                 SERVICE_FAILED.diagnostic(
-                    "control: a new seed has no effect; the seed of the start stays",
+                    "control: the seed cannot be changed after startup",
                     values={"field": "seed"},
                 )
             )

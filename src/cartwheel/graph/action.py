@@ -206,7 +206,7 @@ class Action:
         is_full = len(self._goals) >= _MOST
         self._goals[identity] = made
         if is_full:
-            made.reject(zero(f"{self.type}_Result"), f"{_MOST} goals are under way already")
+            made.reject(zero(f"{self.type}_Result"), f"{_MOST} goals are already in progress")
         else:
             self._on_goal(made)
         return made

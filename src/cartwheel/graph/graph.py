@@ -403,7 +403,7 @@ class Graph:
             response = service.handler(request)
             if response is None:
                 raise GraphError(
-                    f'service "{service.name}" gave no answer',
+                    f'service "{service.name}" returned no response',
                     code=SERVICE_TIMED_OUT,
                     values={"service": service.name},
                 )

@@ -22,7 +22,7 @@ def resolve_name(name: str, namespace: str = "") -> str:
         raise GraphError(
             f'"{name}" is not a valid name',
             code=GRAPH_NAME_INVALID,
-            hint="Names hold letters, digits, _ and /, and no part begins with a digit.",
+            hint="Names may contain letters, digits, _ and /, and no part may begin with a digit.",
             values={"name": name},
         )
     return full

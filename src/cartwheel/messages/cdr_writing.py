@@ -204,5 +204,5 @@ def _write_count(field: Field, count: int, parts: _Parts, at: int) -> int:
         parts.append(way.pack(count))
         return at + way.size
     if count != field.length:
-        raise ValueError(f"{field.name} holds {count} values, not {field.length}")
+        raise ValueError(f"{field.name} must have {field.length} values (got {count})")
     return at

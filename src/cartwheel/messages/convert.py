@@ -181,17 +181,17 @@ def _by_name(type_name: str, given: Any, path: str) -> dict[str, Any]:
     if isinstance(given, Sequence) and not isinstance(given, str | bytes):
         if len(given) != len(names):
             raise GraphError(
-                f"{_where(path)} {len(given)} values do not fill the {len(names)} fields of "
-                f"{type_name}",
+                f"{_where(path)} {type_name} has {len(names)} fields, but the list has "
+                f"{len(given)} values",
                 code=FIELD_VALUE_INVALID,
-                hint=f"They are: {', '.join(names) or 'none'}.",
+                hint=f"Fields: {', '.join(names) or 'none'}.",
                 values={"type": type_name, "field": path.rstrip("."), "count": len(given)},
             )
         return dict(zip(names, given, strict=True))
     if given is None:
         return {}
     raise GraphError(
-        f"{_where(path)} {_shown(given)} is not a {type_name}",
+        f"{_where(path)} {_shown(given)} is not a valid {type_name}",
         code=FIELD_VALUE_INVALID,
         hint=f"Write it as {{{', '.join(f'{name}: …' for name in names)}}}.",
         values={"type": type_name, "field": path.rstrip("."), "value": _shown(given)},
@@ -214,7 +214,7 @@ def _value(field: Field, value: Any, path: str) -> Any:
         )
     if field.length is not None and len(value) != field.length:
         raise GraphError(
-            f"{path}: {field.described} needs {field.length} values, got {len(value)}",
+            f"{path}: expected {field.length} values for {field.described}, got {len(value)}",
             code=FIELD_VALUE_INVALID,
             values={"field": path, "count": len(value)},
         )
@@ -249,7 +249,7 @@ def _one(field: Field, value: Any, path: str) -> Any:
         raise GraphError(
             f"{path}: expected a string, got {_shown(value)}",
             code=FIELD_VALUE_INVALID,
-            hint=f'Put it into quotes: "{value}".' if isinstance(value, int | float) else None,
+            hint=f'Put the value in quotes: "{value}".' if isinstance(value, int | float) else None,
             values={"field": path.rstrip("."), "value": _shown(value)},
         )
     if field.kind == "bool":
@@ -293,7 +293,7 @@ def _int(field: Field, value: Any, path: str) -> int:
         value = int(value)
     if not isinstance(value, int):
         raise GraphError(
-            f"{path}: {field.type} needs a whole number, got {_shown(value)}",
+            f"{path}: expected a whole number for {field.type}, got {_shown(value)}",
             code=FIELD_VALUE_INVALID,
             values={"field": path.rstrip("."), "value": _shown(value)},
         )

@@ -30,7 +30,7 @@ def decode_cdr(data: bytes | memoryview, type_name: str, *, padded: bool = False
         return loaded().deserialize_cdr(data, full)
     except Exception as error:  # rosbags lets whatever its generated code meets through
         raise GraphError(
-            f"{len(data)} bytes are not a {full}: {error}",
+            f"{len(data)} bytes cannot be decoded as {full}: {error}",
             code=MESSAGE_NOT_DECODABLE,
             values={"type": full, "bytes": len(data)},
         ) from error

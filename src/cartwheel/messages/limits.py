@@ -42,7 +42,7 @@ def _unfit(message: Any, most: float, unset: bool, path: str) -> str:
                     return found
         elif field.array:
             if len(value) and not _all_fit(np.asarray(value, dtype=float), most, unset):
-                return f"{place} holds a number that"
+                return f"{place} contains a number that"
         elif not abs(value) <= most and not (unset and not math.isfinite(value)):
             return f"{place} is {value:g}, which"
     return ""

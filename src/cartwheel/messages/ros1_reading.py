@@ -40,7 +40,9 @@ class _Source:
     def take(self, size: int) -> memoryview:
         end = self.offset + size
         if end > len(self.data):
-            raise ValueError(f"{size} bytes wanted where {len(self.data) - self.offset} are left")
+            raise ValueError(
+                f"{size} bytes are expected, but only {len(self.data) - self.offset} remain"
+            )
         taken = self.data[self.offset : end]
         self.offset = end
         return taken
@@ -69,14 +71,15 @@ def decode_ros1(data: bytes | memoryview, type_name: str, *, elements: int | Non
         message = read(source)
     except (ValueError, struct.error) as error:
         raise GraphError(
-            f"{len(data)} bytes are not a {type_name}: {error}",
+            f"{len(data)} bytes cannot be decoded as {type_name}: {error}",
             code=MESSAGE_NOT_DECODABLE,
             values={"type": type_name, "bytes": len(data)},
         ) from error
     if source.offset != len(source.data):
         left = len(source.data) - source.offset
         raise GraphError(
-            f"{len(data)} bytes are not a {type_name}: {left} are left over",
+            f"{len(data)} bytes cannot be decoded as {type_name}: {left} bytes remain after the "
+            "message",
             code=MESSAGE_NOT_DECODABLE,
             values={"type": type_name, "bytes": len(data)},
         )
@@ -132,7 +135,9 @@ def _list_reader(field: Field, read: _Reader) -> _Reader:
     def read_list(source: _Source) -> list[Any]:
         count = source.count() if field.length is None else field.length
         if count > source.elements:
-            raise ValueError(f"a list of {count} elements, where {source.elements} are left")
+            raise ValueError(
+                f"a list has {count} elements, but at most {source.elements} are allowed"
+            )
         source.elements -= count
         return [read(source) for _ in range(count)]
 

@@ -202,4 +202,4 @@ def _count(field: Field, count: int, parts: Parts) -> None:
     if field.length is None:
         parts.append(_COUNT.pack(count))
     elif count != field.length:
-        raise ValueError(f"{field.name} holds {count} values, not {field.length}")
+        raise ValueError(f"{field.name} must have {field.length} values (got {count})")

@@ -58,4 +58,4 @@ class PlaybackSession:
         Raises:
             RecordingError: Always.
         """
-        raise RecordingError("models cannot be spawned into a recording", code=PLAYBACK_READ_ONLY)
+        raise RecordingError("models cannot be spawned during playback", code=PLAYBACK_READ_ONLY)

@@ -61,7 +61,7 @@ PARAMETERS = (
         default=9,
         minimum=1,
         maximum=9,
-        description="Effort of PNG, 9 is the smallest",
+        description="PNG compression level; 9 gives the smallest images",
     ),
 )
 """Names, types, defaults and limits are those of compressed_image_transport."""
@@ -99,7 +99,7 @@ DEPTH_PARAMETERS = (
         default=1,
         minimum=1,
         maximum=9,
-        description="Effort of PNG, 9 is the smallest",
+        description="PNG compression level; 9 gives the smallest images",
     ),
 )
 """Names, types, defaults and limits are those of compressed_depth_image_transport."""
@@ -163,7 +163,7 @@ class CompressedImages:
                 f'images cannot be compressed as "{values["format"]}"',
                 code=running.IMAGE_COMPRESSION_UNKNOWN,
                 values={"format": str(values["format"])},
-                hint=f"There are: {', '.join(_FORMATS)}.",
+                hint=f"Supported formats: {', '.join(_FORMATS)}.",
             )
         self._values = values
 

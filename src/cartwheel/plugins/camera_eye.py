@@ -30,7 +30,7 @@ _RATE = ReconfigureParameter(
     minimum=1.0,
     maximum=50.0,
     level=3,
-    description="Images a second",
+    description="Frame rate, Hz",
 )
 """From GazeboRosCamera.cfg of gazebo_plugins."""
 
@@ -197,8 +197,8 @@ def image_format(plugin: Plugin[Any], name: str) -> ImageFormat:
     if "FLOAT" not in name.upper():
         plugin.warn(
             devices.IMAGE_FORMAT_UNKNOWN,
-            f'the image format "{name}" is not supported: R8G8B8 is used',
-            hint=f"There are: {', '.join(FORMATS)}.",
+            f'the image format "{name}" is not supported, so R8G8B8 is used',
+            hint=f"Supported formats: {', '.join(FORMATS)}.",
             values={"format": name},
         )
     return FORMATS["R8G8B8"]

@@ -130,7 +130,7 @@ def watched_collisions(plugin: Plugin[Any], sensor: Sensor) -> set[str]:
         else:
             plugin.warn(
                 devices.CONTACT_COLLISION_UNKNOWN,
-                f'contact sensor "{sensor.name}" names the collision "{name}", which does not '
+                f'contact sensor "{sensor.name}" refers to the collision "{name}", which does not '
                 "exist, so it never reports a contact",
                 hint=suggestion(name, spellings),
                 values={
@@ -142,7 +142,7 @@ def watched_collisions(plugin: Plugin[Any], sensor: Sensor) -> set[str]:
     if not sensor.collisions:
         plugin.warn(
             devices.SENSOR_INCOMPLETE,
-            f'contact sensor "{sensor.name}" names no <collision>, so it never reports a contact',
+            f'contact sensor "{sensor.name}" has no <collision>, so it never reports a contact',
             values={"sensor": sensor.name, "missing": "collision"},
         )
     return collisions

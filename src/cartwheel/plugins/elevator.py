@@ -64,7 +64,7 @@ class Elevator(Plugin[ElevatorParameters]):
         if self.tag.element.find("floor_height") is None:
             self.warn(
                 devices.PLUGIN_PARAMETER_MISSING,
-                "<floor_height> is missing: 3 m is used",
+                "<floor_height> is missing, so 3 m is used",
                 values={"parameter": "floor_height"},
             )
         self._lift = self._drive(config.lift_joint, _LIFT_EFFORT, _LIFT_SPEED, _LIFT_ACCELERATION)

@@ -235,7 +235,7 @@ class GzForceTorque(_JointWrench):
         assert sensor is not None
         if sensor.joint is None:
             raise PluginError(
-                f'sensor "{sensor.name}" measures a joint, but is not inside one',
+                f'sensor "{sensor.name}" measures a joint, but is not inside a <joint>',
                 code=devices.SENSOR_INCOMPLETE,
                 origin=sensor.origin,
                 hint="Move the <sensor> into the <joint>.",

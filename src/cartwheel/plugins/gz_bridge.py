@@ -64,7 +64,7 @@ class GzBridge:
         for entry in entries:
             first = self._entries.setdefault(entry.gz, entry)
             if first.ros != entry.ros:
-                reason = f'"{entry.gz}" is published as {first.ros} already'
+                reason = f'"{entry.gz}" is already published as {first.ros}'
                 self._faults.append(_warning(entry, f"{entry.ros} has no effect: {reason}"))
 
     def published(self, name: str, type_name: str) -> str:
@@ -187,6 +187,6 @@ def _bridged(entry: Any, origin: Origin) -> Bridged:
     try:
         name = resolve_name(ros)
     except GraphError as error:
-        hint = "If a launch file fills the name in, write the result into a copy of the file."
+        hint = "If a launch file substitutes the name, write the result into a copy of the file."
         raise _invalid(error.message, origin, hint) from None
     return Bridged(gz=gz_topic(gz), ros=name, type=type_name(kind), origin=origin)

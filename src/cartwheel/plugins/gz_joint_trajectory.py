@@ -187,8 +187,8 @@ class GzJointTrajectory(Plugin[JointTrajectoryParameters]):
         if not known:
             self.warn(
                 running.TRAJECTORY_INVALID,
-                "a trajectory is ignored: it names no joint of the model",
-                hint=f"There are: {', '.join(self._joints)}.",
+                "a trajectory is ignored: it contains no joint of the model",
+                hint=f"Valid names: {', '.join(self._joints)}.",
                 values={"fault": "joints"},
             )
             return

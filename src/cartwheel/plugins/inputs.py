@@ -39,7 +39,7 @@ def obeyable(
             take(message)
         elif not warned:
             warned = True
-            text = f"a command is ignored, like any further one of its kind: {reason}"
+            text = f"a command is ignored, and so are later commands of this kind: {reason}"
             warn(running.COMMAND_NOT_SIMULATED, f"{text} cannot be simulated")
 
     return checked

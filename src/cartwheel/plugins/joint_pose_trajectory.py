@@ -78,7 +78,9 @@ class JointPoseTrajectory(Plugin[JointPoseTrajectoryParameters]):
     def _on_request(self, request: Any) -> Any:
         problem = self._take(request.joint_trajectory)
         if not problem and request.model_name not in ("", self.part.name):
-            problem = f'this is model "{self.part.name}", not "{request.model_name}"'
+            problem = (
+                f'the trajectory is for model "{request.model_name}", not for "{self.part.name}"'
+            )
         if not problem and request.set_model_pose:
             problem = "set_model_pose is not supported: use /gazebo/set_model_state"
         if problem:

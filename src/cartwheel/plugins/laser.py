@@ -58,7 +58,7 @@ class Laser(Plugin[LaserParameters]):
         if rows > 1:
             self.warn(
                 devices.SENSOR_SETTING_IGNORED,
-                f"a LaserScan has a single row: only the middle one of {rows} is published",
+                f"a LaserScan has a single row, so only the middle row of {rows} is published",
                 values={"setting": "vertical", "rows": rows},
             )
         self._frame = self.frame(self.config.frame or self.sensor.link)

@@ -151,7 +151,7 @@ class LinkAttacherRos2(_Attacher):
         except UnknownNameError as error:
             return self._Attached(success=False, message=f"{error.message}. {error.hint}")
         if self.joined(one, two):
-            return self._Attached(success=False, message=f"{_pair(one, two)} are attached already")
+            return self._Attached(success=False, message=f"{_pair(one, two)} are already attached")
         self.join(one, two)
         return self._Attached(success=True, message=f"attached {_pair(one, two)}")
 

@@ -130,7 +130,7 @@ def _first(element: Element) -> tuple[Element, Diagnostic]:
     """The element with its first word only: Gazebo reads this one if it expects a single number."""
     word = element.text.split()[0]
     return dataclasses.replace(element, text=word), devices.PLUGIN_PARAMETER_NOT_SINGLE.diagnostic(
-        f"<{element.tag}> must be one number, but states several: {word} is used",
+        f"<{element.tag}> must be one number, but contains several, so {word} is used",
         origin=element.origin,
         values={"parameter": element.tag, "value": word},
         mark=f"<{element.tag}",
@@ -159,7 +159,7 @@ def invalid(name: str, value: Value, wanted: str, origin: Origin | None) -> Plug
 def missing(parent: str, name: str, origin: Origin | None, *, hint: str = "") -> PluginError:
     """The error for a required tag that is missing in its parent, which is at `origin`."""
     return PluginError(
-        f"<{parent}> needs <{name}>",
+        f"<{parent}> requires <{name}>",
         code=devices.PLUGIN_PARAMETER_MISSING,
         origin=origin,
         hint=hint,

@@ -68,8 +68,8 @@ def attach(part: Part, graph: Graph, *, lenient: bool = False) -> list[Behaviour
                 place = "world" if plugin.for_world else "sensor"
                 part.report(
                     devices.PLUGIN_MISPLACED.diagnostic(
-                        f'plugin "{tag.filename}" has no effect here: '
-                        f"it belongs inside a <{place}>",
+                        f'plugin "{tag.filename}" has no effect here because it belongs inside a '
+                        f"<{place}>",
                         origin=tag.origin,
                         values={"name": tag.filename, "place": place},
                     )
@@ -126,7 +126,11 @@ def _serve(
         if sensor.plugins:
             # The diagnostic about the unsupported plugin covers the sensor.
             continue
-        reason = f' and type "{sensor.type}", which publishes nothing without one' if wanted else ""
+        reason = (
+            (f' and type "{sensor.type}", which publishes nothing without a plugin')
+            if wanted
+            else ""
+        )
         part.report(
             devices.SENSOR_WITHOUT_PLUGIN.diagnostic(
                 f'sensor "{sensor.name}" has no <plugin>{reason or ", so it publishes nothing"}',

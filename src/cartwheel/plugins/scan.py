@@ -144,7 +144,7 @@ def _sweep(element: Element, report: Callable[[Diagnostic], None], *, samples: i
         # Mostly the result of dividing angles.
         report(
             devices.SCAN_SAMPLES_INVALID.diagnostic(
-                f"<samples> must be a whole number (got {asked:g}): {int(asked)} is used",
+                f"<samples> must be a whole number (got {asked:g}), so {int(asked)} is used",
                 severity="info",
                 origin=_place(element, "samples"),
                 values={"parameter": "samples", "value": asked},

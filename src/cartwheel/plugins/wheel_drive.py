@@ -83,7 +83,7 @@ class WheelDrive(Drive):
                 self.warn(
                     robot.WHEELS_SWAPPED,
                     f'the left wheel of joint "{pair.left}" is to the right of that of '
-                    f'"{pair.right}", so the robot turns against its commands, as in Gazebo',
+                    f'"{pair.right}", so the robot turns in the opposite direction, as in Gazebo',
                     severity="info",
                     values={"left": pair.left, "right": pair.right},
                 )

@@ -116,7 +116,7 @@ class WheelSlip(Plugin[WheelSlipParameters]):
         name = element.attribute("link_name")
         if not name:
             raise PluginError(
-                "<wheel> needs the attribute link_name",
+                "<wheel> requires the attribute link_name",
                 code=devices.PLUGIN_PARAMETER_MISSING,
                 origin=origin,
                 values={"parameter": "link_name"},
@@ -125,7 +125,7 @@ class WheelSlip(Plugin[WheelSlipParameters]):
         normal = _number(element, "wheel_normal_force")
         if radius <= 0 or normal <= 0:
             raise PluginError(
-                f'wheel "{name}" needs a positive <wheel_radius> and <wheel_normal_force>',
+                f'wheel "{name}" requires a positive <wheel_radius> and <wheel_normal_force>',
                 code=devices.PLUGIN_PARAMETER_INVALID,
                 origin=origin,
                 values={"link": name, "wheel_radius": radius, "wheel_normal_force": normal},
@@ -138,7 +138,7 @@ class WheelSlip(Plugin[WheelSlipParameters]):
             if value < 0:
                 self.warn(
                     devices.PLUGIN_PARAMETER_INVALID,
-                    f"<slip_compliance_{sense}> must not be negative (got {value:g}): 0 is used",
+                    f"<slip_compliance_{sense}> must not be negative (got {value:g}), so 0 is used",
                     at=origin,
                     values={"parameter": f"slip_compliance_{sense}", "value": value},
                 )

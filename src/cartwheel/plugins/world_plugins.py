@@ -32,7 +32,7 @@ BUILT_IN = {
 def left_out(tag: PluginTag, error: CartwheelError) -> Diagnostic:
     """The diagnostic for a plugin or sensor that cannot be created."""
     return running.PLUGIN_LEFT_OUT.diagnostic(
-        f"{_title(tag)} is left out: {error.message}",
+        f"{_title(tag)} is ignored: {error.message}",
         origin=error.origin or tag.origin,
         mark=error.mark,
         hint=error.hint or "",
@@ -47,7 +47,7 @@ def left_out(tag: PluginTag, error: CartwheelError) -> Diagnostic:
 def failed(tag: PluginTag, error: Exception) -> Diagnostic:
     """The diagnostic for a plugin or sensor that raises an unexpected exception when created."""
     return fault(
-        f"{_title(tag)} failed and is left out",
+        f"{_title(tag)} failed and is ignored",
         error,
         tag.origin,
         code=running.PLUGIN_FAILED,
@@ -87,7 +87,8 @@ def attach_world(part: Part, graph: Graph) -> list[Behaviour]:
         elif not plugin.for_world:
             part.report(
                 devices.PLUGIN_MISPLACED.diagnostic(
-                    f'plugin "{tag.filename}" has no effect here: it belongs inside a <model>',
+                    f'plugin "{tag.filename}" has no effect here because it belongs inside a '
+                    "<model>",
                     origin=tag.origin,
                     values={"name": tag.filename, "place": "model"},
                 )

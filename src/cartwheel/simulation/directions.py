@@ -170,8 +170,8 @@ def _entries() -> Any:
             for a, b in zip([numbers[0], *numbers[4:]], expected, strict=True)
         ):
             raise SimulationError(
-                f"MuJoCo {mujoco.__version__} computes contacts in another way than this version "
-                "of Cartwheel supports, so friction cannot differ by direction",
+                f"MuJoCo {mujoco.__version__} computes contacts in a way that this version of "
+                "Cartwheel does not support, so friction cannot differ by direction",
                 code=world_codes.FRICTION_DIRECTION_UNSUPPORTED,
                 hint="Install an older MuJoCo, or give mu1 and mu2 the same value.",
             )

@@ -170,10 +170,10 @@ class Engine:
 
     def _exhausted(self, error: Exception) -> SimulationError:
         return SimulationError(
-            f"the simulation cannot go on with {self.data.ncon} contacts: "
+            f"the simulation cannot continue with {self.data.ncon} contacts: "
             f"{str(error).splitlines()[0]}",
             code=world_codes.TOO_MANY_CONTACTS,
-            hint="Are models inside each other?",
+            hint="Check whether models overlap.",
             values={"contacts": int(self.data.ncon)},
         )
 

@@ -105,12 +105,12 @@ class Guard:
         body = self._culprit()
         name = mujoco.mj_id2name(self._model, mujoco.mjtObj.mjOBJ_BODY, body) or "world"
         return DivergedError(
-            f'the simulation diverged by {self._data.time:.3f} s, first at "{name}"',
+            f'the simulation diverged at {self._data.time:.3f} s, first at "{name}"',
             code=world_codes.SIMULATION_DIVERGED,
             values={"body": name, "time": float(self._data.time), "states": states},
             origin=place_of(name),
             hint=_likely(self._model, body)
-            + (f" The last states are in {states}." if states else ""),
+            + (f" The last states were saved to {states}." if states else ""),
         )
 
     def _culprit(self) -> int:
@@ -134,12 +134,12 @@ def _likely(model: Any, body: int) -> str:
         if model.body_rootid[other] == model.body_rootid[body] and model.body_mass[other] > 0
     ]
     if not body or not tree:
-        return "A huge effort or speed does this most often."
+        return "The most common cause is a very large effort or speed."
     smallest = min(tree, key=lambda other: float(np.min(model.body_inertia[other])))
     name = mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_BODY, smallest)
     inertia, mass = float(np.min(model.body_inertia[smallest])), model.body_mass[smallest]
     return (
-        f'The smallest moment of inertia of its model is that of "{name}", {inertia:.3g} kg m² at '
-        f"{mass:.3g} kg: a value far too small for its size, or a huge effort or damping, does "
-        "this most often."
+        f'The smallest moment of inertia in its model is {inertia:.3g} kg m², in "{name}" with '
+        f"{mass:.3g} kg. The most common causes are an inertia that is far too small for the size "
+        "of the link, and a very large effort or damping."
     )

@@ -35,7 +35,7 @@ def number(value: float, name: str, *, most: float = FARTHEST) -> float:
 
 def _out_of_range(name: str, wanted: str, value: float) -> CartwheelError:
     return CartwheelError(
-        f"{name} is {value:g}, but must be {wanted}",
+        f"{name} must be {wanted} (got {value:g})",
         code=world_codes.NUMBER_OUT_OF_RANGE,
         values={"name": name, "value": value},
     )
@@ -81,9 +81,9 @@ def check_speed(speed: float | None) -> None:
     """
     if speed is not None and not SLOWEST <= speed <= FASTEST:
         raise CartwheelError(
-            f"the real-time factor is {speed:g}, but must be from {SLOWEST:g} to {FASTEST:g}",
+            f"the real-time factor must be from {SLOWEST:g} to {FASTEST:g} (got {speed:g})",
             code=world_codes.REAL_TIME_FACTOR_INVALID,
-            hint="To hold the time, pause the simulation.",
+            hint="To stop simulation time, pause the simulation.",
             values={"value": speed},
         )
 

@@ -124,7 +124,8 @@ def _open(width: int, height: int) -> Any:
             return context
     raise NoOpenGLError(
         f"cameras need OpenGL, which this machine lacks ({'; '.join(reasons)})",
-        hint=f"On Debian or Ubuntu: sudo apt-get install {_PACKAGES}. Only images need it.",
+        hint=f"On Debian or Ubuntu: sudo apt-get install {_PACKAGES}. Only camera images require "
+        "OpenGL.",
     )
 
 

@@ -222,7 +222,7 @@ class Part:
         for handle in self.handles:
             if isinstance(handle, ServoHandle) and handle.motor.joint == motor.joint:
                 handle.shared = True
-        self._warn_of_two(motor.joint, "the efforts of both add up", origin)
+        self._warn_of_two(motor.joint, "the efforts of both plugins are added", origin)
         return shared
 
     def _warn_of_two(self, joint: str, result: str, origin: Origin | None) -> None:
@@ -332,7 +332,7 @@ class Part:
             )
         if link in self._entry.slips:
             raise PluginError(
-                f'two plugins state the slip of link "{link}"',
+                f'two plugins set the slip of link "{link}"',
                 code=running.JOINT_DRIVEN_TWICE,
                 origin=origin,
                 values={"link": link},

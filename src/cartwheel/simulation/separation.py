@@ -101,9 +101,9 @@ def overlap(
     floor = max((d for other, d in overlaps if other.startswith("ground")), default=0.0)
     height = math.ceil((z + floor) * 100) / 100
     return world_codes.MODELS_OVERLAP.diagnostic(
-        f'model "{name}" overlaps {others}: they are pushed apart',
+        f'model "{name}" overlaps {others}, so they are pushed apart',
         origin=origin,
-        hint=f"At z = {height:g} it is on the ground." if floor else "",
+        hint=f"Set z to {height:g} to place the model on the ground." if floor else "",
         values={
             "model": name,
             "others": tuple(other for other, _ in overlaps),

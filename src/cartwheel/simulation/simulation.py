@@ -273,7 +273,7 @@ class Simulation(Run):
                     diagnostic.message,
                     code=diagnostic.code,
                     origin=diagnostic.origin,
-                    hint="--strict ends the run at the first error.",
+                    hint="--strict stops the run at the first error.",
                     values=diagnostic.values,
                 )
             )
@@ -356,10 +356,15 @@ class Simulation(Run):
         self.reset(keep_time=True)
         self._recoveries += 1
         if self._recoveries <= _RECOVERIES:
-            last = " Further ones are not reported." if self._recoveries == _RECOVERIES else ""
+            last = (
+                (" From now on, divergence is not reported.")
+                if self._recoveries == _RECOVERIES
+                else ""
+            )
             self.engine.report(
                 world_codes.SIMULATION_RECOVERED.diagnostic(
-                    f"{error.message}; all models are back where they were spawned",
+                    f"{error.message}; all models are reset to the poses at which they were "
+                    "spawned",
                     origin=error.origin,
                     hint=f"{error.hint}{last}",
                     values=error.values,
@@ -686,7 +691,7 @@ class Simulation(Run):
             )
         if name in self._residents:
             raise WorldError(
-                f'a model named "{name}" is in the world already',
+                f'a model named "{name}" is already in the world',
                 code=world_codes.MODEL_NAME_TAKEN,
                 origin=description.origin,
                 hint="Give it another name with --model, such as "

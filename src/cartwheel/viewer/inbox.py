@@ -190,7 +190,7 @@ class Inbox:
             raise MalformedError(str(error)) from error
         if isinstance(message, Camera):
             if not any(message.wxyz):
-                raise MalformedError("a quaternion of zeros")
+                raise MalformedError("a quaternion is zero")
             # viser takes a browser for connected only from here on, and cleans up after it.
             self._known.add(client)
             return
@@ -213,7 +213,7 @@ class Inbox:
 
     def _check_change(self, client: int, message: Change) -> None:
         if list(message.updates) != ["value"]:
-            raise MalformedError("a property that browsers may not set")
+            raise MalformedError("browsers may not set this property")
         handle = self._control(client, message.uuid)
         if handle is None:
             return  # Removed meanwhile, which is no fault; viser ignores it.
@@ -230,7 +230,7 @@ class Inbox:
         else:
             fits = False
         if not fits:
-            raise MalformedError("an invalid value for the control")
+            raise MalformedError("the value is invalid for the control")
 
     def _control(self, client: int, uuid: str) -> Any:
         """What a browser may use: the page's own controls and those made for it alone."""
@@ -288,7 +288,7 @@ class Inbox:
         self.dropped += 1
         if self.dropped == 1:
             _log.warning(
-                "the page ignored a malformed message (%s); it ignores further ones "
-                "without a warning",
+                "the web interface ignored a malformed message (%s); from now on, malformed "
+                "messages are ignored without a warning",
                 reason[:200].replace("\n", " "),
             )

@@ -82,7 +82,7 @@ class Uploads:
         upload = self._by_client.get(client)
         if upload is None or upload.transfer != transfer:
             # Of a file that was refused, for example: the browser sends all parts at once.
-            raise UploadError("This part of a file was not announced.", tell=False)
+            raise UploadError("This part does not belong to an upload.", tell=False)
         expected = min(PART_BYTES, upload.size - index * PART_BYTES)
         if index in upload.seen or length != expected:
             self.drop(client)

@@ -213,7 +213,7 @@ class BodyBuilder:
             bottom = lowest(shape, there) if trunk else None
             if isinstance(shape, Plane) and not entry.description.static:
                 raise WorldError(
-                    f'collision "{collision.name}" is an endless plane, which must be static',
+                    f'collision "{collision.name}" is an infinite plane, which must be static',
                     code=world_codes.PLANE_NOT_STATIC,
                     origin=collision.origin,
                     values={"collision": collision.name},

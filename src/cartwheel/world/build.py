@@ -157,8 +157,8 @@ def _check_chain(entry: ModelEntry) -> None:
             depths[each] = depth
         if depths[link.name] > LONGEST_CHAIN and len(path) <= len(description.links):
             raise WorldError(
-                f'link "{link.name}" is at the end of a chain of {depths[link.name]} links: '
-                f"at most {LONGEST_CHAIN} can be simulated",
+                f'link "{link.name}" is at the end of a chain of {depths[link.name]} links, but at '
+                f"most {LONGEST_CHAIN} can be simulated",
                 code=world_codes.CHAIN_TOO_LONG,
                 origin=link.origin,
                 values={"link": link.name, "links": depths[link.name], "most": LONGEST_CHAIN},
@@ -184,12 +184,12 @@ def _check_contacts(model: mujoco.MjModel, entries: list[ModelEntry]) -> None:
     owner = model.body(int(body)).name.partition("::")[0]
     found = next((each for each in entries if each.name == owner), None)
     raise WorldError(
-        f"the models touch at {data.ncon} points, more than the {MOST_CONTACTS} that can be "
-        f'simulated: "{owner}" alone at {int(touched[body])}',
+        f"the models have {data.ncon} contacts, but at most {MOST_CONTACTS} can be simulated; "
+        f'"{owner}" alone has {int(touched[body])}',
         code=world_codes.TOO_MANY_CONTACTS,
         values={"contacts": int(data.ncon), "model": owner},
         origin=found.description.origin if found else None,
-        hint="Are models inside each other?",
+        hint="Check whether models overlap.",
     )
 
 

@@ -92,7 +92,7 @@ def unreadable(description: RobotDescription) -> Iterator[Diagnostic]:
             error = picture_error(image)
             if error is not None:
                 yield error.code.diagnostic(
-                    f"{error.message}, so the surface has its plain colour",
+                    f"{error.message}, so the surface is rendered in its plain colour",
                     severity="warning",
                     origin=visual.origin,
                     hint=error.hint or "",

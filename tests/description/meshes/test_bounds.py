@@ -89,7 +89,7 @@ def test_instances_of_a_geometry_count_each(tmp_path, monkeypatch):
         <library_visual_scenes><visual_scene><node>{shown}</node></visual_scene>
         </library_visual_scenes></COLLADA>"""
     )
-    with pytest.raises(MeshError, match="shows more than 100 triangles"):
+    with pytest.raises(MeshError, match="contains more than 100 triangles"):
         load_mesh(Mesh(uri="", path=tmp_path / "a.dae"))
     assert submesh.MOST_TRIANGLES > 1_000_000
 
@@ -108,7 +108,7 @@ def test_an_outline_that_crosses_itself_everywhere_is_refused_with_its_place():
     with pytest.raises(DescriptionError, match="cross more than 1000 times") as error:
         load_text(text, file="a.sdf")
     assert error.value.origin.line == 3
-    with pytest.raises(OutlineError, match="3000 points, at most 2000"):
+    with pytest.raises(OutlineError, match="3000 points, but at most 2000"):
         convex_pieces(polyline(points))
 
 

@@ -281,13 +281,13 @@ def test_gltf_finds_its_buffer_beside_it(tmp_path):
     [
         ("a.stl", b"", "is empty"),
         ("a.stl", b"solid nothing\nendsolid\n", "no triangles"),
-        ("a.stl", b"short", "is no STL file"),
-        ("a.stl", tetra_stl()[:-20], "4 triangles announced, 3 present"),
-        ("a.stl", b"solid a\nfacet normal 0 0 0\nvertex 1 2 x\n" * 3, '"x" is no number'),
+        ("a.stl", b"short", "is not an STL file"),
+        ("a.stl", tetra_stl()[:-20], "it declares 4 triangles but contains 3"),
+        ("a.stl", b"solid a\nfacet normal 0 0 0\nvertex 1 2 x\n" * 3, '"x" is not a number'),
         ("a.stl", binary_stl([[(0, 0, 0), (1, 0, 0), (0, float("nan"), 0)]]), "not a finite"),
         ("a.obj", "v 0 0 0\nv 1 0\nf 1 2 3\n", '"v" statement'),
-        ("a.obj", "v 0 0 0\nv 1 0 0\nf 1 2 3\n", "entry 2 of 2"),
-        ("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf a b c\n", "no index"),
+        ("a.obj", "v 0 0 0\nv 1 0 0\nf 1 2 3\n", "refers to entry 2"),
+        ("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf a b c\n", "an invalid index"),
         ("a.obj", "nothing of use", "no triangles"),
         ("a.fbx", b"Kaydara", 'format "fbx" is not supported'),
         ("a.glb", b"glTF but no more", "."),
@@ -313,7 +313,7 @@ def test_missing_file_folder_and_flat_scale(tmp_path):
         load_mesh(Mesh(uri="", path=tmp_path / "folder.stl"))
     mesh = write(tmp_path, "t.stl", tetra_stl())
     for scale in ((1, 0, 1), (1, 1, 1e-50), (-1e50, 1, 1), (1, math.nan, 1)):
-        with pytest.raises(MeshError, match="makes it vanish"):
+        with pytest.raises(MeshError, match="reduces it to zero size"):
             load_mesh(Mesh(uri="", path=mesh.path, scale=scale))
 
 

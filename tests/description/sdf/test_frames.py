@@ -239,7 +239,7 @@ def test_a_joint_may_be_called_as_a_link_in_older_files():
     ("attributes", "reason"),
     [
         ('rotation_format="quat_xyz"', 'Did you mean "quat_xyzw"'),
-        ('rotation_format="quat_xyzw" degrees="true"', "a quaternion has no degrees"),
+        ('rotation_format="quat_xyzw" degrees="true"', "a quaternion cannot be in degrees"),
     ],
 )
 def test_a_notation_that_is_none_is_refused(attributes, reason):

@@ -174,7 +174,7 @@ class GraphHost:
         except Exception as error:  # noqa: BLE001 - rosbags lets whatever it meets through
             self._warn(
                 MESSAGE_NOT_SENT.because(
-                    f"a message of {relay.topic} cannot be sent",
+                    f"a message on {relay.topic} cannot be sent",
                     error,
                     values={"topic": relay.topic},
                 )

@@ -168,7 +168,7 @@ class Link:
         unread = f"{self._queued >> 20} MB"
         self._on_fault(
             ControlError(
-                f"the process at the other end does not read its messages ({unread} wait): the "
+                f"the connected process does not read its messages ({unread} are queued), so the "
                 "connection is closed",
                 code=BRIDGE_SLOW,
             )
@@ -182,7 +182,7 @@ class Link:
         if self._reported == 0:
             self._on_fault(
                 ControlError(
-                    "the bridge reads too slowly: feedback of goals is dropped",
+                    "the bridge reads too slowly, so goal feedback is dropped",
                     code=BRIDGE_SLOW,
                     values={"dropped": "feedback"},
                 )
@@ -199,7 +199,7 @@ class Link:
             count, self._reported = self.dropped - self._reported, self.dropped
         self._on_fault(
             ControlError(
-                f"the bridge reads again; {count} messages of feedback were dropped",
+                f"the bridge reads again; {count} feedback messages were dropped",
                 code=BRIDGE_RECOVERED,
                 values={"dropped": count},
             )
@@ -267,7 +267,7 @@ class Link:
             self._run(kind, number, handler, content)
         elif not self._workers.run(lambda: self._run(kind, number, handler, content)):
             busy = ControlError(
-                f"{THREADS} calls run and {WAITING} wait: {name} is refused",
+                f"{name} is rejected because {THREADS} calls are running and {WAITING} are queued",
                 code=CALL_LIMIT,
                 values={"name": name, "most": THREADS},
             )
@@ -331,4 +331,4 @@ def _fail(future: Future[Any], error: Exception) -> None:
 
 
 def _gone() -> ControlError:
-    return ControlError("the process at the other end has ended", code=BRIDGE_ENDED)
+    return ControlError("the connected process has exited", code=BRIDGE_ENDED)

@@ -55,8 +55,9 @@ class Losses:
                 self._too_large.add(topic)
                 self._warn(
                     MESSAGE_TOO_LARGE.diagnostic(
-                        f"a message of {topic} has {size / 1e6:.0f} MB, but a bridge takes at "
-                        f"most {self._ring.largest / 1e6:.0f} MB: such messages are dropped",
+                        f"a {size / 1e6:.0f} MB message on {topic} exceeds the bridge's "
+                        f"limit of {self._ring.largest / 1e6:.0f} MB; such messages are "
+                        "dropped",
                         values={"topic": topic},
                     )
                 )
@@ -83,8 +84,7 @@ class Losses:
             self._still = True
             self._warn(
                 BRIDGE_SLOW.diagnostic(
-                    "its process does not read: it is suspended or waits. Messages are dropped "
-                    "until it reads again"
+                    "its process is suspended or blocked; messages are dropped until it reads again"
                 )
             )
             self._later(_JUDGED, self._judge)
@@ -92,7 +92,7 @@ class Losses:
             self._still = False
             self._warn(
                 BRIDGE_RECOVERED.diagnostic(
-                    f"its process reads again; dropped were {_counted(lost)}",
+                    f"its process reads again; {_counted(lost)} were dropped",
                     values={"dropped": _counted(lost)},
                 )
             )
@@ -100,7 +100,7 @@ class Losses:
             for topic in lost:
                 self._warn(
                     PUBLISHED_TOO_FAST.diagnostic(
-                        f"{topic} is published faster than the bridge's process reads it: "
+                        f"{topic} is published faster than the bridge process reads it, so "
                         "messages are dropped",
                         values={"topic": topic},
                     )
@@ -108,4 +108,4 @@ class Losses:
 
 
 def _counted(lost: Counter[str]) -> str:
-    return ", ".join(f"{count} messages of {topic}" for topic, count in sorted(lost.items()))
+    return ", ".join(f"{count} messages on {topic}" for topic, count in sorted(lost.items()))

@@ -134,7 +134,7 @@ class BridgeProcess:
             return self._link.call(name, *arguments).result(timeout)
         except TimeoutError:
             raise CartwheelError(
-                f"{self.title} does not answer within {timeout:g} s",
+                f"{self.title} did not respond within {timeout:g} s",
                 code=BRIDGE_SLOW,
                 values={"bridge": self.title, "seconds": timeout},
             ) from None
@@ -175,7 +175,7 @@ class BridgeProcess:
 
     @property
     def _death(self) -> str:
-        return f"the process of {self.title} has ended"
+        return f"the process that runs {self.title} has exited"
 
     def _ended(self) -> None:
         """On the link's thread."""

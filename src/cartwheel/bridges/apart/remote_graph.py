@@ -264,4 +264,6 @@ class RemoteGraph:
 
 
 def _elsewhere(_: Any) -> Any:
-    raise NotImplementedError("a service of another process is called through its graph")
+    raise NotImplementedError(
+        "a service in a different process must be called through the graph of that process"
+    )

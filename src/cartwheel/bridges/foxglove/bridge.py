@@ -393,7 +393,9 @@ class FoxgloveBridge:
                 except CartwheelError as error:
                     self._warn(
                         TYPE_UNSUPPORTED.because(
-                            f"service {name} is not offered", error, values={"service": name}
+                            f"service {name} is not available to Foxglove",
+                            error,
+                            values={"service": name},
                         )
                     )
                 self._services[name] = service
@@ -419,7 +421,7 @@ class FoxgloveBridge:
         known = self._gate.peer(int(port)) if self._gate is not None and port.isdigit() else None
         self._warn(
             SLOW_SUBSCRIBER.diagnostic(
-                f"the client {known or client} reads too slowly: messages to it are dropped",
+                f"client {known or client} reads too slowly, so messages to it are dropped",
                 values={"peer": known or client},
             )
         )

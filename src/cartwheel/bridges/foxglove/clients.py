@@ -58,14 +58,14 @@ class JoinedClient:
             # Not handed on either: the library may read more than Python does.
             self._warn(
                 CLIENT_REQUEST_IGNORED.diagnostic(
-                    "a client sent a request that is not JSON: it is ignored"
+                    "a client request is ignored because it is not valid JSON"
                 )
             )
             return False
         except _FullError as error:
             self._warn(
                 CLIENT_REQUEST_IGNORED.diagnostic(
-                    f"{error}: further ones are ignored", values={"limit": error.limit}
+                    f"{error}; additional requests are ignored", values={"limit": error.limit}
                 )
             )
             return False
@@ -137,13 +137,14 @@ class _Share:
         if len(self._sizes) + len(new) > _MOST or sum(self._sizes.values()) + size > _MOST_BYTES:
             raise _FullError(
                 f"{total.title} of a client",
-                f"a client has at most {_MOST} {total.title}, with {_MOST_BYTES >> 20} MiB of text",
+                f"a client may have at most {_MOST} {total.title} with {_MOST_BYTES >> 20} MiB of "
+                "text",
             )
         if total.count + len(new) > _ALL or total.size + size > _ALL_BYTES:
             raise _FullError(
                 f"{total.title} of all clients",
-                f"all clients together have at most {_ALL} {total.title}, "
-                f"with {_ALL_BYTES >> 20} MiB of text",
+                f"all clients together may have at most {_ALL} {total.title} with "
+                f"{_ALL_BYTES >> 20} MiB of text",
             )
         self._sizes.update(new)
         total.count += len(new)

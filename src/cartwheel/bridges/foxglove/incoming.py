@@ -44,9 +44,9 @@ def decode(data: bytes, encoding: str, kind: str) -> Any:
         return decode_ros1(data, kind)
     if encoding != "json":
         raise GraphError(
-            f'messages cannot be sent as "{encoding}"',
+            f'the message encoding "{encoding}" is not supported',
             code=MALFORMED_MESSAGE,
-            hint=f"Supported are: {', '.join(ENCODINGS)}.",
+            hint=f"Supported encodings: {', '.join(ENCODINGS)}.",
             values={"encoding": encoding},
         )
     try:
@@ -87,7 +87,8 @@ class Incoming:
         if self._waiting >= _BACKLOG:
             self._tell(
                 INCOMING_DROPPED.diagnostic(
-                    "clients send messages faster than the simulation takes them: some are dropped"
+                    "clients send messages faster than the simulation processes them, so some "
+                    "messages are dropped"
                 )
             )
             return
@@ -96,7 +97,8 @@ class Incoming:
             if topic not in types:
                 self._tell(
                     MESSAGE_UNREAD.diagnostic(
-                        f"{topic} has no subscribers: messages from clients to it are dropped",
+                        f"{topic} has no subscribers, so messages from clients on this topic are "
+                        "dropped",
                         values={"topic": topic},
                     )
                 )
@@ -111,7 +113,7 @@ class Incoming:
         except CartwheelError as error:
             self._tell(
                 MALFORMED_MESSAGE.because(
-                    f"a client's message to {topic} cannot be used", error, values={"topic": topic}
+                    f"a client's message on {topic} is ignored", error, values={"topic": topic}
                 )
             )
 

@@ -93,7 +93,7 @@ class Publication:
             self._told = True
             self._tell(
                 PUBLISHED_TOO_FAST.diagnostic(
-                    f"{self.info.name} is published faster than it can be sent: messages are "
+                    f"{self.info.name} is published faster than it can be sent, so messages are "
                     "dropped",
                     values={"topic": self.info.name},
                 )

@@ -82,18 +82,19 @@ class Values:
         controls = self._controls
         if name == PAUSED:
             if not isinstance(value, bool):
-                raise GraphError("it must be true or false", code=PARAMETER_VALUE_INVALID)
+                raise GraphError("the value must be true or false", code=PARAMETER_VALUE_INVALID)
             (controls.pause if value else controls.resume)()
         elif name == SPEED:
             number = isinstance(value, int | float) and not isinstance(value, bool)
             if not number:
                 raise GraphError(
-                    "it must be a number; 0 is as fast as possible", code=PARAMETER_VALUE_INVALID
+                    "the value must be a number; 0 means as fast as possible",
+                    code=PARAMETER_VALUE_INVALID,
                 )
             controls.set_speed(float(value) or None)
         elif name in self._descriptions:
             raise GraphError(
-                "the description of a robot cannot be changed while it is simulated",
+                "a robot's description cannot be changed while the robot is simulated",
                 code=PARAMETER_REFUSED,
                 values={"parameter": name},
             )
@@ -108,20 +109,20 @@ class Values:
         size = len(name) + len(repr(value))
         if len(name) > _LONGEST_NAME or size > _LARGEST:
             raise _FullError(
-                f"a client's parameter exceeds {_LONGEST_NAME} characters of its name or "
-                f"{_LARGEST >> 10} KiB of its value: it was not set",
+                f"a client's parameter was not set because its name exceeds {_LONGEST_NAME} "
+                f"characters or its value exceeds {_LARGEST >> 10} KiB",
                 values={"limit": "size"},
             )
         known = self._sizes.get(name)
         if known is None and len(self._sizes) >= _MOST:
             raise _FullError(
-                f"clients may set at most {_MOST} parameters: further ones are not set",
+                f"clients may set at most {_MOST} parameters; additional parameters are not set",
                 values={"limit": "count"},
             )
         if sum(self._sizes.values()) - (known or 0) + size > _MOST_BYTES:
             raise _FullError(
-                f"parameters set by clients may have at most {_MOST_BYTES >> 20} MiB: further "
-                "ones are not set",
+                f"parameters set by clients may occupy at most {_MOST_BYTES >> 20} MiB; additional "
+                "parameters are not set",
                 values={"limit": "bytes"},
             )
         return size

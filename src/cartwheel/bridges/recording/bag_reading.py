@@ -42,7 +42,7 @@ class BagRecording(BlockRecording):
         try:
             return self._load(block)
         except (KeyError, struct.error) as error:
-            raise ValueError(f"a record without its {error}") from error
+            raise ValueError(f"a record is incomplete: {error}") from error
 
     def _load(self, block: Block) -> list[Recorded]:
         with self.path.open("rb") as file:
@@ -61,7 +61,7 @@ class BagRecording(BlockRecording):
             elif op == MESSAGE:
                 connection = _u32(head, "conn")
                 if connection not in self.numbers:
-                    raise ValueError(f"a message of the unknown connection {connection}")
+                    raise ValueError(f"a message refers to the unknown connection {connection}")
                 found.append(Recorded(_time(head["time"]), self.numbers[connection], data))
         return found
 
@@ -91,15 +91,15 @@ def open_bag(path: Path) -> BagRecording:
     Raises:
         RecordingError: It is damaged, or of a version before 2.0.
     """
-    recording = BagRecording(path=path, form="bag of ROS 1", size=path.stat().st_size)
+    recording = BagRecording(path=path, form="ROS 1 bag", size=path.stat().st_size)
     with path.open("rb") as file:
         magic = file.readline(32)
         if magic != MAGIC:
             version = magic.decode(errors="replace").strip()
             raise RecordingError(
-                f'"{path}" is a bag of the unsupported version {version}',
+                f'"{path}" has the unsupported bag version {version}',
                 code=RECORDING_VERSION_UNKNOWN,
-                hint="rosbag fix converts it to 2.0.",
+                hint="Convert it to version 2.0 with rosbag fix.",
                 values={"path": str(path), "version": version},
             )
         try:
@@ -177,7 +177,7 @@ def fields(data: bytes) -> Fields:
     while source:
         name, mark, value = source.take(source.number(4)).partition(b"=")
         if not mark:
-            raise ValueError("a record without named values")
+            raise ValueError('a header field contains no "="')
         found[name.decode(errors="replace")] = value
     return found
 

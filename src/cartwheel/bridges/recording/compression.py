@@ -66,7 +66,7 @@ def _unpacker(kind: str) -> tuple[Callable[[], Any], type[Exception]]:
         import bz2
 
         return bz2.BZ2Decompressor, OSError
-    raise ValueError(f'"{kind}" is no compression that is known')
+    raise ValueError(f'the compression "{kind}" is not supported')
 
 
 def _unpacked(data: bytes, make: Callable[[], Any]) -> bytes:
@@ -76,11 +76,11 @@ def _unpacked(data: bytes, make: Callable[[], Any]) -> bytes:
         unpacker = make()
         while not unpacker.eof:
             if unpacker.needs_input and not data:
-                raise ValueError("it ends in the middle")
+                raise ValueError("the compressed data is truncated")
             parts.append(unpacker.decompress(data, left + 1))
             left -= len(parts[-1])
             data = b""
             if left < 0:
-                raise ValueError(f"it unpacks to more than {MOST_BYTES >> 20} MiB")
+                raise ValueError(f"the decompressed data exceeds {MOST_BYTES >> 20} MiB")
         data = unpacker.unused_data or b""
     return b"".join(parts)

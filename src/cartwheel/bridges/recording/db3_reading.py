@@ -24,7 +24,7 @@ class Db3Recording:
         RecordingError: It is no bag of ROS 2.
     """
 
-    form = "bag of ROS 2, SQLite"
+    form = "ROS 2 bag, SQLite"
 
     def __init__(self, path: Path, *, unpack: Callable[[bytes], bytes] = lambda data: data) -> None:
         self.path = path
@@ -39,7 +39,7 @@ class Db3Recording:
             self._survey()
         except (sqlite3.Error, ValueError, OverflowError) as error:
             raise RecordingError(
-                f'"{path}" is not a bag of ROS 2: {error}',
+                f'"{path}" is not a ROS 2 bag: {error}',
                 code=NOT_A_RECORDING,
                 values={"path": str(path)},
             ) from error
@@ -57,7 +57,7 @@ class Db3Recording:
             )
             for time_ns, own, data in rows:
                 if type(time_ns) is not int or type(data) is not bytes:
-                    raise ValueError("a message without time or data")
+                    raise ValueError("a message has no timestamp or no data")
                 yield Recorded(time_ns, self._numbers[own], self._unpack(data))
         except (sqlite3.Error, ValueError, OverflowError) as error:
             raise RecordingError(
@@ -87,7 +87,7 @@ class Db3Recording:
         base.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, MOST_BYTES)
         views = base.execute("SELECT name FROM sqlite_master WHERE type = 'view'").fetchone()
         if views:  # which can be queries without end
-            raise ValueError(f'it has a view, "{views[0]}"')
+            raise ValueError(f'it contains the view "{views[0]}", which is not allowed')
         columns = {row[1] for row in base.execute("PRAGMA table_info(topics)")}
         tables = {row[0] for row in base.execute("SELECT name FROM sqlite_master")}
         texts = {}
@@ -100,7 +100,7 @@ class Db3Recording:
         for own, name, kind, encoding, profile in base.execute(query):
             schema, text = texts.get(kind, ("", ""))
             if not all(isinstance(text, str) for text in (name, kind, encoding, schema, text)):
-                raise ValueError("a topic without name, type or encoding")
+                raise ValueError("a topic lacks a name, type or encoding")
             self._numbers[own] = len(self.topics)
             self.topics.append(
                 RecordedTopic(
@@ -116,7 +116,7 @@ class Db3Recording:
         for own, count, first, last in base.execute(f"{query} GROUP BY topic_id"):
             if own in self._numbers:
                 if not (isinstance(first, int) and isinstance(last, int)):
-                    raise ValueError("a message without time")
+                    raise ValueError("a message has no timestamp")
                 topic = self.topics[self._numbers[own]]
                 topic.count, topic.first_ns, topic.last_ns = count, first, last
         # Since the fourth version the metadata is written at the end; before, beside it.

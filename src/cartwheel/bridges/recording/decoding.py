@@ -38,7 +38,7 @@ def decoder(topic: RecordedTopic) -> Decode:
     """
     if topic.encoding not in ("cdr", "ros1"):
         raise RecordingError(
-            f"{topic.name} holds {topic.encoding or 'bytes'}, not ROS messages",
+            f"{topic.name} contains {topic.encoding or 'bytes'}, not ROS messages",
             code=RECORDED_TYPE_UNUSABLE,
             values={"topic": topic.name, "encoding": topic.encoding, "why": "encoding"},
         )
@@ -53,7 +53,8 @@ def decoder(topic: RecordedTopic) -> Decode:
         kind = _in_graph(kind, topic)
         if kind not in store().types:
             raise RecordingError(
-                f"the type {kind} of {topic.name} is neither known nor defined",
+                f"{topic.name} has the type {kind}, which is unknown and not defined in the "
+                "recording",
                 code=RECORDED_TYPE_UNUSABLE,
                 values={"topic": topic.name, "type": kind, "why": "unknown"},
             )
@@ -69,7 +70,7 @@ def decoder(topic: RecordedTopic) -> Decode:
         raise
     except Exception as error:  # rosbags makes code of definitions, and finds faults only there
         raise RecordingError(
-            f"the definition of {topic.name} cannot be used: {error}",
+            f"the type definition of {topic.name} cannot be used: {error}",
             code=RECORDED_TYPE_UNUSABLE,
             values={"topic": topic.name, "why": "definition"},
         ) from error
@@ -118,14 +119,14 @@ def _parsed(topic: RecordedTopic) -> dict[str, Any]:
 
     if len(topic.definition) > _LONGEST:
         raise RecordingError(
-            f"the definition of {topic.name} has {len(topic.definition)} characters, but at most "
-            f"{_LONGEST} are read",
+            f"the type definition of {topic.name} has {len(topic.definition)} characters; the "
+            f"limit is {_LONGEST}",
             code=RECORDED_TYPE_UNUSABLE,
             values={"topic": topic.name, "why": "length"},
         )
     if topic.schema == "ros2idl" and _has_nested_parentheses(topic.definition):
         raise RecordingError(
-            f"the definition of {topic.name} has nested parentheses",
+            f"the type definition of {topic.name} contains nested parentheses",
             code=RECORDED_TYPE_UNUSABLE,
             values={"topic": topic.name, "why": "parentheses"},
         )
@@ -135,7 +136,7 @@ def _parsed(topic: RecordedTopic) -> dict[str, Any]:
         return dict(get_types_from_msg(topic.definition, topic.type))
     except Exception as error:  # whatever the parser meets
         raise RecordingError(
-            f"the definition of {topic.name} cannot be read: {error}",
+            f"the type definition of {topic.name} cannot be parsed: {error}",
             code=RECORDED_TYPE_UNUSABLE,
             values={"topic": topic.name, "why": "definition"},
         ) from error
@@ -172,7 +173,7 @@ def _check_arrays(topic: RecordedTopic, name: str, fields: Any) -> None:
         most = _MOST_NUMBERS if is_plain else _LONGEST_ARRAY
         if not 0 <= size <= most:
             raise RecordingError(
-                f"{topic.name}: {name}.{field} has {size} elements, but 0 to {most} are read",
+                f"{topic.name}: the length of {name}.{field} must be from 0 to {most} (got {size})",
                 code=RECORDED_TYPE_UNUSABLE,
                 values={"topic": topic.name, "type": name, "field": field, "why": "size"},
             )
@@ -227,8 +228,9 @@ def _nested(value: Any) -> Any:
 
 def _other_fields(topic: RecordedTopic, kind: str) -> RecordingError:
     return RecordingError(
-        f"the type {kind} of {topic.name} has other fields than the one that is known",
+        f"the recorded definition of {kind} on {topic.name} has different fields from the known "
+        "definition",
         code=RECORDED_TYPE_UNUSABLE,
-        hint="The recording was made with another version of this type.",
+        hint="The recording was made with a different version of this type.",
         values={"topic": topic.name, "type": kind, "why": "fields"},
     )

@@ -22,7 +22,7 @@ class FolderRecording:
     """Several files as one recording."""
 
     def __init__(self, files: Sequence[Recording], *, complete: bool) -> None:
-        self.form = "bag of ROS 2"
+        self.form = "ROS 2 bag"
         self.size = sum(file.size for file in files)
         self.complete = complete and all(file.complete for file in files)
         self.topics: list[RecordedTopic] = []
@@ -89,14 +89,14 @@ def open_folder(path: Path, open_file: Callable[[Path], Recording]) -> Recording
     for file in files:
         if not file.is_file():
             raise RecordingError(
-                f'"{path}" names a file that does not exist: "{file.name}"',
+                f'the metadata in "{path}" lists "{file.name}", which does not exist',
                 code=RECORDING_UNREADABLE,
                 values={"path": str(path), "file": file.name},
             )
     files = files or sorted([*path.glob("*.mcap"), *path.glob("*.db3")])
     if not files:
         raise RecordingError(
-            f'"{path}" is not a recording: it holds neither .mcap nor .db3',
+            f'"{path}" is not a recording: it contains no .mcap or .db3 file',
             code=NOT_A_RECORDING,
             values={"path": str(path)},
         )

@@ -18,7 +18,7 @@ Encoding = Literal["ros1", "ros2"]
 """Of the messages."""
 ENCODINGS: tuple[Encoding, ...] = ("ros2", "ros1")
 
-_NAMES = "Names are: x.mcap; x.bag, of ROS 1; x.db3, of ROS 2; x, a folder, of ROS 2."
+_NAMES = "Valid names: x.mcap, x.bag (ROS 1), x.db3 (ROS 2), or x for a folder (ROS 2)."
 _BAG2_FILES = {".mcap", ".db3", ".yaml", ".zstd", ".db3-journal"}
 
 
@@ -33,7 +33,7 @@ def form_of(path: Path) -> Literal["mcap", "bag", "db3", "folder"]:
         return suffix[1:]  # type: ignore[return-value]
     if suffix and not suffix[1:].isdecimal() and not path.is_dir():
         raise RecordingError(
-            f'"{path.name}" is not the name of a recording format',
+            f'the file extension of "{path.name}" is not a recording format',
             code=RECORDING_NAME_INVALID,
             hint=_NAMES,
             values={"name": path.name},
@@ -53,9 +53,9 @@ def encoding_for(path: Path, wanted: Encoding | None) -> Encoding:
     if (form == "bag") != (wanted == "ros1") and form != "mcap":
         other = "ROS 2" if form == "bag" else "ROS 1"
         raise RecordingError(
-            f'"{path.name}" cannot hold messages of {other}',
+            f'"{path.name}" cannot contain {other} messages',
             code=ENCODING_UNFIT,
-            hint="A .mcap holds either.",
+            hint="Use .mcap, which supports both.",
             values={"name": path.name, "encoding": wanted},
         )
     return wanted
@@ -71,7 +71,7 @@ def check_writable(path: Path, *, overwrite: bool) -> None:
         raise RecordingError(
             "a recording needs a name",
             code=RECORDING_NAME_INVALID,
-            hint="Such as drive.mcap.",
+            hint="Pass a file name such as drive.mcap.",
             values={"name": ""},
         )
     form_of(path)
@@ -80,7 +80,7 @@ def check_writable(path: Path, *, overwrite: bool) -> None:
         raise RecordingError(
             f'the folder "{folder}" does not exist',
             code=RECORDING_NOT_WRITABLE,
-            hint=f"mkdir -p {folder}",
+            hint=f"Create it: mkdir -p {folder}",
             values={"path": str(folder)},
         )
     if path.exists() or path.is_symlink():
@@ -88,13 +88,13 @@ def check_writable(path: Path, *, overwrite: bool) -> None:
             raise exists(path)
         if path.is_dir() and not _is_bag2(path):
             raise RecordingError(
-                f'"{path}" is a folder and not a recording: it is not replaced',
+                f'"{path}" is a folder but not a recording, so it is not replaced',
                 code=RECORDING_NOT_WRITABLE,
                 values={"path": str(path)},
             )
         if path.is_dir() and form_of(path) != "folder":
             raise RecordingError(
-                f'"{path}" is a folder: it is not replaced by a file',
+                f'"{path}" is a folder, so it is not replaced by a file',
                 code=RECORDING_NOT_WRITABLE,
                 values={"path": str(path)},
             )
@@ -109,9 +109,9 @@ def check_writable(path: Path, *, overwrite: bool) -> None:
 def exists(path: Path) -> RecordingError:
     """That something is there already, as an error."""
     return RecordingError(
-        f'"{path}" exists',
+        f'"{path}" already exists',
         code=RECORDING_EXISTS,
-        hint="--overwrite replaces it.",
+        hint="Pass --overwrite to replace it.",
         values={"path": str(path)},
     )
 

@@ -70,10 +70,10 @@ class McapRecording(BlockRecording):
             data = records.take(length)
             if op == Op.MESSAGE:
                 if length < MESSAGE.size:
-                    raise ValueError("a message that is too short")
+                    raise ValueError("a message is shorter than its header")
                 channel, _, time_ns, _ = MESSAGE.unpack_from(data)
                 if channel not in self.numbers:
-                    raise ValueError(f"a message of the unknown channel {channel}")
+                    raise ValueError(f"a message refers to the unknown channel {channel}")
                 found.append(Recorded(time_ns, self.numbers[channel], data[MESSAGE.size :]))
             else:
                 self.learn(op, data)
@@ -118,7 +118,7 @@ def open_mcap(path: Path) -> McapRecording:
     with path.open("rb") as file:
         if file.read(len(MAGIC)) != MAGIC:
             raise RecordingError(
-                f'"{path}" is an MCAP of an unsupported version',
+                f'"{path}" has an unsupported MCAP version',
                 code=RECORDING_VERSION_UNKNOWN,
                 values={"path": str(path)},
             )
@@ -195,7 +195,7 @@ def _scan(file: BinaryIO, scan: _Scan) -> None:
             channel, _, time_ns, _ = MESSAGE.unpack(file.read(MESSAGE.size))
             number = recording.numbers.get(channel)
             if number is None:
-                raise ValueError(f"a message of the unknown channel {channel}")
+                raise ValueError(f"a message refers to the unknown channel {channel}")
             recording.topics[number].see([time_ns])
             if loose is None or loose.end != begin or end - loose.position > _LOOSE:
                 loose = Block(begin, end, time_ns, time_ns, frozenset([number]), "loose")

@@ -52,9 +52,10 @@ def _opened(path: Path, begin: bytes) -> Recording:
             values={"path": str(path)},
         )
     packed = path.suffix == ".zstd"
-    hint = "It is compressed as a whole: unzstd it first." if packed else None
+    hint = "The whole file is compressed. Decompress it first with unzstd." if packed else None
     raise RecordingError(
-        f'"{path}" is not a recording: it begins neither as MCAP nor as a bag',
+        f'"{path}" is not a recording: it does not start with the signature of an MCAP file or a '
+        "bag",
         code=NOT_A_RECORDING,
         hint=hint,
         values={"path": str(path)},

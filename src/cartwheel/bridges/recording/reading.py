@@ -143,8 +143,8 @@ class BlockRecording:
                 yield message
             if size > _MOST_WAITING:
                 raise RecordingError(
-                    f'"{self.path}" cannot be read: its chunks overlap in time, {size >> 20} MiB '
-                    f"of them at byte {block.position}",
+                    f'"{self.path}" cannot be read: too many of its chunks overlap in time '
+                    f"({size >> 20} MiB at byte {block.position})",
                     code=RECORDING_DAMAGED,
                     values={"path": str(self.path), "byte": block.position, "overlap": size},
                 )
@@ -185,7 +185,7 @@ class Bytes:
         """The next bytes."""
         end = self.offset + size
         if size < 0 or end > len(self.data):
-            raise ValueError("it ends in the middle")
+            raise ValueError("the data is truncated")
         taken = bytes(self.data[self.offset : end])
         self.offset = end
         return taken

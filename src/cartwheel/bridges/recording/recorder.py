@@ -215,7 +215,8 @@ class Recorder:
             self._told_wait = True
             self._warn(
                 DISK_SLOW.diagnostic(
-                    "the disk is slower than the simulation, which waits for it: nothing is lost"
+                    "the disk is slower than the simulation, so the simulation waits; no messages "
+                    "are lost"
                 )
             )
 
@@ -297,7 +298,7 @@ class Recorder:
             # Its last chunk may have made room for the file's end.
             kept = self._writer.kept_ns
         self.failure = RecordingError(
-            f'the recording "{self._files[-1]}" broke off at {kept / 1e9:.3f} s: {why}',
+            f'the recording "{self._files[-1]}" stopped at {kept / 1e9:.3f} s: {why}',
             code=RECORDING_BROKE_OFF,
             hint=hint,
             values={"path": str(self._files[-1]), "time": kept / 1e9, "reason": why},
@@ -324,7 +325,7 @@ class Recorder:
                 self._refused.add(item.topic)
                 self._warn(
                     MESSAGE_NOT_RECORDED.because(
-                        f"messages of {item.topic} are not recorded",
+                        f"messages on {item.topic} are not recorded",
                         error,
                         values={"topic": item.topic},
                     )
@@ -349,7 +350,7 @@ class Recorder:
             self._refused.add(key)
             self._warn(
                 MESSAGE_NOT_RECORDED.diagnostic(
-                    f"{item.topic} is not recorded: ROS 1 has no type {item.type}",
+                    f"{item.topic} is not recorded because ROS 1 has no type {item.type}",
                     values={"topic": item.topic, "type": item.type},
                 )
             )
@@ -371,7 +372,8 @@ class Recorder:
         self._begin(path)
         self._warn(
             RECORDING_SPLIT.diagnostic(
-                f'time went back to {self._time / 1e9:.3f} s: the recording continues in "{path}"',
+                f"time jumped back to {self._time / 1e9:.3f} s, so the recording "
+                f'continues in "{path}"',
                 values={"path": str(path), "time": self._time / 1e9},
             )
         )
@@ -391,4 +393,4 @@ class Recorder:
         self._report(replace(diagnostic, message=f"recording: {diagnostic.message}"))
 
 
-_HINT = "What was written before can be read; cartwheel info shows it."
+_HINT = "Messages written before that can be read. Inspect the file with cartwheel info."

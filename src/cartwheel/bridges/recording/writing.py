@@ -112,7 +112,7 @@ def _remove(path: Path) -> None:
     written = [one for one in (path.iterdir() if folder else (path,)) if one.suffix != ".db3"]
     if any(one.is_file() and is_being_written(one) for one in written):
         raise RecordingError(
-            f'"{path}" is being recorded: it is not replaced',
+            f'"{path}" is still being recorded, so it is not replaced',
             code=RECORDING_EXISTS,
             values={"path": str(path), "recording": True},
         )

@@ -40,7 +40,7 @@ def host_and_port(uri: str) -> tuple[str, int]:
     except ValueError:
         pass
     raise CartwheelError(
-        f'"{uri}" is not the address of a ROS master or node',
+        f'"{uri}" is not a valid address of a ROS master or node',
         code=ROS_URI_INVALID,
         hint=f"Addresses have the form {MASTER_URI}.",
         values={"uri": uri},

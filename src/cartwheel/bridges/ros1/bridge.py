@@ -187,16 +187,17 @@ class Ros1Bridge:
             host, _ = host_and_port(self.master_uri)
             if is_local(host) and error.silent:
                 raise CartwheelError(
-                    f"the ROS master does not answer: {error.message}",
+                    f"the ROS master does not respond: {error.message}",
                     code=ROS_MASTER_UNAVAILABLE,
-                    hint="Something listens on its port: a roscore that hangs, or another program.",
+                    hint="Another program, or a roscore that hangs, is listening on its port.",
                     values={"uri": self.master_uri},
                 ) from None
             if not is_local(host):
                 raise CartwheelError(
-                    f"the ROS master does not answer: {error.message}",
+                    f"the ROS master does not respond: {error.message}",
                     code=ROS_MASTER_UNAVAILABLE,
-                    hint="ROS_MASTER_URI names another computer: is its roscore running?",
+                    hint="ROS_MASTER_URI refers to a different computer. Check that roscore is "
+                    "running there.",
                     values={"uri": self.master_uri},
                 ) from None
             self._core = OwnCore(self.master_uri, self._host)
@@ -217,8 +218,9 @@ class Ros1Bridge:
             self._lost = True
             self._warn(
                 ROS_MASTER_LOST.diagnostic(
-                    f"the ROS master no longer answers: {reason}",
-                    hint="The simulation goes on, and joins the next master at that address.",
+                    f"the ROS master no longer responds: {reason}",
+                    hint="The simulation continues, and registers again when a master responds at "
+                    "this address.",
                     values={"uri": self.master_uri, "reason": reason},
                 )
             )
@@ -232,14 +234,14 @@ class Ros1Bridge:
         self._lost = False
         self._warn(
             ROS_MASTER_BACK.diagnostic(
-                "a ROS master answers again: topics and services are registered"
+                "a ROS master responds again; topics and services have been registered"
             )
         )
 
     def _taken(self, uri: str) -> None:
         self._finish(
             ROS_NODE_ENDED.diagnostic(
-                f"another ROS node took the name {self.name}: {uri}",
+                f"another ROS node registered with the name {self.name}: {uri}",
                 values={"node": self.name, "uri": uri},
             )
         )
@@ -247,7 +249,7 @@ class Ros1Bridge:
     def _shut_down(self, reason: str) -> None:
         self._finish(
             ROS_NODE_ENDED.diagnostic(
-                f"ROS ended the node {self.name}: {reason or 'no reason given'}",
+                f"ROS shut down the node {self.name}: {reason or 'no reason given'}",
                 values={"node": self.name, "reason": reason},
             )
         )
@@ -377,7 +379,7 @@ class Ros1Bridge:
         except UnknownNameError:
             self._warn(
                 TYPE_UNSUPPORTED.diagnostic(
-                    f"topic {info.name} is not offered: ROS 1 has no type {info.type}",
+                    f"topic {info.name} is not available in ROS 1, which has no type {info.type}",
                     values={"topic": info.name, "type": info.type},
                 )
             )
@@ -392,7 +394,7 @@ class Ros1Bridge:
         except UnknownNameError:
             self._warn(
                 TYPE_UNSUPPORTED.diagnostic(
-                    f"service {name} is not offered: ROS 1 has no type {type_name}",
+                    f"service {name} is not available in ROS 1, which has no type {type_name}",
                     values={"service": name, "type": type_name},
                 )
             )

@@ -51,11 +51,11 @@ class OwnCore:
         program = _found("rosmaster", "bin/rosmaster")
         if program is None:
             raise CartwheelError(
-                f"no ROS master answers at {self._uri}, and rosmaster is not installed here",
+                f"no ROS master responds at {self._uri}, and rosmaster is not installed",
                 code=ROS_MASTER_UNAVAILABLE,
                 hint=(
-                    "Install python3-rosmaster and rosout (Debian), ros-noetic-roscore (Ubuntu) "
-                    "or start a roscore elsewhere and set ROS_MASTER_URI."
+                    "Install python3-rosmaster and rosout (Debian), ros-noetic-roscore (Ubuntu), "
+                    "or set ROS_MASTER_URI to a running roscore."
                 ),
                 values={"uri": self._uri},
             )
@@ -71,9 +71,9 @@ class OwnCore:
                 if self.dead or time.monotonic() > deadline:
                     self.stop()
                     raise CartwheelError(
-                        f"the ROS master started for {self._uri} does not answer: {error.message}",
+                        f"the ROS master started for {self._uri} does not respond: {error.message}",
                         code=ROS_MASTER_NOT_STARTED,
-                        hint="Does roscore run on its own? Its port may be in use.",
+                        hint="Check that roscore starts by itself. Its port may be in use.",
                         values={"uri": self._uri},
                     ) from None
             time.sleep(0.02)

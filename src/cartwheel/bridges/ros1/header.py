@@ -37,16 +37,19 @@ def decode_header(body: bytes | memoryview) -> dict[str, str]:
     offset = 0
     while offset < len(data):
         if len(fields) >= FIELDS:
-            raise HeaderError(f"more than {FIELDS} fields")
+            raise HeaderError(f"the header has more than {FIELDS} fields")
         if offset + 4 > len(data):
-            raise HeaderError("a field is cut off")
+            raise HeaderError("a header field is truncated")
         (length,) = _LENGTH.unpack_from(data, offset)
         offset += 4
         if offset + length > len(data):
-            raise HeaderError(f"a field of {length} bytes where {len(data) - offset} are left")
+            raise HeaderError(
+                f"a header field has a length of {length} bytes, but only "
+                f"{len(data) - offset} bytes remain"
+            )
         name, sign, value = data[offset : offset + length].partition(b"=")
         if not sign:
-            raise HeaderError("a field without =")
+            raise HeaderError('a header field contains no "="')
         fields[name.decode(errors="replace")] = value.decode(errors="replace")
         offset += length
     return fields

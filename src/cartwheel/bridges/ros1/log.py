@@ -88,9 +88,9 @@ class Log:
         level = request.level.lower()
         if level not in _LEVELS:
             raise CartwheelError(
-                f'"{request.level}" is not a logger level',
+                f'"{request.level}" is not a valid logger level',
                 code=LOG_LEVEL_UNKNOWN,
-                hint=f"Levels are {', '.join(_LEVELS)}.",
+                hint=f"Valid levels: {', '.join(_LEVELS)}.",
                 values={"level": request.level},
             )
         self._level = level

@@ -33,7 +33,7 @@ def read_values(body: bytes) -> tuple[tuple[Any, ...], str | None]:
         nonlocal depth
         depth += 1
         if depth > DEPTH:
-            raise MalformedError(f"more than {DEPTH} nested elements")
+            raise MalformedError(f"elements are nested more than {DEPTH} deep")
         made.start(tag, attributes)
 
     def end(tag: str) -> None:
@@ -42,7 +42,7 @@ def read_values(body: bytes) -> tuple[tuple[Any, ...], str | None]:
         made.end(tag)
 
     def refuse(*_: object) -> None:
-        raise MalformedError("a document type, which XML-RPC does not have")
+        raise MalformedError("a document type declaration is not allowed in XML-RPC")
 
     parser.StartElementHandler = start
     parser.EndElementHandler = end

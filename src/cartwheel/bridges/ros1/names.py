@@ -79,7 +79,7 @@ class NodeNames:
             raise CartwheelError(
                 f'"{base}" is not a valid name for a ROS node',
                 code=ROS_NODE_NAME_INVALID,
-                hint="Names hold letters, digits and _, and begin with a letter.",
+                hint="Names may contain letters, digits and _, and must begin with a letter.",
                 values={"name": base},
             )
         self.namespace = "/" + "/".join(part for part in space.split("/") if part)

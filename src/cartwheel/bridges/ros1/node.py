@@ -105,8 +105,8 @@ class Node:
             sock.close()
             self._tell(
                 PEER_LIMIT.diagnostic(
-                    f"other nodes have opened {self.traffic.most} connections, the maximum: "
-                    "further connections are refused",
+                    f"other nodes have opened {self.traffic.most} connections, the maximum, so "
+                    "additional connections are refused",
                     values={"most": self.traffic.most},
                 )
             )
@@ -122,7 +122,7 @@ class Node:
         if "service" in fields:
             service = self.services.get(fields["service"])
             if service is None:
-                connection.refuse(f"{self.name} offers no service {fields['service']}")
+                connection.refuse(f"{self.name} does not provide the service {fields['service']}")
             elif fields.get("probe") == "1":
                 service.probe(connection)
             else:
@@ -134,7 +134,7 @@ class Node:
             else:
                 publication.join(connection, fields)
         else:
-            connection.refuse("a header needs a topic or a service")
+            connection.refuse("the header must contain a topic or a service")
 
     def _take_caller(self, sock: socket.socket) -> None:
         if len(self._callers) >= _CALLERS:
@@ -162,7 +162,7 @@ class Node:
         if topic not in self.publications:
             return 0, f"{self.name} does not publish {topic}", []
         if not any(protocol and protocol[0] == "TCPROS" for protocol in protocols):
-            return 0, "TCPROS is the only protocol here", []
+            return 0, "only the protocol TCPROS is supported", []
         return 1, "", ["TCPROS", self._host, self._streams.port]
 
     def _update_publishers(self, _caller: str, topic: str, publishers: list[str]) -> Any:

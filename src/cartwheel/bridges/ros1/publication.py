@@ -92,7 +92,7 @@ class Publication:
         link.on_close = lambda: self._leave(link)
         link.on_drop = lambda: self._tell(
             SLOW_SUBSCRIBER.diagnostic(
-                f"{link.peer or 'a node'} reads {self.topic} too slowly: messages to it are "
+                f"{link.peer or 'a node'} reads {self.topic} too slowly, so messages to it are "
                 "dropped",
                 values={"peer": link.peer, "topic": self.topic},
             )
@@ -125,7 +125,7 @@ class Publication:
                 self._faulty = True
                 self._tell(
                     MESSAGE_NOT_SENT.because(
-                        f"a message of {self.topic} cannot be sent",
+                        f"a message on {self.topic} cannot be sent",
                         error,
                         values={"topic": self.topic},
                     )

@@ -52,7 +52,7 @@ def connect(host: str, port: int, seconds: float) -> socket.socket:
         addresses = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)
     except (UnicodeError, OverflowError, ValueError) as error:
         raise OSError(f"invalid host name: {error}") from None
-    failure = OSError("it has no address")
+    failure = OSError("the host has no address")
     for family, kind, protocol, _, address in addresses[:_ADDRESSES]:
         rest = deadline - time.monotonic()
         if rest <= 0:
@@ -85,7 +85,7 @@ class _Socket(socket.socket):
         count = super().recv_into(buffer, nbytes, flags)
         self.left -= count
         if self.left < 0:
-            raise ValueError("it is too long")
+            raise ValueError("the response is too long")
         return count
 
     def _hurry(self) -> None:
@@ -134,7 +134,7 @@ class _Transport(xmlrpc.client.Transport):
     def parse_response(self, file: Any) -> Any:
         if file.getheader("Content-Encoding"):
             # A few bytes could be unpacked to any number.
-            raise ValueError("the answer is compressed, which was not requested")
+            raise ValueError("the response is compressed, although compression was not requested")
         return read_values(file.read())[0]
 
 
@@ -174,7 +174,7 @@ class Peer:
         found = self._answer("system.multicall", (packed,))
         if not isinstance(found, list) or len(found) != len(calls):
             raise RpcError(
-                f"{self.uri} did not answer each of {len(calls)} calls", values={"uri": self.uri}
+                f"{self.uri} did not respond to all {len(calls)} calls", values={"uri": self.uri}
             )
         answers = []
         for answer in found:
@@ -197,20 +197,20 @@ class Peer:
             except xmlrpc.client.Fault as fault:
                 said = str(fault.faultString)[:500]
                 raise RpcError(
-                    f"{self.uri} refuses {method}: {said}",
+                    f"{self.uri} rejected {method}: {said}",
                     values={"uri": self.uri, "method": method, "reason": said},
                 ) from None
             except OSError as error:
                 self._proxy("close")()
                 raise UnreachableError(
-                    f"{self.uri} does not answer: {_reason(error)}",
+                    f"{self.uri} does not respond: {_reason(error)}",
                     silent=isinstance(error, TimeoutError),
                 ) from None
             except Exception as error:  # noqa: BLE001
                 # Whatever the parsers of HTTP and XML meet in an answer that is none.
                 self._proxy("close")()
                 raise RpcError(
-                    f"{self.uri} sent an invalid answer to {method}: {error}",
+                    f"{self.uri} sent an invalid response to {method}: {error}",
                     values={"uri": self.uri, "method": method},
                 ) from None
 
@@ -222,7 +222,7 @@ def value_of(answer: Any) -> Any:
         RpcError: It is none, or no success.
     """
     if not isinstance(answer, list | tuple) or len(answer) != 3:
-        raise RpcError(f"expected an answer of three parts, got {str(answer)[:80]}")
+        raise RpcError(f"expected a response with three elements (got {str(answer)[:80]})")
     code, message, value = answer
     if code != 1:
         raise RpcError(str(message)[:500], values={"reason": str(message)[:500]})
@@ -231,7 +231,7 @@ def value_of(answer: Any) -> Any:
 
 def _reason(error: Exception) -> str:
     if isinstance(error, TimeoutError):
-        return "it took too long"
+        return "the request timed out"
     if isinstance(error, OSError) and error.strerror:
         return error.strerror
     return str(error) or type(error).__name__

@@ -103,7 +103,7 @@ class OfferedService:
 
     def _call(self, link: Connection, data: bytes, persistent: bool) -> None:
         if self._running >= _MOST or self._calls.full:
-            self._respond(link, _failure("too many calls at a time"), persistent)
+            self._respond(link, _failure("too many concurrent calls"), persistent)
             return
         self._running += 1
         self._calls.running += 1

@@ -110,7 +110,8 @@ class TopicSubscription:
         if len(self._links) >= MOST:
             self._tell(
                 PEER_LIMIT.diagnostic(
-                    f"{self.topic} has more than {MOST} publishers: the rest are not connected",
+                    f"{self.topic} has more than {MOST} publishers, so some of them are not "
+                    "connected",
                     values={"topic": self.topic, "most": MOST},
                 )
             )
@@ -215,11 +216,11 @@ class TopicSubscription:
         refused = fields.get("error")
         theirs = fields.get("md5sum", "*")
         if refused is None and theirs not in ("*", self.type.md5):
-            refused = f"it sends {fields.get('type')} with md5 sum {theirs}"
+            refused = f"it publishes {fields.get('type')} with md5 sum {theirs}"
         if refused is not None:
             self._tell(
                 PEER_TYPE_MISMATCH.diagnostic(
-                    f"{connection.peer} publishes {self.topic} with another type than "
+                    f"{connection.peer} publishes {self.topic} with a different type from "
                     f"{self.type.name} ({self.type.md5}): {refused}",
                     values={
                         "peer": connection.peer,

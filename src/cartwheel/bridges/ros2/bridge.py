@@ -92,7 +92,7 @@ class Ros2Bridge:
             raise CartwheelError(
                 f'"{node}" is not a valid name for a ROS 2 node',
                 code=ROS_NODE_NAME_INVALID,
-                hint="Names hold letters, digits and _, and do not begin with a digit.",
+                hint="Names may contain letters, digits and _, and must not begin with a digit.",
                 values={"name": node},
             )
         self._graph = graph
@@ -301,7 +301,7 @@ class Ros2Bridge:
         except UnknownNameError:
             self._warn(
                 TYPE_UNSUPPORTED.diagnostic(
-                    f"topic {info.name} is not offered: ROS 2 has no type {info.type}",
+                    f"topic {info.name} is not available in ROS 2, which has no type {info.type}",
                     values={"topic": info.name, "type": info.type},
                 )
             )
@@ -316,7 +316,8 @@ class Ros2Bridge:
         except UnknownNameError:
             self._warn(
                 TYPE_UNSUPPORTED.diagnostic(
-                    f"service {service.name} is not offered: ROS 2 has no type {service.type}",
+                    f"service {service.name} is not available in ROS 2, which has no type "
+                    f"{service.type}",
                     values={"service": service.name, "type": service.type},
                 )
             )
@@ -382,7 +383,7 @@ class _Publication:
                 self._faulty = True
                 self._bridge._warn(
                     MESSAGE_NOT_SENT.because(
-                        f"a message of {self._name} cannot be sent",
+                        f"a message on {self._name} cannot be sent",
                         error,
                         values={"topic": self._name},
                     )

@@ -88,8 +88,12 @@ class Dds:
     @property
     def description(self) -> str:
         """What and where it is."""
-        where = {"OFF": "nobody", "LOCALHOST": "this computer", "SUBNET": "the network"}
-        return f"DDS domain {self._domain}, seen by {where[self._reach.range]}"
+        where = {
+            "OFF": "to no other participant",
+            "LOCALHOST": "on this computer",
+            "SUBNET": "on the network",
+        }
+        return f"DDS domain {self._domain}, visible {where[self._reach.range]}"
 
     def start(self) -> None:
         """Joins."""
@@ -126,19 +130,19 @@ class Dds:
         writer.on_readers = lambda: on_readers(bool(writer.proxies))
         writer.on_drop = lambda: self._tell(
             SLOW_SUBSCRIBER.diagnostic(
-                f"a node reads {topic} too slowly: messages to it are dropped",
+                f"a node reads {topic} too slowly, so messages to it are dropped",
                 values={"topic": topic},
             )
         )
         writer.on_refusal = lambda: self._tell(
             NETWORK_FULL.diagnostic(
-                f"the network takes no more packets: messages of {topic} are dropped",
+                f"the operating system's send buffer is full, so messages on {topic} are dropped",
                 values={"topic": topic},
             )
         )
         writer.on_silence = lambda: self._tell(
             UNRESPONSIVE_SUBSCRIBER.diagnostic(
-                f"a subscriber of {topic} no longer responds: messages to it are dropped",
+                f"a subscriber of {topic} no longer responds, so messages to it are dropped",
                 values={"topic": topic},
             )
         )
@@ -190,23 +194,27 @@ class Dds:
         kind, slash, name = ours.topic.partition("/")
         if kind == "rt":
             does, then = (
-                ("reads", "it gets nothing")
+                ("reads", "so it receives no messages")
                 if ours.is_writer
-                else ("publishes", "nothing of it arrives")
+                else ("publishes", "so its messages are not received")
             )
         elif kind == "rq":
-            name, does, then = name.removesuffix("Request"), "calls", "it is not answered"
+            name, does, then = (
+                name.removesuffix("Request"),
+                "calls",
+                ("so its calls get no response"),
+            )
         else:
             return
         if not policy:
-            why = f"as {_plain(other.type)}, which here is {_plain(ours.type)}"
+            why = f"with type {_plain(other.type)}, but the type here is {_plain(ours.type)}"
         elif ours.is_writer:
-            why = f"and asks for more than is offered ({policy})"
+            why = f"but requests a stricter QoS than is offered ({policy})"
         else:
-            why = f"and offers less than is asked for ({policy})"
+            why = f"but offers a weaker QoS than is requested ({policy})"
         self._tell(
             (QOS_INCOMPATIBLE if policy else PEER_TYPE_MISMATCH).diagnostic(
-                f"a node {does} {slash}{name} {why}: {then}",
+                f"a node {does} {slash}{name} {why}, {then}",
                 values={"name": f"{slash}{name}", "type": _plain(other.type), "policy": policy},
             )
         )
@@ -365,8 +373,8 @@ class _Service:
         if self._pending >= _PENDING:
             self._dds._tell(
                 CALL_LIMIT.diagnostic(
-                    f"more than {_PENDING} responses of {self._name} wait for their callers: one "
-                    "is dropped",
+                    f"more than {_PENDING} responses of {self._name} wait for their callers, so "
+                    "one is dropped",
                     values={"service": self._name, "most": _PENDING},
                 )
             )

@@ -178,7 +178,7 @@ class NodeParameters:
             # What a shell's 2 is meant to be.
             return known, float(given.value.integer_value)
         raise CartwheelError(
-            f'parameter "{given.name}" is of type {_NAMES[wanted]}',
+            f'parameter "{given.name}" must be of type {_NAMES[wanted]}',
             code=PARAMETER_REFUSED,
             values={"parameter": given.name, "type": _NAMES[wanted]},
         )

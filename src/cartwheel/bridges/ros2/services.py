@@ -104,8 +104,8 @@ class Services:
         if self._calls >= _MOST_CALLS:
             self._tell(
                 CALL_LIMIT.diagnostic(
-                    f"more than {_MOST_CALLS} service calls at a time: one of {name} is not "
-                    "answered",
+                    f"there are more than {_MOST_CALLS} concurrent service calls, so one call to "
+                    f"{name} gets no response",
                     values={"service": name, "most": _MOST_CALLS},
                 )
             )

@@ -63,7 +63,7 @@ class Zenoh:
             import zenoh.ext
         except ImportError:
             raise CartwheelError(
-                "--rmw zenoh needs Zenoh, which is not installed",
+                "--rmw zenoh requires Zenoh, which is not installed",
                 code=PACKAGE_MISSING,
                 hint=_INSTALL,
                 values={"package": "eclipse-zenoh"},
@@ -94,8 +94,12 @@ class Zenoh:
     @property
     def description(self) -> str:
         """What and where it is."""
-        place = f"router of its own, port {PORT}" if self._is_router else "a router's"
-        return f"Zenoh domain {self._domain}, {place}"
+        place = (
+            (f"with its own router on port {PORT}")
+            if self._is_router
+            else ("through an external router")
+        )
+        return f"Zenoh domain {self._domain} {place}"
 
     def start(self) -> None:
         """Joins.
@@ -233,8 +237,8 @@ class Zenoh:
             else:
                 self._tell(
                     PEER_LIMIT.diagnostic(
-                        f"other nodes have more than {_TOKENS} publishers: further ones are "
-                        "ignored",
+                        f"other nodes have more than {_TOKENS} publishers, so additional "
+                        "publishers are ignored",
                         values={"most": _TOKENS},
                     )
                 )
@@ -257,7 +261,7 @@ class Zenoh:
                 made = self._zenoh.Config.from_file(uri)
             except self._zenoh.ZError as error:
                 raise CartwheelError(
-                    f"ZENOH_SESSION_CONFIG_URI names {uri}, which cannot be used: {error}",
+                    f"ZENOH_SESSION_CONFIG_URI refers to {uri}, which cannot be used: {error}",
                     code=ZENOH_NOT_OPENED,
                     values={"variable": "ZENOH_SESSION_CONFIG_URI", "value": uri},
                 ) from None
@@ -271,7 +275,7 @@ class Zenoh:
                 made.insert_json5(name.strip(), value.strip())
             except self._zenoh.ZError as error:
                 raise CartwheelError(
-                    f"ZENOH_CONFIG_OVERRIDE holds {pair}, which cannot be used: {error}",
+                    f"ZENOH_CONFIG_OVERRIDE contains {pair}, which cannot be used: {error}",
                     code=ZENOH_NOT_OPENED,
                     values={"variable": "ZENOH_CONFIG_OVERRIDE", "value": pair},
                 ) from None
@@ -329,7 +333,8 @@ class Arrivals:
         if full:
             self._tell(
                 INCOMING_DROPPED.diagnostic(
-                    "ROS nodes send messages faster than they can be read: some are dropped"
+                    "ROS nodes send messages faster than they can be read, so some messages are "
+                    "dropped"
                 )
             )
             return False

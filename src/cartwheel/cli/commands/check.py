@@ -129,7 +129,7 @@ def _summary(result: Result) -> str:
         for name, severity in (("error", "error"), ("warning", "warning"), ("note", "info"))
         if (count := result.count(severity))
     ]
-    text = ", ".join(counts) if counts else "nothing found"
+    text = ", ".join(counts) if counts else "no problems found"
     for count, word in (
         (result.ignored, "ignored"),
         (result.suppressed, "suppressed"),
@@ -138,7 +138,7 @@ def _summary(result: Result) -> str:
         if count:
             text += f", {count} {word}"
     if not result.complete:
-        text += "; not everything could be checked"
+        text += "; the check is incomplete"
     worst = next((s for s in ("error", "warning", "info") if result.count(s)), None)
     styles = STYLES[worst] if worst is not None else ("green", "bold")
     reports = result.reports

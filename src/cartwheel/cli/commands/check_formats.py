@@ -126,7 +126,9 @@ def as_junit(result: Result) -> str:
         grave = [each for each in own if each.severity != "info"]
         if grave or not report.complete:
             failures += 1
-            summary = f"{len(grave)} findings" if grave else "it could not be read completely"
+            summary = (
+                f"{len(grave)} findings" if grave else ("the file could not be read completely")
+            )
             failure = ElementTree.SubElement(case, "failure", {"message": summary})
             failure.text = _in_xml(
                 "\n".join(f"{each}{f' {each.hint}' if each.hint else ''}" for each in grave)

@@ -32,9 +32,9 @@ def parse_yaml(words: Sequence[str]) -> Any:
         values = [yaml_text.load(word) for word in words]
     except yaml.YAMLError as error:
         raise CartwheelError(
-            f"the message is not YAML: {str(error).splitlines()[0]}",
+            f"the message is not valid YAML: {str(error).splitlines()[0]}",
             code=MESSAGE_TEXT_INVALID,
-            hint="Write it as '{linear: {x: 0.5}}', with a blank after each colon.",
+            hint="Write it as '{linear: {x: 0.5}}', with a space after each colon.",
         ) from None
     if not values:
         return {}

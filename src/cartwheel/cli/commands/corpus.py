@@ -106,9 +106,9 @@ def _robots(folder: Path, package_path: Sequence[Path]) -> list[Path]:
     found = robots_in(folder, package_path=package_path)
     if not found:
         raise CartwheelError(
-            f"{folder} holds no robot",
+            f"{folder} contains no robot description",
             code=NO_ROBOTS,
-            hint="Expected are .xacro, .urdf or .sdf files below it.",
+            hint="Pass a folder that contains .xacro, .urdf or .sdf files.",
             values={"folder": str(folder)},
         )
     return found

@@ -95,12 +95,13 @@ def parse_server(program: str, words: Sequence[str]) -> ServerArguments:
     add("--verbose", action="store_true", help="show informational messages")
     add("-q", "--quiet", action="store_true", help="accepted; the default")
     add("-u", "--pause", action="store_true", help="start paused")
-    add("--seed", type=_whole, metavar="N", default=0, help="seed of all sensor noise")
+    add("--seed", type=_whole, metavar="N", default=0, help="random seed for sensor noise")
     add("--iters", type=_whole, metavar="N", help="stop after N steps")
     add("-s", "--server-plugin", action="append", metavar="FILE", default=[],
         help="gazebo_ros plugins are built in; others are ignored with a warning")  # fmt: skip
     add("--allow-path", action="append", metavar="FOLDER", default=[], type=Path,
-        help="let services read files in this folder, besides packages and models")  # fmt: skip
+        help="let services read files in this folder, in addition to packages and "
+             "models")  # fmt: skip
     add("--lockstep", action="store_true", help="accepted; cameras never drop a frame")
     add("-e", "--physics", metavar="ENGINE", default="ode",
         help="accepted; the engine is MuJoCo, with the parameters for ode")  # fmt: skip
@@ -112,12 +113,12 @@ def parse_server(program: str, words: Sequence[str]) -> ServerArguments:
     inert.add_argument("-p", "--play", metavar="FILE", help=argparse.SUPPRESS)
     inert.add_argument("-o", "--profile", metavar="NAME", help="physics preset")
     inert.add_argument("--initial_sim_time", metavar="S", default="0", help="time starts at 0")
-    inert.add_argument("--minimal_comms", action="store_true", help="option of Gazebo's transport")
-    inert.add_argument("--headless", action="store_true", help="argument of launch files")
+    inert.add_argument("--minimal_comms", action="store_true", help="Gazebo transport option")
+    inert.add_argument("--headless", action="store_true", help="launch file argument")
     given = parser.parse_args([word for word in words if ":=" not in word])
     if given.play is not None:
         raise CartwheelError(
-            f"{program} -p {given.play}: Gazebo's state logs cannot be played here",
+            f"{program} -p {given.play}: Gazebo state logs cannot be played",
             code=GAZEBO_OPTION_UNSUPPORTED,
             hint="Record topics with rosbag record, and play them with rosbag play.",
             values={"option": "-p"},
@@ -151,7 +152,8 @@ def parse_client(words: Sequence[str]) -> ClientArguments:
     parser = _Parser(
         prog="gzclient",
         add_help=False,
-        description="Shows the running simulation in the browser, until either ends.",
+        description="Shows the running simulation in the browser until the simulation or this "
+        "program ends.",
     )
     add = parser.add_argument
     add("world", nargs="*", help=argparse.SUPPRESS)
@@ -160,10 +162,10 @@ def parse_client(words: Sequence[str]) -> ClientArguments:
     add("--verbose", action="store_true", help="accepted")
     add("-q", "--quiet", action="store_true", help="accepted")
     add("-g", "--gui-client-plugin", "--gui-plugin", action="append", metavar="FILE", default=[],
-        help="plugins of Gazebo's window are ignored with a warning")  # fmt: skip
+        help="Gazebo GUI plugins are ignored with a warning")  # fmt: skip
     given = parser.parse_args([word for word in words if ":=" not in word])
     notes = [
-        f"-g {plugin} does not apply: the page takes no plugins of Gazebo's window"
+        f"-g {plugin} is ignored: the web interface does not support Gazebo GUI plugins"
         for plugin in given.gui_client_plugin
         if _stem(plugin) not in OWN_PLUGINS
     ]
@@ -179,12 +181,15 @@ def parse_client(words: Sequence[str]) -> ClientArguments:
 def _server_notes(program: str, given: argparse.Namespace) -> list[str]:
     notes = []
     if program == "debug":
-        notes.append("debug: there is no gdb to run in; more is said instead, as with --verbose")
+        notes.append(
+            "debug: gdb is not used; informational messages are shown instead, as with --verbose"
+        )
     if program == "perf":
-        notes.append("perf: valgrind does not apply; this is an ordinary run")
+        notes.append("perf: valgrind is not used; this is an ordinary run")
     if given.physics != "ode":
         notes.append(
-            f"-e {given.physics} does not apply: MuJoCo computes, by the parameters for ode"
+            f"-e {given.physics} is ignored: the engine is always MuJoCo, with the parameters for "
+            "ode"
         )
     recording = (
         given.record,
@@ -196,22 +201,26 @@ def _server_notes(program: str, given: argparse.Namespace) -> list[str]:
     )
     if any(recording):
         notes.append(
-            "recording does not apply: no state log is written. Record topics: rosbag record -a"
+            "the recording options are ignored: no state log is written. Record topics instead: "
+            "rosbag record -a"
         )
     if given.headless:
-        notes.append("headless does not apply: this opens no window. gui:=false leaves it out")
+        notes.append(
+            "--headless is ignored: this program opens no window. In a launch file, "
+            "gui:=false leaves out gzclient"
+        )
     if given.profile is not None:
-        notes.append(f"-o {given.profile} does not apply: there are no profiles")
+        notes.append(f"-o {given.profile} is ignored: physics profiles are not supported")
     if _number(given.initial_sim_time) != 0.0:
-        notes.append("--initial_sim_time does not apply: time begins at 0")
+        notes.append("--initial_sim_time is ignored: time always starts at 0")
     if given.minimal_comms:
-        notes.append("--minimal_comms does not apply: there is no transport of Gazebo's")
+        notes.append("--minimal_comms is ignored: Gazebo transport is not used")
     notes.extend(
-        f"-s {plugin} does not apply: no system plugin is loaded, and what it does is missing"
+        f"-s {plugin} is ignored: system plugins are not supported"
         for plugin in given.server_plugin
         if _stem(plugin) not in OWN_PLUGINS
     )
-    notes.extend(f"{word} does not apply: one world is enough" for word in given.world[1:])
+    notes.extend(f"{word} is ignored: only one world is loaded" for word in given.world[1:])
     return notes
 
 

@@ -55,7 +55,7 @@ def find_world(name: str, environment: Mapping[str, str] | None = None) -> Path:
         code=WORLD_NOT_FOUND,
         hint=(
             f"{near or 'Cartwheel includes: ' + ', '.join(shipped) + '.'} Searched: {searched}. "
-            "Add its folder to GAZEBO_RESOURCE_PATH, or give its whole path."
+            "Add its folder to GAZEBO_RESOURCE_PATH, or pass the full path."
         ),
         values={"world": name},
     )

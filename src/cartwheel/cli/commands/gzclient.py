@@ -64,10 +64,10 @@ def wait_for_simulation(master: str | None) -> Running:
         if master is None and not any(entry.ros_master == "" for entry in known):
             return _without_ros(known)
         if os.getppid() != parent:
-            raise ControlError("the process that started this one has ended", code=SIMULATION_ENDED)
+            raise ControlError("the parent process has exited", code=SIMULATION_ENDED)
         if time.monotonic() - began > _TELL and not told:
             told = True
-            note(f"waiting for a simulation of the ROS master {master or MASTER_URI}")
+            note(f"waiting for a simulation that uses the ROS master {master or MASTER_URI}")
             if known:
                 hint = f"set {VARIABLE}=PID to show one of them"
                 note(f"other simulations are running; {hint}\n{_listing(known)}")
@@ -88,12 +88,12 @@ def _without_ros(known: Sequence[Running]) -> Running:
     problem = (
         f"{len(found)} simulations without ROS are running"
         if found
-        else f"no simulation of the ROS master {MASTER_URI} is running, and none without ROS"
+        else f"no running simulation uses the ROS master {MASTER_URI} or runs without ROS"
     )
     raise ControlError(
         problem,
         code=SIMULATION_AMBIGUOUS if found else SIMULATION_NOT_RUNNING,
-        hint=f"Name one with {VARIABLE}=PID. Running are:\n{_listing(known)}",
+        hint=f"Select one with {VARIABLE}=PID. Running simulations:\n{_listing(known)}",
     )
 
 
@@ -130,7 +130,7 @@ def _open(url: str) -> bool:
 def _stay(simulation: Running) -> None:
     with ControlClient(simulation) as client:
         page = client.request("page")
-        say(f"the page is at  {paint(page['url'], 'bold', 'cyan')}")
+        say(f"web interface: {paint(page['url'], 'bold', 'cyan')}")
         if has_display() and _open(page["url"]):
             with contextlib.suppress(ControlError):  # It has ended, which is seen below.
                 _look_for_browser(client, page["browsers"])
@@ -142,7 +142,7 @@ def _look_for_browser(client: ControlClient, before: int) -> None:
     deadline = time.monotonic() + _BROWSER
     while time.monotonic() < deadline:
         if client.request("page")["browsers"] > before:
-            say("shown in the browser")
+            say("the simulation is shown in the browser")
             return
         time.sleep(_LOOKS)
-    note("no browser has opened the page")
+    note("no browser has opened the web interface")

@@ -85,8 +85,8 @@ def _print(path: Path, recording: Recording) -> None:
     if not recording.complete:
         print_diagnostic(
             RECORDING_UNFINISHED.diagnostic(
-                "the recording has no end: its writer was interrupted",
-                hint="What is listed can be read.",
+                "the recording is incomplete because its writer was interrupted",
+                hint="The listed messages can be read.",
             )
         )
 

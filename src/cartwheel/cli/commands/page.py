@@ -76,7 +76,7 @@ class Page:
         """Where the page is, once it is up."""
         if not self._started.wait(PATIENCE):
             raise ControlError(
-                f"the page is not ready after {PATIENCE:g} s", code=VIEWER_NOT_STARTED
+                f"the web interface did not start within {PATIENCE:g} s", code=VIEWER_NOT_STARTED
             )
         return self._viewer.url
 

@@ -83,7 +83,7 @@ def play(options: Options) -> None:
     session = cast("Session", played)
     report = Report(verbose=False)
     with interrupts.handled_by(player.stop, status=0):
-        server = ControlServer(session, title=f"{options.file.name}, played", load=_refuse)
+        server = ControlServer(session, title=f"playback of {options.file.name}", load=_refuse)
         with interrupts.finally_do(server.close):
             length = (player.end_ns - player.start_ns) / 1e9
             say(f"playing {options.file}, {length:.3f} s, {len(recording.topics)} topics")
@@ -113,4 +113,4 @@ def play(options: Options) -> None:
 
 
 def _refuse(_: Path, __: Mapping[str, str], ___: Sequence[Path]) -> NoReturn:
-    raise RecordingError("models cannot be spawned into a recording", code=PLAYBACK_READ_ONLY)
+    raise RecordingError("models cannot be spawned during playback", code=PLAYBACK_READ_ONLY)

@@ -29,17 +29,17 @@ def refuse_taken(host: str, port: int) -> None:
             values={"host": host, "port": port},
         )
     free = next((p for p in range(port + 1, min(port + _NEAR, 65536)) if not _problem(host, p)), 0)
-    other = f"Use another one: --port {free}"
+    other = f"Use a different port: --port {free}"
     for entry in running():
         if entry.port == port:
             raise CartwheelError(
-                f"port {port} is used by simulation {entry.pid} ({entry.title})",
+                f"port {port} is in use by simulation {entry.pid} ({entry.title})",
                 code=PORT_TAKEN,
-                hint=f"{other}; or end that one: kill {entry.pid}",
+                hint=f"{other}. Or stop that simulation: kill {entry.pid}",
                 values={"port": port, "pid": entry.pid},
             )
     raise CartwheelError(
-        f"port {port} is used by another program",
+        f"port {port} is in use by another program",
         code=PORT_TAKEN,
         hint=f"{other}.",
         values={"port": port},
@@ -56,7 +56,7 @@ def free_port(host: str, port: int) -> int:
         if not _problem(host, candidate):
             return candidate
     raise ControlError(
-        f"the ports {port} to {port + _NEAR - 1} of {host} are all taken",
+        f"all ports from {port} to {port + _NEAR - 1} on {host} are in use",
         code=PORT_TAKEN,
         values={"port": port},
     )

@@ -64,7 +64,11 @@ def report(stamps: list[int], walls: list[float]) -> str:
     mean = sum(gaps) / len(gaps)
     deviation = (sum((gap - mean) ** 2 for gap in gaps) / len(gaps)) ** 0.5
     wall = (walls[-1] - walls[0]) / (len(walls) - 1)
-    rate = f"{1 / mean:.3f}" if mean > 0 else "infinite, all messages have the same time"
+    rate = (
+        f"{1 / mean:.3f}"
+        if mean > 0
+        else ("infinite, because all messages have the same timestamp")
+    )
     lines = f"average rate: {rate}"
     if wall > 0:
         lines += f" (wall time: {1 / wall:.3f})"

@@ -37,7 +37,9 @@ def check_recording(options: Options) -> None:
         place = path.absolute()
         if place in found:
             raise RecordingError(
-                f'--record names "{path}" twice', code=OPTIONS_CONFLICT, values={"path": str(path)}
+                f'--record specifies "{path}" twice',
+                code=OPTIONS_CONFLICT,
+                values={"path": str(path)},
             )
         found.add(place)
 
@@ -124,9 +126,10 @@ class _Ending:
                 self.summary = self._process.call("close", self._process.written, timeout=None)
             except ControlError:
                 self.failure = RecordingError(
-                    f'the recording "{self._path}" broke off: its process was ended',
+                    f'the recording "{self._path}" stopped because its process was ended',
                     code=RECORDING_BROKE_OFF,
-                    hint="What was written before can be read; cartwheel info shows it.",
+                    hint="Messages written before that can be read. Inspect the file with "
+                    "cartwheel info.",
                     values={"path": str(self._path)},
                 )
             except CartwheelError as error:

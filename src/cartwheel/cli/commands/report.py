@@ -62,8 +62,8 @@ class Report:
         """Says that this is not the only simulation."""
         print_diagnostic(
             OTHER_SIMULATION_RUNNING.diagnostic(
-                "another simulation is running, so commands need --sim PID",
-                hint="\n".join(["Running are:", *(f"    {entry}" for entry in others)]),
+                "another simulation is running, so commands require --sim PID",
+                hint="\n".join(["Running simulations:", *(f"    {entry}" for entry in others)]),
             )
         )
 

@@ -140,30 +140,31 @@ def node_parameters(session: Session) -> list[Parameter]:
     return [
         Parameter(
             name="max_step_size",
-            description="s of one step of the physics.",
+            description="Physics time step, in s.",
             get=lambda: simulation.step_ns / 1e9,
         ),
         Parameter(
             name="paused",
-            description="Whether simulated time is held.",
+            description="Whether the simulation is paused.",
             get=lambda: simulation.run_state is RunState.PAUSED,
             set=set_paused,
         ),
         Parameter(
             name="publish_rate",
-            description="Hz of simulated time at which /clock is published; 0 is every step.",
+            description="Publish rate of /clock, in Hz of simulated time; 0 publishes at every "
+            "step.",
             get=lambda: rate[0],
             set=set_rate,
         ),
         Parameter(
             name="real_time_factor",
-            description="Seconds simulated in a second; 0 is as many as can be.",
+            description="Target real-time factor; 0 means as fast as possible.",
             get=lambda: simulation.speed or 0.0,
             set=set_speed,
         ),
         Parameter(
             name="use_sim_time",
-            description="Stamps are simulated time, which this node itself publishes.",
+            description="Timestamps are in simulated time, which this node publishes.",
             get=lambda: True,
         ),
     ]

@@ -83,9 +83,9 @@ def _simulate(options: Options, access: Access, bridges: Bridges) -> None:
     name = None
     if robot is None and options.controllers:
         raise CartwheelError(
-            "--controllers needs a robot, but the file describes a world",
+            "--controllers requires a robot, but the file describes a world",
             code=OPTIONS_CONFLICT,
-            hint="Name the robot's file.",
+            hint="Pass a robot file.",
             values={"option": "--controllers"},
         )
     if robot is not None:
@@ -231,15 +231,15 @@ def _read(
     if isinstance(found, WorldDescription):
         if named:
             raise CartwheelError(
-                f'two worlds are given: "{file}" and "{named}"',
+                f'two worlds are specified: "{file}" and "{named}"',
                 code=OPTIONS_CONFLICT,
                 values={"file": str(file), "world": str(named)},
             )
         if options.place or options.model:
             raise CartwheelError(
-                f'"{file}" is a world, which has neither a place nor a name',
+                f'"{file}" is a world, so options for the name and pose of a robot do not apply',
                 code=OPTIONS_CONFLICT,
-                hint="Name a robot, and the world with --world.",
+                hint="Pass a robot file, and the world with --world.",
                 values={"file": str(file)},
             )
         remappings: tuple[str, ...] = ()

@@ -74,13 +74,13 @@ def the_topic(found: Iterable[str]) -> str:
         raise CartwheelError(
             "no robot subscribes to velocity commands (Twist)",
             code=NOTHING_TO_DRIVE,
-            hint="It needs a plugin such as diff_drive.",
+            hint="Add a drive plugin, such as diff_drive, to the robot.",
         )
     if len(driven) > 1:
         raise CartwheelError(
-            f"{len(driven)} robots can be driven; name one with --topic",
+            f"{len(driven)} robots can be driven; select one with --topic",
             code=DRIVE_AMBIGUOUS,
-            hint=f"They are: {', '.join(driven)}.",
+            hint=f"Valid topics: {', '.join(driven)}.",
             values={"topics": tuple(driven)},
         )
     return driven[0]

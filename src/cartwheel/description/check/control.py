@@ -44,7 +44,8 @@ def plugin_joint_unknown(subject: Subject) -> Iterator[Diagnostic]:
                     yield devices_codes.PLUGIN_JOINT_UNKNOWN.diagnostic(
                         # What another plugin means by its tags is not certain.
                         severity=None if _is_simulated(subject, tag, sensor) else "warning",
-                        message=f'<{element.tag}> names the joint "{name}", which does not exist',
+                        message=f'<{element.tag}> refers to the joint "{name}", which does not '
+                        "exist",
                         values={"tag": element.tag, "joint": name},
                         origin=element.origin,
                         instead=nodes.written(element.tag, dict(element.attributes), text)
@@ -115,7 +116,7 @@ def _joint_named(
         name,
         robot.joint_names,
         attribute="name",
-        message=f'<{what}> names the joint "{name}", which does not exist',
+        message=f'<{what}> refers to the joint "{name}", which does not exist',
         values={"tag": what, "joint": name},
         origin=joint.origin,
         mark=f'name="{joint.attribute("name")}"',

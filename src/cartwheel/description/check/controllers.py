@@ -73,7 +73,7 @@ def controller_joint_unknown(subject: Subject) -> Iterator[Diagnostic]:
             first = named[0][1]
             yield devices_codes.CONTROLLER_JOINT_UNKNOWN.diagnostic(
                 severity="warning",
-                message=f"none of the {len(named)} joints of these controllers exists in the "
+                message=f"none of the {len(named)} joints in these controllers exists in the "
                 f'robot: "{first.text}", …',
                 values={"joint": first.text, "count": len(named)},
                 origin=file.element.origin if file.element is not None else first.origin,
@@ -88,7 +88,7 @@ def controller_joint_unknown(subject: Subject) -> Iterator[Diagnostic]:
                 continue  # of another variant of the robot
             yield devices_codes.CONTROLLER_JOINT_UNKNOWN.diagnostic(
                 severity=_severity(file),
-                message=f'"{key}" names the joint "{name}", which does not exist',
+                message=f'"{key}" refers to the joint "{name}", which does not exist',
                 values={"tag": key, "joint": name},
                 origin=value.origin,
                 instead=value.replaced(near) if near else "",
@@ -181,7 +181,7 @@ def controller_gains(subject: Subject) -> Iterator[Diagnostic]:
             instead=text if whole else f"{under.rpartition('/')[2]}: 100.0",
             place="after" if whole and _has_own_line(controller.type) else "",
             mark="" if whole else missing[0][1].text,
-            hint=_TUNED if whole else f"It belongs under {under.rpartition('/')[0]}. {_TUNED}",
+            hint=_TUNED if whole else f"Add it under {under.rpartition('/')[0]}. {_TUNED}",
         )
 
 
@@ -210,7 +210,7 @@ def joint_claimed_twice(subject: Subject) -> Iterator[Diagnostic]:
                     },
                     origin=claim.value.origin,
                     mark=claim.value.text,
-                    hint="Only one of them can run at a time. The other one is at "
+                    hint="Only one of the two can run at a time. The other controller is at "
                     f"{first.value.origin}.",
                 )
 
@@ -234,7 +234,7 @@ def _unanswered(
         if joint not in held:
             yield devices_codes.CONTROLLER_INTERFACE_MISMATCH.diagnostic(
                 severity=_severity(claim.controller.file),
-                message=f"{who}, which no {where} contains, so it does not start",
+                message=f"{who}, which no {where} contains, so the controller does not start",
                 values={
                     "controller": claim.controller.name,
                     "joint": joint,
@@ -254,7 +254,7 @@ def _unanswered(
         text = f"<hardwareInterface>{_interface(claim)}</hardwareInterface>"
         yield devices_codes.CONTROLLER_INTERFACE_MISMATCH.diagnostic(
             severity=_severity(claim.controller.file),
-            message=f"{who}, whose {where} {old}, so it does not start",
+            message=f"{who}, whose {where} {old}, so the controller does not start",
             values={
                 "controller": claim.controller.name,
                 "joint": joint,
@@ -265,7 +265,7 @@ def _unanswered(
             instead=f'<command_interface name="{claim.interface}"/>' if ros2 else text,
             place="element" if written else "inside",
             mark=element.text.strip() if written else joint,
-            hint=f"It is at {claim.controller.type.origin}.",
+            hint=f"The controller is at {claim.controller.type.origin}.",
         )
 
 

@@ -34,7 +34,7 @@ def drive_joint_unknown(subject: Subject) -> Iterator[Diagnostic]:
                 continue
             near = spelling.meant(name, robot.joint_names)
             yield robot_codes.DRIVE_JOINT_UNKNOWN.diagnostic(
-                message=f'<{element.tag}> names the joint "{name}", which does not exist',
+                message=f'<{element.tag}> refers to the joint "{name}", which does not exist',
                 values={"tag": element.tag, "joint": name},
                 origin=element.origin,
                 instead=nodes.written(element.tag, dict(element.attributes), near) if near else "",
@@ -116,8 +116,9 @@ def wheel_axes(subject: Subject) -> Iterator[Diagnostic]:
             xyz = " ".join(nodes.short(-value + 0.0) for value in joint.axis.xyz)
             both = all(each < -_CAMBER for each in senses)
             yield robot_codes.WHEEL_AXIS_MISALIGNED.diagnostic(
-                message=f'the wheel of joint "{joint.name}" turns backwards: its axis points '
-                "to the right of the robot" + ("" if both else ", the other one to the left"),
+                message=f'the wheel of joint "{joint.name}" turns backwards because its axis '
+                "points to the right of the "
+                "robot" + ("" if both else " and the other wheel's axis to the left"),
                 values={"joint": joint.name, "attribute": "backwards"},
                 origin=node.origin if node is not None else joint.origin,
                 instead=f'xyz="{xyz}"' if node is not None else "",
@@ -153,9 +154,9 @@ def _not_across(robot: Robot, joint: Joint, pose: Pose, across: Floats) -> Diagn
     stated = "" if node is not None or written is None else " (the default)"
     text = f'xyz="{xyz}"'
     return robot_codes.WHEEL_AXIS_MISALIGNED.diagnostic(
-        message=f'the wheel of joint "{joint.name}" cannot roll forward: its axis '
-        f'"{" ".join(nodes.short(value) for value in joint.axis.xyz)}"{stated} does not lie '
-        "along the axle",
+        message=f'the wheel of joint "{joint.name}" cannot roll forward because its axis '
+        f'"{" ".join(nodes.short(value) for value in joint.axis.xyz)}"{stated} does not '
+        "lie along the axle",
         values={"joint": joint.name, "axis": joint.axis.xyz, "attribute": "askew"},
         origin=node.origin if node is not None else joint.origin,
         instead="" if written is None else text if node is not None else f"<axis {text}/>",
@@ -184,9 +185,9 @@ def wheel_not_round(subject: Subject) -> Iterator[Diagnostic]:
                 )
             alone = node is not None and bool(text) and len(link.collisions) == 1
             yield robot_codes.WHEEL_NOT_ROUND.diagnostic(
-                message=f'the collision of the driven wheel "{link.name}" is not round: across '
-                f"its axis it measures {widths.max():.3g} m in one direction and "
-                f"{widths.min():.3g} m in another",
+                message=f'the collision of the driven wheel "{link.name}" is not round: '
+                f"perpendicular to its axis, its width varies from {widths.min():.3g} m to "
+                f"{widths.max():.3g} m",
                 values={
                     "link": link.name,
                     "widest": float(widths.max()),
@@ -198,7 +199,7 @@ def wheel_not_round(subject: Subject) -> Iterator[Diagnostic]:
                 instead="" if not alone else text if origin is not None else f"<origin {text}/>",
                 place="" if not alone else "attribute" if origin is not None else "inside",
                 mark="rpy" if origin is not None else "",
-                hint="The axis of a cylinder is z: turn it to the axis of the joint."
+                hint="A cylinder's axis is z. Rotate the collision to align z with the joint axis."
                 if text
                 else "",
             )

@@ -87,7 +87,7 @@ def topic_twice(subject: Subject) -> Iterator[Diagnostic]:
                     instead=nodes.written(element.tag, {}, new),
                     place="element",
                     mark=element.text.strip(),
-                    hint=f"The other one is at {other.origin}.",
+                    hint=f"The other plugin is at {other.origin}.",
                 )
 
 
@@ -111,7 +111,8 @@ def topic_invalid(subject: Subject) -> Iterator[Diagnostic]:
             yield devices_codes.TOPIC_INVALID.diagnostic(
                 message=f'<{element.tag}> "{name}" is not a valid ROS name',
                 values={"tag": element.tag, "name": name},
-                hint="Names consist of letters, digits, _ and /, and no part begins with a digit.",
+                hint="Names may contain letters, digits, _ and /, and no part may begin with a "
+                "digit.",
                 origin=element.origin,
                 instead=nodes.written(element.tag, {}, f"{source}{arrow}{good}"),
                 place="element",
@@ -144,7 +145,7 @@ def _unknown(code: Code, robot: Robot, element: Element) -> Diagnostic:
     name = element.text.strip()
     near = spelling.meant(name.lstrip("/"), robot.links)
     return code.diagnostic(
-        message=f'<{element.tag}> names the link "{name}", which does not exist',
+        message=f'<{element.tag}> refers to the link "{name}", which does not exist',
         values={"tag": element.tag, "link": name},
         origin=element.origin,
         instead=nodes.written(element.tag, {}, near) if near else "",

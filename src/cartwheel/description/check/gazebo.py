@@ -29,7 +29,7 @@ def contact_collision_unknown(subject: Subject) -> Iterator[Diagnostic]:
         own = _gazebo_names(robot).get(sensor.link, [])
         near = spelling.meant(name, known) or (own[0] if own else "")
         yield devices_codes.CONTACT_COLLISION_UNKNOWN.diagnostic(
-            message=f'contact sensor "{sensor.name}" names the collision "{name}", which does '
+            message=f'contact sensor "{sensor.name}" refers to the collision "{name}", which does '
             "not exist, so it never reports a contact",
             values={"sensor": sensor.name, "collision": name},
             origin=asked.origin,
@@ -76,7 +76,7 @@ def lumped_joint(subject: Subject) -> Iterator[Diagnostic]:
         if joint.parent not in robot.links:
             continue
         yield devices_codes.LUMPED_JOINT.diagnostic(
-            message=f'<{element.tag}> names the fixed joint "{joint.name}", which Gazebo '
+            message=f'<{element.tag}> refers to the fixed joint "{joint.name}", which Gazebo '
             "removes when it merges links",
             values={"tag": element.tag, "joint": joint.name},
             origin=element.origin,
@@ -105,18 +105,18 @@ def lumped_link(subject: Subject) -> Iterator[Diagnostic]:
             yield devices_codes.LUMPED_LINK.diagnostic(
                 severity="warning",
                 message=f'Gazebo merges link "{name}" into "{root}", so a plugin with '
-                f"<{element.tag}> does not find it",
+                f"<{element.tag}> does not find the link",
                 values={"tag": element.tag, "link": name, "root": root},
                 origin=element.origin,
                 instead=keep,
                 mark=name,
-                hint="Add it to the robot to keep the link. Only in <bodyName> does Gazebo "
-                "replace the name.",
+                hint="Add it to the robot to keep the link. Gazebo replaces the name only in "
+                "<bodyName>.",
             )
         elif not _same_frame(robot, name, root):
             yield devices_codes.LUMPED_LINK.diagnostic(
-                message=f'Gazebo merges link "{name}" into "{root}", so the messages are in '
-                f'the frame of "{root}"',
+                message=f'Gazebo merges link "{name}" into "{root}", so the messages use the frame '
+                f'of "{root}"',
                 values={"tag": element.tag, "link": name, "root": root},
                 origin=element.origin,
                 instead=keep,

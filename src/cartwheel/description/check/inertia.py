@@ -38,8 +38,8 @@ _LIGHTEST_IN_KG = 0.1
 _ROUNDED = 1e-9
 """Relative: what is left of a 0 by rounding."""
 _NEVERTHELESS = (
-    "Gazebo Classic simulates it anyway, and gz-sim refuses it. Cartwheel raises "
-    "the smaller moments."
+    "Gazebo Classic simulates this inertia anyway, and gz-sim rejects it. Cartwheel raises the "
+    "smaller moments."
 )
 _WITHOUT = "Gazebo Classic divides by zero. Cartwheel uses the inertia of the geometry."
 _KEYS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
@@ -111,8 +111,8 @@ def mass_not_positive(subject: Subject) -> Iterator[Diagnostic]:
         if mass == 0 and nodes.name_of(link) in held:
             continue  # a mere frame; Gazebo adds it to what it is fixed to
         yield robot_codes.MASS_NOT_POSITIVE.diagnostic(
-            message=f'link "{nodes.name_of(link)}" has a mass of {mass:g} kg, so Gazebo drops '
-            "it and everything attached to it",
+            message=f'link "{nodes.name_of(link)}" has a mass of {mass:g} kg, so Gazebo drops the '
+            "link and everything attached to it",
             values={"link": nodes.name_of(link), "mass": mass},
             origin=place.origin,
             instead=f'value="{nodes.short(-mass) if mass < 0 else _mass_of(subject, link)}"',
@@ -152,7 +152,7 @@ def inertia_missing(subject: Subject) -> Iterator[Diagnostic]:
                 instead=_inertial_text(_shape_inertia(robot, link), 1.0),
                 place="inside",
                 mark=f'name="{link.name}"',
-                hint="The suggestion is for 1 kg: scale mass and inertia together.",
+                hint="The suggestion is for 1 kg. Scale mass and inertia together.",
             )
 
 
@@ -194,8 +194,9 @@ def inertia_unlike_geometry(subject: Subject) -> Iterator[Diagnostic]:
             light = inertial.mass < _LIGHT * robot.description.mass
             yield robot_codes.INERTIA_GEOMETRY_MISMATCH.diagnostic(
                 severity="info" if light else None,
-                message=f'the inertia of link "{link.name}" is {solid / stated:.3g} times '
-                f"smaller than that of a solid with this geometry and {_weight(inertial.mass)}",
+                message=f'the inertia of link "{link.name}" is {solid / stated:.3g} times smaller '
+                "than that of a solid with this geometry and a mass of "
+                f"{_weight(inertial.mass)}",
                 values={
                     "link": link.name,
                     "ratio": stated / solid,
@@ -232,7 +233,7 @@ def mass_outside(subject: Subject) -> Iterator[Diagnostic]:
                 origin=origin.origin if origin is not None else inertial.origin,
                 instead=f"<pose>{xyz} 0 0 0</pose>" if in_sdf else f'<origin xyz="{xyz}"/>',
                 place="" if in_sdf else "element" if origin is not None else "inside",
-                hint="The suggestion is the middle of the geometry.",
+                hint="The suggestion is the center of the geometry.",
                 mark="xyz",
             )
 
@@ -250,9 +251,9 @@ def mass_grams(subject: Subject) -> Iterator[Diagnostic]:
         in_grams = density / 1000 > _FOAM
         node = _urdf_mass(robot, link, inertial)
         yield robot_codes.MASS_IN_GRAMS.diagnostic(
-            message=f'link "{link.name}" weighs {inertial.mass:g} kg in a box of '
-            f"{' x '.join(f'{1000 * value:.3g}' for value in box[1] - box[0])} mm, which makes "
-            f"it denser than any metal ({density / 1000:.3g} kg per litre)",
+            message=f'link "{link.name}" weighs {inertial.mass:g} kg within a bounding box of '
+            f"{' x '.join(f'{1000 * value:.3g}' for value in box[1] - box[0])} mm, which "
+            f"makes it denser than any metal ({density / 1000:.3g} kg per litre)",
             values={"link": link.name, "mass": inertial.mass, "density": density},
             origin=node.origin if node is not None else inertial.origin,
             instead=_mass_text(inertial.mass / 1000, sdf=node is None) if in_grams else "",
@@ -260,7 +261,7 @@ def mass_grams(subject: Subject) -> Iterator[Diagnostic]:
             mark="value",
             hint="Is the mass in grams?"
             if in_grams
-            else f"Filled with water it would weigh {1000 * volume:.3g} kg.",
+            else f"The same volume of water weighs {1000 * volume:.3g} kg.",
         )
 
 

@@ -40,9 +40,9 @@ def limit_missing(subject: Subject) -> Iterator[Diagnostic]:
                 if rolls
                 else f'<limit lower="-{span}" upper="{span}" effort="10" velocity="3"/>',
                 place="attribute" if rolls else "inside",
-                hint='A wheel that turns without end is type="continuous".'
+                hint='A wheel that turns without limits needs type="continuous".'
                 if rolls
-                else 'Write its range, or type="continuous" if it turns without end.'
+                else 'Write its range, or type="continuous" if it turns without limits.'
                 if kind == "revolute"
                 else "Write its range.",
             )
@@ -105,8 +105,8 @@ def effort_zero(subject: Subject) -> Iterator[Diagnostic]:
                 instead=f'effort="{nodes.short(usual)}"',
                 place="attribute",
                 mark="effort",
-                hint="Cartwheel treats 0 as no limit. The suggestion is twice what holds the "
-                "load; write what the motor can do.",
+                hint="Cartwheel treats 0 as no limit. The suggestion is twice the effort that "
+                "holds the load. Use the actual limit of the motor.",
             )
         if nodes.number(limit.attributes.get("velocity")) == 0.0:
             yield robot_codes.EFFORT_ZERO.diagnostic(
@@ -117,7 +117,7 @@ def effort_zero(subject: Subject) -> Iterator[Diagnostic]:
                 instead=f'velocity="{"1" if slides else "10"}"',
                 place="attribute",
                 mark="velocity",
-                hint="Write the highest speed of the motor.",
+                hint="Write the maximum speed of the motor.",
             )
 
 

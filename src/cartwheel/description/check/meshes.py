@@ -47,7 +47,7 @@ def file_missing(subject: Subject) -> Iterator[Diagnostic]:
         places += ", …" if len(more) > _SHOWN else ""
         yield replace(
             first,
-            message=f"{_cause(first)}; {len(more) + 1} places use it",
+            message=f"{_cause(first)}; it is used in {len(more) + 1} places",
             values={**first.values, "places": len(more) + 1},
             hint=f"{first.hint.strip()} Also at {places}.".strip(),
         )

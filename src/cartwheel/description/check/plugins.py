@@ -117,7 +117,8 @@ def plugin_obsolete(subject: Subject) -> Iterator[Diagnostic]:
                 )
             if legacy is not None and legacy.text.strip().lower() in ("true", "1"):
                 yield devices_codes.PLUGIN_PARAMETER_OBSOLETE.diagnostic(
-                    message="Gazebo 11 ignores <legacyMode>, so the robot turns the other way",
+                    message="Gazebo 11 ignores <legacyMode>, so the robot turns in the opposite "
+                    "direction",
                     values={"tag": "legacyMode", "plugin": drive.tag.name},
                     origin=legacy.origin,
                     instead="<legacyMode>false</legacyMode>",

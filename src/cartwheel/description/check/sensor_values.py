@@ -78,7 +78,7 @@ def image_format(subject: Subject) -> Iterator[Diagnostic]:
                 instead=nodes.written("format", {}, near),
                 place="element",
                 mark=name,
-                hint=f"Supported are {', '.join(FORMATS[:_LISTED])}, ….",
+                hint=f"Supported formats: {', '.join(FORMATS[:_LISTED])}, ….",
             )
 
 
@@ -91,7 +91,7 @@ def _arc(element: Element) -> Iterator[Diagnostic]:
         if found is not None and angle is not None and abs(angle) > _TURN:
             yield devices_codes.SENSOR_RANGE_INVALID.diagnostic(
                 severity="warning",
-                message=f"<{tag}> is {angle:g} rad, more than a whole turn",
+                message=f"<{tag}> is {angle:g} rad, more than a full turn",
                 values={"tag": tag, "angle": angle},
                 hint="Is it in degrees?",
                 origin=found.origin,

@@ -60,11 +60,13 @@ def _way_out(view: _View, block: _Block) -> str:
     farther = f"{math.ceil(1000 * block.farthest + 1) / 1000:g}"
     if view.kind == "camera":
         return (
-            "Move the sensor with its <pose> or its link's joint, or make the near distance larger "
-            f"than {farther} m."
+            "Move the sensor with its <pose> or its link's joint, or increase the near distance to "
+            f"more than {farther} m."
         )
     past = " Cartwheel ignores geometry that encloses a sensor." if block.within else ""
-    return f"Move the sensor out of it, or write <min>{farther}</min> in its <range>.{past}"
+    return (
+        f"Move the sensor out of the geometry, or write <min>{farther}</min> in its <range>.{past}"
+    )
 
 
 @rule(devices_codes.RATE_ABOVE_PHYSICS)

@@ -33,8 +33,8 @@ def wheel_frictionless(subject: Subject) -> Iterator[Diagnostic]:
                     continue
                 node = _surface_node(robot, link.name, "mu1")
                 yield robot_codes.WHEEL_FRICTIONLESS.diagnostic(
-                    message=f'the friction of the driven wheel "{link.name}" is {max(mu):g}, '
-                    "so it slips",
+                    message=f'the friction of the driven wheel "{link.name}" is {max(mu):g}, so '
+                    "the wheel slips",
                     values={"link": link.name, "friction": max(mu)},
                     origin=node.origin if node is not None else collision.origin,
                     instead="<mu1>1.0</mu1>" if node is not None else "",
@@ -147,11 +147,12 @@ def wheels_off_ground(subject: Subject) -> Iterator[Diagnostic]:
             if height is None or bottom - height <= max(0.1 * radius, 0.005):
                 continue
             yield robot_codes.WHEELS_OFF_GROUND.diagnostic(
-                message=f'the collision of link "{link.name}" reaches '
-                f"{1000 * (bottom - height):.3g} mm below the driven wheels, which turn in the air",
+                message=f'the collision of link "{link.name}" extends '
+                f"{1000 * (bottom - height):.3g} mm below the driven wheels, so they do "
+                "not touch the ground",
                 values={"link": link.name, "depth": bottom - height},
                 origin=link.collisions[0].origin,
-                hint=f'Raise it, or lower the joint of "{joints[0].child}".',
+                hint=f'Raise the collision, or lower the joint of "{joints[0].child}".',
             )
 
 
@@ -187,7 +188,8 @@ def collisions_overlap(subject: Subject) -> Iterator[Diagnostic]:
                     "joints are at 0, so they push each other apart",
                     values={"link": a.name, "other": b.name},
                     origin=b.collisions[0].origin,
-                    hint="Make one of them smaller, or disable <selfCollide> for one of them.",
+                    hint="Make one of the collisions smaller, or disable <selfCollide> for one of "
+                    "the links.",
                 )
 
 

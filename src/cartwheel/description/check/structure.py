@@ -30,7 +30,7 @@ def name_twice(subject: Subject) -> Iterator[Diagnostic]:
             yield robot_codes.DUPLICATE_NAME.diagnostic(
                 message=f'two {tag}s have the name "{name}"',
                 values={"tag": tag, "name": name},
-                hint=f"The first one is at {seen[name].origin}.",
+                hint=f"The first is at {seen[name].origin}.",
                 origin=node.origin,
                 instead=f'name="{new}"',
                 place="attribute",
@@ -134,7 +134,7 @@ def two_parents(subject: Subject) -> Iterator[Diagnostic]:
                 },
                 origin=joint.origin,
                 mark=f'name="{nodes.name_of(joint)}"',
-                hint="Remove one of them, or give each a child link of its own. Joint "
+                hint="Remove one of the joints, or give each joint a separate child link. Joint "
                 f'"{nodes.name_of(first)}" is at {first.origin}.',
             )
         holders.setdefault(child, joint)
@@ -204,7 +204,7 @@ def mimic_unknown(subject: Subject) -> Iterator[Diagnostic]:
                 values={"joint": name, "leader": leader},
                 origin=mimic.origin,
                 mark=f'joint="{leader}"',
-                hint="One joint of the loop must be free to move.",
+                hint="One joint in the loop must be free to move.",
             )
 
 

@@ -45,15 +45,15 @@ def gazebo_ignores(subject: Subject) -> Iterator[Diagnostic]:
             value = child.text or child.attributes.get("value", "")
             if on_link and child.tag == "mu":
                 yield codes.GAZEBO_IGNORES.diagnostic(
-                    message="Gazebo does not know <mu> here: the friction stays 1",
+                    message="Gazebo does not support <mu> here, so the friction stays 1",
                     origin=child.origin,
                     instead=f"<mu1>{value}</mu1><mu2>{value}</mu2>",
                     place="element",
                 )
             elif not on_link and child.tag == "selfCollide":
                 yield codes.GAZEBO_IGNORES.diagnostic(
-                    message="Gazebo knows <selfCollide> of links only; of the whole robot it is "
-                    "<self_collide>",
+                    message="Gazebo supports <selfCollide> only for links; for the whole robot, "
+                    "use <self_collide>",
                     origin=child.origin,
                     instead=f"<self_collide>{value}</self_collide>",
                     place="element",
@@ -84,7 +84,7 @@ def tag_misplaced(subject: Subject) -> Iterator[Diagnostic]:
             other = "joint" if needs == "link" else "link"
             message = f"{names} have no effect in a <gazebo> without a reference"
             if reference:
-                message = f"{names} have no effect: they belong to a {needs}, but "
+                message = f"{names} have no effect because they belong to a {needs}, but "
                 message += f'"{reference}" is a {other}'
         yield codes.TAG_MISPLACED.diagnostic(
             message,
@@ -92,7 +92,7 @@ def tag_misplaced(subject: Subject) -> Iterator[Diagnostic]:
             instead=f'reference="{meant}"' if meant else "",
             place="attribute" if meant and alone else "",
             mark="reference" if meant and alone else "",
-            hint="" if meant else 'Write them into a <gazebo reference="…"> of their own.',
+            hint="" if meant else 'Move them to a separate <gazebo reference="…">.',
             values={"tags": tags, "needs": needs, "reference": reference, "meant": meant},
         )
 
@@ -181,7 +181,8 @@ def _advised(subject: Subject, diagnostic: Diagnostic) -> Diagnostic:
         call = nodes.changed(node).replace(f"<{node.tag}", f"<xacro:{node.tag}", 1)
         return replace(
             diagnostic,
-            message=f"<{node.tag}> is not expanded: a macro is called by <xacro:{node.tag}>",
+            message=f"<{node.tag}> is not expanded because a macro is called with "
+            f"<xacro:{node.tag}>",
             instead=call if not node.children else f"<xacro:{node.tag}>",
             place="element" if not node.children else "",
             hint="",

@@ -46,7 +46,7 @@ def wheel_separation(subject: Subject) -> Iterator[Diagnostic]:
                 robot_codes.WHEEL_SEPARATION_MISMATCH,
                 one,
                 apart,
-                f"{said} {apart:.4g} m{' apart' * (one.measure == 'apart')}: the robot turns "
+                f"{said} {apart:.4g} m{' apart' * (one.measure == 'apart')}, so the robot turns "
                 f"{abs(one.value / apart - 1):.0%} too {far}",
             )
 
@@ -62,7 +62,7 @@ def wheel_base(subject: Subject) -> Iterator[Diagnostic]:
                     robot_codes.WHEEL_BASE_MISMATCH,
                     one,
                     apart,
-                    f"the axles are {apart:.4g} m apart: the robot turns "
+                    f"the axles are {apart:.4g} m apart, so the robot turns "
                     f"{abs(one.value / apart - 1):.0%} too {far}",
                 )
 
@@ -86,7 +86,7 @@ def wheel_diameter(subject: Subject) -> Iterator[Diagnostic]:
                 robot_codes.WHEEL_DIAMETER_MISMATCH,
                 one,
                 real,
-                f'that of the wheel "{wheel.child}" is {real:.4g} m: the robot drives {far:.0%} '
+                f'that of the wheel "{wheel.child}" is {real:.4g} m, so the robot drives {far:.0%} '
                 f"too {slow}",
             )
 

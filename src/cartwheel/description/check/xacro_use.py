@@ -52,7 +52,7 @@ def property_unused(subject: Subject) -> Iterator[Diagnostic]:
                     values={"name": name},
                     origin=node.origin,
                     mark=f'name="{name}"',
-                    hint="Use it where its value is written again, or remove it.",
+                    hint="Use it where its value is repeated, or remove it.",
                 )
 
 
@@ -76,7 +76,8 @@ def property_twice(subject: Subject) -> Iterator[Diagnostic]:
                         values={"name": name, "value": first.attributes["value"]},
                         origin=first.origin,
                         mark=f'name="{name}"',
-                        hint=f"The next value is at {node.origin}. Remove one of them.",
+                        hint=f"The next value is at {node.origin}. Remove one of the two "
+                        "definitions.",
                     )
                 if value is not None and not node.children:
                     waiting[name] = node

@@ -73,9 +73,9 @@ class Budget:
             ExpressionError: As `spend`.
         """
         if self._operations > MAX_OPERATIONS:
-            raise TooLargeError(f"the xacro needs more than {MAX_OPERATIONS:,} operations")
+            raise TooLargeError(f"the xacro file requires more than {MAX_OPERATIONS:,} operations")
         if time.thread_time() > self._end:
-            raise TooLargeError(f"the xacro takes more than {self._seconds:g} s to expand")
+            raise TooLargeError(f"the xacro file takes more than {self._seconds:g} s to expand")
 
     def make(self, size: int) -> None:
         """Counts characters that were made.
@@ -85,7 +85,7 @@ class Budget:
         """
         self._total += size
         if self._total > MAX_TOTAL:
-            raise TooLargeError(f"the xacro makes more than {MAX_TOTAL:,} characters")
+            raise TooLargeError(f"the xacro file expands to more than {MAX_TOTAL:,} characters")
 
     def text(self, length: int) -> None:
         """Counts a text before it is made.

@@ -63,14 +63,14 @@ def remainder(budget: Budget, a: Any, b: Any) -> Any:
     """``a % b``: of numbers, or the values of a text with fields."""
     if isinstance(a, str):
         if _NESTED_KEY.search(a):
-            raise ExpressionError("the key of a text's field has a parenthesis")
+            raise ExpressionError("the key of a format field contains a parenthesis")
         inside = budget.weigh(b)
         fields = width = 0
         for field in _FIELD.finditer(a):
             fields += 1
             sizes = (field["width"] or "", field["more"] or "")
             if "*" in sizes or any(len(size) > 4 or int(size or 0) > MAX_WIDTH for size in sizes):
-                raise ExpressionError(f"a field of a text is wider than {MAX_WIDTH}")
+                raise ExpressionError(f"a format field is wider than {MAX_WIDTH} characters")
             width += sum(int(size or 0) for size in sizes)
         budget.text((fields if isinstance(b, dict) else 1) * inside + fields + width)
     return budget.result(a % b)

@@ -77,7 +77,7 @@ class Evaluator:
             return found.run(self, *args, **named)
         if isinstance(found, _Lambda):
             if self._calls >= MAX_CALLS:
-                raise ExpressionError(f"lambdas call each other more than {MAX_CALLS} deep")
+                raise ExpressionError(f"lambda calls are nested more than {MAX_CALLS} deep")
             self._calls += 1
             try:
                 return found.run(args, named)
@@ -101,7 +101,7 @@ class Evaluator:
             return self.call(self.attribute(value, name), args, named)
         raise ExpressionError(
             f"{type(value).__name__}.{name}() is not allowed in an expression",
-            hint=f"Allowed are: {', '.join(sorted(known))}." if known else None,
+            hint=f"Allowed methods: {', '.join(sorted(known))}." if known else None,
         )
 
     def attribute(self, value: Any, name: str) -> Any:
@@ -179,7 +179,7 @@ def _code(node: ast.expr, depth: int) -> _Code:
 
 _WORDS = {
     "NamedExpr": "the operator :=", "JoinedStr": "an f-string", "Await": "await",
-    "Yield": "yield", "YieldFrom": "yield", "Starred": "a * there",
+    "Yield": "yield", "YieldFrom": "yield", "Starred": "a starred expression",
 }  # fmt: skip
 
 
@@ -408,7 +408,7 @@ def _lambda(node: ast.Lambda, depth: int) -> _Code:
             inner = scope.inner()
             inner.local.update(standard | dict(zip(names, args, strict=False)) | named)
             if len(args) > len(names) or not set(names) <= set(inner.local):
-                raise TypeError(f"the lambda takes {len(names)} arguments")
+                raise TypeError(f"the lambda expects {len(names)} arguments")
             return body(inner)
 
         return _Lambda(run)
@@ -463,7 +463,7 @@ def _target(node: ast.expr) -> Callable[[_Scope, Any], None]:
         def spread(scope: _Scope, value: Any) -> None:
             parts = snapshot(scope.evaluator.budget, value)
             if len(parts) != len(targets):
-                raise ValueError(f"{len(parts)} values for {len(targets)} names")
+                raise ValueError(f"{len(parts)} values cannot be assigned to {len(targets)} names")
             for target, part in zip(targets, parts, strict=True):
                 target(scope, part)
 

@@ -47,7 +47,9 @@ def weld(
     tables = [points, *(table for table in (normals, uv) if table is not None)]
     for values, indices in tables:
         if indices.size and (indices.min() < 0 or indices.max() >= len(values)):
-            raise ValueError(f"a face asks for entry {int(indices.max())} of {len(values)}")
+            raise ValueError(
+                f"a face refers to entry {int(indices.max())}, but only {len(values)} exist"
+            )
     key = points[1]
     for values, indices in tables[1:]:
         key = key * max(1, len(values)) + indices

@@ -39,7 +39,7 @@ def read_dae(path: Path, data: bytes, notes: list[str]) -> list[Submesh]:
         ValueError: what is wrong with the file.
     """
     if b"<!ENTITY" in data:
-        raise ValueError("declares entities, which no mesh needs")
+        raise ValueError("declares entities, which are not allowed")
     try:
         root = _parsed(data)
     except ET.ParseError as error:
@@ -47,7 +47,7 @@ def read_dae(path: Path, data: bytes, notes: list[str]) -> list[Submesh]:
     for element in root.iter():
         element.tag = element.tag.rpartition("}")[2]  # every exporter's version is read alike
     if root.tag != "COLLADA":
-        raise ValueError(f"is no COLLADA file: its root is <{root.tag}>")
+        raise ValueError(f"is not a COLLADA file: its root element is <{root.tag}>")
     return _Scene(path, root, notes).submeshes()
 
 
@@ -81,7 +81,7 @@ class _Scene:
         unit = self.root.find("asset/unit")
         metres = float(unit.get("meter", "1")) if unit is not None else 1.0
         if not (math.isfinite(metres) and metres > 0):
-            raise ValueError(f"its unit is {metres} metres")
+            raise ValueError(f"its unit must be positive and finite (got {metres} m)")
         base = np.diag([metres, metres, metres, 1.0])
         result: list[Submesh] = []
         scene = self._visual_scene()
@@ -104,7 +104,7 @@ class _Scene:
     def _node(self, node: ET.Element, outer: Array, depth: int) -> Iterator[Submesh]:
         self.instances += 1
         if depth > MAX_DEPTH or self.instances > MAX_INSTANCES:
-            raise ValueError("its nodes contain each other without end")
+            raise ValueError("its nodes contain each other in a cycle")
         transform = outer @ self._transform(node)
         name = node.get("name") or node.get("id") or ""
         for child in node:
@@ -128,7 +128,7 @@ class _Scene:
     def _require(self, url: str) -> ET.Element:
         found = self.library.get(url)
         if found is None:
-            raise ValueError(f'names "{url}", which is not in it')
+            raise ValueError(f'refers to "{url}", which it does not contain')
         return found
 
     def _transform(self, node: ET.Element) -> Array:
@@ -157,11 +157,11 @@ class _Scene:
         geometry_name = geometry.get("name") or geometry.get("id") or node
         linear = transform[:3, :3]
         if abs(np.linalg.det(linear)) < 1e-30:
-            raise ValueError(f'node "{node}" scales its geometry to nothing')
+            raise ValueError(f'node "{node}" scales its geometry to zero size')
         for primitive in self._geometries[key]:
             self.triangles += int(np.maximum(primitive.counts - 2, 0).sum())
             if self.triangles > MOST_TRIANGLES:
-                raise ValueError(f"shows more than {MOST_TRIANGLES} triangles")
+                raise ValueError(f"contains more than {MOST_TRIANGLES} triangles")
             look = self._look(bindings.get(primitive.material, primitive.material))
             points, corners = primitive.points
             normals = primitive.normals
@@ -186,7 +186,7 @@ class _Scene:
     def _primitives(self, geometry: ET.Element) -> Iterator[_Primitive]:
         mesh = geometry.find("mesh")
         if mesh is None:
-            self._note(f'geometry "{geometry.get("id", "")}" is no mesh and is not shown')
+            self._note(f'geometry "{geometry.get("id", "")}" is not a mesh and is not shown')
             return
         for element in mesh:
             if element.tag in _SURFACES:
@@ -211,7 +211,7 @@ class _Scene:
                 each.get("semantic", ""), (offsets["VERTEX"][0], each.get("source", ""))
             )
         if "POSITION" not in offsets:
-            raise ValueError(f"a <{element.tag}> has no POSITION")
+            raise ValueError(f"a <{element.tag}> has no POSITION input")
         counts, indices = _polygons(element, stride)
         if not len(counts):
             return None
@@ -242,7 +242,9 @@ class _Scene:
         stride = int(accessor.get("stride", "1")) if accessor is not None else width
         start = int(accessor.get("offset", "0")) if accessor is not None else 0
         if not width <= stride <= 64 or start < 0:
-            raise ValueError(f'source "{url}" has {stride} numbers a row, {width} are needed')
+            raise ValueError(
+                f'source "{url}" has {stride} numbers per row, but {width} are required'
+            )
         # The accessor's count is not asked: some exporters write that of the numbers there.
         rows = (len(values) - start) // stride
         return values[start : start + max(rows, 0) * stride].reshape(-1, stride)[:, :width]
@@ -263,7 +265,7 @@ def _polygons(element: ET.Element, stride: int) -> tuple[NDArray[np.int64], NDAr
     rows = [np.array((p.text or "").split(), dtype=np.int64) for p in lists]
     for row in rows:
         if len(row) % stride:
-            raise ValueError(f"a <{element.tag}> is cut off")
+            raise ValueError(f"a <{element.tag}> is truncated")
     if not rows:
         return np.zeros(0, dtype=np.int64), np.zeros((0, stride), dtype=np.int64)
     if element.tag in ("tristrips", "trifans"):
@@ -276,7 +278,7 @@ def _polygons(element: ET.Element, stride: int) -> tuple[NDArray[np.int64], NDAr
         counts = np.array((vcount.text or "").split() if vcount is not None else [], dtype=np.int64)
     else:
         if len(indices) % 3:
-            raise ValueError(f"a <{element.tag}> is cut off")
+            raise ValueError(f"a <{element.tag}> is truncated")
         counts = np.full(len(indices) // 3, 3, dtype=np.int64)
     return counts, indices
 
@@ -303,7 +305,7 @@ def _bindings(instance: ET.Element) -> dict[str, str]:
 def _floats(element: ET.Element, count: int) -> Array:
     values = np.array((element.text or "").split(), dtype=np.float64)
     if len(values) != count or not np.isfinite(values).all():
-        raise ValueError(f"a <{element.tag}> has not {count} numbers")
+        raise ValueError(f"a <{element.tag}> does not have {count} numbers")
     return values
 
 

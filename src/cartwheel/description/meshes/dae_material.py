@@ -114,7 +114,7 @@ def _image(
         initial = initial.find("ref")
     written = (initial.text or "").strip() if initial is not None else ""
     if not written:
-        notes.append(f'texture "{name}" names no image file')
+        notes.append(f'texture "{name}" does not refer to an image file')
         return None
     relative = unquote(written.removeprefix("file://")).replace("\\", "/")
     # Absolute paths are the exporter's own machine: the file travels beside the mesh.
@@ -130,7 +130,7 @@ def _image(
 def _numbers(element: ET.Element, least: int) -> tuple[float, ...]:
     values = tuple(float(word) for word in (element.text or "").split())
     if len(values) < least or not all(abs(v) < 1e6 for v in values):
-        raise ValueError(f"a <{element.tag}> has not {least} numbers")
+        raise ValueError(f"a <{element.tag}> has fewer than {least} numbers")
     return values
 
 

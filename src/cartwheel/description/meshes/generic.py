@@ -37,7 +37,7 @@ def read_with_trimesh(path: Path, data: bytes, _notes: list[str]) -> list[Submes
         def get(self, name: str) -> bytes:
             file = (path.parent / unquote(name.strip())).resolve()
             if not file.is_relative_to(path.parent.resolve()):
-                raise ValueError(f'names "{name}", which is not below its folder')
+                raise ValueError(f'refers to "{name}", which is outside its folder')
             return read_regular(file, MOST_BYTES)
 
     resolver = Beside(str(path))
@@ -52,7 +52,7 @@ def read_with_trimesh(path: Path, data: bytes, _notes: list[str]) -> list[Submes
         linear = matrix[:3, :3]
         faces = np.asarray(geometry.faces)
         if faces.size and (faces.min() < 0 or faces.max() >= len(geometry.vertices)):
-            raise ValueError("a face names a vertex that does not exist")
+            raise ValueError("a face refers to a vertex that does not exist")
         if np.linalg.det(linear) < 0:
             faces = faces[:, ::-1]
         rgba, texture = _look(geometry.visual)

@@ -39,7 +39,7 @@ from cartwheel.errors import Origin, meant, suggestion
 
 __all__ = ["MeshError", "Submesh", "convex_hull_input", "load_mesh", "mesh_notes", "standing_parts"]
 
-_COARSER = "Blender's Decimate modifier makes it coarser."
+_COARSER = "Reduce the mesh, for example with Blender's Decimate modifier."
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -62,7 +62,7 @@ def load_mesh(mesh: model.Mesh, *, origin: Origin | None = None) -> tuple[Submes
     """
     # Below and above these a single-precision coordinate is nothing, or without an end.
     if not all(1e-30 < abs(factor) < 1e30 for factor in mesh.scale):
-        raise MeshError(mesh.path, f"the scale {mesh.scale} makes it vanish", origin=origin)
+        raise MeshError(mesh.path, f"the scale {mesh.scale} reduces it to zero size", origin=origin)
     submeshes = _loaded(mesh.path, origin).submeshes
     if mesh.submesh is not None:
         submeshes = _select(mesh, submeshes, origin)
@@ -155,7 +155,9 @@ def _read(path: Path, _mtime_ns: int, size: int) -> _Loaded:
     if reader is None:
         known = ", ".join(sorted(_READERS))
         raise MeshError(
-            path, f'the format "{kind}" is not supported', hint=f"Convert it to one of: {known}."
+            path,
+            f'the format "{kind}" is not supported',
+            hint=f"Convert it to a supported format: {known}.",
         )
     if not size:
         raise MeshError(path, "is empty")

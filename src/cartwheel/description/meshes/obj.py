@@ -60,7 +60,7 @@ def read_obj(path: Path, data: bytes, notes: list[str]) -> list[Submesh]:
         elif key == b"mtllib":
             libraries.append(rest.strip().decode(errors="replace"))
         elif key and not key.startswith(b"#") and key.decode(errors="replace") not in _IGNORED:
-            note = f'the statement "{key[:20].decode(errors="replace")}" is not understood'
+            note = f'the statement "{key[:20].decode(errors="replace")}" is not supported'
             if note not in notes:
                 notes.append(note)
     points = _table(tables[b"v"], 3, "v")
@@ -97,7 +97,7 @@ def _table(rows: list[bytes], width: int, key: str) -> NDArray[np.float64]:
             return np.array(words, dtype="S").astype(np.float64).reshape(-1, width)
         return np.array([[float(w) for w in row.split()[:width]] for row in rows], dtype=np.float64)
     except ValueError:
-        raise ValueError(f'a "{key}" statement has not {width} numbers') from None
+        raise ValueError(f'a "{key}" statement does not have {width} numbers') from None
 
 
 def _absolute(face: bytes, tables: dict[bytes, list[bytes]]) -> bytes:
@@ -116,7 +116,7 @@ def _index(word: bytes) -> int:
     try:
         return int(word)
     except ValueError:
-        raise ValueError(f'"{word[:20].decode(errors="replace")}" is no index') from None
+        raise ValueError(f'"{word[:20].decode(errors="replace")}" is not an index') from None
 
 
 def _corners(faces: list[bytes]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
@@ -135,7 +135,7 @@ def _corners(faces: list[bytes]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         try:
             numbers = np.array(flat.split(b"/"), dtype="S").astype(np.int64)
         except ValueError:
-            raise ValueError("a face names something that is no index") from None
+            raise ValueError("a face contains an invalid index") from None
         corners[:, :width] = numbers.reshape(-1, width) - 1
     else:
         for row, word in enumerate(words):
@@ -152,7 +152,9 @@ def _materials(path: Path, libraries: list[str], notes: list[str]) -> dict[str, 
         try:
             text = read_regular_text(file)
         except (OSError, ValueError):
-            notes.append(f'the material library "{library}" does not exist; its colours are lost')
+            notes.append(
+                f'the material library "{library}" does not exist, so its colours are not used'
+            )
             continue
         _read_library(file, text, found, notes)
     return found

@@ -23,7 +23,9 @@ def triangulate(counts: Sequence[int] | Indices, positions: NDArray[Any]) -> Ind
     """
     sizes = np.asarray(counts, dtype=np.int64).reshape(-1)
     if (sizes < 0).any() or int(sizes.sum()) != len(positions):
-        raise ValueError(f"polygons ask for {int(sizes.sum())} corners of {len(positions)}")
+        raise ValueError(
+            f"the polygons need {int(sizes.sum())} corners, but only {len(positions)} exist"
+        )
     starts = np.cumsum(sizes) - sizes
     parts: list[Indices] = []
     for size in np.unique(sizes).tolist():

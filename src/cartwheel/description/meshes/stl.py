@@ -42,11 +42,13 @@ def _is_ascii(data: bytes) -> bool:
 
 def _read_binary(data: bytes) -> np.ndarray[tuple[int, int], np.dtype[np.float32]]:
     if len(data) < _HEADER:
-        raise ValueError(f"is no STL file: {len(data)} bytes, the header alone has {_HEADER}")
+        raise ValueError(
+            f"is not an STL file: it has {len(data)} bytes, fewer than the {_HEADER}-byte header"
+        )
     count = int.from_bytes(data[80:84], "little")
     present = (len(data) - _HEADER) // _RECORD.itemsize
     if count > present:
-        raise ValueError(f"is cut off: {count} triangles announced, {present} present")
+        raise ValueError(f"is truncated: it declares {count} triangles but contains {present}")
     records = np.frombuffer(data, dtype=_RECORD, count=count, offset=_HEADER)
     return records["corners"].reshape(-1, 3).astype(np.float32)
 
@@ -54,12 +56,12 @@ def _read_binary(data: bytes) -> np.ndarray[tuple[int, int], np.dtype[np.float32
 def _read_ascii(data: bytes) -> np.ndarray[tuple[int, int], np.dtype[np.float32]]:
     found = _VERTEX.findall(data)
     if len(found) % 3:
-        raise ValueError(f"is cut off: {len(found)} vertices are no whole number of triangles")
+        raise ValueError(f"is truncated: its {len(found)} vertices do not form complete triangles")
     try:
         return np.array(found, dtype="S").astype(np.float32).reshape(-1, 3)
     except ValueError:
         wrong = next((n for row in found for n in row if not _is_number(n)), b"?")
-        raise ValueError(f'"{wrong[:40].decode(errors="replace")}" is no number') from None
+        raise ValueError(f'"{wrong[:40].decode(errors="replace")}" is not a number') from None
 
 
 def _is_number(text: bytes) -> bool:

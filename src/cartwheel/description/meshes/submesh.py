@@ -102,7 +102,7 @@ def build_submesh(
     if not np.isfinite(points).all():
         raise ValueError("a vertex is not a finite number")
     if triangles.size and (triangles.min() < 0 or triangles.max() >= len(points)):
-        raise ValueError("a face names a vertex that does not exist")
+        raise ValueError("a face refers to a vertex that does not exist")
     proper = _has_area(points, triangles)
     directions = _per_vertex(normals, len(points), 3)
     coordinates = _per_vertex(uv, len(points), 2)

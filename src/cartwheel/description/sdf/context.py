@@ -62,7 +62,7 @@ def read_version(root: Node) -> Version:
     if match and (int(match[1]), int(match[2])) < OLDEST:
         raise root.fail(
             f'the SDF version "{text}" is too old: 1.0 to 1.12 are supported',
-            'Convert it with "gz sdf -c" of Gazebo Classic.',
+            'Convert it with "gz sdf -c" from Gazebo Classic.',
             code=SDF_VERSION,
             values={"stated": text},
         )
@@ -91,7 +91,7 @@ def read_pose(node: Node | None) -> Pose:
             values={"name": notation, "meant": meant(notation, _NOTATIONS)},
         )
     if quaternion and in_degrees:
-        raise node.fail("a quaternion has no degrees", 'Remove degrees="true".')
+        raise node.fail("a quaternion cannot be in degrees", 'Remove degrees="true".')
     if not node.text.strip():
         return Pose()
     if quaternion:
@@ -108,7 +108,7 @@ def read_pose(node: Node | None) -> Pose:
         # Gazebo Classic reads what is there.
         values = (*node.vector(len(words)), 0.0, 0.0, 0.0, 0.0, 0.0)[:6]
         incomplete = codes.VALUE_IGNORED.diagnostic(
-            f"the pose has {len(words)} of 6 numbers: 0 is used for the others",
+            f"the pose has {len(words)} of 6 numbers, so 0 is used for the others",
             origin=node.origin,
             values={"stated": node.text},
         )
@@ -166,10 +166,10 @@ def check_unique(kind: str, names: list[tuple[str, Origin]]) -> None:
     for name, origin in names:
         if name in seen:
             raise DescriptionError(
-                f'the {kind} "{name}" exists twice',
+                f'the {kind} "{name}" is defined twice',
                 code=codes.NAME_TAKEN,
                 origin=origin,
-                hint=f"The first one is at {seen[name]}.",
+                hint=f"The first is at {seen[name]}.",
                 values={"name": name},
             )
         seen[name] = origin

@@ -62,10 +62,10 @@ class Frames:
         if name in self._frames:
             first = self._frames[name]
             raise DescriptionError(
-                f'{kind} "{name}" has the name of another {first.kind} of this {self.kind}',
+                f'{kind} "{name}" has the same name as another {first.kind} in this {self.kind}',
                 code=codes.NAME_TAKEN,
                 origin=origin,
-                hint=f"The first one is at {first.origin}.",
+                hint=f"The first is at {first.origin}.",
                 values={"name": name},
             )
         self._frames[name] = _Frame(kind, pose, relative_to, attached_to, origin)
@@ -112,7 +112,7 @@ class Frames:
                 return self.default_link
             if name in seen:
                 raise DescriptionError(
-                    f"frames are attached to each other in a circle: {' -> '.join([*seen, name])}",
+                    f"frames are attached to each other in a cycle: {' -> '.join([*seen, name])}",
                     code=codes.FRAMES_CIRCULAR,
                     values={"names": (*seen, name)},
                     origin=origin,
@@ -171,7 +171,7 @@ class Frames:
         if name in asking:
             circle = " -> ".join([*asking[asking.index(name) :], name])
             raise DescriptionError(
-                f"poses are relative to each other in a circle: {circle}",
+                f"poses are relative to each other in a cycle: {circle}",
                 code=codes.FRAMES_CIRCULAR,
                 origin=frame.origin,
                 values={"names": (*asking[asking.index(name) :], name)},

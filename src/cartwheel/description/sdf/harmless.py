@@ -1,7 +1,7 @@
 """SDF elements that have no effect here and lose nothing: a note, not a warning."""
 
 _ENGINE = "it configures a solver that Cartwheel does not use"
-_OTHER_ENGINE = "it is for another physics engine"
+_OTHER_ENGINE = "it is for a different physics engine"
 _WINDOW = "it configures Gazebo's user interface"
 _STIFFNESS = "kp and kd set the stiffness of contacts, as in Gazebo"
 _LIGHT = "the renderer does not support it"
@@ -11,7 +11,7 @@ _TERRAIN = "terrain is rendered with one colour or one texture, in full detail"
 _REST = "bodies at rest sleep automatically"
 _WIND = "wind is not simulated"
 _STOP = "joint limits are always stiff"
-_MEASURED = "it is computed from the geometry: auto is true"
+_MEASURED = "it is computed from the geometry because auto is true"
 _SURFACE = "only the colour image of a physically based material is rendered"
 _INERTIA = 'it is used with <inertial auto="true">'
 
@@ -54,7 +54,7 @@ HARMLESS: dict[tuple[str, str], str] = {
     ("ode", "bounce"): "joint limits do not bounce",
     ("ode", "cfm"): _ENGINE,
     ("ode", "erp"): _ENGINE,
-    ("ode", "fudge_factor"): "joint limits here do not overshoot",
+    ("ode", "fudge_factor"): "joint limits do not overshoot in Cartwheel",
     ("ode", "max_force"): "Gazebo does not read it either: joints are driven by plugins",
     ("ode", "max_vel"): "it is an element of <contact>",
     ("ode", "min_depth"): "it is an element of <contact>",

@@ -144,12 +144,12 @@ def _fuel_model(name: str, uri: Node, ctx: Context) -> Path:
         except DescriptionError:
             continue
     raise NotThereError(
-        f'"{uri.text}" is on the network, and nothing is downloaded',
+        f'"{uri.text}" is on the network and is not downloaded',
         code=files.FILE_ON_NETWORK,
         origin=uri.origin,
         values={"kind": "model", "name": uri.text},
-        hint='"gz fuel download -u" with its URL puts it into ~/.gz/fuel, where it is found; or '
-        f'put the model\'s folder "{name}" where GZ_SIM_RESOURCE_PATH points.',
+        hint='Download it to ~/.gz/fuel with "gz fuel download -u" and its URL, or put the model '
+        f'folder "{name}" into a folder in GZ_SIM_RESOURCE_PATH.',
     )
 
 
@@ -178,9 +178,9 @@ def _in_folder(folder: Path, uri: Node, ctx: Context) -> Path:
         return folder / "model.sdf"
     wanted = best[1] if best is not None and best[1] else "model.sdf"
     raise NotThereError(
-        f'the folder of "{uri.text}" has no {wanted}',
+        f'the folder of "{uri.text}" contains no {wanted}',
         code=files.FILE_MISSING,
         origin=uri.origin,
         values={"kind": "model", "name": uri.text},
-        hint=f"It is {folder}, found by its name.",
+        hint=f"The folder {folder} was found by its name.",
     )

@@ -62,7 +62,7 @@ def add_joint(frames: Frames, node: Node, ctx: Context, joints: list[str]) -> st
         if ctx.version >= (1, 7):
             ctx.report(
                 tags.NAME_TAKEN.diagnostic(
-                    f'joint "{name}" has the name of a link or frame',
+                    f'joint "{name}" has the same name as a link or frame',
                     origin=node.origin,
                     severity="warning",
                     values={"name": name},
@@ -148,7 +148,7 @@ def read_joint(node: Node, ctx: Context, frames: Frames, frame: str) -> Joint | 
     if kind not in _WITHOUT_AXIS and axis is None:
         ctx.report(
             tags.DEFAULT_USED.diagnostic(
-                f'joint "{name}" has no <axis>, so SDF\'s default is used, z',
+                f'joint "{name}" has no <axis>, so the SDF default, z, is used',
                 origin=node.origin,
                 values={"joint": name, "missing": "axis"},
             )
@@ -195,7 +195,8 @@ def read_joint(node: Node, ctx: Context, frames: Frames, frame: str) -> Joint | 
             if suspension.children:
                 ctx.report(
                     tags.NOT_SIMULATED.diagnostic(
-                        f'joint "{name}": <suspension> has no effect, it is rigid here',
+                        f'joint "{name}": <suspension> has no effect because it is rigid in '
+                        "Cartwheel",
                         origin=suspension.origin,
                         severity="warning",
                         values={"joint": name, "tag": "suspension"},

@@ -75,7 +75,7 @@ def read_link(node: Node, ctx: Context, frames: Frames) -> Link:
             carrier = frames.link_of(frame, part.origin)
             there = frames.pose(carrier, part.origin).inverse() @ frames.pose(frame, part.origin)
         except DescriptionError as error:
-            consequence = "fdir1 counts in the collision's own axes"
+            consequence = "fdir1 is relative to the axes of the collision"
             ctx.report(loss(error, consequence, severity="warning", origin=part.origin))
             del fields["fdir1_frame"]
             return
@@ -127,7 +127,7 @@ def named_apart(kind: str, parts: Iterable[P], ctx: Context) -> list[P]:
             name = next(each for each in numbered if each not in taken)
             ctx.report(
                 tags.NAME_TAKEN.diagnostic(
-                    f'{kind} "{part.name}" has the same name as another one, and is renamed '
+                    f'{kind} "{part.name}" has the same name as another {kind} and is renamed '
                     f'"{name}"',
                     origin=part.origin,
                     severity="warning",
@@ -163,7 +163,8 @@ def _inertial(link: Node, ctx: Context, place: Place, collisions: list[Collision
         name = link.attributes.get("name", "")
         ctx.report(
             tags.DEFAULT_USED.diagnostic(
-                f'the inertia of link "{name}" is not a number, so SDF\'s default is used, 1 kg m²',
+                f'the inertia of link "{name}" is not a number, so the SDF default, 1 kg m², is '
+                "used",
                 origin=tensor.origin,
                 values={"link": name, "missing": "inertia"},
             )

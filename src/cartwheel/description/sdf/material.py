@@ -85,7 +85,7 @@ def _scripted(name: str, uris: list[Node], script: Node, ctx: Context) -> Materi
         if places and not name.startswith("Gazebo/"):
             ctx.report(
                 tags.MATERIAL_UNDEFINED.diagnostic(
-                    f'the material "{name}" is not in its scripts: the colour stays as it is',
+                    f'the material "{name}" is not in its scripts, so the colour is unchanged',
                     origin=script.origin,
                     values={"name": name, "meant": ""},
                 )
@@ -94,7 +94,7 @@ def _scripted(name: str, uris: list[Node], script: Node, ctx: Context) -> Materi
             ctx.report(
                 loss(
                     lost[0],
-                    f'the material "{name}" is not known',
+                    f'the material "{name}" is unknown',
                     of="material",
                     severity="warning",
                     origin=script.origin,

@@ -81,9 +81,9 @@ def read_model(node: Node, ctx: Context, included: Included | None = None, depth
         gripper.mark()
         ctx.report(
             tags.NOT_SIMULATED.diagnostic(
-                "<gripper> has no effect: a touch attaches nothing",
+                "<gripper> has no effect because contacts do not attach objects",
                 origin=gripper.origin,
-                hint="The plugin libgazebo_grasp_fix.so attaches objects.",
+                hint="Use the plugin libgazebo_grasp_fix.so to attach objects.",
                 severity="warning",
                 values={"tag": "gripper"},
             )
@@ -94,7 +94,7 @@ def read_model(node: Node, ctx: Context, included: Included | None = None, depth
             found = open_include(each, ctx)
         except NotThereError as missing:
             each.mark()
-            ctx.report(loss(missing, "the model is left out", of="include"))
+            ctx.report(loss(missing, "the model is ignored", of="include"))
             continue
         if found.node.tag == "light":
             raise each.fail(

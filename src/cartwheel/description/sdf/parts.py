@@ -63,7 +63,7 @@ def add_frame(frames: Frames, kind: str, node: Node) -> None:
 def left_out(node: Node, error: DescriptionError, ctx: Context) -> None:
     """Reports an invalid element, which is left out; the rest goes on."""
     node.mark()
-    ctx.report(loss(error, f"the {node.tag} is left out", of=node.tag))
+    ctx.report(loss(error, f"the {node.tag} is ignored", of=node.tag))
 
 
 def attach(links: list[Link], sensors: Iterable[Sensor]) -> None:

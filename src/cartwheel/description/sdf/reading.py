@@ -66,7 +66,7 @@ def read_sdf(
             name = further.attributes.get("name", "")
             ctx.report(
                 tags.ELEMENT_LEFT_OUT.diagnostic(
-                    f'only one world runs at a time: "{name}" is left out',
+                    f'only one world can run at a time, so "{name}" is ignored',
                     origin=further.origin,
                     values={"tag": "world", "name": name},
                 )

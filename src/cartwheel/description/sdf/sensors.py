@@ -150,5 +150,5 @@ def _noise(node: Node | None) -> tuple[float, float]:
         )
     mean, stddev = (_bounded(node, name, _LOUDEST) for name in ("mean", "stddev"))
     if stddev < 0:
-        raise node.fail(f"<stddev> of a noise must not be negative (got {stddev:g})")
+        raise node.fail(f"the <stddev> of noise must not be negative (got {stddev:g})")
     return mean, stddev

@@ -44,7 +44,7 @@ def read_shape(owner: Node, ctx: Context) -> Shape | None:
     if geometry is None:
         ctx.report(
             tags.VALUE_IGNORED.diagnostic(
-                f"{_label(owner)} has no <geometry>, and is left out",
+                f"{_label(owner)} has no <geometry> and is ignored",
                 origin=owner.origin,
                 values={"left_out": owner.tag, "missing": "geometry"},
             )
@@ -83,7 +83,7 @@ def read_shape(owner: Node, ctx: Context) -> Shape | None:
         except _UnusableFileError as missing:
             node.mark()
             ctx.report(
-                loss(missing, f"{_label(owner)} is left out", of=owner.tag, origin=node.origin)
+                loss(missing, f"{_label(owner)} is ignored", of=owner.tag, origin=node.origin)
             )
             return None
     if tag == "polyline":
@@ -142,7 +142,7 @@ def _sizes(shape: Node, tag: str, ctx: Context) -> Vec3:
         # As Gazebo's building editor writes the wall above a door that reaches the ceiling.
         ctx.report(
             tags.VALUE_IGNORED.diagnostic(
-                f"a box of {node.text} becomes {_FLAT * 1e3:g} mm thick",
+                f"the box size {node.text} is flat, so a thickness of {_FLAT * 1e3:g} mm is used",
                 origin=node.origin,
                 values={"stated": node.text},
             )
@@ -156,7 +156,7 @@ def _sizes(shape: Node, tag: str, ctx: Context) -> Vec3:
 def _warn_default(shape: Node, tag: str, ctx: Context) -> None:
     ctx.report(
         tags.DEFAULT_USED.diagnostic(
-            f"<{shape.tag}> has no <{tag}>, so SDF's default is used, 1 m",
+            f"<{shape.tag}> has no <{tag}>, so the SDF default, 1 m, is used",
             origin=shape.origin,
             values={"shape": shape.tag, "missing": tag},
         )
@@ -273,7 +273,7 @@ def _heightmap(node: Node, ctx: Context) -> Heightmap:
             code=files.PICTURE_UNREADABLE,
             origin=uri.origin,
             values={"kind": "heightmap", "name": uri.text},
-            hint="Save the heights as a PNG in grey, the highest point white.",
+            hint="Save the heights as a greyscale PNG with the highest point in white.",
         )
     if min(size[:2]) <= 0 or size[2] == 0:
         raise node.fail(f"every size of a heightmap must be above 0 (got {size})")

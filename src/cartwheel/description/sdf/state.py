@@ -48,7 +48,7 @@ def apply_state(
     saved_lights = {each.get("name") or "": each for each in node.all("light")}
     for name in saved_models.keys() - {model.name for model in models}:
         saved_models[name].mark()
-        message = f'the state names the unknown model "{name}"'
+        message = f'the state refers to the unknown model "{name}"'
         ctx.report(_ignored(message, saved_models[name], name))
     models = [
         _moved(model, saved_models[model.name], ctx) if model.name in saved_models else model

@@ -73,7 +73,7 @@ def name_apart(models: Iterable[Model], ctx: Context) -> None:
         model.name = next(free for i in numbers[name] if (free := f"{name}_{i}") not in taken)
         ctx.report(
             NAME_TAKEN.diagnostic(
-                f'model "{name}" has the same name as another one, and is renamed "{model.name}"',
+                f'model "{name}" has the same name as another model and is renamed "{model.name}"',
                 origin=model.origin,
                 severity="warning",
                 values={"name": name, "renamed": model.name},

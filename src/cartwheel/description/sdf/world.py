@@ -79,7 +79,7 @@ def read_world(node: Node, ctx: Context) -> WorldDescription:
             each.mark()
             name_of = each.attributes.get("name", "")
             what = f'<{tag}> "{name_of}"' if name_of else f"<{tag}>"
-            ctx.report(not_simulated(f"{what} is not simulated, and is left out", each))
+            ctx.report(not_simulated(f"{what} is not simulated and is ignored", each))
     for tag in ("wind", "atmosphere"):
         for each in node.all(tag):
             each.mark()
@@ -125,7 +125,7 @@ def _contents(node: Node, ctx: Context) -> tuple[list[Model], list[tuple[Node, I
             except NotThereError as missing:
                 # It costs the one model, not the whole world; an error that others may stop at.
                 each.mark()
-                ctx.report(loss(missing, "the model is left out", of="include"))
+                ctx.report(loss(missing, "the model is ignored", of="include"))
                 continue
             if included.node.tag == "light":
                 lights.append((included.node, included))
@@ -157,7 +157,7 @@ def _tolerant(ctx: Context, name: str, node: Node | None = None) -> Iterator[Non
         ctx.report(
             loss(
                 error,
-                f"{what} is left out",
+                f"{what} is ignored",
                 of="model",
                 severity="error" if lacking else "warning",
             )
@@ -173,7 +173,13 @@ def _places(node: Node, frames: Frames, ctx: Context) -> Iterator[tuple[str, Pos
         try:
             yield name, frames.pose(name, each.origin)
         except DescriptionError as error:
-            ctx.report(loss(error, f'the frame "{name}" has no place', severity="warning"))
+            ctx.report(
+                loss(
+                    error,
+                    f'the pose of the frame "{name}" cannot be determined',
+                    severity="warning",
+                )
+            )
 
 
 def _light(node: Node, included: Included | None, frames: Frames) -> Light:
@@ -198,7 +204,7 @@ def _default_physics(node: Node, ctx: Context) -> Node | None:
             each.mark()
             ctx.report(
                 tags.TAG_REPEATED.diagnostic(
-                    "<physics> is repeated: only one of them counts",
+                    "<physics> is repeated: only one of them is used",
                     origin=each.origin,
                     severity="info",
                     values={"tag": "physics", "parent": "world"},

@@ -64,7 +64,7 @@ def join_models(
             if joint.type != "fixed" and joint.resists:
                 ctx.report(
                     tags.NOT_SIMULATED.diagnostic(
-                        f'joint "{joint.name}" between two models turns freely: its limits, '
+                        f'joint "{joint.name}" between two models turns freely, so its limits, '
                         "damping, friction and spring have no effect",
                         origin=each.origin,
                         severity="warning",
@@ -84,11 +84,11 @@ def _read(node: Node, frames: Frames, later: list[str], ctx: Context) -> Joint |
         if not any(each.severity == "error" for each in ctx.diagnostics):
             raise
         node.mark()
-        ctx.report(loss(error, "the joint is left out", of="joint", origin=node.origin))
+        ctx.report(loss(error, "the joint is ignored", of="joint", origin=node.origin))
         return None
     for sensor in node.all("sensor"):
         sensor.mark()
-        ctx.report(not_simulated("sensors of joints of the world are left out", sensor))
+        ctx.report(not_simulated("sensors on joints of the world are ignored", sensor))
     if joint is None:
         _leave_out(node, "a gearbox connects joints of one model", ctx)
     return joint
@@ -108,7 +108,7 @@ def _leave_out(node: Node, why: str, ctx: Context) -> None:
     name = node.attributes.get("name", "")
     ctx.report(
         tags.ELEMENT_LEFT_OUT.diagnostic(
-            f'joint "{name}" is left out: {why}',
+            f'joint "{name}" is ignored: {why}',
             origin=node.origin,
             severity="error",
             values={"tag": "joint", "name": name, "left_out": "joint"},

@@ -92,8 +92,8 @@ def _unknown_collisions(sensor: Sensor, link: Link, known: set[str]) -> Iterable
         own = [collision.name for collision in link.collisions]
         near = meant(name, sorted(known))
         yield devices.CONTACT_COLLISION_UNKNOWN.diagnostic(
-            f'sensor "{sensor.name}" watches the collision "{asked}", which does not exist: '
-            "it will never report a contact",
+            f'sensor "{sensor.name}" refers to the collision "{asked}", which does not exist, so '
+            "it never reports a contact",
             origin=sensor.origin,
             hint=suggestion(name, sorted(known) if near else own),
             severity="warning",

@@ -95,7 +95,8 @@ def _spread(part: Sequence[Link], ctx: UrdfContext) -> Mapping[str, Link]:
     inertial = replace(stated, pose=Pose(stated.pose.position), **values)
     ctx.report(
         robot.INERTIA_IMPOSSIBLE.diagnostic(
-            f'link "{link.name}" moves, but its inertia is 0; here it has that of its geometry',
+            f'link "{link.name}" moves, but its inertia is 0; Cartwheel uses the inertia of its '
+            "geometry",
             origin=stated.origin,
             hint=f"Write {inertial_text(inertial)}",
             values={"link": link.name},
@@ -168,8 +169,8 @@ def _warn(roots: Sequence[str], found: Mapping[str, Link], tree: Tree, ctx: Urdf
             advice = f'Write in link "{first.name}": {inertial_text(first.inertial)}'
         ctx.report(
             robot.INERTIA_MISSING.diagnostic(
-                f"{_mover(roots[0], holders[0])} has no <inertial>: {_fate(holders[0])}; here it "
-                f"has {weights[0]:.3g} kg{_reason(first)}",
+                f"{_mover(roots[0], holders[0])} has no <inertial>. {_fate(holders[0])}; Cartwheel "
+                f"uses {weights[0]:.3g} kg{_reason(first)}",
                 origin=first.origin,
                 hint=advice,
                 values={"links": (roots[0],), "masses": (weights[0],)},
@@ -183,8 +184,8 @@ def _warn(roots: Sequence[str], found: Mapping[str, Link], tree: Tree, ctx: Urdf
     fate = "does not load such a robot" if None in holders else "drops them with their joints"
     ctx.report(
         robot.INERTIA_MISSING.diagnostic(
-            f"{len(roots)} moving links have no <inertial>: Gazebo {fate}; here their geometry "
-            f"counts at {WATER:g} kg/m³: {shown}{more}",
+            f"{len(roots)} moving links have no <inertial>. Gazebo {fate}; Cartwheel computes the "
+            f"masses from their geometry at {WATER:g} kg/m³: {shown}{more}",
             origin=first.origin,
             hint="`cartwheel check` shows the <inertial> of each.",
             values={"links": tuple(roots), "masses": tuple(weights)},
@@ -194,7 +195,7 @@ def _warn(roots: Sequence[str], found: Mapping[str, Link], tree: Tree, ctx: Urdf
 
 def _mover(root: str, holder: Joint | None) -> str:
     if holder is None:
-        return f'the root link "{root}", with all that is fixed to it,'
+        return f'the root link "{root}", with everything fixed to it,'
     return f'link "{root}" moves on the joint "{holder.name}" but'
 
 
@@ -206,5 +207,5 @@ def _fate(holder: Joint | None) -> str:
 
 def _reason(link: Link) -> str:
     if not link.collisions and not link.visuals:
-        return ", as it has no geometry either"
-    return f", that of its geometry at {WATER:g} kg/m³"
+        return ", because it has no geometry either"
+    return f", the mass of its geometry at {WATER:g} kg/m³"

@@ -27,14 +27,14 @@ LINK_TAGS = (
 )  # fmt: skip
 
 _IDLE = {
-    "canonicalBody": "the root link always is the canonical body",
+    "canonicalBody": "the root link is always the canonical body",
     "projector": "projectors are not supported",
     "audio_source": "audio is not supported",
     "audio_sink": "audio is not supported",
     "battery": "batteries of links are not supported",
     "particle_emitter": "particle emitters are not supported",
     "enable_wind": "wind is not simulated",
-    "must_be_base_link": "the root link always is the base",
+    "must_be_base_link": "the root link is always the base",
 }
 _SURFACE = {
     "mu": "mu1",
@@ -206,7 +206,7 @@ def _material(node: Node, sdf: Context, ctx: UrdfContext) -> Material | None:
         ctx.report(
             loss(
                 error,
-                "the <material> is left out",
+                "the <material> is ignored",
                 severity="warning",
                 code=codes.VALUE_IGNORED,
                 origin=error.origin or node.origin,

@@ -102,7 +102,7 @@ def read_gazebo_tags(
             names = sorted({*links, *joints})
             ctx.report(
                 robot_codes.REFERENCE_UNKNOWN.diagnostic(
-                    f'<gazebo> refers to "{reference}", which is neither a link nor a joint: '
+                    f'<gazebo> refers to "{reference}", which is neither a link nor a joint, so '
                     "everything in it is ignored",
                     origin=node.origin,
                     hint=suggestion(reference, names),
@@ -169,7 +169,7 @@ def _read_robot_tags(node: Node, tags: GazeboTags, ctx: UrdfContext) -> None:
                 codes.TAG_MISPLACED.diagnostic(
                     f"<{child.tag}> has no effect in a <gazebo> without a reference",
                     origin=child.origin,
-                    hint=f'Write it into a <gazebo reference="…"> with the name of a {kind}.',
+                    hint=f'Move it to a <gazebo reference="…"> with the name of a {kind}.',
                     values={"tag": child.tag, "needs": kind, "reference": ""},
                 )
             )
@@ -181,9 +181,9 @@ def _misplaced_plugins(node: Node, reference: str, ctx: UrdfContext) -> list[Plu
         ctx.report(
             codes.TAG_MISPLACED.diagnostic(
                 f'plugin "{plugin.name}" is in the <gazebo> of "{reference}", where Gazebo Classic '
-                "does not load it; here it is loaded as a plugin of the robot",
+                "does not load it; Cartwheel loads it as a plugin of the robot",
                 origin=plugin.origin,
-                hint="Write it into a <gazebo> without a reference.",
+                hint="Move it to a <gazebo> without a reference.",
                 values={"tag": "plugin", "name": plugin.name, "reference": reference},
             )
         )
@@ -224,7 +224,7 @@ def _read_joint_tags(
         fudge.mark()
         ctx.report(
             codes.NOT_SIMULATED.diagnostic(
-                "<fudgeFactor> is not needed: joint limits do not overshoot here",
+                "<fudgeFactor> has no effect because joint limits do not overshoot in Cartwheel",
                 origin=fudge.origin,
                 values={"tag": "fudgeFactor"},
             )
@@ -253,7 +253,7 @@ def _warn_misplaced(node: Node, reference: str, is_link: bool, ctx: UrdfContext)
             child.mark()
             ctx.report(
                 codes.TAG_MISPLACED.diagnostic(
-                    f"<{child.tag}> has no effect: it belongs to a {kinds[0]}, but "
+                    f"<{child.tag}> has no effect because it belongs to a {kinds[0]}, but "
                     f'"{reference}" is a {kinds[1]}',
                     origin=child.origin,
                     values={"tag": child.tag, "needs": kinds[0], "reference": reference},

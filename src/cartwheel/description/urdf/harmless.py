@@ -1,11 +1,11 @@
 """What published URDFs say that no reader of URDF ever acted on: worth a note, not a warning."""
 
-_NOBODY = "no reader of URDF knows it"
+_NOBODY = "no URDF parser supports it"
 _SAFETY = "it belongs to the PR2's safety controller"
 _IDENTIFIED = "it is a value measured on the real arm; URDF has damping and friction"
 _PLANNER = "it is for a planner"
-_SURFACE = "Gazebo's colours and surfaces stand in a <gazebo> tag"
-_OLD = "it is from before URDF was settled"
+_SURFACE = "Gazebo colours and surfaces belong in a <gazebo> tag"
+_OLD = "it is from an early version of URDF"
 
 HARMLESS: dict[tuple[str, str], str] = {
     ("axis", "@rpy"): "an axis has no orientation",
@@ -20,7 +20,7 @@ HARMLESS: dict[tuple[str, str], str] = {
     ("gazebo", "stopKd"): _OLD,
     ("gazebo", "stopKp"): _OLD,
     ("geometry", "@name"): _NOBODY,
-    ("geometry", "material"): "a material stands beside the geometry",
+    ("geometry", "material"): "a material belongs next to the geometry",
     ("inertial", "@name"): _NOBODY,
     ("joint", "anchor"): _OLD,
     ("joint", "calibration"): "it is for the encoder of a real joint",

@@ -67,7 +67,7 @@ def read_joint(node: Node, links: Collection[str], ctx: UrdfContext) -> tuple[Jo
         if unused != "axis":  # which URDF allows
             ctx.report(
                 tags.TAG_IGNORED.diagnostic(
-                    f'joint "{name}" is {kind}: its <{unused}> has no effect',
+                    f'joint "{name}" is {kind}, so its <{unused}> has no effect',
                     origin=part.origin,
                     severity="info",
                     values={"joint": name, "tag": unused},
@@ -138,8 +138,8 @@ def _axis(node: Node, limits: Node | None, name: str, kind: JointType, ctx: Urdf
     elif kind in ("revolute", "prismatic"):
         ctx.report(
             robot.LIMIT_MISSING.diagnostic(
-                f'joint "{name}" of type {kind} has no <limit>: ROS refuses it, here it is '
-                "unlimited",
+                f'joint "{name}" of type {kind} has no <limit>; ROS rejects it, but Cartwheel '
+                "treats it as unlimited",
                 origin=node.origin,
                 severity="warning",
                 values={"joint": name},
@@ -150,7 +150,7 @@ def _axis(node: Node, limits: Node | None, name: str, kind: JointType, ctx: Urdf
             assert limits is not None
             ctx.report(
                 tags.TAG_IGNORED.diagnostic(
-                    f'joint "{name}" is {kind}: its lower and upper limit have no effect',
+                    f'joint "{name}" is {kind}, so its lower and upper limits have no effect',
                     origin=limits.origin,
                     severity="info",
                     values={"joint": name, "tag": "limit"},
@@ -249,7 +249,7 @@ def check_mimics(joints: Iterable[Joint]) -> None:
             leader = by_name[leader.mimic.joint]
             if leader.name in seen:
                 raise DescriptionError(
-                    f'joint "{joint.name}" mimics itself, by way of "{joint.mimic.joint}"',
+                    f'joint "{joint.name}" mimics itself through "{joint.mimic.joint}"',
                     code=robot.MIMIC_UNKNOWN,
                     values={"joint": joint.name, "name": joint.mimic.joint},
                     origin=joint.origin,

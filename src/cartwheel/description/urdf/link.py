@@ -85,7 +85,7 @@ def _define(node: Node, ctx: UrdfContext) -> None:
     if known != material:
         ctx.report(
             tags.MATERIAL_DIFFERS.diagnostic(
-                f'the material "{name}" has two different definitions: the first one counts',
+                f'the material "{name}" has two different definitions; the first one is used',
                 origin=node.origin,
                 values={"name": name},
             )
@@ -205,7 +205,7 @@ def _colour(node: Node, ctx: UrdfContext) -> Rgba | None:
         r, g, b, a = numbers.vector(" ".join(values), 4, "color rgba", node.origin)
     except DescriptionError as error:
         ctx.report(
-            loss(error, "the colour is left out", severity="warning", code=tags.VALUE_IGNORED)
+            loss(error, "the colour is ignored", severity="warning", code=tags.VALUE_IGNORED)
         )
         return None
     rgba = (_share(r), _share(g), _share(b), _share(a))
@@ -264,8 +264,8 @@ def _primitive(node: Node, kind: str, link: str, ctx: UrdfContext) -> Shape | No
             # Gazebo Classic draws it, inside out, as large as it is without the sign.
             ctx.report(
                 tags.VALUE_IGNORED.diagnostic(
-                    f'a box of link "{link}" has the negative size {_listed(size)}: '
-                    "the sign is ignored",
+                    f'a box of link "{link}" has the negative size {_listed(size)}, so the sign is '
+                    "ignored",
                     origin=node.origin,
                     values={"link": link, "stated": size},
                 )
@@ -286,13 +286,13 @@ def _primitive(node: Node, kind: str, link: str, ctx: UrdfContext) -> Shape | No
     if min(sizes) < 0:
         raise node.fail(
             f'a {node.tag} of link "{link}" has the negative size {_listed(sizes)}',
-            "Sizes are in metres and above 0.",
+            "Sizes are in metres and must be above 0.",
         )
     if min(sizes) == 0:
         ctx.report(
             tags.VALUE_IGNORED.diagnostic(
-                f'a {node.tag} of link "{link}" has the size {_listed(sizes)}: '
-                f"the {kind} is left out",
+                f'a {node.tag} of link "{link}" has the size {_listed(sizes)}, so the {kind} is '
+                "ignored",
                 origin=node.origin,
                 # With 0 alone it is the old way to write a link that is only a frame.
                 severity="warning" if any(sizes) else "info",
@@ -320,7 +320,7 @@ def _mesh(node: Node, kind: str, link: str, ctx: UrdfContext) -> Mesh | None:
         ctx.report(
             loss(
                 error,
-                f'a {kind} of link "{link}" is left out{rest}',
+                f'a {kind} of link "{link}" is ignored{rest}',
                 of=kind,
                 origin=node.origin,
                 values={"link": link},
@@ -388,7 +388,8 @@ def judged_inertia(inertial: Inertial, link: str, *, rigid: bool, ctx: UrdfConte
     smaller = principal_moments(made.diagonal, made.products)
     ctx.report(
         robot.INERTIA_IMPOSSIBLE.diagnostic(
-            f'link "{link}": {message}; here the smaller are {smaller[0]:.4g} and {smaller[1]:.4g}',
+            f'link "{link}": {message}; Cartwheel raises the smaller moments to {smaller[0]:.4g} '
+            f"and {smaller[1]:.4g}",
             origin=i.origin,
             hint=hint,
             severity="info" if rigid else "warning",

@@ -126,7 +126,7 @@ def _name(root: Node) -> str:
     if "name" not in root.attributes and not root.all("link"):
         raise root.fail(
             "<robot> has neither a name nor links",
-            "A file that only defines macros is included by another one: load that one.",
+            "If this file only defines macros, load the file that includes it.",
             code=files.NOT_A_DESCRIPTION,
         )
     return root.require("name").strip()
@@ -138,8 +138,8 @@ def _check_unique(kind: str, nodes: Sequence[Node]) -> None:
         name = node.require("name").strip()
         if name in seen:
             raise node.fail(
-                f'the {kind} "{name}" exists twice',
-                f"The first one is at {seen[name]}.",
+                f'the {kind} "{name}" is defined twice',
+                f"The first is at {seen[name]}.",
                 code=robot.DUPLICATE_NAME,
                 values={"name": name},
             )
@@ -212,8 +212,8 @@ def _without_world(links: list[Link], tree: Tree, ctx: UrdfContext) -> list[Link
     if world.visuals or world.collisions or world.inertial or world.sensors:
         ctx.report(
             tag_codes.ELEMENT_LEFT_OUT.diagnostic(
-                'the link "world" represents the world itself: its shapes, mass and sensors are '
-                "left out",
+                'the link "world" represents the world itself, so its shapes, mass and sensors are '
+                "ignored",
                 origin=world.origin,
                 values={"tag": "link", "name": WORLD},
             )
@@ -227,10 +227,10 @@ def _warn_untouchable(links: Sequence[Link], ctx: UrdfContext) -> None:
     if seen is not None and not any(link.collisions for link in links):
         ctx.report(
             robot.BASE_WITHOUT_COLLISION.diagnostic(
-                "none of its links has a <collision>: the robot falls through the ground",
+                "none of its links has a <collision>, so the robot falls through the ground",
                 origin=seen.visuals[0].origin,
-                hint="Write one beside the <visual> of each, with the same <origin> and "
-                f'<geometry>. "{seen.name}" is the first.',
+                hint="Add a <collision> next to each <visual>, with the same <origin> and "
+                f'<geometry>. Start with link "{seen.name}".',
                 values={"link": seen.name},
             )
         )

@@ -87,7 +87,7 @@ def build_tree(links: Sequence[tuple[str, Origin]], joints: Sequence[Joint]) -> 
     if len(roots) > 1:
         names = ", ".join(f'"{name}"' for name, _ in roots)
         raise DescriptionError(
-            f"the links are not one tree: {names} have no joint to a parent",
+            f"the links do not form a single tree: {names} have no joint to a parent",
             code=robot.MULTIPLE_ROOTS,
             values={"links": tuple(name for name, _ in roots)},
             origin=roots[1][1],

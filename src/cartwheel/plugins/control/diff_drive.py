@@ -156,8 +156,8 @@ class DiffDriveController(Controller):
         if value is None:
             raise settings.error(
                 running.NOT_A_WHEEL,
-                f'"wheel_radius" is missing, and the wheel of joint "{wheel}" has no cylinder to '
-                "take it from",
+                f'"wheel_radius" is missing, and the wheel of joint "{wheel}" has no cylinder from '
+                "which to derive it",
                 values={"parameter": "wheel_radius", "joint": wheel},
             )
         if value <= 0:

@@ -117,7 +117,7 @@ def read_yaml(path: Path) -> dict[str, Any]:
     except OSError as error:
         raise _unreadable(f"the file cannot be read: {error.strerror or error}", origin) from None
     except UnicodeDecodeError:
-        raise _unreadable("the file is not text", origin) from None
+        raise _unreadable("the file is not a text file", origin) from None
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
         line = mark.line + 1 if mark is not None else 0
@@ -185,7 +185,7 @@ def read_ros2(path: Path, robot: RobotDescription) -> dict[str, Any]:
             "the file has no ros__parameters, but the robot has ros2_control",
             code=devices.CONTROLLERS_FILE_MISMATCH,
             origin=Origin(file=str(path)),
-            hint="In ROS 2, parameters are below the name of their node and ros__parameters.",
+            hint="In ROS 2, parameters belong under the name of their node and ros__parameters.",
         )
     return content
 

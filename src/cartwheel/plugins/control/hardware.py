@@ -99,8 +99,8 @@ class JointHardware:
                 plugin.warn(
                     devices.EFFORT_LIMIT_TOO_LOW,
                     f'the effort limit of joint "{self.name}", {limit:g} {unit}, is below the '
-                    f"{need:.3g} {unit} that gravity demands: as in Gazebo, position commands are "
-                    f"followed all the same, with up to {held:.3g} {unit}",
+                    f"{need:.3g} {unit} that gravity requires; as in Gazebo, position commands are "
+                    f"still followed, with up to {held:.3g} {unit}",
                     at=self.interfaces.origin,
                     values={"joint": self.name, "stated": limit, "needed": need, "used": held},
                 )
@@ -328,7 +328,7 @@ class Hardware:
         stated = self._description.joint(name)
         if name not in self._joints and stated is not None:
             raise PluginError(
-                f'joint "{name}" is not offered to controllers: {self._tags} names it',
+                f'joint "{name}" is not available to controllers because {self._tags} contains it',
                 code=devices.CONTROLLER_INTERFACE_MISMATCH,
                 origin=stated.origin,
                 values={"joint": name},
@@ -347,7 +347,9 @@ class Hardware:
                 f'joint "{name}" has no {interface} interface',
                 code=devices.CONTROLLER_INTERFACE_MISMATCH,
                 origin=found.interfaces.origin,
-                hint=f"It has: {offered}." if offered else "It has no command interface.",
+                hint=f"Available interfaces: {offered}."
+                if offered
+                else "The joint has no command interface.",
                 values={"joint": name, "interface": interface, "offered": offered},
             )
         return found

@@ -87,7 +87,7 @@ def transmissions(
             # Of a format before ros_control's, which its parser skips as well.
             notes.append(
                 devices.TRANSMISSION_IGNORED.diagnostic(
-                    f"{label} has the format of the PR2, so it drives nothing",
+                    f"{label} uses the PR2 format, so it drives no joint",
                     severity="info",
                     origin=element.origin,
                     values={"transmission": element.attribute("name")},
@@ -116,7 +116,7 @@ def transmissions(
                     text = f'{label}: the hardware interface "{interface.text}" does not exist'
                     warn(devices.INTERFACE_UNKNOWN, interface, text, interface=interface.text)
             if not written:
-                text = f"{label} names no <hardwareInterface>, so nothing drives its joint"
+                text = f"{label} has no <hardwareInterface>, so nothing drives its joint"
                 warn(devices.TRANSMISSION_IGNORED, element, text, joint=name)
             if not _movable(description, name):
                 text = f'{label}: "{name}" is not a movable joint'
@@ -203,7 +203,7 @@ def _joint(element: Element, name: str, notes: list[Diagnostic]) -> JointInterfa
                 devices.INTERFACE_UNKNOWN.diagnostic(
                     f'the command interface "{kind}" of joint "{name}" is not simulated',
                     origin=interface.origin,
-                    hint=f"There are: {', '.join(COMMANDS)}.",
+                    hint=f"Supported interfaces: {', '.join(COMMANDS)}.",
                     values={"joint": name, "interface": kind},
                 )
             )

@@ -118,7 +118,7 @@ class JointTrajectoryController(Controller):
         self._rhythm.start(time_ns)
         self._monitor.start(time_ns)
         self._action.start(time_ns)
-        self._finish("abort", INVALID_GOAL, "the controller began anew")
+        self._finish("abort", INVALID_GOAL, "the controller was restarted")
 
     def update(self, time_ns: int, seconds: float) -> None:
         if self._next is not None and time_ns >= self._next.start_ns:
@@ -235,7 +235,7 @@ class JointTrajectoryController(Controller):
                 values=error.values,
             )
             return
-        self._preempt("another trajectory took its place")
+        self._preempt("a new trajectory replaced it")
         self._follow(trajectory, time_ns)
 
     def _follow(self, trajectory: Trajectory, time_ns: int) -> None:
@@ -266,7 +266,7 @@ class JointTrajectoryController(Controller):
         except InvalidTrajectoryError as error:
             goal.reject(self._result(error.result, error.message), error.message)
             return
-        self._preempt("another goal took its place")
+        self._preempt("a new goal replaced it")
         self._goal_path, self._goal_end = paths, ends
         span = goal.goal.goal_time_tolerance
         patience = span.sec + span.nanosec / 1e9
@@ -296,7 +296,7 @@ class JointTrajectoryController(Controller):
                 return
             for name, tolerance, error in zip(self._names, self._goal_path, errors, strict=True):
                 if tolerance.violated(*error):
-                    text = f"{name} is {error[0]:.4g} off its path"
+                    text = f"{name} deviates from its path by {error[0]:.4g}"
                     self._finish("abort", PATH, text)
                     self._hold(time_ns)
                     return
@@ -313,7 +313,7 @@ class JointTrajectoryController(Controller):
         late_ns = followed.end_ns + _SETTLING_NS + round(min(self._goal_patience, 1e9) * 1e9)
         if not endless and time_ns > late_ns:
             index = self._names.index(off[0])
-            self._finish("abort", GOAL, f"{off[0]} is {errors[index][0]:.4g} off its goal")
+            self._finish("abort", GOAL, f"{off[0]} misses its goal by {errors[index][0]:.4g}")
             self._hold(time_ns)
 
     def _preempt(self, text: str) -> None:

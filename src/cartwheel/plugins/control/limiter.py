@@ -75,7 +75,7 @@ def _pair(settings: Settings, kind: str) -> tuple[float, float] | None:
     if stated is not None and not settings.boolean(f"has_{kind}_limits"):
         return None
     if stated is not None and high is None:
-        raise settings.missing(f"max_{kind}", f"has_{kind}_limits is true, which needs it.")
+        raise settings.missing(f"max_{kind}", f"It is required because has_{kind}_limits is true.")
     if high is None:
         return None
     if low is None:

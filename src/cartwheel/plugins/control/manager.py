@@ -56,7 +56,7 @@ class ControllerManager:
                 joints do not fit; nothing has changed.
         """
         if name in self._controllers:
-            raise wrong_state(name, "is loaded already")
+            raise wrong_state(name, "is already loaded")
         family = find_type(type_name, ros2=self.rig.ros2)
         made = family(name, type_name.strip().replace("::", "/"), settings, self.rig)
         settings.ignore("type")
@@ -109,7 +109,7 @@ class ControllerManager:
         for name in self.with_leaders(stop)[len(stop) :]:
             led = [each for each in self._led(name) if each in stop]
             if led:
-                problem = f'controller "{led[0]}" cannot stop: "{name}" commands it'
+                problem = f'controller "{led[0]}" cannot stop because "{name}" commands it'
                 self._refuse(led[0], problem, strict)
             stopping = [each for each in stopping if each.name not in led]
         starting = [each for name in start if (each := self._one(name, False, strict))]
@@ -280,7 +280,7 @@ class ControllerManager:
         elif controller.running != runs:
             if not runs and not strict:
                 return None
-            problem = "is not running" if runs else "is running already"
+            problem = "is not running" if runs else "is already running"
         if not problem:
             return controller
         if strict and (controller is None or runs):

@@ -125,7 +125,7 @@ class MecanumDriveController(Controller):
             self.warn(
                 running.WHEELS_WITHOUT_ROLLERS,
                 "the wheels roll like ordinary ones, so the robot does not move sideways",
-                hint="Give the controller's parameters when the robot is spawned.",
+                hint="Pass the controller's parameters when the robot is spawned.",
             )
 
     def start(self, time_ns: int) -> None:

@@ -104,14 +104,14 @@ class Ros2Control(ControlPlugin):
         if not joints:
             self.warn(
                 devices.CONTROL_WITHOUT_JOINTS,
-                "no <ros2_control> names a joint, so controllers have no joint to command",
+                "no <ros2_control> contains a joint, so controllers have no joint to command",
             )
         known = {sensor.name for link in part.description.links for sensor in link.sensors}
         for sensor in sensors:
             if sensor.name not in known:
                 self.warn(
                     running.UNKNOWN_SENSOR,
-                    f'<ros2_control> names the sensor "{sensor.name}", which no <gazebo> tag '
+                    f'<ros2_control> refers to the sensor "{sensor.name}", which no <gazebo> tag '
                     "describes, so nothing is measured",
                     at=sensor.origin,
                     values={"name": sensor.name},
@@ -120,7 +120,7 @@ class Ros2Control(ControlPlugin):
         if paths and not entries and not found.elsewhere:
             self.warn(
                 devices.CONTROLLERS_FILE_WITHOUT_CONTROLLERS,
-                "no parameter is the type of a controller, so none starts",
+                "no parameter specifies a controller type, so no controller starts",
                 at=Origin(file=source),
             )
         hardware = Hardware(self, joints, _gains(joints, found.nodes))
@@ -167,7 +167,7 @@ class Ros2Control(ControlPlugin):
             self.warn(
                 devices.HARDWARE_NOT_SIMULATED,
                 f'the hardware "{name}" of <ros2_control name="{system.attribute("name") or ""}"> '
-                f"is not simulated, so its joints are driven as by {SYSTEMS[0]}",
+                f"is not simulated, so its joints are driven as with {SYSTEMS[0]}",
                 at=system.origin,
                 values={"hardware": name},
             )

@@ -135,7 +135,7 @@ class Ros2ManagerServices:
     def _load(self, request: Any) -> None:
         name = request.name
         if name in self._unconfigured or self._manager.find(name) is not None:
-            raise wrong_state(name, "is loaded already")
+            raise wrong_state(name, "is already loaded")
         entry = self._entry(name)
         find_type(entry.type, ros2=True)
         self._unconfigured[name] = entry
@@ -165,9 +165,10 @@ class Ros2ManagerServices:
         kind = stated.get("type") or found.type
         if not kind:
             raise GraphError(
-                f'the type of controller "{name}" is not stated: there is no parameter {name}.type',
+                f'the type of controller "{name}" is not specified because there is no parameter '
+                f"{name}.type",
                 code=running.CONTROLLER_TYPE_MISSING,
-                hint="State it in a file of <parameters>, or give the spawner --param-file.",
+                hint="Specify it in a <parameters> file, or pass --param-file to the spawner.",
                 values={"controller": name, "parameter": f"{name}.type"},
             )
         renamed = remappings(stated.get("node_options_args", []))

@@ -64,15 +64,15 @@ class RosControl(ControlPlugin):
         if not plain:
             self.warn(
                 devices.HARDWARE_NOT_SIMULATED,
-                f'<robotSimType> "{config.sim_type}" is not simulated, so joints are driven as by '
-                "DefaultRobotHWSim",
+                f'<robotSimType> "{config.sim_type}" is not simulated, so joints are driven as '
+                "with DefaultRobotHWSim",
                 values={"hardware": config.sim_type},
             )
         if short_name(self.tag.filename) != ROS_CONTROL:
             self.warn(
                 devices.HARDWARE_NOT_SIMULATED,
-                f'plugin "{self.tag.filename}" is simulated as lib{ROS_CONTROL}.so, without what '
-                "it adds to it",
+                f'plugin "{self.tag.filename}" is simulated as lib{ROS_CONTROL}.so, without its '
+                "additional functions",
                 values={"hardware": self.tag.filename},
             )
         self.namespace = self.namespace.strip("/")
@@ -133,13 +133,13 @@ class RosControl(ControlPlugin):
                 "the file is for ros2_control, but the robot has gazebo_ros_control",
                 code=devices.CONTROLLERS_FILE_MISMATCH,
                 origin=Origin(file=path),
-                hint="Name the file that its launch file gives to rosparam.",
+                hint="Pass the file that the launch file loads with rosparam.",
             )
         entries = ros1_entries(content, path)
         if not entries:
             self.warn(
                 devices.CONTROLLERS_FILE_WITHOUT_CONTROLLERS,
-                "no parameter is the type of a controller, so none starts",
+                "no parameter specifies a controller type, so no controller starts",
                 at=Origin(file=path),
             )
         spaces = {entry.namespace for entry in entries}

@@ -85,8 +85,8 @@ class ManagerServices:
         def load() -> bool:
             if not isinstance(values, dict) or not isinstance(values.get("type"), str):
                 raise GraphError(
-                    f'the type of controller "{name}" is not stated: there is no parameter '
-                    f"{path}/type",
+                    f'the type of controller "{name}" is not specified because there is no '
+                    f"parameter {path}/type",
                     code=running.CONTROLLER_TYPE_MISSING,
                     hint="Load its YAML file into that namespace first.",
                     values={"controller": name, "parameter": f"{path}/type"},

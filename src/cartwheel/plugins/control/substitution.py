@@ -50,12 +50,12 @@ def substitute(content: Any, path: Path, arguments: Mapping[str, str]) -> Any:
             return " ".join(words[1:])
         if command in ("arg", "var"):
             raise PluginError(
-                f"{match[0]} has no value: the robot has no argument of that name",
+                f"{match[0]} has no value because the robot has no argument with this name",
                 code=devices.CONTROLLERS_FILE_ARGUMENT,
                 origin=Origin(file=str(path)),
-                hint=f"Write its value into the file, or give one: {name}:=…."
+                hint=f"Write the value into the file, or pass it with {name}:=…."
                 if not arguments
-                else f"It has: {', '.join(sorted(arguments))}.",
+                else f"Arguments: {', '.join(sorted(arguments))}.",
                 values={"name": name},
             )
         raise PluginError(

@@ -82,7 +82,8 @@ class TrajectoryReader:
             time = span.sec + span.nanosec / 1e9
             if time < 0 or time <= last:
                 raise InvalidTrajectoryError(
-                    INVALID_GOAL, f"the time of point {number} must be after that of the one before"
+                    INVALID_GOAL,
+                    f"the time of point {number} must be later than the time of the previous point",
                 )
             last = time
             moved = time - (begin_ns - start_ns) / 1e9
@@ -98,7 +99,7 @@ class TrajectoryReader:
         if not points:
             raise InvalidTrajectoryError(OLD_HEADER, "all its points are in the past")
         if self._must_stop and any(abs(rate) > _STILL for rate in points[-1].velocity):
-            raise InvalidTrajectoryError(INVALID_GOAL, "the last point has a velocity")
+            raise InvalidTrajectoryError(INVALID_GOAL, "the last point has a nonzero velocity")
         self._unwind(points, begin)
         first = Waypoint(
             time=0.0,

@@ -68,7 +68,7 @@ class Tolerances:
             if each.name not in self._names:
                 raise InvalidTrajectoryError(
                     INVALID_JOINTS,
-                    f'a tolerance names the joint "{each.name}", which does not exist',
+                    f'a tolerance refers to the joint "{each.name}", which does not exist',
                 )
             index = self._names.index(each.name)
             # 0 leaves the default, and what is below takes the check away.

@@ -111,7 +111,7 @@ class CameraPanel(Panel):
             self._say("No image topic is published.")
         elif not self._on.value:
             self._image.visible = False
-            self._say("Image off: this page does not subscribe to it.")
+            self._say("The image is off, so this browser does not subscribe to the topic.")
         else:
             self._tap = Tap(self.graph, wanted)
 

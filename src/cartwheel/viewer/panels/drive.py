@@ -32,12 +32,12 @@ _LABELS = {
     "m": "backward left",
     ",": "backward",
     ".": "backward right",
-    "q": "both speeds up",
-    "z": "both speeds down",
-    "w": "linear speed up",
-    "x": "linear speed down",
-    "e": "angular speed up",
-    "c": "angular speed down",
+    "q": "increase both speeds",
+    "z": "decrease both speeds",
+    "w": "increase linear speed",
+    "x": "decrease linear speed",
+    "e": "increase angular speed",
+    "c": "decrease angular speed",
 }
 _ANGLES = {"u": -45, "i": 0, "o": 45, "j": -90, "l": 90, "m": -135, ",": 180, ".": 135}
 

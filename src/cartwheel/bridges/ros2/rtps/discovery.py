@@ -284,7 +284,7 @@ def _order(payload: bytes) -> str:
 
 def _decode(payload: bytes) -> dict[int, list[bytes]]:
     if payload[:2] not in (b"\x00\x03", b"\x00\x02"):
-        raise MalformedError("no list of parameters")
+        raise MalformedError("expected a parameter list")
     order, at = _order(payload), 4
     found: dict[int, list[bytes]] = {}
     while at + 4 <= len(payload):
@@ -293,7 +293,7 @@ def _decode(payload: bytes) -> dict[int, list[bytes]]:
         if name == _SENTINEL:
             break
         if at + length > len(payload):
-            raise MalformedError("a parameter is cut off")
+            raise MalformedError("a parameter is truncated")
         found.setdefault(name & 0x3FFF if name < 0x8000 else name, []).append(
             payload[at : at + length]
         )
@@ -319,7 +319,7 @@ def _duration(value: bytes, order: str) -> float:
 def _text(value: bytes, order: str) -> str:
     (length,) = struct.unpack_from(f"{order}I", value)
     if length > min(_LONGEST_NAME, len(value) - 4):
-        raise MalformedError("a string is longer than its message, or than any name")
+        raise MalformedError("a string exceeds its message or the maximum name length")
     return value[4 : 4 + max(0, length - 1)].decode()
 
 

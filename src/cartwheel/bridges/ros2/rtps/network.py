@@ -56,9 +56,9 @@ class Reach:
         given = environment.get("ROS_AUTOMATIC_DISCOVERY_RANGE", "").upper()
         if only not in ("", "0", "1"):
             raise CartwheelError(
-                f'ROS_LOCALHOST_ONLY is "{only}"',
+                f'ROS_LOCALHOST_ONLY has the invalid value "{only}"',
                 code=ROS_VARIABLE_INVALID,
-                hint="It can be 0 or 1.",
+                hint="Set it to 0 or 1.",
                 values={"variable": "ROS_LOCALHOST_ONLY", "value": only},
             )
         if only == "1":
@@ -72,9 +72,9 @@ class Reach:
         if given in ("SUBNET", "SYSTEM_DEFAULT"):
             return cls(range="SUBNET", peers=peers)
         raise CartwheelError(
-            f'ROS_AUTOMATIC_DISCOVERY_RANGE is "{given}"',
+            f'ROS_AUTOMATIC_DISCOVERY_RANGE has the invalid value "{given}"',
             code=ROS_VARIABLE_INVALID,
-            hint="It can be OFF, LOCALHOST, SUBNET or SYSTEM_DEFAULT.",
+            hint="Set it to OFF, LOCALHOST, SUBNET or SYSTEM_DEFAULT.",
             values={"variable": "ROS_AUTOMATIC_DISCOVERY_RANGE", "value": given},
         )
 
@@ -88,9 +88,9 @@ def domain_id(environment: Mapping[str, str] = os.environ) -> int:
     given = environment.get("ROS_DOMAIN_ID", "").strip() or "0"
     if not given.isdecimal() or int(given) > _LAST_DOMAIN:
         raise CartwheelError(
-            f'ROS_DOMAIN_ID is "{given}"',
+            f'ROS_DOMAIN_ID has the invalid value "{given}"',
             code=ROS_VARIABLE_INVALID,
-            hint=f"It is a number from 0 to {_LAST_DOMAIN}.",
+            hint=f"Set it to a number from 0 to {_LAST_DOMAIN}.",
             values={"variable": "ROS_DOMAIN_ID", "value": given},
         )
     return int(given)
@@ -189,9 +189,9 @@ class Network:
             return sock, port
         sock.close()
         raise CartwheelError(
-            "no port is free for another participant of this ROS domain",
+            "all ports for participants in this ROS domain are in use",
             code=DOMAIN_FULL,
-            hint="Choose another domain with ROS_DOMAIN_ID.",
+            hint="Set ROS_DOMAIN_ID to a different domain.",
         )
 
     def _join(self, port: int) -> socket.socket:
@@ -225,7 +225,7 @@ class Network:
                 found.append(socket.gethostbyname(peer))
             except OSError:
                 raise CartwheelError(
-                    f'ROS_STATIC_PEERS names the unknown host "{peer}"',
+                    f'ROS_STATIC_PEERS contains the unknown host "{peer}"',
                     code=ROS_VARIABLE_INVALID,
                     values={"variable": "ROS_STATIC_PEERS", "value": peer},
                 ) from None

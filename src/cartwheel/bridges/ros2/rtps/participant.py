@@ -416,8 +416,8 @@ class Participant:
                 return True
         self._tell(
             PEER_LIMIT.diagnostic(
-                f"more than {PARTICIPANTS} participants on {host}, or {_PARTICIPANTS} in all: "
-                "not all are served",
+                f"there are more than {PARTICIPANTS} participants on {host}, or more than "
+                f"{_PARTICIPANTS} in total, so some of them are ignored",
                 values={"host": host, "most": PARTICIPANTS},
             )
         )
@@ -529,8 +529,9 @@ class Participant:
             if len(known) >= _ENDPOINTS or self._count >= _ENDPOINTS_IN_ALL:
                 self._tell(
                     PEER_LIMIT.diagnostic(
-                        f"more than {_ENDPOINTS} publishers or subscribers in one process, or "
-                        f"{_ENDPOINTS_IN_ALL} in all: not all are served",
+                        f"there are more than {_ENDPOINTS} publishers or subscribers in one "
+                        f"process, or more than {_ENDPOINTS_IN_ALL} in total, so some of them are "
+                        "ignored",
                         values={"most": _ENDPOINTS},
                     )
                 )
@@ -568,8 +569,8 @@ class Participant:
         if len(connected) >= _MATCHES and other.guid not in connected:
             self._tell(
                 PEER_LIMIT.diagnostic(
-                    f"more than {_MATCHES} publishers or subscribers match {ours.topic}: not all "
-                    "are served",
+                    f"more than {_MATCHES} publishers or subscribers match {ours.topic}, so some "
+                    "of them are ignored",
                     values={"topic": ours.topic, "most": _MATCHES},
                 )
             )

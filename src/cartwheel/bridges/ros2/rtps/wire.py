@@ -235,7 +235,7 @@ def read(data: memoryview) -> Iterator[Received]:
 
 def _read(data: memoryview) -> Iterator[Received]:
     if len(data) < 20 or bytes(data[:4]) != b"RTPS" or data[4] != 2:
-        raise MalformedError("no head")
+        raise MalformedError("the RTPS header is missing or invalid")
     vendor, prefix = bytes(data[6:8]), bytes(data[8:20])
     to: Prefix | None = None
     at = 20
@@ -253,17 +253,17 @@ def _read(data: memoryview) -> Iterator[Received]:
             length = len(data) - at
         body = data[at : at + length]
         if len(body) < length:
-            raise MalformedError("cut off")
+            raise MalformedError("the message is truncated")
         at += length
         if kind == _INFO_DST:
             if len(body) < 12:
-                raise MalformedError("cut off")
+                raise MalformedError("the message is truncated")
             to = bytes(body[:12])
             if to == bytes(12):
                 to = None
         elif kind == _INFO_SRC:
             if len(body) < 20:
-                raise MalformedError("cut off")
+                raise MalformedError("the message is truncated")
             vendor, prefix = bytes(body[6:8]), bytes(body[8:20])
         else:
             content = _content(kind, flags, order, body)
@@ -311,7 +311,7 @@ def _read_data(kind: int, flags: int, order: str, body: memoryview) -> Data:
         return Data(reader, writer, number, inline, payload, keyed)
     fragment, _count, fragment_size, size = struct.unpack_from(f"{order}IHHI", body, 20)
     if fragment < 1 or fragment_size < 1:
-        raise MalformedError("fragments of nothing")
+        raise MalformedError("the number or size of a fragment is 0")
     return Data(
         reader, writer, number, inline, payload, bool(flags & _PAYLOAD),
         fragment, fragment_size, size,
@@ -327,7 +327,7 @@ def read_parameters(order: str, body: memoryview, at: int) -> tuple[dict[int, by
         if name == 1:
             return found, at
         if at + length > len(body):
-            raise MalformedError("a parameter is cut off")
+            raise MalformedError("a parameter is the message is truncated")
         found.setdefault(name & 0xBFFF, bytes(body[at : at + length]))
         at += length
 
@@ -348,7 +348,7 @@ def _read_bits(
     order: str, body: memoryview, at: int, base: int, bits: int
 ) -> tuple[tuple[int, ...], int]:
     if bits > _MOST_BITS:
-        raise MalformedError("a set too large")
+        raise MalformedError("a sequence number set is too large")
     count = (bits + 31) // 32
     words = struct.unpack_from(f"{order}{count}I", body, at)
     numbers = tuple(
