@@ -12,6 +12,7 @@ from cartwheel.errors import (
     Diagnostic,
     Once,
     Origin,
+    Reporter,
     UnknownNameError,
     likely,
 )
@@ -82,6 +83,34 @@ def test_warnings_are_the_same_if_code_place_and_values_are():
     assert once(text) is text
     assert once(text) is None
     assert once(replace(text, message="another without a code")) is not None
+
+
+def test_a_reporter_reports_each_once_with_its_title():
+    shown = []
+    report = Reporter(shown.append, 50, title="ROS")
+    for name in ("a", "a", "b"):
+        report(warning(name))
+    assert [each.values["name"] for each in shown] == ["a", "b"]
+    assert all(each.message.startswith("ROS: ") for each in shown)
+    report.always(warning("a"))
+    assert shown[-1] == shown[0]
+
+
+def test_values_in_any_order_are_the_same():
+    one = SLOW.diagnostic("m", values={"name": "x", "most": 3})
+    other = SLOW.diagnostic("m", values={"most": 3, "name": "x"})
+    assert one.sorted_values == other.sorted_values == (("most", 3), ("name", "x"))
+    assert one.identity == other.identity
+
+
+def test_a_cause_without_a_place_gets_that_of_its_element():
+    cause = DescriptionError("m", code=PEER_LIMIT, mark="name")
+    made = SLOW.because("it failed", cause, origin=PLACE)
+    assert (made.origin, made.mark) == (PLACE, "name")
+    own = Origin(file="b.urdf")
+    placed = DescriptionError("m", code=PEER_LIMIT, origin=own)
+    assert SLOW.because("it failed", placed, origin=PLACE).origin == own
+    assert SLOW.because("it failed", KeyError("x"), origin=PLACE).origin == PLACE
 
 
 def test_what_an_error_caused_keeps_its_hint_values_and_code():

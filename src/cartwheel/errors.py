@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import difflib
 import threading
-from collections.abc import Hashable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
@@ -115,6 +115,7 @@ class Code:
         message: str,
         error: Exception,
         *,
+        origin: Origin | None = None,
         hint: str | None = None,
         severity: Severity | None = None,
         values: Mapping[str, Value] | None = None,
@@ -124,6 +125,7 @@ class Code:
         Args:
             message: What failed; the error's own message follows it.
             error: What was raised.
+            origin: The place if the error has none.
             hint: Instead of the error's.
             severity: Where it differs from the code's.
             values: For programs. The error's values are added, and ``cause``: the number of its
@@ -133,6 +135,7 @@ class Code:
             cause = one_line(error)
             return self.diagnostic(
                 f"{message}: {cause}",
+                origin=origin,
                 hint=hint or "",
                 severity=severity,
                 values={**(values or {}), "cause": cause},
@@ -141,11 +144,17 @@ class Code:
         cause = error.message if error.code is UNCLASSIFIED else error.code.number
         return self.diagnostic(
             f"{message}: {error.message}",
-            origin=error.origin,
+            origin=error.origin or origin,
             hint=(error.hint or "") if hint is None else hint,
             severity=severity,
+            mark=error.mark,
             values={**error.values, **(values or {}), "cause": cause},
         )
+
+
+def known_code(number: str) -> Code | None:
+    """The code with a number, if this process has it."""
+    return _CODES.get(number)
 
 
 def _same_code(number: str, name: str, severity: Severity, summary: str) -> Code:
@@ -200,10 +209,14 @@ class Diagnostic:
         return f"{self.message}{hint}{code}"
 
     @property
+    def sorted_values(self) -> tuple[tuple[str, Value], ...]:
+        """The values by name, to compare diagnostics."""
+        return tuple(sorted(self.values.items(), key=lambda item: item[0]))
+
+    @property
     def identity(self) -> tuple[object, ...]:
         """Equal for two reports of the same fault."""
-        values = tuple(sorted(self.values.items(), key=lambda item: item[0]))
-        return (self.code, self.message, str(self.origin), values)
+        return (self.code, self.message, str(self.origin), self.sorted_values)
 
     def __str__(self) -> str:
         place = f"{self.origin}: " if self.origin else ""
@@ -448,11 +461,36 @@ class Once:
             return left_out
 
 
+class Reporter:
+    """Reports each diagnostic once, as `Once` chooses them; from any thread.
+
+    Args:
+        report: Takes those that are shown.
+        most: As for `Once`.
+        title: Where they come from; it precedes each message.
+    """
+
+    def __init__(
+        self, report: Callable[[Diagnostic], object], most: int, *, title: str = ""
+    ) -> None:
+        self._report = report
+        self._once = Once(most)
+        self._before = f"{title}: " if title else ""
+
+    def __call__(self, diagnostic: Diagnostic) -> None:
+        """Reports a diagnostic unless it has been reported."""
+        if shown := self._once(diagnostic):
+            self.always(shown)
+
+    def always(self, diagnostic: Diagnostic) -> None:
+        """Reports a diagnostic even if it has been reported."""
+        self._report(replace(diagnostic, message=f"{self._before}{diagnostic.message}"))
+
+
 def _identity(diagnostic: Diagnostic) -> int:
     if diagnostic.code is UNCLASSIFIED:
         return hash((diagnostic.message, diagnostic.origin))
-    values = tuple(sorted(diagnostic.values.items(), key=lambda item: item[0]))
-    return hash((diagnostic.code.number, diagnostic.origin, values))
+    return hash((diagnostic.code.number, diagnostic.origin, diagnostic.sorted_values))
 
 
 def likely(name: str, existing: Iterable[str], *, cutoff: float = 0.75) -> str:

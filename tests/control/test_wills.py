@@ -2,14 +2,16 @@
 
 import subprocess
 import sys
+from unittest.mock import Mock
 
 import pytest
 from tests.coded import raises
 
 from cartwheel.codes.command import CONTROL_LIMIT
+from cartwheel.codes.graph import TOPIC_TYPE_MISMATCH
 from cartwheel.control import ControlClient
-from cartwheel.control.wills import MOST
-from cartwheel.errors import ControlError
+from cartwheel.control.wills import MOST, Wills
+from cartwheel.errors import ControlError, GraphError
 
 TWIST = "geometry_msgs/msg/Twist"
 GO = {"linear": {"x": 0.5}}
@@ -68,6 +70,17 @@ def test_who_publishes_without_one_drives_on(server, commands, eventually):
     with ControlClient() as client:
         client.request("status")
     assert speeds(commands) == [0.5]
+
+
+def test_a_last_message_that_cannot_be_published_is_reported(
+    server, commands, session, eventually, monkeypatch
+):
+    with ControlClient() as client:
+        client.publish("/cmd_vel", TWIST, GO, at_end=STOP)
+        eventually(lambda: speeds(commands) == [0.5])
+        error = GraphError("no", code=TOPIC_TYPE_MISMATCH, values={"topic": "/cmd_vel"})
+        monkeypatch.setattr(Wills, "execute", Mock(side_effect=error))
+    eventually(lambda: any(each.code is TOPIC_TYPE_MISMATCH for each in session.diagnostics))
 
 
 def test_wrong_and_too_many_are_refused(server, commands, session):

@@ -203,6 +203,14 @@ def test_a_wrong_collision_is_told_with_the_likely_one(make, rosbots):
     assert told.origin is not None
 
 
+def test_the_hint_and_the_values_name_the_same_collision(make, rosbots):
+    world = make.world()
+    world.session.spawn(naming(make, rosbots, "base_collide"), pose=Pose((0, 0, 0.05)))
+    (warned,) = [d for d in world.diagnostics if d.severity == "warning"]
+    assert warned.values["meant"]
+    assert str(warned.values["meant"]) in warned.hint
+
+
 def test_a_bumper_without_a_collision_is_told(make, rosbots):
     world = make.world()
     world.session.spawn(naming(make, rosbots), pose=Pose((0, 0, 0.05)))

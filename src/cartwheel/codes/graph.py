@@ -73,12 +73,6 @@ REQUEST_UNSUPPORTED = Code(
 REQUEST_INVALID = Code(
     "CW725", "request-invalid", "error", "a service request with inconsistent or invalid fields"
 )
-REQUEST_STATE = Code(
-    "CW726",
-    "request-state",
-    "error",
-    "a service request that the simulation's current state does not allow",
-)
 FRAMES_SHARED = Code(
     "CW727",
     "frames-shared",

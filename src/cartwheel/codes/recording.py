@@ -74,3 +74,9 @@ VIEWER_NOT_STARTED = Code("CW920", "viewer-not-started", "error", "a viewer that
 UPLOAD_REFUSED = Code(
     "CW921", "upload-refused", "error", "a file that was uploaded to the web interface and rejected"
 )
+VIEWER_FAULT = Code(
+    "CW922", "viewer-fault", "error", "an unexpected error inside the web interface"
+)
+SCAN_NOT_SHOWN = Code(
+    "CW923", "scan-not-shown", "warning", "sensor data whose frame is not a link of its robot"
+)

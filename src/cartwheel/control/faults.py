@@ -19,6 +19,7 @@ from cartwheel.errors import (
     Place,
     Severity,
     Value,
+    known_code,
 )
 
 Packed = dict[str, Any]
@@ -106,10 +107,8 @@ def _code(number: str, name: str, severity: Severity) -> Code:
     """The code; one of another release is made from what was sent."""
     if not number or number == UNCLASSIFIED.number:
         return UNCLASSIFIED
-    for code in all_codes():
-        if code.number == number:
-            return code
-    return Code(number, name, severity, "a code from a different release")
+    all_codes()  # loads them
+    return known_code(number) or Code(number, name, severity, "a code from a different release")
 
 
 def _text(given: Mapping[str, Any], name: str) -> str:

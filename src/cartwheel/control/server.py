@@ -181,7 +181,12 @@ class ControlServer:
         try:
             wills.execute()
         except CartwheelError as error:
-            _log.warning("a client's final message cannot be published: %s", error)
+            self._session.simulation.report(
+                replace(
+                    error.diagnostic("warning"),
+                    message=f"a client's final message cannot be published: {error.message}",
+                )
+            )
 
     def _stream(self, client: Connection, frame: Frame) -> bool:
         """Serves a subscription to its end; returns whether there was one."""

@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from cartwheel.errors import CartwheelError
+from cartwheel.errors import CartwheelError, Reporter
 from cartwheel.gazebo.entities import Entities
 from cartwheel.gazebo.forces import Pushes
 from cartwheel.gazebo.metrics import Metrics
 from cartwheel.gazebo.physics import Physics
 from cartwheel.gazebo.properties import Properties
 from cartwheel.gazebo.reconfigure import PhysicsReconfigure
-from cartwheel.gazebo.requests import Teller, answering
+from cartwheel.gazebo.requests import REPORTED, answering
 from cartwheel.gazebo.spawning import Spawning
 from cartwheel.gazebo.state import StateCommands, States, StateTopics
 from cartwheel.graph import Service
@@ -35,7 +35,7 @@ class GazeboApi:
     def __init__(self, session: Session, *, package_path: Sequence[Path] = ()) -> None:
         self._session = session
         simulation = session.simulation
-        self._tell = Teller(simulation)
+        self._tell = Reporter(simulation.report, REPORTED)
         entities = Entities(simulation)
         self._states = States(simulation, entities)
         self._physics = Physics(simulation)

@@ -7,14 +7,13 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from cartwheel.codes.graph import SERVICE_FAILED
-from cartwheel.errors import CartwheelError, Diagnostic, Once, one_line
+from cartwheel.errors import CartwheelError, Diagnostic, one_line
 from cartwheel.geometry import IDENTITY, Pose, Vec3
 from cartwheel.messages import message_class, zero
-from cartwheel.simulation import Simulation
 from cartwheel.simulation.limits import FARTHEST, number, rotation
 
-_REMEMBERED = 200
-"""Failures that are told once each; further ones are not told."""
+REPORTED = 200
+"""Different failures that are reported at once."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,22 +80,6 @@ def answering(
         return response
 
     return handle
-
-
-class Teller:
-    """Tells the user of failures that no answer tells; each once, however often it comes again.
-
-    Args:
-        simulation: Whose user; from any thread.
-    """
-
-    def __init__(self, simulation: Simulation) -> None:
-        self._simulation = simulation
-        self._once = Once(_REMEMBERED)
-
-    def __call__(self, diagnostic: Diagnostic) -> None:
-        if shown := self._once(diagnostic):
-            self._simulation.report(shown)
 
 
 def vector(value: Any, name: str, *, most: float = FARTHEST) -> Vec3:

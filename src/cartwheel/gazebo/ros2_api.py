@@ -6,16 +6,16 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from cartwheel.errors import CartwheelError, UnknownNameError
+from cartwheel.errors import CartwheelError, Reporter, UnknownNameError
 from cartwheel.gazebo.entities import Entities
 from cartwheel.gazebo.forces import Pushes
 from cartwheel.gazebo.metrics import Metrics
 from cartwheel.gazebo.physics import Physics
 from cartwheel.gazebo.properties import Properties
 from cartwheel.gazebo.requests import (
+    REPORTED,
     Answer,
     Offer,
-    Teller,
     answering,
     pose,
     pose_message,
@@ -50,7 +50,7 @@ class Ros2Api:
     def __init__(self, session: Session, *, package_path: Sequence[Path] = ()) -> None:
         self._session = session
         self._simulation = session.simulation
-        self._tell = Teller(session.simulation)
+        self._tell = Reporter(session.simulation.report, REPORTED)
         self._entities = Entities(session.simulation)
         self._spawning = Spawning(session, self._entities, package_path)
         self._states = States(session.simulation, self._entities)

@@ -13,9 +13,9 @@ from cartwheel.codes.graph import (
     SPAWN_INVALID,
 )
 from cartwheel.description.model import Light, RobotDescription
-from cartwheel.errors import GraphError
+from cartwheel.errors import GraphError, Reporter
 from cartwheel.gazebo.entities import Entities
-from cartwheel.gazebo.requests import Answer, Offer, Teller, pose
+from cartwheel.gazebo.requests import Answer, Offer, pose
 from cartwheel.gazebo.spawning import Spawning
 from cartwheel.geometry import Pose
 from cartwheel.messages.times import nanoseconds
@@ -41,7 +41,7 @@ class WorldServices:
     """
 
     def __init__(
-        self, simulation: Simulation, entities: Entities, spawning: Spawning, tell: Teller
+        self, simulation: Simulation, entities: Entities, spawning: Spawning, tell: Reporter
     ) -> None:
         self._simulation = simulation
         self._entities = entities

@@ -9,7 +9,7 @@ import numpy as np
 
 from cartwheel.codes import devices
 from cartwheel.description.model import Sensor
-from cartwheel.errors import meant_one, suggestion
+from cartwheel.errors import meant, suggestion
 from cartwheel.geometry import Array
 from cartwheel.messages import header, message_class
 from cartwheel.plugins.base import Plugin
@@ -136,7 +136,7 @@ def watched_collisions(plugin: Plugin[Any], sensor: Sensor) -> set[str]:
                 values={
                     "sensor": sensor.name,
                     "collision": name,
-                    "meant": meant_one(name, spellings),
+                    "meant": meant(name, spellings),
                 },
             )
     if not sensor.collisions:

@@ -119,11 +119,13 @@ class LinkAttacher(_Attacher):
                 request.link_name_2,
             )
         except UnknownNameError as error:
-            self.warn(
-                running.ATTACHMENT_FAILED,
-                f"links cannot be attached or detached: {error.message}",
-                hint=error.hint or "",
-                values={**error.values, "cause": error.code.number},
+            self.part.report(
+                running.ATTACHMENT_FAILED.because(
+                    "links cannot be attached or detached",
+                    error,
+                    origin=self.tag.origin,
+                    severity="warning",
+                )
             )
             return None
 

@@ -31,16 +31,11 @@ BUILT_IN = {
 
 def left_out(tag: PluginTag, error: CartwheelError) -> Diagnostic:
     """The diagnostic for a plugin or sensor that cannot be created."""
-    return running.PLUGIN_LEFT_OUT.diagnostic(
-        f"{_title(tag)} is ignored: {error.message}",
-        origin=error.origin or tag.origin,
-        mark=error.mark,
-        hint=error.hint or "",
-        values={
-            **error.values,
-            "plugin": tag.filename or tag.name,
-            "cause": error.code.number,
-        },
+    return running.PLUGIN_LEFT_OUT.because(
+        f"{_title(tag)} is ignored",
+        error,
+        origin=tag.origin,
+        values={"plugin": tag.filename or tag.name},
     )
 
 

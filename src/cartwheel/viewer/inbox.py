@@ -18,6 +18,7 @@ from typing import Annotated, Any
 import msgspec
 from websockets.exceptions import WebSocketException
 
+from cartwheel.codes.wires import MALFORMED_MESSAGE
 from cartwheel.viewer.uploads import PART_BYTES, UploadError, Uploads
 
 MOST_BYTES = PART_BYTES + 4096
@@ -287,8 +288,10 @@ class Inbox:
     def _drop(self, reason: str) -> None:
         self.dropped += 1
         if self.dropped == 1:
-            _log.warning(
-                "the web interface ignored a malformed message (%s); from now on, malformed "
+            shown = reason[:200].replace("\n", " ")
+            ignored = MALFORMED_MESSAGE.diagnostic(
+                f"the web interface ignored a malformed message ({shown}); from now on, malformed "
                 "messages are ignored without a warning",
-                reason[:200].replace("\n", " "),
+                values={"reason": shown},
             )
+            _log.warning("%s", ignored.text)

@@ -13,7 +13,8 @@ from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
 
-from cartwheel.errors import UNCLASSIFIED, CartwheelError
+from cartwheel.codes.recording import UPLOAD_REFUSED, VIEWER_FAULT
+from cartwheel.errors import UNCLASSIFIED, CartwheelError, Code, Diagnostic
 from cartwheel.gate.access import Access
 from cartwheel.gate.listening import hidden_host
 from cartwheel.viewer.every import Every
@@ -28,6 +29,10 @@ _LIGHTLY: Any = "f9"
 """Key of the command that a browser without a GPU gives by itself; viser's types know no F9."""
 
 T = TypeVar("T")
+
+
+def _title(code: Code, kind: str = "Error") -> str:
+    return kind if code is UNCLASSIFIED else f"{kind} {code.number}"
 
 
 class Page:
@@ -124,7 +129,7 @@ class Page:
                 self.show_error(error)
             except Exception as error:  # noqa: BLE001 - a fault here must not take the page away
                 _log.exception("the viewer failed")
-                self.notify("Error in the viewer", f"{type(error).__name__}: {error}", color="red")
+                self.show(VIEWER_FAULT.because("unexpected error in the viewer", error))
 
     def wake(self) -> None:
         """Lets `run` look whether it is to stop."""
@@ -215,11 +220,16 @@ class Page:
 
     def show_error(self, error: CartwheelError) -> None:
         """Tells whoever asked what went wrong."""
+        self.notify(_title(error.code), str(error), color="red", seconds=12.0)
+
+    def show(self, diagnostic: Diagnostic) -> None:
+        """Shows an error, or a warning, to the browser that asked, or else to all."""
+        is_error = diagnostic.severity == "error"
+        hint = f"\n{diagnostic.hint}" if diagnostic.hint else ""
         self.notify(
-            f"Error {error.code.number}" if error.code is not UNCLASSIFIED else "Error",
-            str(error),
-            color="red",
-            seconds=12.0,
+            _title(diagnostic.code, "Error" if is_error else "Warning"),
+            diagnostic.message + hint,
+            color="red" if is_error else None,
         )
 
     def notify(
@@ -238,7 +248,7 @@ class Page:
 
     def _refuse(self, client: int, reason: str) -> None:
         """Says, from viser's thread, why a file was not taken."""
-        self.post(partial(self.notify, "Error", reason, color="red"), client=client)
+        self.post(partial(self.show, UPLOAD_REFUSED.diagnostic(reason)), client=client)
 
     def _silent(self, client: int) -> None:
         self.post(lambda: self.on_silence(client))

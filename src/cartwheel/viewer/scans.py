@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from cartwheel.codes.recording import SCAN_NOT_SHOWN
 from cartwheel.geometry import Array, from_wxyz, matrix_from_quat
 from cartwheel.graph import TopicInfo
 from cartwheel.messages import nanoseconds
@@ -124,7 +125,12 @@ class Scans(Panel):
     def _tell(self, topic: str, frame: str, model: str) -> None:
         if topic not in self._told:
             self._told.add(topic)
-            self.page.notify(f"{topic} is not drawn", f'{model} has no link "{frame}"')
+            self.page.show(
+                SCAN_NOT_SHOWN.diagnostic(
+                    f'{topic} is not shown: {model} has no link "{frame}"',
+                    values={"topic": topic, "model": model, "frame": frame},
+                )
+            )
 
 
 def _node(topic: str) -> str:

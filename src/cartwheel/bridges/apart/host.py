@@ -6,7 +6,6 @@ import threading
 import time
 from collections.abc import Callable
 from concurrent.futures import Future
-from dataclasses import replace
 from typing import Any
 
 from cartwheel.bridges.apart.hosted_actions import HostedActions
@@ -18,7 +17,7 @@ from cartwheel.bridges.apart.ring import Put, RingWriter
 from cartwheel.bridges.mirror import Arrivals
 from cartwheel.calls import answered, mapped
 from cartwheel.codes.wires import MESSAGE_NOT_SENT
-from cartwheel.errors import Diagnostic, Once
+from cartwheel.errors import Diagnostic, Reporter
 from cartwheel.graph import Graph, Service, Subscription
 from cartwheel.messages import decode_cdr, encode_cdr, service_classes
 
@@ -64,9 +63,7 @@ class GraphHost:
         self._time_ns = time_ns
         self._patient = patient
         self._echo = echo
-        self._title = title
-        self._report = report
-        self._once = Once(_TOLD)
+        self._warn = Reporter(report, _TOLD, title=title)
         self._losses = Losses(ring, self.later, self._warn)
         self._relays: dict[int, _Relay] = {}
         self._arrivals = Arrivals(graph, self._warn)
@@ -192,11 +189,6 @@ class GraphHost:
     def later(self, seconds: float, function: Callable[[], None]) -> None:
         """Runs a function on the link's thread."""
         self._link.loop.post(lambda: self._link.loop.after(seconds, function))
-
-    def _warn(self, diagnostic: Diagnostic) -> None:
-        """Reports a warning once."""
-        if shown := self._once(diagnostic):
-            self._report(replace(shown, message=f"{self._title}: {shown.message}"))
 
 
 class _Relay:

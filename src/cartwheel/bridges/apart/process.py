@@ -8,14 +8,13 @@ import socket
 import subprocess
 import sys
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 from typing import Any
 
 from cartwheel.bridges.apart.host import GraphHost
 from cartwheel.bridges.apart.link import Handler, Link
 from cartwheel.bridges.apart.ring import RingFiles, RingWriter
 from cartwheel.codes.wires import BRIDGE_ENDED, BRIDGE_FAULT, BRIDGE_SLOW
-from cartwheel.errors import CartwheelError, ControlError, Diagnostic, Once
+from cartwheel.errors import CartwheelError, ControlError, Diagnostic, Reporter
 from cartwheel.graph import Graph
 
 _START = 60.0
@@ -48,7 +47,7 @@ class BridgeProcess:
         self._link: Link | None = None
         self._host: GraphHost | None = None
         self._report: Report = lambda _: None
-        self._once = Once(_TOLD)
+        self._warn = Reporter(self._pass_on, _TOLD, title=title)
         self._closing = False
         self.on_lost: Callable[[], None] = lambda: None
         """Told when the process has ended by itself; on another thread."""
@@ -186,10 +185,12 @@ class BridgeProcess:
         self._report(BRIDGE_ENDED.diagnostic(self._death, values={"bridge": self.title}))
         self.on_lost()
 
+    def _pass_on(self, diagnostic: Diagnostic) -> None:
+        self._report(diagnostic)
+
     def _fault(self, error: Exception) -> None:
         if isinstance(error, CartwheelError):
             diagnostic = error.diagnostic("warning")
         else:
             diagnostic = BRIDGE_FAULT.because("unexpected error in the bridge", error)
-        if shown := self._once(diagnostic):
-            self._report(replace(shown, message=f"{self.title}: {shown.message}"))
+        self._warn(diagnostic)

@@ -30,7 +30,7 @@ from cartwheel.codes.wires import (
     SLOW_SUBSCRIBER,
     TYPE_UNSUPPORTED,
 )
-from cartwheel.errors import CartwheelError, Diagnostic, Once
+from cartwheel.errors import CartwheelError, Diagnostic, Reporter
 from cartwheel.gate.access import Access, refused_page
 from cartwheel.gate.gate import Gate
 from cartwheel.gate.listening import hidden_host, listen
@@ -118,7 +118,7 @@ class FoxgloveBridge:
         self._surveying = False
         self._surveyed = 0.0
         """When the graph was looked at last; monotonic, in s."""
-        self._once = Once(_TOLD)
+        self._warn = Reporter(self._show, _TOLD)
         self._statuses = Budget(_STATUSES, _STATUS_RATE)
         self._told_ns = -1
         self._fine_due = 0.0
@@ -426,12 +426,9 @@ class FoxgloveBridge:
             )
         )
 
-    def _warn(self, diagnostic: Diagnostic) -> None:
-        """Reports a warning once to the user and, not too often, to clients."""
-        shown = self._once(diagnostic)
-        if not shown:
-            return
-        self._report(replace(shown, message=f"Foxglove: {shown.message}"))
+    def _show(self, diagnostic: Diagnostic) -> None:
+        """Reports a diagnostic to the user and, not too often, to clients."""
+        self._report(replace(diagnostic, message=f"Foxglove: {diagnostic.message}"))
         if self._server is not None and not self._closed and self._statuses.take():
             from foxglove import StatusLevel
 

@@ -35,7 +35,7 @@ from cartwheel.codes.wires import (
     ROS_NODE_ENDED,
     TYPE_UNSUPPORTED,
 )
-from cartwheel.errors import CartwheelError, Diagnostic, Once, UnknownNameError
+from cartwheel.errors import CartwheelError, Diagnostic, Reporter, UnknownNameError
 from cartwheel.graph import Service, TopicInfo
 from cartwheel.messages.ros1 import ros1_service, ros1_type
 from cartwheel.messages.store import is_ros2_only
@@ -82,14 +82,13 @@ class Ros1Bridge:
         on_end: Report = lambda _: None,
     ) -> None:
         self._graph = graph
-        self._report = report
         self._on_end = on_end
         self._arguments = Arguments.parse(arguments)
         self._names = NodeNames(node, self._arguments)
         self.master_uri = master_uri(self._arguments.special)
         self._host = host = own_host(self._arguments.special, self.master_uri)
         self._core: OwnCore | None = None
-        self._once = Once(_TOLD)
+        self._reporter = Reporter(report, _TOLD, title="ROS")
         self._closed = False
         self._arrivals = Arrivals(graph, self._warn)
         self._loop = Loop(self._fault, name="ros1")
@@ -404,8 +403,8 @@ class Ros1Bridge:
     def _warn(self, diagnostic: Diagnostic) -> None:
         """Reports a warning once; what strangers wrote in it moves no cursor."""
         diagnostic = _printable(diagnostic)
-        if shown := diagnostic if diagnostic.severity == "info" else self._once(diagnostic):
-            self._report(replace(shown, message=f"ROS: {shown.message}"))
+        is_note = diagnostic.severity == "info"
+        (self._reporter.always if is_note else self._reporter)(diagnostic)
 
     def _fault(self, error: Exception) -> None:
         self._warn(BRIDGE_FAULT.because("unexpected error in the bridge", error))

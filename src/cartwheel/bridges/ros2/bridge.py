@@ -5,7 +5,6 @@ from __future__ import annotations
 import functools
 import re
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import replace
 from typing import Any, Literal
 
 from cartwheel.bridges.bridged import BridgedAction, BridgedGraph
@@ -38,7 +37,7 @@ from cartwheel.errors import (
     CartwheelError,
     Diagnostic,
     GraphError,
-    Once,
+    Reporter,
     UnknownNameError,
 )
 from cartwheel.graph import Service, TopicInfo
@@ -96,8 +95,7 @@ class Ros2Bridge:
                 values={"name": node},
             )
         self._graph = graph
-        self._report = report
-        self._once = Once(_TOLD)
+        self._warn = Reporter(report, _TOLD, title="ROS 2")
         self.name = f"/{node}"
         self._loop = Loop(self._fault, name="ros2")
         self.middleware = _middleware(rmw, self._loop, node, self._warn)
@@ -323,11 +321,6 @@ class Ros2Bridge:
             )
             return False
         return True
-
-    def _warn(self, diagnostic: Diagnostic) -> None:
-        """Reports a warning once."""
-        if shown := self._once(diagnostic):
-            self._report(replace(shown, message=f"ROS 2: {shown.message}"))
 
     def _fault(self, error: Exception) -> None:
         self._warn(BRIDGE_FAULT.because("unexpected error in the bridge", error))

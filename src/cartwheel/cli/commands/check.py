@@ -113,8 +113,8 @@ def _alike(findings: Sequence[Diagnostic]) -> list[tuple[Diagnostic, list[Diagno
     groups: dict[tuple[object, ...], tuple[Diagnostic, list[Diagnostic]]] = {}
     for finding in findings:
         origin = finding.origin
-        values = tuple(sorted(finding.values.items(), key=lambda item: item[0]))
-        same = (*finding.kind, finding.message, values, origin and (origin.file, origin.stack))
+        place = origin and (origin.file, origin.stack)
+        same = (*finding.kind, finding.message, finding.sorted_values, place)
         key = (id(finding),) if finding.instead or finding.also else same
         if key in groups:
             groups[key][1].append(finding)

@@ -127,9 +127,8 @@ def _distinct(diagnostics: Iterable[Diagnostic]) -> Iterable[Diagnostic]:
     """
     seen: set[tuple[object, ...]] = set()
     for each in diagnostics:
-        values = tuple(sorted(each.values.items(), key=lambda item: item[0]))
         origin = None if each.severity == "info" else each.origin
-        key = (each.code, each.severity, each.message, values, origin)
+        key = (each.code, each.severity, each.message, each.sorted_values, origin)
         if key not in seen:
             seen.add(key)
             yield each

@@ -90,14 +90,12 @@ class ControlPlugin(Plugin[Any]):
                 loaded.append(manager.load_entry(entry))
                 manager.switch([entry.name], [])
             except CartwheelError as error:
-                self.warn(
-                    running.CONTROLLER_NOT_STARTED,
-                    f'controller "{entry.name}" is not started: {error.message}',
-                    at=error.origin,
-                    hint=error.hint or "",
-                    values={
-                        **error.values,
-                        "controller": entry.name,
-                        "cause": error.code.number,
-                    },
+                self.part.report(
+                    running.CONTROLLER_NOT_STARTED.because(
+                        f'controller "{entry.name}" is not started',
+                        error,
+                        origin=self.tag.origin,
+                        severity="warning",
+                        values={"controller": entry.name},
+                    )
                 )

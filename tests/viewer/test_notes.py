@@ -1,0 +1,40 @@
+"""Notes of the page: each states its code."""
+
+from types import SimpleNamespace
+
+import pytest
+
+from cartwheel.codes.recording import SCAN_NOT_SHOWN, UPLOAD_REFUSED
+from cartwheel.errors import UNCLASSIFIED, Diagnostic
+from cartwheel.viewer.page import Page
+from cartwheel.viewer.scans import Scans
+
+
+@pytest.fixture
+def notes():
+    """What a page shows, and that page."""
+    shown = []
+    page = SimpleNamespace(notify=lambda title, body, **how: shown.append((title, body, how)))
+    page.show = lambda diagnostic: Page.show(page, diagnostic)
+    return shown, page
+
+
+def test_a_note_has_the_code_the_message_and_the_hint(notes):
+    shown, page = notes
+    page.show(UPLOAD_REFUSED.diagnostic("it is empty", hint="Choose another file."))
+    page.show(Diagnostic(severity="error", message="m", code=UNCLASSIFIED))
+    (title, body, how), (plain, *_) = shown
+    assert (title, plain) == ("Error CW921", "Error")
+    assert body == "it is empty\nChoose another file."
+    assert how["color"] == "red"
+
+
+def test_data_of_an_unknown_frame_is_reported_once(notes):
+    shown, page = notes
+    scans = SimpleNamespace(page=page, _told=set())
+    for _ in range(3):
+        Scans._tell(scans, "/scan", "lasr", "robot")
+    ((title, body, how),) = shown
+    assert title == f"Warning {SCAN_NOT_SHOWN.number}"
+    assert "/scan" in body and '"lasr"' in body
+    assert how["color"] is None
