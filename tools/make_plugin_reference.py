@@ -36,31 +36,39 @@ INTRODUCTION = f"""\
 
 {_MADE}
 
-The plugins that Cartwheel supports, by the `filename` of their `<plugin>`, and the sensors that
-work without a plugin. Each has a page with its tags, topics and services.
+These plugins and sensors are supported. Plugins are listed by the `filename` in their `<plugin>`
+tag; sensors that work without a plugin are listed by type. Each page describes the tags, topics and
+services.
 
-- A tag can have several spellings. If a plugin has more than one of them, the first one in the
-  table is used. Unsupported tags are reported with file and line.
-- `<robotNamespace>` (or `<ros><namespace>`) is put before every topic and service name that does
+- A tag can have several spellings. If a `<plugin>` contains more than one spelling of a tag, the
+  one listed first is used. Unsupported tags are reported with file and line.
+- `<robotNamespace>` (or `<ros><namespace>`) is prepended to every topic and service name that does
   not begin with `/`. `<ros><remapping>` renames topics and services.
 - `<alwaysOn>` is accepted and has no effect: a plugin works whenever its topics have subscribers.
-- The path before a file name is ignored. `lib` and `.so` are optional. `ignition-gazebo-` is read
+- Folders in `filename` are ignored, and `lib` and `.so` are optional. `ignition-gazebo-` is read
   as `gz-sim-`.
-- A plugin that is not listed here is reported when the robot is loaded, with what is missing
-  without it.
+- A plugin that is not listed here has no effect. A warning is reported when the robot is loaded.
 
-Sensors written for new Gazebo need no `<plugin>`. They publish if the world or the model names
-their system, such as `gz-sim-sensors-system`. Without a system they publish if they have a
-`<topic>` or a `<gz_frame_id>`, or if only new Gazebo has their type.
+Sensors written for gz-sim (Gazebo's successor to Gazebo Classic) need no `<plugin>`. They publish
+if the world or the model contains the matching system, such as `gz-sim-sensors-system`. Without
+the system, they publish if they contain `<topic>` or `<gz_frame_id>`, or if their type exists only
+in gz-sim.
 
 Your own package can add plugins through the entry point group `cartwheel.plugins`. Each entry
-names a subclass of `cartwheel.plugins.base.Plugin`. If a package cannot be loaded, robots that do
-not use its plugins are not affected. The warning about an unsupported plugin gives the reason.
+points to a subclass of `cartwheel.plugins.base.Plugin`. If the package cannot be loaded, only
+robots that use its plugins are affected: the warning that a plugin is not supported then contains
+the reason.
 
-A plugin that raises an error while it runs is disabled: its topics and services end, its motors
-brake and its forces stop. The error message names the plugin, its model and the place of its tag;
-`--verbose` adds the traceback. The simulation continues, or ends if `--strict` is set.
+A plugin that raises an error while it runs is disabled. Its topics and services are removed, its
+motors brake and its forces become 0. The error message contains the plugin, its model, and the file
+and line of its tag; `--verbose` adds the traceback. The simulation continues; with `--strict`, it
+stops.
 """
+
+_TABLE = (
+    "The table shows the example with every boolean tag set to `true`; the other tags have the "
+    "values in the example, or their defaults."
+)
 
 
 _TOPICS_INTRODUCTION = f"""\
@@ -68,10 +76,10 @@ _TOPICS_INTRODUCTION = f"""\
 
 {_MADE}
 
-The plugins and sensors that publish, subscribe to or serve each type. Their pages give the default
-names. `cartwheel topic list -v` and `cartwheel service list` show the names in a running
-simulation. Every simulation publishes `/clock`. [ROS 1](ros1.md) and [ROS 2](ros2.md) list the
-services of the node.
+These tables list the plugins and sensors that publish, subscribe to or serve each type. Their pages
+contain the default names. `cartwheel topic list -v` and `cartwheel service list` show the names in
+a running simulation. Every simulation publishes `/clock`. [ROS 1](ros1.md) and [ROS 2](ros2.md)
+list the services of the node.
 """
 
 
@@ -141,7 +149,7 @@ def _topics(interfaces: dict[type[Plugin[Any]], Interface]) -> str:
             link = f"[{title(plugin)}]({FOLDER}/{slug(plugin)}.md)"
             for kind in dict.fromkeys(kind for each, _, kind in rows if each == role):
                 links.setdefault(kind, []).append(link)
-        lines += [f"| `{kind}` | {', '.join(found)} |" for kind, found in sorted(links.items())]
+        lines += [f"| `{kind}` | {', '.join(pages)} |" for kind, pages in sorted(links.items())]
         lines.append("")
     return "\n".join(lines)
 
@@ -164,13 +172,13 @@ def _page(plugin: type[Plugin[Any]], interface: Interface) -> str:
         lines += [f"Other file names: {others}.", ""]
     if not plugin.filenames:
         kinds = ", ".join(f"`{kind}`" for kind in plugin.serves)
-        lines += [f"For sensors of type {kinds} without a `<plugin>`.", ""]
+        lines += [f"Applies to sensors of type {kinds} without a `<plugin>`.", ""]
     elif plugin.for_world:
-        lines += ["Place it directly inside a `<world>`.", ""]
+        lines += ["Place the `<plugin>` directly inside a `<world>`.", ""]
     elif plugin.for_sensor:
-        lines += ["Place it inside a `<sensor>`.", ""]
+        lines += ["Place the `<plugin>` inside a `<sensor>`.", ""]
     else:
-        lines += ["Place it directly inside a `<gazebo>` of a URDF or a `<model>` of an SDF.", ""]
+        lines += ["Place the `<plugin>` directly inside `<gazebo>` (URDF) or `<model>` (SDF).", ""]
     lines += ["## Example", "", "```xml", example(plugin).rstrip(), "```", ""]
     rows = [_row(item, kind) for item, kind in fields(plugin)]
     if rows:
@@ -179,7 +187,7 @@ def _page(plugin: type[Plugin[Any]], interface: Interface) -> str:
     if interface:
         lines += ["## Topics and services", ""]
         lines += [f"![Topics and services of {title(plugin)}](../{_picture_name(plugin)})", ""]
-        lines += ["With each boolean tag `true` and the other tags at their defaults.", ""]
+        lines += [_TABLE, ""]
         lines += ["| Name | Type | Role |", "|---|---|---|"]
         lines += [*(f"| `{name}` | `{kind}` | {role} |" for role, name, kind in interface), ""]
     return "\n".join([*lines, f"[All plugins and sensors](../{INDEX})", ""])

@@ -31,7 +31,8 @@ def wheel_angles(steer: float, base: float, track: float) -> tuple[float, float]
     The axes of all four wheels intersect at the centre of the turn.
 
     Args:
-        steer: Angle of a virtual wheel midway between the steered wheels, rad, left positive.
+        steer: Angle of a virtual wheel midway between the steered wheels, rad, positive to the
+            left.
         base: Distance between the axles, m.
         track: Distance between the steered wheels, m.
     """
@@ -51,12 +52,12 @@ class AckermannParameters:
     rear_left: str = tag(
         "rear_left_joint",
         default="rear_left_joint",
-        doc="Joint of the rear left wheel, which is driven.",
+        doc="Joint of the driven rear left wheel.",
     )
     rear_right: str = tag(
         "rear_right_joint",
         default="rear_right_joint",
-        doc="Joint of the rear right wheel, which is driven.",
+        doc="Joint of the driven rear right wheel.",
     )
     steer_left: str = tag(
         "left_steering_joint",
@@ -73,7 +74,7 @@ class AckermannParameters:
         default="steering_wheel_joint",
         optional=True,
         doc="Joint of the steering wheel, which turns in proportion to the steering angle. "
-        "Optional: ignored if no joint has this name.",
+        "Ignored if the model has no joint with this name.",
     )
     max_steer: float = tag(
         "max_steer", default=0.6, unit="rad", doc="Maximum steering angle of the front wheels."
@@ -82,23 +83,23 @@ class AckermannParameters:
         "max_steering_angle",
         default=7.85,
         unit="rad",
-        doc="Angle of the steering wheel at `<max_steer>`.",
+        doc="Angle of the steering wheel when the front wheels are at `<max_steer>`.",
     )
     max_speed: float = tag("max_speed", default=20.0, unit="m/s", doc="Maximum commanded speed.")
     left_gain: tuple[float, float, float] | None = tag(
-        "left_steering_pid_gain", default=None, doc="No effect: a servo steers the wheel."
+        "left_steering_pid_gain", default=None, doc="No effect: a position servo steers the wheel."
     )
     left_range: tuple[float, float] | None = tag(
         "left_steering_i_range", default=None, doc="No effect."
     )
     right_gain: tuple[float, float, float] | None = tag(
-        "right_steering_pid_gain", default=None, doc="No effect: a servo steers the wheel."
+        "right_steering_pid_gain", default=None, doc="No effect: a position servo steers the wheel."
     )
     right_range: tuple[float, float] | None = tag(
         "right_steering_i_range", default=None, doc="No effect."
     )
     speed_gain: tuple[float, float, float] | None = tag(
-        "linear_velocity_pid_gain", default=None, doc="No effect: servos drive the wheels."
+        "linear_velocity_pid_gain", default=None, doc="No effect: velocity servos drive the wheels."
     )
     speed_range: tuple[float, float] | None = tag(
         "linear_velocity_i_range", default=None, doc="No effect."
@@ -151,9 +152,9 @@ class AckermannParameters:
 class AckermannDrive(SteeredDrive):
     """Drives the rear wheels and steers the front wheels of a car from Twist commands.
 
-    Commands arrive on ``cmd_vel``. ``linear.x`` is the speed of the middle of the rear axle in m/s.
-    ``angular.z`` is the steering angle in rad, with its sign reversed while driving backwards. The
-    odometry is the true pose in the world. Wheel radius, wheel base and track are read from the
+    Commands are received on ``cmd_vel``. ``linear.x`` is the speed in m/s at the middle of the rear
+    axle. ``angular.z`` is the steering angle in rad; in reverse, its sign is inverted. The odometry
+    is the ground-truth pose in the world. Wheel radius, wheel base and track are read from the
     robot description. Source: gazebo_plugins, gazebo_ros_ackermann_drive.
     """
 
@@ -237,7 +238,7 @@ class AckermannDrive(SteeredDrive):
             collision = link.collisions[0]
             shape = collision.shape
             round_one = isinstance(shape, Cylinder | Sphere | Capsule)
-            # The frame of a mesh is arbitrary, so the wheel is placed at its axle.
+            # The frame of a mesh can be anywhere, so the wheel is placed at its joint.
             place = collision.pose if round_one or joint is None else joint.pose
             centres.append(poses[link.name].apply(place.position))
         if not isinstance(shape, Cylinder | Sphere | Capsule):
@@ -305,12 +306,12 @@ class GzAckermannParameters(GzLimitedParameters):
     left_joint: tuple[str, ...] = tag(
         "left_joint",
         default=("left_joint",),
-        doc="Joint of a driven left wheel. Repeat for each wheel.",
+        doc="Joint of a driven left wheel. Repeat the tag for each wheel.",
     )
     right_joint: tuple[str, ...] = tag(
         "right_joint",
         default=("right_joint",),
-        doc="Joint of a driven right wheel. Repeat for each wheel.",
+        doc="Joint of a driven right wheel. Repeat the tag for each wheel.",
     )
     steer_left: str = tag(
         "left_steering_joint",
@@ -334,12 +335,12 @@ class GzAckermannParameters(GzLimitedParameters):
     )
     wheel_radius: float = tag("wheel_radius", default=0.2, unit="m", doc="Radius of all wheels.")
     steer_gain: float = tag(
-        "steer_p_gain", default=1.0, doc="Accepted for compatibility; a servo steers without delay."
+        "steer_p_gain", default=1.0, doc="No effect: a servo steers without delay."
     )
     sub_topic: str = tag(
         "sub_topic",
         default="",
-        doc="Topic of the Twist commands below `/model/<model>`, if `<topic>` is empty.",
+        doc="Topic of the Twist commands below `/model/<model>`. Used if `<topic>` is empty.",
     )
     steering_only: bool = tag("steering_only", default=False, doc="Not supported.")
     actuators: bool = tag("use_actuator_msg", default=False, doc="Not supported.")

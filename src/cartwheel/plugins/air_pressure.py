@@ -21,10 +21,10 @@ EXPONENT = 9.80665 * 0.0289644 / (8.31446 * LAPSE)
 
 
 def pressure_at(height: float) -> float:
-    """Returns the pressure in Pa at a height in m above sea level.
+    """Returns the air pressure in Pa at a height in m above sea level.
 
-    The formula is that of the international standard atmosphere, which holds up to 11 km. It
-    reaches 0 at 44 km and stays there.
+    The formula is that of the International Standard Atmosphere, which is valid up to 11 km. Above
+    44 km the result is 0.
     """
     return float(SEA_LEVEL * max(1 - LAPSE * height / TEMPERATURE, 0.0) ** EXPONENT)
 
@@ -43,9 +43,9 @@ class AirPressureParameters:
 class AirPressure(Plugin[AirPressureParameters]):
     """Publishes the air pressure at the height of the sensor, in Pa.
 
-    ``<reference_altitude>`` is the height of the world's origin above sea level. The sensor's
-    ``<pressure><noise>`` is applied. Source: gz-sensors, AirPressureSensor; the international
-    standard atmosphere.
+    ``<reference_altitude>`` is the height of the world's origin above sea level. The noise in the
+    sensor's ``<pressure><noise>`` is applied. Source: gz-sensors, AirPressureSensor; the
+    International Standard Atmosphere.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ()

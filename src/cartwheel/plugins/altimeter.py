@@ -28,7 +28,7 @@ class AltimeterParameters:
 class Altimeter(Plugin[AltimeterParameters]):
     """Publishes the height of a sensor above its initial height, and its vertical velocity.
 
-    ``vertical_reference`` is the height in the world at which the sensor was spawned. The noise of
+    ``vertical_reference`` is the height in the world at which the sensor was spawned. The noise in
     ``<vertical_position>`` and ``<vertical_velocity>`` is applied. Source: gz-sensors,
     AltimeterSensor; ros_gz_bridge.
     """

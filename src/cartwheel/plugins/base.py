@@ -23,7 +23,7 @@ from cartwheel.graph import (
 )
 from cartwheel.graph.reconfigure import OnChange, Value
 from cartwheel.plugins.gz_bridge import GzBridge
-from cartwheel.plugins.inputs import obeyable, obeyable_positions
+from cartwheel.plugins.inputs import checked_callback, checked_positions
 from cartwheel.plugins.parameters import SMALLEST, invalid, read
 from cartwheel.simulation import LinkHandle, Part
 from cartwheel.simulation.limits import FARTHEST
@@ -121,9 +121,9 @@ class Plugin(Generic[C]):
         return item
 
     def under_model(self) -> None:
-        """Uses the model's name as namespace if neither the tag nor the spawner states one.
+        """Uses the model's name as the namespace if neither the tag nor the spawner specifies one.
 
-        Most of Gazebo's plugins use no namespace in this case.
+        Most Gazebo plugins use no namespace in this case.
         """
         element = self.tag.element
         namespace = element.find("robotNamespace") or element.find("ros")
@@ -160,7 +160,7 @@ class Plugin(Generic[C]):
 
         Messages with values that cannot be executed, such as NaN, are ignored with a warning.
         """
-        callback = obeyable(callback, self.part, self.warn)
+        callback = checked_callback(callback, self.part, self.warn)
         bridge = GzBridge.of(self.graph)
         name, kind, receiver = bridge.read(self.resolve(topic), type_name, callback)
         subscription = self.graph.subscribe(name, receiver, type_name=kind, node=self.node)
@@ -210,7 +210,7 @@ class Plugin(Generic[C]):
             model=self.part.name,
             owner=self.tag.name or self.node,
             joints=tuple(joints),
-            put=obeyable_positions(put, self.part),
+            put=checked_positions(put, self.part),
         )
         inputs.add(joint_input)
         self._open.callback(inputs.remove, joint_input)
@@ -265,9 +265,9 @@ class Plugin(Generic[C]):
         Args:
             code: Kind of the diagnostic. Other packages define their own: ``Code("ACME1", …)``.
             message: One sentence.
-            at: Place of the element in question; defaults to the plugin's tag.
+            at: File and line of the element in question; defaults to the plugin's tag.
             hint: The likely fix, as a sentence.
-            values: Names and numbers of the message, for programs.
+            values: Names and numbers in the message, for programs.
             severity: Defaults to a warning, regardless of the code's severity.
         """
         self.part.report(
@@ -281,13 +281,13 @@ class Plugin(Generic[C]):
         )
 
     def link_or_root(self, name: str) -> LinkHandle:
-        """Returns the link with this name, or the root link if no link has it."""
+        """Returns the link with this name, or the root link if no link has this name."""
         description = self.part.description
         known = description.link(name) is not None
         return self.part.link(name if known else description.canonical_link)
 
     def check_above_zero(self, **values: float) -> None:
-        """Checks that parameters, given by the names of their tags, are positive.
+        """Checks that parameters, given by their tags, are positive.
 
         Raises:
             PluginError: A value is 0 or negative, or too small to divide by.
@@ -298,10 +298,9 @@ class Plugin(Generic[C]):
                 raise invalid(name, value, least, self.place_of(name))
 
     def check_not_negative(self, *names: str) -> None:
-        """Checks that parameters, given by the names of their fields, are not negative.
+        """Checks that parameters, given by their fields, are not negative.
 
-        Names of fields that the plugin does not have are skipped. Each component of a vector is
-        checked.
+        Fields that the plugin does not have are skipped. Each component of a vector is checked.
 
         Raises:
             PluginError: A value is negative.
@@ -318,7 +317,7 @@ class Plugin(Generic[C]):
                 raise invalid(tag, float(least), "at least 0", self.place_of(tag))
 
     def check_lengths(self, **values: float) -> None:
-        """Checks dimensions of a drive in m, given by the names of their tags.
+        """Checks dimensions of a drive in m, given by their tags.
 
         Raises:
             PluginError: A value is 0 or negative, or larger than any robot.
@@ -329,7 +328,7 @@ class Plugin(Generic[C]):
                 raise invalid(name, value, f"at most {FARTHEST:g} m", self.place_of(name))
 
     def place_of(self, tag: str) -> Origin | None:
-        """Returns the place of a tag of the plugin, or the plugin's if the tag is missing."""
+        """Returns the file and line of a tag in the plugin, or of the plugin if it is missing."""
         child = self.tag.element.find(tag)
         return child.origin if child is not None else self.tag.origin
 

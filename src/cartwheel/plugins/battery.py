@@ -36,7 +36,7 @@ class BatteryParameters:
         "open_circuit_voltage_linear_coef",
         default=0.0,
         unit="V",
-        doc="Open-circuit voltage of the empty battery minus that of the full one. Normally "
+        doc="Open-circuit voltage of the empty battery minus that of the full battery. Normally "
         "negative.",
     )
     capacity: float = tag("capacity", unit="A h", doc="Charge of the full battery.")
@@ -48,17 +48,19 @@ class BatteryParameters:
         "smooth_current_tau",
         default=1.0,
         unit="s",
-        doc="Time constant of the low-pass filter of the current.",
+        doc="Time constant of the low-pass filter for the current.",
     )
     power: float = tag(
         "power_load", default=0.0, unit="W", doc="Power drawn while the battery discharges."
     )
-    draining: bool = tag("start_draining", default=False, doc="Discharge from the start.")
+    draining: bool = tag(
+        "start_draining", default=False, doc="Discharge from the start of the simulation."
+    )
     drain_topics: tuple[str, ...] = tag(
         "power_draining_topic",
         default=(),
-        doc="Topic on which any message starts discharging. Can be repeated. The type is Empty if "
-        "no other plugin defines the topic.",
+        doc="Topic on which any message starts discharging. Can be repeated. The type is Empty "
+        "unless another plugin defines the topic.",
     )
     stop_topics: tuple[str, ...] = tag(
         "stop_power_draining_topic",
@@ -68,37 +70,35 @@ class BatteryParameters:
     rechargeable: bool = tag(
         "enable_recharge",
         default=False,
-        doc="Charge the battery after a message on "
-        "`/model/<model>/battery/<battery_name>/recharge/start`, until one on `…/recharge/stop`. "
-        "Requires `<charging_time>`.",
+        doc="Recharge the battery after a message on "
+        "`/model/<model>/battery/<battery_name>/recharge/start`, until a message on "
+        "`…/recharge/stop`. Requires `<charging_time>`.",
     )
     by_topic: bool = tag(
         "recharge_by_topic",
         default=False,
-        doc="Accepted for compatibility: recharging is always controlled by topics.",
+        doc="No effect: recharging is always controlled by topics.",
     )
     charging_time: float = tag(
         "charging_time",
         default=0.0,
         unit="h",
-        doc="Time to charge the empty battery, with `<enable_recharge>`.",
+        doc="Time to recharge the empty battery, with `<enable_recharge>`.",
     )
     invert: bool = tag(
         "invert_current_sign",
         default=False,
         doc="Publish a discharging current as negative, as sensor_msgs/BatteryState defines it.",
     )
-    fixed: bool = tag(
-        "fix_issue_225", default=False, doc="Accepted for compatibility: the fix is always applied."
-    )
+    fixed: bool = tag("fix_issue_225", default=False, doc="No effect: the fix is always applied.")
 
 
 class Battery(Plugin[BatteryParameters]):
-    """Simulates a battery that discharges at a constant power once the robot is driven.
+    """Simulates a battery that discharges at constant power once the robot is commanded.
 
     ``voltage = constant + linear (1 - charge / capacity) - resistance * current``. Recharging stops
     at 90 % of the capacity. BatteryState is published at 50 Hz on
-    ``/model/<model>/battery/<battery_name>/state``; its percentage is from 0 to 1, as in ROS. An
+    ``/model/<model>/battery/<battery_name>/state``. Its percentage is from 0 to 1, as in ROS. An
     empty battery causes a warning and does not stop the robot. Source: gz-sim, LinearBatteryPlugin.
     """
 
@@ -152,7 +152,7 @@ class Battery(Plugin[BatteryParameters]):
         self._before_ns = self.part.time_ns
 
     def _watch_topics(self) -> None:
-        """Subscribes to the topics of any type, which are known once all plugins are loaded."""
+        """Subscribes to topics of any type, which are known once all plugins are loaded."""
         config = self.config
         known = {topic.name: topic.type for topic in self.graph.topics()}
         for topics, on in ((config.drain_topics, True), (config.stop_topics, False)):

@@ -29,27 +29,27 @@ class BlockLaserParameters:
         "gaussianNoise",
         default=0.0,
         unit="m",
-        doc="Standard deviation of the noise of each coordinate.",
+        doc="Standard deviation of the noise on each coordinate.",
     )
     least_intensity: float = tag(
         "hokuyoMinIntensity",
         default=101.0,
-        doc="Accepted for compatibility; no effect, as in Gazebo.",
+        doc="No effect, as in Gazebo.",
     )
     update_rate: float = tag(
         "updateRate",
         "update_rate",
         default=0.0,
         unit="Hz",
-        doc="Accepted for compatibility; the sensor's `<update_rate>` is used.",
+        doc="No effect: the sensor's `<update_rate>` is used.",
     )
 
 
 class BlockLaser(Plugin[BlockLaserParameters]):
     """Publishes the points hit by a ray sensor as a PointCloud.
 
-    Points have x forward, y left and z up. Rays without a hit are left out. Source: gazebo_plugins,
-    gazebo_ros_block_laser.
+    Points have x forward, y left and z up. Rays that hit nothing have no point. Source:
+    gazebo_plugins, gazebo_ros_block_laser.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_block_laser.so",)

@@ -26,8 +26,8 @@ class CameraParameters:
         "cameraName",
         "camera_name",
         default="",
-        doc="Namespace of the topics. Defaults to the sensor's name, or to none if other tags "
-        "have ROS 1 spellings.",
+        doc="Namespace of the topics. Defaults to the sensor's name, or to no namespace if other "
+        "tags have ROS 1 spellings.",
     )
     image_topic: str = tag("imageTopicName", default="image_raw", doc="Topic of the images.")
     info_topic: str = tag(
@@ -61,14 +61,12 @@ class CameraParameters:
         doc="Focal length in the camera matrix K. 0: computed from the field of view.",
     )
     cx: float = tag(
-        "Cx", "cx", default=0.0, unit="px", doc="Principal point in x. 0: (width + 1) / 2."
+        "Cx", "cx", default=0.0, unit="px", doc="x of the principal point. 0: (width + 1) / 2."
     )
     cy: float = tag(
-        "Cy", "cy", default=0.0, unit="px", doc="Principal point in y. 0: (height + 1) / 2."
+        "Cy", "cy", default=0.0, unit="px", doc="y of the principal point. 0: (height + 1) / 2."
     )
-    cx_prime: float = tag(
-        "CxPrime", "cx_prime", default=0.0, unit="px", doc="Accepted for compatibility; no effect."
-    )
+    cx_prime: float = tag("CxPrime", "cx_prime", default=0.0, unit="px", doc="No effect.")
     k1: float = tag(
         "distortionK1",
         "distortion_k1",
@@ -108,13 +106,13 @@ class CameraParameters:
         "autoDistortion",
         "auto_distortion",
         default=False,
-        doc="Accepted for compatibility: the distortion is always rendered.",
+        doc="No effect: the distortion is always rendered.",
     )
     border_crop: bool = tag(
         "borderCrop",
         "border_crop",
         default=True,
-        doc="Accepted for compatibility: the image has no black borders.",
+        doc="No effect: the image has no black borders.",
     )
     rectification: str = tag(
         "rectification_matrix",
@@ -125,25 +123,25 @@ class CameraParameters:
         "P_fx",
         default=None,
         unit="px",
-        doc="fx in the projection matrix P (ROS 2). Defaults to that of K.",
+        doc="fx in the projection matrix P (ROS 2). Defaults to fx in K.",
     )
     p_fy: float | None = tag(
         "P_fy",
         default=None,
         unit="px",
-        doc="fy in the projection matrix P (ROS 2). Defaults to that of K.",
+        doc="fy in the projection matrix P (ROS 2). Defaults to fy in K.",
     )
     p_cx: float | None = tag(
         "P_cx",
         default=None,
         unit="px",
-        doc="cx in the projection matrix P (ROS 2). Defaults to that of K.",
+        doc="cx in the projection matrix P (ROS 2). Defaults to cx in K.",
     )
     p_cy: float | None = tag(
         "P_cy",
         default=None,
         unit="px",
-        doc="cy in the projection matrix P (ROS 2). Defaults to that of K.",
+        doc="cy in the projection matrix P (ROS 2). Defaults to cy in K.",
     )
     p_tx: float | None = tag(
         "Tx",
@@ -156,21 +154,23 @@ class CameraParameters:
         default="image_trigger",
         doc="Topic of the Empty messages that trigger an image.",
     )
-    triggered: bool = tag("triggered", default=False, doc="Publish an image only on a trigger.")
+    triggered: bool = tag(
+        "triggered", default=False, doc="Publish an image only after a trigger message."
+    )
 
 
 P = TypeVar("P", bound=CameraParameters)
 
 
 class RosCamera(CameraBase[P]):
-    """Base class of the camera plugins of gazebo_plugins."""
+    """Base class of the camera plugins in gazebo_plugins."""
 
     waits: ClassVar[bool] = False
     """Whether images are always triggered."""
 
     @property
     def is_ros2(self) -> bool:
-        """Whether the tag is written for gazebo_plugins of ROS 2."""
+        """Whether the tag is written for gazebo_plugins in ROS 2."""
         tags = [child.tag for child in self.tag.element.children]
         return "ros" in tags or (
             any("_" in name for name in tags) and all(name.islower() for name in tags)
@@ -180,7 +180,7 @@ class RosCamera(CameraBase[P]):
         return self.config.update_rate
 
     def _base(self) -> str:
-        """Namespace of all topics: by default the sensor's name in ROS 2, and none in ROS 1."""
+        """Namespace of all topics. Default: the sensor's name in ROS 2, none in ROS 1."""
         assert self.sensor is not None
         if self.config.camera_name:
             return self.config.camera_name
@@ -258,13 +258,13 @@ class DepthByTypeParameters(CameraParameters):
         "min_depth",
         default=0.4,
         unit="m",
-        doc="For sensors of type depth: depths up to this are -inf.",
+        doc="For sensors of type depth: depths at or below this value are -inf.",
     )
     max_depth: float = tag(
         "max_depth",
         default=math.inf,
         unit="m",
-        doc="For sensors of type depth: depths from this on are inf.",
+        doc="For sensors of type depth: depths at or above this value are inf.",
     )
 
 
@@ -274,17 +274,17 @@ class Camera(RosCamera[DepthByTypeParameters]):
     The sensor looks along its x axis. An image is rendered only if a topic has subscribers. Topics
     are under ``<cameraName>``. Without that tag they are under the sensor's name, or directly under
     the namespace if other tags have ROS 1 spellings. Each camera of a ``multicamera`` sensor has
-    its own topics, such as ``<cameraName>/left/image_raw``. For a ``depth`` sensor, the plugin also
-    publishes depth images and points.
+    separate topics, such as ``<cameraName>/left/image_raw``. For a ``depth`` sensor, the plugin
+    also publishes depth images and points.
 
     ``image_raw/compressed`` contains JPEG or PNG images. ``set_camera_info`` replaces the published
     CameraInfo; the image does not change. If the tag is written for ROS 1, dynamic_reconfigure
-    offers ``imager_rate`` and the parameters of the compression.
+    offers ``imager_rate`` and the compression parameters.
 
-    The image is distorted by the sensor's ``<distortion>``, or else by the plugin's coefficients.
-    ``camera_info`` contains the same coefficients.
+    The image is distorted with the sensor's ``<distortion>``, or else with the plugin's
+    coefficients. ``camera_info`` contains the same coefficients.
 
-    Source: gazebo_plugins, gazebo_ros_camera and gazebo_ros_camera_utils, of ROS 1 and ROS 2.
+    Source: gazebo_plugins, gazebo_ros_camera and gazebo_ros_camera_utils, in ROS 1 and ROS 2.
     """
 
     filenames: ClassVar[tuple[str, ...]] = (
@@ -312,7 +312,7 @@ class Camera(RosCamera[DepthByTypeParameters]):
 class TriggeredCamera(Camera):
     """Publishes one image for each message on ``<cameraName>/image_trigger``.
 
-    Its tags and topics are those of ``libgazebo_ros_camera.so``. Source: gazebo_plugins,
+    Tags and topics are the same as for ``libgazebo_ros_camera.so``. Source: gazebo_plugins,
     gazebo_ros_triggered_camera and gazebo_ros_triggered_multicamera.
     """
 
@@ -333,7 +333,7 @@ class ProsilicaParameters(CameraParameters):
 class Prosilica(RosCamera[ProsilicaParameters]):
     """Publishes the images of a Prosilica camera in streaming mode.
 
-    The topics are those of ``libgazebo_ros_camera.so``. If the parameter ``trigger_mode`` is
+    Topics are the same as for ``libgazebo_ros_camera.so``. If the parameter ``trigger_mode`` is
     ``polled``, a warning is reported. Source: gazebo_plugins, gazebo_ros_prosilica.
     """
 

@@ -32,7 +32,7 @@ C = TypeVar("C")
 
 
 class CameraBase(Plugin[C]):
-    """Base class of camera plugins: sensor, rate and trigger. Subclasses name the topics."""
+    """Base class of camera plugins: sensor, rate and trigger. Subclasses define the topics."""
 
     empty_is_model: ClassVar[bool] = True
     for_sensor: ClassVar[bool] = True
@@ -46,7 +46,7 @@ class CameraBase(Plugin[C]):
             lens = sensor.cameras[0]
             self.warn(
                 devices.SENSOR_INCOMPLETE,
-                f'sensor "{sensor.name}" has no <camera>: the defaults of SDF are used, '
+                f'sensor "{sensor.name}" has no <camera>, so SDF\'s defaults are used: '
                 f"{lens.width} x {lens.height} pixels and a field of view of "
                 f"{lens.horizontal_fov:g} rad",
                 at=sensor.origin,
@@ -99,7 +99,7 @@ class CameraBase(Plugin[C]):
         return []
 
     def _depth_options(self) -> DepthOptions | None:
-        """Returns the options of the depth topics, or None without depths."""
+        """Returns the options of the depth topics, or None if the camera publishes no depths."""
         return None
 
     def _eye(
@@ -149,7 +149,7 @@ class CameraBase(Plugin[C]):
         return dataclasses.replace(lens, horizontal_fov=_WIDEST_VIEW)
 
     def _distortion(self, lens: CameraIntrinsics, configured: Distortion) -> Distortion:
-        """Returns the sensor's distortion, or else the plugin's, for image and camera_info."""
+        """Returns the sensor's distortion, or else the plugin's, for images and camera_info."""
         own = Distortion(k1=lens.k1, k2=lens.k2, p1=lens.p1, p2=lens.p2, k3=lens.k3)
         if not any(own.coefficients):
             return configured

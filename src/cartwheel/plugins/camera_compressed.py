@@ -1,4 +1,4 @@
-"""Compressed images on subtopics, like the plugins of image_transport."""
+"""Compressed images on subtopics, like the plugins for image_transport."""
 
 from __future__ import annotations
 
@@ -106,7 +106,7 @@ DEPTH_PARAMETERS = (
 
 
 class CompressedImages:
-    """The topic ``<image>/compressed``, and its parameters that can be changed at run time.
+    """The topic ``<image>/compressed``, with parameters that can be changed at run time.
 
     Source: compressed_image_transport.
 
@@ -169,14 +169,14 @@ class CompressedImages:
 
 
 class CompressedDepths:
-    """The topic ``<image>/compressedDepth`` of an image of depths in m, as in ROS 2.
+    """The topic ``<image>/compressedDepth`` of a depth image in m, as in ROS 2.
 
     Depths are quantised inversely, so that near depths have smaller steps; 0 means no depth.
     Source: compressed_depth_image_transport.
 
     Args:
         plugin: The publishing plugin.
-        image: Topic of the depths.
+        image: Topic of the depth image.
         rate: Publish rate for listings, Hz.
     """
 

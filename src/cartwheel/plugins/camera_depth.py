@@ -1,4 +1,4 @@
-"""Depth topics of a camera: an image, and coloured points."""
+"""Depth topics of a camera: a depth image, and coloured points."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ POINT = np.dtype(
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class DepthOptions:
-    """Topics, limits and encoding of depths."""
+    """Topics, limits and encoding of the depth topics."""
 
     depth: str
     points: str = ""
@@ -154,8 +154,8 @@ class Depths:
         with np.errstate(invalid="ignore"):
             right, down = self._right * clipped, self._down * clipped
         if self._options.beyond == "inf":
-            # All three coordinates get the same infinity: multiplying it by a ray's slope would
-            # give the opposite sign on the left, and nan in the centre.
+            # All three coordinates get the same infinity. Multiplying it by the slope of a ray
+            # would give the opposite sign on the left, and nan in the centre.
             lost = ~np.isfinite(clipped)
             np.copyto(right, clipped if self._options.optical else -clipped, where=lost)
             np.copyto(down, clipped if self._options.optical else -clipped, where=lost)

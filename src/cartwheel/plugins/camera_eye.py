@@ -51,7 +51,7 @@ class EyeTopics:
 
 
 class Eye:
-    """Renders and publishes the images of one lens, when its plugin requests it.
+    """Renders and publishes the images of one lens when its plugin requests it.
 
     Args:
         plugin: The publishing plugin.
@@ -138,7 +138,7 @@ class Eye:
         return self._noisy(self.lens.image(self._plugin.part.render(self._camera)))
 
     def picture_with_depth(self) -> tuple[Pixels, NDArray[np.float32]]:
-        """Renders the image, and depths along the optical axis in m; inf without a hit.
+        """Renders the image and the depths along the optical axis in m; inf where nothing is hit.
 
         Raises:
             SimulationError: OpenGL is not available, or was opened before a fork.

@@ -1,4 +1,4 @@
-"""Encodings of ``sensor_msgs/Image`` for SDF's image formats."""
+"""Encodings of ``sensor_msgs/Image`` for the image formats in SDF."""
 
 from __future__ import annotations
 

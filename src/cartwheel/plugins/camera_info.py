@@ -17,7 +17,7 @@ SET_INFO = "sensor_msgs/srv/SetCameraInfo"
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Rectified:
-    """Entries of R and P; None for those of the identity and of K."""
+    """Entries of R and P. None keeps the entry of the identity (R) or of K (P)."""
 
     turn: tuple[float, ...] | None = None
     """R, row by row."""
@@ -35,7 +35,7 @@ _PLAIN = Rectified()
 
 
 class Calibration:
-    """CameraInfo of a lens: that of a pinhole camera, with Gazebo's centre and stereo baseline.
+    """CameraInfo of a pinhole camera, with Gazebo's image centre and stereo baseline.
 
     Args:
         lens: The rendered lens.

@@ -1,4 +1,4 @@
-"""A lens: the pinhole image to render, and the point of that image that each pixel shows."""
+"""A lens: the pinhole image to render, and the point in that image that each pixel shows."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class Distortion:
 
     @property
     def coefficients(self) -> tuple[float, float, float, float, float]:
-        """In the order of `CameraInfo.d`: k1, k2, t1, t2, k3."""
+        """Coefficients in the order of `CameraInfo.d`: k1, k2, t1, t2, k3."""
         return (self.k1, self.k2, self.p1, self.p2, self.k3)
 
     def apply(self, x: Floats, y: Floats) -> tuple[Floats, Floats]:
@@ -51,7 +51,7 @@ class Distortion:
         )
 
     def invert(self, x: Floats, y: Floats) -> tuple[Floats, Floats]:
-        """Returns the undistorted points for x, y; nan if there is none.
+        """Returns the undistorted points for x, y; nan where the distortion has no inverse.
 
         A strong distortion folds the plane; only points within the fold are returned.
         """
@@ -79,7 +79,7 @@ class Distortion:
         return u, v
 
     def _fold(self) -> float:
-        """Radius of the fold: points beyond it are imaged further inside again."""
+        """Radius of the fold. Points beyond it are imaged closer to the centre again."""
         roots = np.roots([7 * self.k3, 5 * self.k2, 3 * self.k1, 1.0])
         real = [root.real for root in roots if abs(root.imag) < 1e-9 and root.real > 0]
         return math.sqrt(min(real)) if real else math.inf
@@ -123,7 +123,7 @@ class Lens:
 
     def _bend(self) -> None:
         image = self.intrinsics
-        # The distortion is centred at the point that the description states.
+        # The distortion is centred at the point in the description.
         cx = (image.distortion_center[0] - 0.5) * image.width / self.focal
         cy = (image.distortion_center[1] - 0.5) * image.height / self.focal
         x, y = self.distortion.invert(self._x - cx, self._y - cy)
@@ -147,11 +147,11 @@ class Lens:
         return self._x, self._y
 
     def image(self, picture: NDArray[np.uint8]) -> NDArray[np.uint8]:
-        """Returns the distorted image, shape (height, width, 3); black where no ray enters."""
+        """Returns the distorted image, shape (height, width, 3); black where no light enters."""
         return picture if self._map is None else self._map.blend(picture)
 
     def depths(self, picture: NDArray[np.float32]) -> NDArray[np.float32]:
-        """Returns distorted depths in m, shape (height, width); nan where no ray enters.
+        """Returns distorted depths in m, shape (height, width); nan where no light enters.
 
         Depths are not interpolated: between an object and its background there is no surface.
         """
@@ -199,7 +199,7 @@ class _Map:
             (low * width + right, _ONE - first - second - third),
         ]
         self._corners = [
-            # A weight for each of the three colours.
+            # A weight for each of the three colour channels.
             (index.ravel(), np.repeat(weight.ravel().astype(np.uint16), 3))
             for index, weight in corners
         ]

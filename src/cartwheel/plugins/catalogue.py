@@ -1,7 +1,7 @@
 """The plugins by file name and by sensor type.
 
-The module of a plugin is imported when a model names it: importing all of them takes as long as the
-rest of the startup.
+A plugin's module is imported when a model uses the plugin. Importing all of them takes as long as
+the rest of the startup.
 """
 
 from __future__ import annotations
@@ -145,20 +145,20 @@ def short_name(filename: str) -> str:
 
 
 def plugin_named(filename: str) -> type[Plugin[object]] | None:
-    """Returns the plugin of a file name, or None. Installed packages take precedence."""
+    """Returns the plugin for a file name, or None. Installed packages take precedence."""
     name = short_name(filename)
     for plugin in _third():
         if name in _names(plugin):
             return plugin
     if name not in _FILES and name.endswith(f"_{ROS_CONTROL}"):
-        # Vendors derive their own plugins from it: Baxter, HSR, Schunk.
+        # Other vendors derive plugins from it: Baxter, HSR, Schunk.
         name = ROS_CONTROL
     ours = _within(_FILES[name]) if name in _FILES else ()
     return next((plugin for plugin in ours if name in _names(plugin)), None)
 
 
 def plugin_serving(kind: str) -> type[Plugin[object]] | None:
-    """Returns the plugin for sensors of a type without a ``<plugin>``, or None."""
+    """Returns the plugin for sensors of a type that need no ``<plugin>``, or None."""
     for plugin in _third():
         if kind in plugin.serves:
             return plugin
@@ -179,7 +179,7 @@ def all_plugins() -> list[type[Plugin[object]]]:
 
 
 def _third() -> tuple[type[Plugin[object]], ...]:
-    """Plugins of installed packages. For equal names the last installed takes precedence."""
+    """Plugins in installed packages. For equal names, the last installed takes precedence."""
     return _installed()[0]
 
 
@@ -205,7 +205,7 @@ def _installed() -> tuple[tuple[type[Plugin[object]], ...], tuple[str, ...]]:
                 raise TypeError(f"filenames or serves of {entry.value} are not strings")
             if not dataclasses.is_dataclass(plugin.parameters):
                 raise TypeError(f"parameters of {entry.value} is not a dataclass")
-        except (Exception, SystemExit) as error:  # noqa: BLE001 - code of another package
+        except (Exception, SystemExit) as error:  # noqa: BLE001 - code in a different package
             broken.append(
                 f'The plugin "{entry.name}" of the installed package "{package}" cannot be '
                 f"loaded: {type(error).__name__}: {error}."
@@ -221,7 +221,7 @@ def _names(plugin: type[Plugin[object]]) -> Iterator[str]:
 
 @functools.cache
 def _within(module: str) -> tuple[type[Plugin[object]], ...]:
-    """The plugins that a module of this package defines."""
+    """The plugins that a module in this package defines."""
     imported = importlib.import_module(f"cartwheel.plugins.{module}")
     return tuple(
         each

@@ -44,8 +44,7 @@ class BumperParameters:
 class Bumper(Plugin[Any]):
     """Publishes the contacts of a sensor's collisions as ContactsState messages.
 
-    Without contacts, messages with empty ``states`` are published. Source: gazebo_plugins,
-    gazebo_ros_bumper.
+    When nothing is in contact, ``states`` is empty. Source: gazebo_plugins, gazebo_ros_bumper.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_bumper.so",)
@@ -111,9 +110,9 @@ class Bumper(Plugin[Any]):
 
 
 def watched_collisions(plugin: Plugin[Any], sensor: Sensor) -> set[str]:
-    """Returns ``link::collision`` of all collisions that a contact sensor names.
+    """Returns ``link::collision`` for each collision of a contact sensor.
 
-    All spellings of Gazebo are accepted. Unknown names are reported.
+    All of Gazebo's spellings are accepted. Unknown names are reported.
     """
     spellings: dict[str, str] = {}
     for link in plugin.part.description.links:

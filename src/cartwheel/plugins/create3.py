@@ -60,8 +60,8 @@ class Create3BumperParameters:
 class Create3Bumper(_Hazard):
     """Publishes the pressed zone of the bumper as a HazardDetection of type BUMP.
 
-    The frame ID names one of five zones, such as ``bump_front_left``. If several zones are pressed,
-    it is the one with the deepest contact. Source: irobot_create_gazebo_plugins, gazebo_ros_bumper.
+    The frame ID is one of five zones, such as ``bump_front_left``. If several zones are pressed, it
+    is the zone with the deepest contact. Source: irobot_create_gazebo_plugins, gazebo_ros_bumper.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_create_bumper.so",)
@@ -94,15 +94,15 @@ class Create3CliffParameters:
         "detection_threshold",
         default=0.01,
         unit="m",
-        doc="Distance to the floor from which a cliff is reported.",
+        doc="A cliff is reported if the floor is at least this far from the sensor.",
     )
-    frame: str = tag("frame_id", default="", doc="Frame ID of the messages.")
+    frame: str = tag("frame_id", default="", doc="Frame ID of the messages. Default: empty.")
 
 
 class Create3Cliff(_Hazard):
     """Publishes a HazardDetection of type CLIFF while the floor is too far from a ray sensor.
 
-    The nearest range of the sensor is compared with the threshold. Source:
+    The smallest range of the sensor is compared with the threshold. Source:
     irobot_create_gazebo_plugins, gazebo_ros_cliff_sensor.
     """
 
@@ -131,8 +131,8 @@ class Create3IntensityParameters:
 class Create3Intensity(Plugin[Create3IntensityParameters]):
     """Publishes the intensity of reflected infrared light.
 
-    The intensity is ``3500 exp(-2 e d / max)`` at the distance d of the nearest obstacle, where max
-    is the maximum range of the ray sensor. Source: irobot_create_gazebo_plugins,
+    The intensity is ``3500 exp(-2 e d / max)``, where d is the distance of the nearest obstacle and
+    max is the maximum range of the ray sensor. Source: irobot_create_gazebo_plugins,
     gazebo_ros_ir_intensity_sensor.
     """
 
@@ -181,7 +181,7 @@ class Create3ImuParameters:
 class Create3Imu(ImuBase):
     """Publishes the measurements of an IMU sensor, with accelerations that exclude gravity.
 
-    Gazebo's plugin excludes gravity as well. Source: irobot_create_gazebo_plugins, gazebo_ros_imu.
+    Gazebo's plugin also excludes gravity. Source: irobot_create_gazebo_plugins, gazebo_ros_imu.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_create_imu.so",)
@@ -251,22 +251,23 @@ class Create3Mouse(Plugin[Create3MouseParameters]):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Create3WheelDropParameters:
-    joint: str = tag("joint_name", doc="Joint by which the wheel drops out of the robot.")
+    joint: str = tag("joint_name", doc="Suspension joint of the wheel.")
     threshold: float = tag(
         "detection_threshold",
         default=0.7,
         unit="m",
-        doc="Joint position of a dropped wheel. The wheel counts as dropped from 95 % of this "
-        "value until it is below 75 %.",
+        doc="Joint position of a fully dropped wheel. A wheel drop is reported from 95 % of this "
+        "value until the position is below 75 %.",
     )
-    frame: str = tag("frame_id", default="", doc="Frame ID of the messages.")
+    frame: str = tag("frame_id", default="", doc="Frame ID of the messages. Default: empty.")
     rate: float = tag("update_rate", default=62.0, unit="Hz", doc="Rate of checks and messages.")
 
 
 class Create3WheelDrop(_Hazard):
-    """Publishes a HazardDetection of type WHEEL_DROP while a wheel hangs out of the robot.
+    """Publishes a HazardDetection of type WHEEL_DROP while a wheel has dropped.
 
-    Source: irobot_create_gazebo_plugins, gazebo_ros_wheel_drop.
+    A wheel drops when it loses contact with the ground: its suspension joint extends. Source:
+    irobot_create_gazebo_plugins, gazebo_ros_wheel_drop.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_create_wheel_drop.so",)
@@ -283,7 +284,7 @@ class Create3WheelDrop(_Hazard):
         self._dropped = False
 
     def _looks(self) -> bool:
-        # The hysteresis must not depend on the presence of subscribers.
+        # The hysteresis must not depend on whether there are subscribers.
         return True
 
     def _look(self) -> None:

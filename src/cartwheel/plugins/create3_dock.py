@@ -28,7 +28,7 @@ class _Dock:
     robot: str = tag(
         "robot_model_name",
         default="",
-        doc="Accepted for compatibility: the plugin's own model is the robot.",
+        doc="No effect: the robot is the plugin's own model.",
     )
     receiver: str = tag("receiver_link_name", doc="Link of the robot's infrared receiver.")
     dock: str = tag("dock_model_name", default="", doc="Name of the dock's model in the world.")
@@ -79,10 +79,10 @@ class Create3OpcodeParameters(_Dock):
 
 
 class Create3Opcode(_Docking):
-    """Publishes the infrared codes of the dock that the robot's two receivers detect.
+    """Publishes the infrared codes from the dock that the robot's two receivers detect.
 
-    The dock emits a halo and a red and a green buoy. The range of a receiver is added to the range
-    of the light. Source: irobot_create_gazebo_plugins, gazebo_ros_ir_opcode.
+    The dock emits a halo, and a red and a green buoy signal. A receiver detects a signal up to the
+    sum of both ranges. Source: irobot_create_gazebo_plugins, gazebo_ros_ir_opcode.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_create_ir_opcode.so",)
@@ -136,8 +136,8 @@ class Create3DockStatusParameters(_Dock):
 class Create3DockStatus(_Docking):
     """Publishes whether the robot detects its dock and whether it is docked.
 
-    The dock counts as visible while its codes arrive on ``ir_opcode``. Nothing is published while
-    the world has no dock. Source: irobot_create_gazebo_plugins, gazebo_ros_docking_status.
+    The dock is visible while its codes are received on ``ir_opcode``. Nothing is published if the
+    world has no dock. Source: irobot_create_gazebo_plugins, gazebo_ros_docking_status.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_create_docking_status.so",)

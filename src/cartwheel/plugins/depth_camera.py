@@ -21,7 +21,7 @@ class DepthCameraParameters(CameraParameters):
     info_topic: str = tag(
         "cameraInfoTopicName",
         default="ir/camera_info",
-        doc="Topic of the CameraInfo of the colour images.",
+        doc="Topic of the CameraInfo for the colour images.",
     )
     depth_topic: str = tag(
         "depthImageTopicName", default="depth/image_raw", doc="Topic of the depth images."
@@ -29,38 +29,38 @@ class DepthCameraParameters(CameraParameters):
     depth_info_topic: str = tag(
         "depthImageCameraInfoTopicName",
         default="depth/camera_info",
-        doc="Topic of the CameraInfo of the depth images.",
+        doc="Topic of the CameraInfo for the depth images.",
     )
     points_topic: str = tag(
         "pointCloudTopicName", default="points", doc="Topic of the points (PointCloud2)."
     )
     nearest: float = tag(
-        "pointCloudCutoff", default=0.4, unit="m", doc="Depths up to this are nan."
+        "pointCloudCutoff", default=0.4, unit="m", doc="Depths at or below this value are NaN."
     )
     furthest: float = tag(
-        "pointCloudCutoffMax", default=math.inf, unit="m", doc="Depths from this on are nan."
+        "pointCloudCutoffMax",
+        default=math.inf,
+        unit="m",
+        doc="Depths at or above this value are NaN.",
     )
     millimetres: bool = tag(
         "useDepth16UC1Format",
         default=False,
-        doc="Publish depths as 16UC1 in mm, with 0 instead of nan.",
+        doc="Publish depths as 16UC1 in mm, with 0 instead of NaN.",
     )
-    baseline: float = tag(
-        "baseline", default=0.0, unit="m", doc="Accepted for compatibility; no effect."
-    )
+    baseline: float = tag("baseline", default=0.0, unit="m", doc="No effect.")
     reflectance_topic: str = tag("reflectanceTopicName", default="", doc="Not supported.")
     normals_topic: str = tag("normalsTopicName", default="", doc="Not supported.")
-    reduce_normals: int = tag(
-        "reduceNormals", default=50, doc="Accepted for compatibility; no effect."
-    )
+    reduce_normals: int = tag("reduceNormals", default=50, doc="No effect.")
 
 
 class DepthCamera(RosCamera[DepthCameraParameters]):
     """Publishes colour images, depth images and points of a depth camera.
 
-    Depths are along the optical axis. Points have x right, y down and z forward, so ``<frameName>``
-    should name an optical frame. The point cloud is organised: it has one point for each pixel,
-    with its colour in ``rgb``. Reflectance and normals are not published, as in Gazebo 11.
+    Depths are measured along the optical axis. Points have x right, y down and z forward, so
+    ``<frameName>`` should be an optical frame. The point cloud is organised: it contains one point
+    for each pixel, with the pixel's colour in ``rgb``. Reflectance and normals are not published,
+    as in Gazebo 11.
 
     Source: gazebo_plugins, gazebo_ros_depth_camera; REP 103 and 118.
     """
@@ -97,14 +97,14 @@ class DepthCamera(RosCamera[DepthCameraParameters]):
 @dataclass(frozen=True, kw_only=True, slots=True)
 class KinectParameters(DepthCameraParameters):
     furthest: float = tag(
-        "pointCloudCutoffMax", default=5.0, unit="m", doc="Depths from this on are nan."
+        "pointCloudCutoffMax", default=5.0, unit="m", doc="Depths at or above this value are NaN."
     )
 
 
 class OpenniKinect(DepthCamera):
     """Publishes colour images, depth images and points of a Kinect, by default up to 5 m.
 
-    Its tags and topics are those of ``libgazebo_ros_depth_camera.so``. Source: gazebo_plugins,
+    Tags and topics are the same as for ``libgazebo_ros_depth_camera.so``. Source: gazebo_plugins,
     gazebo_ros_openni_kinect.
     """
 

@@ -1,4 +1,4 @@
-"""``gz-sim-detachable-joint-system``: a joint to another model that can be detached."""
+"""``gz-sim-detachable-joint-system``: a fixed joint to a different model that can be detached."""
 
 from __future__ import annotations
 
@@ -18,7 +18,9 @@ _OWN = "__model__"
 @dataclass(frozen=True, kw_only=True, slots=True)
 class DetachableJointParameters:
     parent_link: str = tag("parent_link", doc="Link of this model.")
-    child_model: str = tag("child_model", doc="Model to attach. `__model__` is this model.")
+    child_model: str = tag(
+        "child_model", doc="Model to attach. `__model__` is the model that contains the plugin."
+    )
     child_link: str = tag("child_link", doc="Link of the child model.")
     detach_topic: str = tag(
         "detach_topic",
@@ -45,10 +47,10 @@ class DetachableJointParameters:
 
 
 class DetachableJoint(Plugin[DetachableJointParameters]):
-    """Attaches a link of another model to the own model until a message detaches it.
+    """Attaches a link of a different model to a link of this model until a message detaches it.
 
-    The links are attached from the start, in their current relative pose. A child that is spawned
-    later is attached as soon as it exists. Source: gz-sim, DetachableJoint.
+    The links are attached when the simulation starts, in their current relative pose. A child model
+    that is spawned later is attached as soon as it exists. Source: gz-sim, DetachableJoint.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("gz-sim-detachable-joint-system",)

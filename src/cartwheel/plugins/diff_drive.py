@@ -19,13 +19,13 @@ class DiffDriveParameters:
         "leftJoint",
         "left_joint",
         default=("left_joint",),
-        doc="Joint of the left wheel. Repeat for each pair.",
+        doc="Joint of the left wheel. Repeat the tag for each pair.",
     )
     right_joint: tuple[str, ...] = tag(
         "rightJoint",
         "right_joint",
         default=("right_joint",),
-        doc="Joint of the right wheel. Repeat for each pair.",
+        doc="Joint of the right wheel. Repeat the tag for each pair.",
     )
     pairs: int = tag("num_wheel_pairs", default=1, doc="Number of wheel pairs.")
     wheel_separation: tuple[float, ...] = tag(
@@ -33,15 +33,15 @@ class DiffDriveParameters:
         "wheel_separation",
         default=(0.34,),
         unit="m",
-        doc="Distance between the left and right wheel. Repeat for each pair; the last value "
-        "applies to the remaining pairs.",
+        doc="Distance between the left and right wheel. Repeat the tag for each pair; the last "
+        "value applies to the remaining pairs.",
     )
     wheel_diameter: tuple[float, ...] = tag(
         "wheelDiameter",
         "wheel_diameter",
         default=(0.15,),
         unit="m",
-        doc="Diameter of both wheels. Repeat for each pair; the last value applies to the "
+        doc="Diameter of both wheels. Repeat the tag for each pair; the last value applies to the "
         "remaining pairs.",
     )
     wheel_torque: float = tag(
@@ -86,8 +86,8 @@ class DiffDriveParameters:
         "odometrySource",
         "odometry_source",
         default="world",
-        doc="Source of the odometry. `world` (or `1`): true pose in the world; `encoder` (or "
-        "`0`): wheel rotation.",
+        doc="Source of the odometry. `world` (or `1`): ground-truth pose in the world; `encoder` "
+        "(or `0`): wheel rotation.",
     )
     publish_tf: bool = tag(
         "publishTf",
@@ -132,7 +132,7 @@ class DiffDriveParameters:
     legacy_mode: bool = tag(
         "legacyMode",
         default=False,
-        doc="Reverse the direction of turning, as in old releases of Gazebo's plugin.",
+        doc="Reverse the turning direction, as in old releases of Gazebo's plugin.",
     )
 
 
@@ -140,8 +140,8 @@ class DiffDrive(WheelDrive):
     """Drives pairs of wheels from Twist commands and publishes odometry.
 
     Each wheel is a velocity servo with the maximum torque ``<wheelTorque>``. A command stays in
-    effect until the next one. In a model inside a world, the topics of a ROS 1 tag without
-    ``<robotNamespace>`` are placed under the model's name. A tag counts as written for ROS 2 if it
+    effect until the next command. If the model is part of a world file, the topics of a ROS 1 tag
+    without ``<robotNamespace>`` are below the model's name. A tag is written for ROS 2 if it
     contains ``<ros>``, ``<left_joint>`` or ``<right_joint>``. Source: gazebo_plugins,
     gazebo_ros_diff_drive.
     """
@@ -209,7 +209,7 @@ class DiffDrive(WheelDrive):
                 f"(got {len(lefts)} left, {len(rights)} right)",
                 code=devices.WHEELS_UNPAIRED,
                 origin=self.tag.origin,
-                hint="<num_wheel_pairs> states the number of pairs.",
+                hint="<num_wheel_pairs> is the number of pairs.",
                 values={"left": len(lefts), "right": len(rights)},
             )
         separations, diameters = config.wheel_separation, config.wheel_diameter

@@ -25,7 +25,7 @@ class Drive(Plugin[Any]):
 
         Args:
             command_topic: Topic of the Twist commands.
-            base: Link whose true pose is published; the root link if no link has this name.
+            base: Link whose ground-truth pose is published; the root link if no link has this name.
             control_rate: Rate of the control loop, Hz.
             rate: Publish rate, Hz.
         """
@@ -56,7 +56,7 @@ class Drive(Plugin[Any]):
         raise NotImplementedError
 
     def _motion(self) -> tuple[Vec3, Quat, Vec3, Vec3]:
-        """Returns the true motion in the form of `planar_motion`."""
+        """Returns the ground-truth motion in the form of `planar_motion`."""
         return planar_motion(self._base)
 
     def _wanted(self) -> bool:

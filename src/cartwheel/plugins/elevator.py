@@ -49,9 +49,9 @@ class ElevatorParameters:
 class Elevator(Plugin[ElevatorParameters]):
     """Moves an elevator's car to the commanded floor and operates its door.
 
-    The sequence is: close the door, move, open, wait, close. Commands are ignored until it is
-    finished. Floor n is at the position n times ``<floor_height>`` of the lift joint. Source:
-    gazebo_plugins, gazebo_ros_elevator; Gazebo, ElevatorPlugin.
+    For each command the door closes, the car moves, and the door opens, waits and closes. New
+    commands are ignored until then. Floor n is at the position n times ``<floor_height>`` of the
+    lift joint. Source: gazebo_plugins, gazebo_ros_elevator; Gazebo, ElevatorPlugin.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_elevator.so", "libElevatorPlugin.so")
@@ -83,7 +83,7 @@ class Elevator(Plugin[ElevatorParameters]):
             drive.stop()
 
     def _drive(self, name: str, effort: float, speed: float, acceleration: float) -> _Drive:
-        """Creates the drive of a joint, whose name may be prefixed with the model's name."""
+        """Creates the drive of a joint, whose name can be prefixed with the model's name."""
         origin = self.tag.origin
         description = self.part.description
         if description.joint(name) is None:

@@ -12,23 +12,24 @@ from cartwheel.plugins.parameters import tag
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class F3DParameters:
-    body: str = tag("bodyName", doc="Link on which the force is measured.")
+    body: str = tag("bodyName", doc="Link on which the wrench is measured.")
     topic: str = tag(
         "topicName", default="f3d", doc="Topic of the WrenchStamped messages. Required in Gazebo."
     )
     frame: str = tag(
         "frameName",
         default="world",
-        doc="Frame ID of the messages. The values are always in the world's axes.",
+        doc="Frame ID of the messages. The values are always in the world frame.",
     )
 
 
 class F3D(Plugin[F3DParameters]):
     """Publishes the force and torque that contacts, attachments and wrenches exert on a link.
 
-    The torque is about the link's centre of mass, and both are in the world's axes. Gravity and the
-    forces of the link's joints are not included. A message is published at every step. Source:
-    gazebo_plugins, gazebo_ros_f3d.
+    Attachments are made by plugins such as grippers, and wrenches are applied by plugins or
+    services. The torque is about the link's centre of mass. Both vectors are in the world frame.
+    Gravity and joint reaction forces are not included. A message is published at every step.
+    Source: gazebo_plugins, gazebo_ros_f3d.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_f3d.so",)

@@ -19,11 +19,10 @@ class FootContactParameters:
 
 
 class FootContact(Plugin[FootContactParameters]):
-    """Publishes the contact force on a foot, in the axes of its link.
+    """Publishes the contact force on a foot, in the foot's link frame.
 
     The topic is ``/visual/<sensor>/the_force``. The force is the sum over all contacts of the
-    contact sensor's collisions; Gazebo publishes their mean. Source: unitree_gazebo,
-    foot_contact_plugin.
+    sensor's collisions; in Gazebo it is their mean. Source: unitree_gazebo, foot_contact_plugin.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libunitreeFootContactPlugin.so",)

@@ -19,14 +19,16 @@ class ForceParameters:
         "topicName", "topic_name", default="gazebo_ros_force", doc="Topic of the Wrench messages."
     )
     frame: Literal["world", "link"] = tag(
-        "force_frame", default="world", doc="Axes of the commanded wrench (ROS 2)."
+        "force_frame",
+        default="world",
+        doc="Frame of the commanded wrench (ROS 2).",
     )
 
 
 class Force(Plugin[ForceParameters]):
     """Applies the last received Wrench to a link, at its centre of mass.
 
-    The wrench stays in effect until the next message. Source: gazebo_plugins, gazebo_ros_force.
+    A wrench stays in effect until the next message. Source: gazebo_plugins, gazebo_ros_force.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_force.so",)

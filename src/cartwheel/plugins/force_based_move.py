@@ -1,4 +1,4 @@
-"""``libridgeback_ros_force_based_move.so``: a base that is moved by forces."""
+"""``libridgeback_ros_force_based_move.so``: a base that forces move."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class ForceBasedMoveParameters:
         doc="The robot stops after this time without a command.",
     )
     x_gain: float = tag(
-        "x_velocity_p_gain", default=10000.0, unit="N s/m", doc="Force per velocity error."
+        "x_velocity_p_gain", default=10000.0, unit="N s/m", doc="Force per linear velocity error."
     )
     y_gain: float = tag(
         "y_velocity_p_gain",
@@ -57,15 +57,15 @@ class ForceBasedMoveParameters:
         "yaw_velocity_p_gain",
         default=100.0,
         unit="N m s/rad",
-        doc="Torque per error of the angular velocity.",
+        doc="Torque per angular velocity error.",
     )
 
 
 class ForceBasedMove(Plugin[ForceBasedMoveParameters]):
     """Moves the robot in the plane by forces that follow Twist commands, and publishes odometry.
 
-    Force and torque are the gain times the velocity error and act at the centre of mass.
-    ``linear.x``, ``linear.y`` and ``angular.z`` are used. The odometry starts at the robot's
+    Force and torque are the gain times the velocity error, and act at the centre of mass.
+    ``linear.x``, ``linear.y`` and ``angular.z`` are used. The odometry is relative to the robot's
     initial pose. Source: ridgeback_gazebo_plugins; hector_gazebo_plugins.
     """
 

@@ -1,4 +1,4 @@
-"""``libgazebo_ros_ft_sensor.so`` and ``force_torque`` sensors: force and torque of a joint."""
+"""``libgazebo_ros_ft_sensor.so`` and ``force_torque`` sensors: the wrench on a joint."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class _JointWrench(Plugin[Any]):
         self.part.schedule(rate, after=self._publish, active=lambda: self._publisher.wanted)
 
     def _measure(self) -> list[float]:
-        """Force in N and torque in N m that the child exerts on the parent, in the child's axes."""
+        """Returns force (N) and torque (N m) of the child link on the parent, in its frame."""
         force, torque = self._child.reaction(self._anchor.position)
         return [*force.tolist(), *torque.tolist()]
 
@@ -72,7 +72,7 @@ class FtSensorParameters:
     body: str = tag(
         "body_name",
         default="",
-        doc="Link on which external forces are measured instead of a joint's, as by "
+        doc="Link on which external forces are measured instead of a joint's wrench, as with "
         "`libgazebo_ros_f3d.so` (ROS 2).",
     )
     topic: str = tag(
@@ -96,15 +96,15 @@ class FtSensorParameters:
         "update_rate",
         default=0.0,
         unit="Hz",
-        doc="Publish rate. 0: the `<update_rate>` of the sensor that contains the plugin, or "
+        doc="Publish rate. 0: the `<update_rate>` of the sensor that contains the plugin, or else "
         "every step.",
     )
 
 
 class FtSensor(_JointWrench):
-    """Publishes the force and torque that a joint's child link exerts on its parent.
+    """Publishes the force and torque that a joint's child link exerts on its parent link.
 
-    The wrench is in the axes of the child link, and the torque is about the joint. A hanging load
+    The wrench is in the child link's frame, and the torque is about the joint. A hanging load
     exerts a downward force. Fixed joints are supported without ``<preserveFixedJoint>``. Source:
     gazebo_plugins, gazebo_ros_ft_sensor.
     """
@@ -119,7 +119,7 @@ class FtSensor(_JointWrench):
         self.check_not_negative("noise")
         rate = config.update_rate or (self.sensor.update_rate if self.sensor is not None else 0.0)
         if config.body:
-            # If both are named, Gazebo uses the link as well.
+            # If both tags are present, Gazebo also uses the link.
             self._child = self.part.link(config.body, origin=self.tag.origin)
             self.part.feel(config.body)
             self._offer(config.topic, frame=config.frame or "world", rate=rate)
@@ -152,14 +152,14 @@ class FtSensor(_JointWrench):
 
 
 class JointLoad:
-    """Measures the wrench of a ``force_torque`` sensor's joint, as its ``<force_torque>`` states.
+    """Measures the wrench of a ``force_torque`` sensor's joint, with the settings in its tag.
 
     Args:
         part: The robot.
         sensor: A sensor inside a joint.
 
     Raises:
-        PluginError: A word or a noise is not allowed.
+        PluginError: A keyword or the noise is not allowed.
     """
 
     def __init__(self, part: Part, sensor: Sensor) -> None:
@@ -216,13 +216,13 @@ class GzForceTorqueParameters:
 class GzForceTorque(_JointWrench):
     """Publishes the force and torque on the joint that contains a ``force_torque`` sensor.
 
-    ``<frame>`` selects the axes: ``child`` (default), ``parent`` or ``sensor``.
+    ``<frame>`` selects the frame of the vectors: ``child`` (default), ``parent`` or ``sensor``.
     ``<measure_direction>`` selects the sign: ``child_to_parent`` (default) or ``parent_to_child``.
     ``<force>`` and ``<torque>`` can contain noise for each axis.
 
     The default frame ID is the child or parent link. For ``sensor`` it is the child link, or the
-    sensor's name if the sensor is rotated in its link. Source: gz-sensors, ForceTorqueSensor;
-    sdformat.
+    sensor's name if the sensor is rotated relative to its link. Source: gz-sensors,
+    ForceTorqueSensor; sdformat.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ()

@@ -36,7 +36,7 @@ def from_earth(x: float, y: float, z: float) -> Vec3:
         latitude = math.atan2(z + ECCENTRICITY2 * across * sin, distance)
     sin, cos = math.sin(latitude), math.cos(latitude)
     across = EQUATOR / math.sqrt(1 - ECCENTRICITY2 * sin * sin)
-    # Measured along the normal, which is accurate at the poles as well.
+    # Measured along the normal, which is also accurate at the poles.
     height = distance * cos + z * sin - across * (1 - ECCENTRICITY2 * sin * sin)
     return latitude, math.atan2(y, x), height
 
@@ -54,7 +54,7 @@ class Datum:
     """Angle of the world's x axis from east towards north, rad."""
 
     def east_north(self, vector: Vec3) -> Vec3:
-        """Converts a vector from the world's axes to east, north and up."""
+        """Converts a vector from the world frame to east, north and up."""
         x, y, z = vector
         cos, sin = math.cos(self.heading), math.sin(self.heading)
         return cos * x - sin * y, sin * x + cos * y, z

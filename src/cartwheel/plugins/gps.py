@@ -1,4 +1,4 @@
-"""Satellite navigation: hector's GPS, gps_sensor of ROS 2, and new Gazebo's ``navsat``."""
+"""Satellite navigation: hector's GPS, gps_sensor in ROS 2, and ``navsat`` in gz-sim."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class HectorGpsParameters:
     velocity_topic: str = tag(
         "velocityTopicName",
         default="fix_velocity",
-        doc="Topic of the velocity (Vector3Stamped): north, west, up.",
+        doc="Topic of the velocity (Vector3Stamped). Its components are north, west and up.",
     )
     frame: str = tag("frameId", default="/world", doc="Frame ID of the messages.")
     update_rate: float = tag(
@@ -49,38 +49,38 @@ class HectorGpsParameters:
     use_world: bool = tag(
         "useWorldSphericalCoordinates",
         default=False,
-        doc="Use the world's `<spherical_coordinates>` as the default of the reference.",
+        doc="Use the world's `<spherical_coordinates>` as the default reference.",
     )
     latitude: float | None = tag(
         "referenceLatitude",
         default=None,
         unit="degrees",
-        doc="Latitude of the world's origin. Default: 49.9, or the world's with "
+        doc="Latitude of the world's origin. Defaults to 49.9, or to the world's latitude with "
         "`<useWorldSphericalCoordinates>`.",
     )
     longitude: float | None = tag(
         "referenceLongitude",
         default=None,
         unit="degrees",
-        doc="Longitude of the world's origin. Default: 8.9, or the world's with "
+        doc="Longitude of the world's origin. Defaults to 8.9, or to the world's longitude with "
         "`<useWorldSphericalCoordinates>`.",
     )
     altitude: float | None = tag(
         "referenceAltitude",
         default=None,
         unit="m",
-        doc="Altitude of the world's origin. Default: 0, or the world's with "
+        doc="Altitude of the world's origin. Defaults to 0, or to the world's altitude with "
         "`<useWorldSphericalCoordinates>`.",
     )
     heading: float | None = tag(
         "referenceHeading",
         default=None,
         unit="degrees",
-        doc="Heading of the world's x axis, from north towards east. Default: 0 (x is north, y is "
-        "west), or the world's with `<useWorldSphericalCoordinates>`.",
+        doc="Heading of the world's x axis, clockwise from north. Defaults to 0 (x is north, y is "
+        "west), or to the world's heading with `<useWorldSphericalCoordinates>`.",
     )
-    status: int = tag("status", default=0, doc="Field `status` of NavSatStatus.")
-    service: int = tag("service", default=0, doc="Field `service` of NavSatStatus.")
+    status: int = tag("status", default=0, doc="Field `status` in NavSatStatus.")
+    service: int = tag("service", default=0, doc="Field `service` in NavSatStatus.")
     offset: tuple[float, float, float] = tag(
         "offset", default=_NONE, unit="m", doc="Constant error of the position."
     )
@@ -128,8 +128,8 @@ class HectorGpsParameters:
 class HectorGps(_Receiver):
     """Publishes the latitude, longitude, altitude and velocity of a link.
 
-    As in hector, the Earth is treated as flat around the reference; within a few kilometres the
-    error is below 1 m. Offset, drift, noise and scale are applied as in
+    As in hector_gazebo_plugins, the Earth is treated as flat around the reference point; within a
+    few kilometres the error is below 1 m. Offset, drift, noise and scale are applied as in
     ``libhector_gazebo_ros_imu.so``. Source: hector_gazebo_plugins, gazebo_ros_gps.
     """
 
@@ -247,8 +247,8 @@ class _GpsSensor(_Receiver):
         if datum is None:
             part.report(
                 devices.COORDINATES_MISSING.diagnostic(
-                    f'the world of sensor "{sensor.name}" has no <spherical_coordinates>: its '
-                    "origin is placed at latitude 0, longitude 0",
+                    f'the world of sensor "{sensor.name}" has no <spherical_coordinates>, so '
+                    "its origin is at latitude 0, longitude 0",
                     origin=sensor.origin,
                     values={"sensor": sensor.name},
                 )
@@ -291,7 +291,7 @@ class _GpsSensor(_Receiver):
         arm = np.array(pose.apply(self._mount)) - np.array(pose.position)
         x, y, z = (np.array(linear) + np.cross(angular, arm)).tolist()
         velocity: Vec3 = (x, y, z)
-        # Noise is added in the world's axes, which are then rotated by the heading.
+        # Noise is added in the world frame, then rotated by the heading.
         px, py, pz = self._noise.add(pose.apply(self._mount))
         latitude, longitude, height = self._datum.locate((px, py, pz))
         head = header(self.part.time_ns, self._frame)
@@ -313,10 +313,10 @@ class _GpsSensor(_Receiver):
 
 
 class GpsSensor(_GpsSensor):
-    """Publishes the position of a ``gps`` sensor on the Earth, and its velocity.
+    """Publishes the geographic position and the velocity of a ``gps`` sensor.
 
-    ``~/out`` is a NavSatFix; ``~/vel`` is the velocity along east, north and up. The noise of the
-    sensor's ``<gps>`` is applied, in m and m/s. The reference is the world's
+    ``~/out`` is a NavSatFix; ``~/vel`` is the velocity along east, north and up. The noise in the
+    sensor's ``<gps>`` is applied, in m and m/s. The position is relative to the world's
     ``<spherical_coordinates>``. Source: gazebo_plugins (ROS 2), gazebo_ros_gps_sensor.
     """
 
@@ -348,10 +348,10 @@ class GzNavSatParameters:
 
 
 class GzNavSat(_GpsSensor):
-    """Publishes the position of a ``navsat`` sensor on the Earth.
+    """Publishes the geographic position of a ``navsat`` sensor.
 
-    The reference is the world's ``<spherical_coordinates>``. The noise of the sensor's ``<navsat>``
-    is applied, in m. Source: gz-sensors, NavSatSensor.
+    The position is relative to the world's ``<spherical_coordinates>``. The noise in the sensor's
+    ``<navsat>`` is applied, in m. Source: gz-sensors, NavSatSensor.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ()

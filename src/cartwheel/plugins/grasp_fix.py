@@ -32,50 +32,53 @@ class GraspFixParameters:
         "arm",
         default=(),
         doc="A hand: `<arm_name>`, `<palm_link>`, and a `<gripper_link>` for each finger. Repeat "
-        "for each hand.",
+        "the tag for each hand.",
     )
     angle: float = tag(
         "forces_angle_tolerance",
         default=120.0,
         unit="°",
-        doc="Angle between the forces of two fingers above which they grip. From 90 to 180.",
+        doc="Two fingers grip an object if the angle between their forces exceeds this value. "
+        "From 90 to 180.",
     )
-    rate: float = tag("update_rate", default=5.0, unit="Hz", doc="Rate of checks.")
-    most: int = tag("max_grip_count", default=10, doc="Maximum of the grip counter.")
+    rate: float = tag(
+        "update_rate", default=5.0, unit="Hz", doc="Rate at which contacts are checked."
+    )
+    most: int = tag("max_grip_count", default=10, doc="Maximum value of the grip counters.")
     threshold: int | None = tag(
         "grip_count_threshold",
         default=None,
-        doc="An object is attached when the grip counter exceeds this. Defaults to half of "
+        doc="An object is attached when a grip counter exceeds this value. Defaults to half of "
         "`<max_grip_count>`.",
     )
     tolerance: float = tag(
         "release_tolerance",
         default=0.005,
         unit="m",
-        doc="Change of a finger's distance to the object that releases it.",
+        doc="An object can be released when its distance to a finger has changed by more than "
+        "this value.",
     )
     pass_through: bool = tag(
         "disable_collisions_on_attach",
         default=False,
         doc="Disable the collisions of the attached object.",
     )
-    contact_topic: str = tag(
-        "contact_topic", default="", doc="Accepted for compatibility; no effect."
-    )
+    contact_topic: str = tag("contact_topic", default="", doc="No effect.")
 
 
 class GraspFix(Plugin[GraspFixParameters]):
     """Attaches an object to the palm while fingers grip it from opposite sides.
 
-    At each check, a collision is gripped if the forces of two fingers on it are at an angle above
-    ``<forces_angle_tolerance>`` and the smaller force is at least 0.3 times the larger one. The
-    counter of a gripped collision increases by 1, that of others decreases by 1. Above the
-    threshold, the object is attached to the palm as by a fixed joint. It is released when its
-    counter is no longer above the threshold and a finger has moved. A hand holds one object at a
-    time.
+    The contacts are checked at ``<update_rate>``. A collision is gripped if the forces of two
+    fingers on it are at an angle above ``<forces_angle_tolerance>``, and the smaller force is at
+    least 0.3 times the larger one. Each check adds 1 to the grip counter of a gripped collision,
+    and subtracts 1 from the counters of all others. An object whose counter exceeds
+    ``<grip_count_threshold>`` is attached to the palm by a fixed joint. It is released when its
+    counter no longer exceeds the threshold and a finger has moved by more than
+    ``<release_tolerance>``. A hand holds one object at a time.
 
-    Events are published on ``/gazebo_grasp_plugin_event_republisher/grasp_events``, as by the
-    original's republisher. Source: JenniferBuehler, gazebo_grasp_plugin.
+    Events are published on ``/gazebo_grasp_plugin_event_republisher/grasp_events``, like those of
+    the original package's republisher. Source: JenniferBuehler, gazebo_grasp_plugin.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_grasp_fix.so",)

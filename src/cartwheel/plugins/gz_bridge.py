@@ -1,4 +1,4 @@
-"""A ros_gz_bridge configuration: names and types of new Gazebo's topics in ROS."""
+"""A ros_gz_bridge configuration: names and types of gz-sim's topics in ROS."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ IMAGES = ("/compressed", "/compressedDepth")
 
 
 def gz_topic(name: str) -> str:
-    """Converts a topic name of new Gazebo, which may contain dashes and leading digits, to ROS."""
+    """Converts a gz-sim topic name, which can contain dashes and leading digits, to ROS."""
     parts = [re.sub(r"\W", "_", part, flags=re.ASCII) for part in name.strip("/").split("/")]
     return "".join(f"/_{part}" if part[:1].isdigit() else f"/{part}" for part in parts)
 
@@ -41,8 +41,8 @@ class Bridged:
 class GzBridge:
     """The topics of a graph that a bridge renames in ROS.
 
-    Plugins look up the names of their topics here, so that the graph equals the one behind the
-    bridge.
+    Plugins look up the names of their topics here, so that the graph has the same topics as ROS has
+    behind the bridge.
     """
 
     def __init__(self) -> None:
@@ -53,7 +53,7 @@ class GzBridge:
 
     @classmethod
     def of(cls, graph: Graph) -> GzBridge:
-        """Returns the bridge of a graph, which is created empty."""
+        """Returns the bridge of a graph. It is empty initially."""
         bridge = _BY_GRAPH.get(graph)
         if bridge is None:
             bridge = _BY_GRAPH[graph] = cls()
@@ -154,7 +154,7 @@ def read_bridge(path: Path) -> list[Bridged]:
         raise _invalid(
             "the file is not a list of topics",
             origin,
-            "Use the file of ros_gz_bridge's parameter config_file.",
+            "Pass the file that ros_gz_bridge uses as config_file.",
         )
     return [_bridged(entry, Origin(file=str(path), line=line)) for entry, line in entries]
 
@@ -179,7 +179,7 @@ def _bridged(entry: Any, origin: Origin) -> Bridged:
         raise _invalid("an entry must be a mapping", origin)
     both = entry.get("topic_name")
     ros, gz = (entry.get(f"{which}_topic_name") or both for which in ("ros", "gz"))
-    # As in ros_gz_bridge: a missing name equals the other one.
+    # As in ros_gz_bridge, a missing name defaults to the other name.
     ros, gz = ros or gz, gz or ros
     kind = entry.get("ros_type_name")
     if not isinstance(gz, str) or not isinstance(ros, str) or not isinstance(kind, str):

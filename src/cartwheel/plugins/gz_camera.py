@@ -1,4 +1,4 @@
-"""Cameras of new Gazebo: sensors that need no plugin."""
+"""Cameras in gz-sim, which need no plugin."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ class GzCameraParameters:
         "topic",
         default="",
         doc="Topic of the images; see above. Default: "
-        "`/world/<world>/model/<model>/link/<link>/sensor/<sensor>`, for a camera followed by "
-        "`/image` and for a depth camera by `/depth_image`.",
+        "`/world/<world>/model/<model>/link/<link>/sensor/<sensor>`, followed by `/image` for "
+        "a camera and by `/depth_image` for a depth camera.",
     )
     frame: str = tag(
         "camera/optical_frame_id",
@@ -36,19 +36,22 @@ class GzCameraParameters:
     info_topic: str = tag(
         "camera/camera_info_topic",
         default="",
-        doc="Topic of the CameraInfo. Default: `camera_info` beside the image.",
+        doc="Topic of the CameraInfo. Default: `camera_info` next to the image topic.",
     )
     triggered: bool = tag(
-        "camera/triggered", default=False, doc="Publish an image only on a trigger."
+        "camera/triggered", default=False, doc="Publish an image only after a trigger message."
     )
     nearest: float = tag(
-        "camera/depth_camera/clip/near", default=0.0, unit="m", doc="Depths up to this are -inf."
+        "camera/depth_camera/clip/near",
+        default=0.0,
+        unit="m",
+        doc="Depths at or below this value are -inf.",
     )
     furthest: float = tag(
         "camera/depth_camera/clip/far",
         default=math.inf,
         unit="m",
-        doc="Depths from this on are inf.",
+        doc="Depths at or above this value are inf.",
     )
     trigger_topic: str = tag(
         "camera/trigger_topic",
@@ -58,13 +61,13 @@ class GzCameraParameters:
 
 
 class GzCamera(CameraBase[GzCameraParameters]):
-    """Publishes the images of camera, depth_camera and rgbd_camera sensors of new Gazebo.
+    """Publishes the images of gz-sim's camera, depth_camera and rgbd_camera sensors.
 
     A camera publishes images on ``<topic>``. An RGB-D camera publishes images on ``<topic>/image``,
     depths on ``<topic>/depth_image`` and points on ``<topic>/points``. A depth camera publishes
-    depths on ``<topic>`` and points on ``<topic>/points``. ``camera_info`` is beside the image.
-    Depths are along the optical axis, and inf without a hit. Points have x forward, y left and z
-    up, as in new Gazebo.
+    depths on ``<topic>`` and points on ``<topic>/points``. ``camera_info`` is next to the image
+    topic. Depths are measured along the optical axis, and are inf where nothing is hit. Points have
+    x forward, y left and z up, as in gz-sim.
 
     Source: gz-sensors, CameraSensor, DepthCameraSensor, RgbdCameraSensor; ros_gz_bridge.
     """

@@ -1,4 +1,4 @@
-"""Contact sensors of new Gazebo, which need no plugin."""
+"""Contact sensors in gz-sim, which need no plugin."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class GzContactParameters:
 class GzContact(Bumper):
     """Publishes the contacts of a sensor's collisions as gazebo_msgs/ContactsState.
 
-    Without contacts, messages with empty ``states`` are published. Source: gz-sim, Contact.
+    When nothing is in contact, ``states`` is empty. Source: gz-sim, Contact.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ()

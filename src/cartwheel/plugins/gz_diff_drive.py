@@ -1,4 +1,4 @@
-"""``gz-sim-diff-drive-system``: the differential drive of new Gazebo."""
+"""``gz-sim-diff-drive-system``: gz-sim's differential drive."""
 
 from __future__ import annotations
 
@@ -24,12 +24,14 @@ CONTROL_RATE = 100.0
 @dataclass(frozen=True, kw_only=True, slots=True)
 class GzDiffDriveParameters(GzLimitedParameters):
     left_joint: tuple[str, ...] = tag(
-        "left_joint", default=("left_joint",), doc="Joint of a left wheel. Repeat for each wheel."
+        "left_joint",
+        default=("left_joint",),
+        doc="Joint of a left wheel. Repeat the tag for each wheel.",
     )
     right_joint: tuple[str, ...] = tag(
         "right_joint",
         default=("right_joint",),
-        doc="Joint of a right wheel. Repeat for each wheel.",
+        doc="Joint of a right wheel. Repeat the tag for each wheel.",
     )
     wheel_separation: float = tag(
         "wheel_separation", default=1.0, unit="m", doc="Distance between the left and right wheels."
@@ -40,8 +42,7 @@ class GzDiffDriveParameters(GzLimitedParameters):
 class GzDiffDrive(WheelDrive):
     """Drives left and right wheels from Twist commands and publishes odometry from their rotation.
 
-    The torque of the wheels is limited only by the effort limits of their joints. Source: gz-sim,
-    DiffDrive.
+    The wheel torque is limited only by the effort limits of the joints. Source: gz-sim, DiffDrive.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("gz-sim-diff-drive-system",)

@@ -1,4 +1,4 @@
-"""Common parts of new Gazebo's drives: topics under the model's name, limits, odometry."""
+"""Common parts of gz-sim's drives: topics under the model's name, limits, odometry."""
 
 from __future__ import annotations
 
@@ -45,31 +45,31 @@ class GzDriveParameters:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class GzCommonLimits(GzDriveParameters):
-    """Limits for linear and angular motion."""
+    """Limits on linear and angular motion."""
 
     min_velocity: float | None = tag(
         "min_velocity",
         default=None,
         unit="m/s, rad/s",
-        doc="Minimum of the command. Default: no limit.",
+        doc="Minimum commanded velocity. Default: no limit.",
     )
     max_velocity: float | None = tag(
         "max_velocity",
         default=None,
         unit="m/s, rad/s",
-        doc="Maximum of the command. Default: no limit.",
+        doc="Maximum commanded velocity. Default: no limit.",
     )
     min_acceleration: float | None = tag(
         "min_acceleration",
         default=None,
         unit="m/s², rad/s²",
-        doc="Minimum acceleration of the command. Default: no limit.",
+        doc="Minimum commanded acceleration. Default: no limit.",
     )
     max_acceleration: float | None = tag(
         "max_acceleration",
         default=None,
         unit="m/s², rad/s²",
-        doc="Maximum acceleration of the command. Default: no limit.",
+        doc="Maximum commanded acceleration. Default: no limit.",
     )
     min_jerk: float | None = tag("min_jerk", default=None, unit="m/s³", doc="Not supported.")
     max_jerk: float | None = tag("max_jerk", default=None, unit="m/s³", doc="Not supported.")
@@ -77,7 +77,7 @@ class GzCommonLimits(GzDriveParameters):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class GzLimitedParameters(GzCommonLimits):
-    """Separate limits for linear and angular motion, which override the common ones."""
+    """Separate limits for linear and angular motion, which override the common limits."""
 
     min_linear_velocity: float | None = tag(
         "min_linear_velocity", default=None, unit="m/s", doc="Overrides `<min_velocity>`."
@@ -179,7 +179,7 @@ def _clamp(value: float, low: float | None, high: float | None) -> float:
 
 
 def report_limits(plugin: Plugin[Any], limits: GzCommonLimits) -> None:
-    """Warns about jerk limits, which are not supported, and checks the others.
+    """Warns about jerk limits, which are not supported, and checks the other limits.
 
     Raises:
         PluginError: A minimum exceeds its maximum.
@@ -204,12 +204,12 @@ def report_limits(plugin: Plugin[Any], limits: GzCommonLimits) -> None:
 
 
 def gz_name(plugin: Plugin[Any], topic: str, default: str) -> str:
-    """Returns the global topic name of new Gazebo; the default is under the model's name."""
+    """Returns the global name of a gz-sim topic; the default is under the model's name."""
     return gz_topic(topic.strip() or f"model/{plugin.part.name}/{default}")
 
 
 def gz_odometry(plugin: Plugin[Any], config: GzDriveParameters) -> Odometry:
-    """Creates the odometry of a drive of new Gazebo.
+    """Creates the odometry of a gz-sim drive.
 
     Raises:
         PluginError: The rate is negative.

@@ -1,4 +1,4 @@
-"""Controllers of new Gazebo for single joints: position, velocity or force."""
+"""gz-sim's controllers for single joints: position, velocity or force."""
 
 from __future__ import annotations
 
@@ -25,20 +25,21 @@ class _Gains:
     d: float = tag("d_gain", default=0.0, doc="Derivative gain, which damps the joint.")
     i_max: float = tag("i_max", default=1.0, doc="Maximum of the integral term.")
     i_min: float = tag("i_min", default=-1.0, doc="Minimum of the integral term.")
-    cmd_max: float = tag("cmd_max", default=1000.0, doc="Maximum force, N m or N.")
-    cmd_min: float = tag("cmd_min", default=-1000.0, doc="Minimum force, N m or N.")
+    cmd_max: float = tag("cmd_max", default=1000.0, doc="Maximum output force, N m or N.")
+    cmd_min: float = tag("cmd_min", default=-1000.0, doc="Minimum output force, N m or N.")
     cmd_offset: float = tag(
         "cmd_offset", default=0.0, doc="Constant force added to the output, N m or N."
     )
     actuators: bool = tag("use_actuator_msg", default=False, doc="Not supported.")
     topic: str = tag(
-        "topic", default="", doc="Topic of the target (Float64); see above for the default."
+        "topic", default="", doc="Topic of the target (Float64). For the default, see above."
     )
     sub_topic: str = tag(
-        "sub_topic", default="", doc="Topic below `/model/<model>`, if `<topic>` is empty."
+        "sub_topic", default="", doc="Topic below `/model/<model>`. Used if `<topic>` is empty."
     )
     joints: tuple[str, ...] = tag(
-        "joint_name", doc="Joint to control. Repeat for each joint with the same target."
+        "joint_name",
+        doc="Joint to control. Repeat the tag for several joints with the same target.",
     )
 
 
@@ -51,7 +52,7 @@ class JointPositionParameters(_Gains):
         "use_velocity_commands",
         default=False,
         doc="Move to the target with a velocity of at most `<cmd_max>`, regardless of the load, "
-        "instead of by the PID controller.",
+        "instead of using the PID controller.",
     )
     initial: float = tag(
         "initial_position", default=0.0, most=FARTHEST, doc="Initial target, rad or m."
@@ -63,7 +64,7 @@ class JointVelocityParameters(_Gains):
     force: bool = tag(
         "use_force_commands",
         default=False,
-        doc="Control the velocity by the PID controller instead of a servo.",
+        doc="Control the velocity with the PID controller instead of a velocity servo.",
     )
     initial: float = tag(
         "initial_velocity", default=0.0, most=FARTHEST, doc="Initial target, rad/s or m/s."
@@ -71,7 +72,7 @@ class JointVelocityParameters(_Gains):
 
 
 class PidGains(Protocol):
-    """Parameters of a `GzPid`; limits may be infinite."""
+    """Parameters of a `GzPid`. Limits can be infinite."""
 
     @property
     def p(self) -> float: ...
@@ -97,7 +98,7 @@ class GzPid:
         self._integral = 0.0
 
     def force(self, error: float, seconds: float) -> float:
-        """Returns the force in N m or N. The derivative gain is a damping of the joint's servo."""
+        """Returns the force in N m or N. The derivative gain acts as the servo's damping."""
         gains = self._gains
         if gains.i:
             self._integral += gains.i * error * seconds
@@ -107,7 +108,7 @@ class GzPid:
 
 
 class _JointController(Plugin[Any]):
-    """Base class of controllers whose target is set by a topic and followed at each step."""
+    """Base class of controllers with a target from a topic, which they follow at each step."""
 
     def configure(self) -> None:
         config: _Gains = self.config
@@ -234,14 +235,14 @@ class JointController(_JointController):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ApplyJointForceParameters:
-    joint: str = tag("joint_name", doc="Joint to which the force is applied.")
+    joint: str = tag("joint_name", doc="Joint on which the force acts.")
 
 
 class ApplyJointForce(Plugin[ApplyJointForceParameters]):
-    """Applies the last commanded force, in N m or N, to a joint.
+    """Applies the last commanded force or torque to a joint.
 
-    The topic (Float64) is ``/model/<model>/joint/<joint>/cmd_force``. Source: gz-sim,
-    ApplyJointForce.
+    The command is a torque in N m for a revolute joint, and a force in N for a prismatic joint. The
+    topic (Float64) is ``/model/<model>/joint/<joint>/cmd_force``. Source: gz-sim, ApplyJointForce.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("gz-sim-apply-joint-force-system",)

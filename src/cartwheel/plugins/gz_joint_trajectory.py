@@ -37,12 +37,12 @@ class JointTrajectoryParameters:
     header_start: bool = tag(
         "use_header_start_time",
         default=False,
-        doc="Start trajectories at the stamp of their header instead of on arrival.",
+        doc="Start trajectories at their header stamp instead of on arrival.",
     )
     joints: tuple[str, ...] = tag(
         "joint_name",
         default=(),
-        doc="Joint to control. Repeat for each joint. Default: all joints with one axis.",
+        doc="Joint to control. Repeat the tag for each joint. Default: all joints with one axis.",
     )
     initial: tuple[float, ...] = tag(
         "initial_position",
@@ -55,13 +55,13 @@ class JointTrajectoryParameters:
     position_i_gain: tuple[float, ...] = _gains("position", "i_gain", "Integral gain of the")
     position_d_gain: tuple[float, ...] = _gains("position", "d_gain", "Derivative gain of the")
     position_i_min: tuple[float, ...] = _gains(
-        "position", "i_min", "Minimum of the integral term of the"
+        "position", "i_min", "Lower limit of the integral term of the"
     )
     position_i_max: tuple[float, ...] = _gains(
-        "position", "i_max", "Maximum of the integral term of the"
+        "position", "i_max", "Upper limit of the integral term of the"
     )
-    position_cmd_min: tuple[float, ...] = _gains("position", "cmd_min", "Minimum force of the")
-    position_cmd_max: tuple[float, ...] = _gains("position", "cmd_max", "Maximum force of the")
+    position_cmd_min: tuple[float, ...] = _gains("position", "cmd_min", "Lower force limit of the")
+    position_cmd_max: tuple[float, ...] = _gains("position", "cmd_max", "Upper force limit of the")
     position_cmd_offset: tuple[float, ...] = _gains(
         "position", "cmd_offset", "Constant force added by the"
     )
@@ -71,13 +71,13 @@ class JointTrajectoryParameters:
         "velocity", "d_gain", "No effect: derivative gain of the"
     )
     velocity_i_min: tuple[float, ...] = _gains(
-        "velocity", "i_min", "Minimum of the integral term of the"
+        "velocity", "i_min", "Lower limit of the integral term of the"
     )
     velocity_i_max: tuple[float, ...] = _gains(
-        "velocity", "i_max", "Maximum of the integral term of the"
+        "velocity", "i_max", "Upper limit of the integral term of the"
     )
-    velocity_cmd_min: tuple[float, ...] = _gains("velocity", "cmd_min", "Minimum force of the")
-    velocity_cmd_max: tuple[float, ...] = _gains("velocity", "cmd_max", "Maximum force of the")
+    velocity_cmd_min: tuple[float, ...] = _gains("velocity", "cmd_min", "Lower force limit of the")
+    velocity_cmd_max: tuple[float, ...] = _gains("velocity", "cmd_max", "Upper force limit of the")
     velocity_cmd_offset: tuple[float, ...] = _gains(
         "velocity", "cmd_offset", "Constant force added by the"
     )
@@ -105,12 +105,13 @@ class _Target:
 
 
 class GzJointTrajectory(Plugin[JointTrajectoryParameters]):
-    """Drives joints to the points of a trajectory, each until its time has passed.
+    """Drives joints to each point of a trajectory in turn, at the times of the points.
 
-    Points are not interpolated: a smooth motion needs dense points. The forces of the position
-    controller, the velocity controller and the point's effort are added. Gains default to 0.
-    ``<topic>_progress`` (Float32) is the share of the points reached. Source: gz-sim,
-    JointTrajectoryController.
+    Each point is the target until its ``time_from_start`` has passed. Points are not interpolated,
+    so smooth motion needs closely spaced points. The force on a joint is the sum of the outputs of
+    both controllers and the point's effort. Gains default to 0.
+    ``<topic>_progress`` (Float32) is the number of the current point divided by the total number
+    of points. Source: gz-sim, JointTrajectoryController.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("gz-sim-joint-trajectory-controller-system",)
@@ -160,7 +161,7 @@ class GzJointTrajectory(Plugin[JointTrajectoryParameters]):
         self._before_ns: int | None = None
 
     def _read(self, kind: str, index: int) -> _Gains:
-        """Returns the gains of a joint by its index; missing values are 0."""
+        """Returns the gains for a joint by its index; missing values are 0."""
 
         def number(name: str, default: float = 0.0) -> float:
             numbers: tuple[float, ...] = getattr(self.config, f"{kind}_{name}")
@@ -198,7 +199,7 @@ class GzJointTrajectory(Plugin[JointTrajectoryParameters]):
                 if len(values) not in (0, len(names)):
                     self.warn(
                         running.TRAJECTORY_INVALID,
-                        f"a trajectory is ignored: a point has {len(values)} {what} for "
+                        f"a trajectory is ignored because a point has {len(values)} {what} for "
                         f"{len(names)} joints",
                         values={"fault": what},
                     )
@@ -256,7 +257,7 @@ class GzJointTrajectory(Plugin[JointTrajectoryParameters]):
         effort = target.effort + position.force(target.position - joint.position, seconds)
         damping = gains[0].d
         if math.isinf(gains[1].cmd_max):
-            # A velocity gain is a damping, which the servo applies without delay.
+            # A velocity gain acts as damping, which the servo applies without delay.
             damping += gains[1].p
             slowed = gains[1].p * joint.velocity
             effort += velocity.force(target.velocity - joint.velocity, seconds) + slowed

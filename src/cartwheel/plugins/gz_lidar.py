@@ -1,4 +1,4 @@
-"""Lidars of new Gazebo, which need no plugin."""
+"""Lidars in gz-sim, which need no plugin."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class GzLidarParameters:
     topic: str = tag(
         "topic",
         default="",
-        doc="Topic of the LaserScan; the points are on `<topic>/points`. Default: "
+        doc="Topic of the LaserScan. The points are on `<topic>/points`. Default: "
         "`/world/<world>/model/<model>/link/<link>/sensor/<sensor>/scan`.",
     )
     frame: str = tag(
@@ -45,8 +45,8 @@ class GzLidarParameters:
 class GzLidar(Plugin[GzLidarParameters]):
     """Publishes the middle row of a lidar as a LaserScan, and all rows as a PointCloud2.
 
-    The cloud is organised, starting with the lowest row; points without a hit are infinite.
-    ``gpu_lidar`` and ``gpu_ray`` detect visuals, ``lidar`` and ``ray`` collisions.
+    The cloud is organised and starts with the lowest row; points that hit nothing are infinite.
+    ``gpu_lidar`` and ``gpu_ray`` detect visuals; ``lidar`` and ``ray`` detect collisions.
 
     Source: gz-sensors, GpuLidarSensor; ros_gz_bridge for the types.
     """

@@ -1,4 +1,4 @@
-"""Sensors without a plugin, which the systems of new Gazebo serve by type."""
+"""Sensors without a plugin, which gz-sim's systems publish by type."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ _NEW_TAGS = ("topic", "gz_frame_id", "ignition_frame_id")
 
 
 def frame_tag(doc: str = "Frame ID of the messages. Defaults to the sensor's link.") -> Any:
-    """Returns the field for the frame ID of new Gazebo's sensors."""
+    """Returns the field for the frame ID of gz-sim's sensors."""
     return tag(
         "gz_frame_id",
         "ignition_frame_id",
@@ -68,12 +68,12 @@ def frame_tag(doc: str = "Frame ID of the messages. Defaults to the sensor's lin
 def publishes(sensor: Sensor, systems: Iterable[str]) -> bool:
     """Whether a sensor without a plugin publishes.
 
-    It does if its system is named, or if it is written for new Gazebo. Gazebo Classic's sensors
+    It publishes if its system is loaded, or if it is written for gz-sim. Gazebo Classic's sensors
     publish nothing to ROS without a plugin.
 
     Args:
         sensor: A sensor without a plugin.
-        systems: Short names of the systems that the world and the model name.
+        systems: Short names of the systems in the world and in the model.
     """
     if any(sensor.type in SYSTEMS.get(system, ()) for system in systems):
         return True
@@ -81,7 +81,7 @@ def publishes(sensor: Sensor, systems: Iterable[str]) -> bool:
 
 
 def own_tag(sensor: Sensor, known: Iterable[str]) -> PluginTag:
-    """Returns the sensor's element as the tag of the plugin that serves it.
+    """Returns the sensor's element as the tag of the plugin that publishes it.
 
     Only children that the plugin reads are kept.
     """

@@ -27,23 +27,24 @@ class HandOfGodParameters:
         "frameId",
         "frame_id",
         default="hog",
-        doc="Prefix of the frames `<frame>_desired` (target) and `<frame>_actual` (current pose). "
-        "If the tag contains `<ros>`, the default is `world`.",
+        doc="Prefix of the frames `<frameId>_desired` (target) and `<frameId>_actual` (current "
+        "pose). If the plugin tag contains `<ros>`, the default is `world`.",
     )
     stiffness: float = tag("kl", default=200.0, unit="N/m", doc="Stiffness of the linear spring.")
     turning: float = tag(
         "ka",
         default=200.0,
         unit="N m/rad",
-        doc="Stiffness of the rotational spring; the torque is half of it for 1 rad.",
+        doc="Rotational stiffness. The torque is half this value per rad.",
     )
 
 
 class HandOfGod(Plugin[HandOfGodParameters]):
-    """Pulls a link to a tf frame like a critically damped spring without counterforce.
+    """Pulls a link to a tf frame with a critically damped spring.
 
-    The target is ``<frame>_desired`` in ``world``, from the moment that tf provides it. The
-    transform to ``<frame>_actual`` is published. Source: gazebo_plugins, gazebo_ros_hand_of_god.
+    The target is the frame ``<frameId>_desired``, relative to ``world``. The link is pulled once tf
+    provides this transform. No other body receives the reaction force. The link's pose is published
+    as the frame ``<frameId>_actual``. Source: gazebo_plugins, gazebo_ros_hand_of_god.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_hand_of_god.so",)
@@ -94,7 +95,7 @@ class HandOfGod(Plugin[HandOfGodParameters]):
         if wanted is None:
             self._push.apply((-weight).tolist(), (0.0, 0.0, 0.0))
             return
-        # A stiff spring that uses the previous step's state is unstable.
+        # A stiff spring that uses the state of the previous step is unstable.
         self.part.locate()
         place, turned = link.place()
         linear, _ = link.motion(local=False)
@@ -104,12 +105,13 @@ class HandOfGod(Plugin[HandOfGodParameters]):
             np.subtract(wanted.position, place), linear, config.stiffness, link.mass, seconds
         )
         error = _logarithm(quat_multiply(quat_conjugate(turned), wanted.orientation))
-        # Gazebo damps all axes equally, by the inertia of the first one.
+        # Gazebo damps all axes equally, using the inertia about the first axis.
         torque = _pull(error, angular, config.turning, float(link.inertia[0]), seconds)
         self._push.apply((force - weight).tolist(), rotate(turned, torque.tolist()))
 
     def _publish(self) -> None:
-        # This plugin also receives this transform. It is harmless, since its parent is the world.
+        # This plugin also receives this transform, which has no effect because its parent is the
+        # world.
         place, turned = self._link.place()
         moved = self._Transform(self._Vector3(*place), self._Quaternion(*turned))
         head = header(self.part.time_ns, _WORLD)
@@ -121,7 +123,7 @@ class HandOfGod(Plugin[HandOfGodParameters]):
 def _pull(
     error: Array, speed: Sequence[float], stiffness: float, inertia: float, seconds: float
 ) -> Array:
-    """Returns the force of a critically damped, implicitly integrated spring, which is stable."""
+    """Returns the force of a critically damped spring, integrated implicitly for stability."""
     damping = 2.0 * math.sqrt(stiffness * inertia)
     now = np.asarray(speed, dtype=float)
     slowed = 1.0 + (damping + stiffness * seconds) * seconds / inertia
@@ -130,7 +132,7 @@ def _pull(
 
 
 def _logarithm(turn: Quat) -> Array:
-    """Returns half the rotation vector of a rotation, rad, shape (3,), by the shorter way."""
+    """Returns half the rotation vector of the shorter rotation, rad, shape (3,)."""
     x, y, z, w = turn
     vector = np.array([x, y, z]) * (1.0 if w >= 0 else -1.0)
     length = float(np.linalg.norm(vector))

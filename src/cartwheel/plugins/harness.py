@@ -26,13 +26,14 @@ class HarnessParameters:
     joints: tuple[str, ...] = tag(
         "joint",
         default=(),
-        doc="Joint as in a model: prismatic, with the parent `world` and a `<child>` in this "
-        "model. Can be repeated.",
+        doc="Prismatic joint with the parent `world` and a `<child>` in this model, written as in "
+        "a model. Can be repeated.",
     )
     winch: str = tag(
         "winch",
         default="",
-        doc="Its `<joint>` names the joint that is wound. Its `<pid>` has no effect.",
+        doc="The winch. Its `<joint>` is the joint that the winch moves; its `<pid>` has no "
+        "effect.",
     )
     detach: str = tag(
         "detach", default="", doc="Joint that is detached by a message on the topic `detach`."
@@ -68,14 +69,14 @@ class _Rope:
 
 
 class Harness(Plugin[HarnessParameters]):
-    """Suspends links of the model from the world, and winds one of them up and down.
+    """Suspends links of the model from the world, and raises and lowers one of them with a winch.
 
     The winch follows ``/<model>/harness/velocity`` (Float32) in m/s. A message on
-    ``/<model>/harness/detach`` detaches the joint: a Bool that is true, or an Empty if the tag
-    contains ``<ros>``. In that case the topics are relative to the namespace.
+    ``/<model>/harness/detach`` detaches the joint in ``<detach>``: a Bool that is true, or an Empty
+    if the tag contains ``<ros>``. With ``<ros>``, the topics are relative to the namespace.
 
-    A rope can only pull. While the robot stands on the ground, the rope is slack and holds nothing.
-    While it is taut, it holds the link rigidly, as the prismatic joint would. Source:
+    A rope can only pull. While the robot stands on the ground, the rope is slack and exerts no
+    force. While the rope is taut, it holds the link rigidly, as the prismatic joint would. Source:
     gazebo_plugins, gazebo_ros_harness; Gazebo, HarnessPlugin.
     """
 

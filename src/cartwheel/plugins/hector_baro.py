@@ -21,12 +21,12 @@ class HectorBaroParameters:
     topic: str = tag(
         "topicName",
         default="pressure_height",
-        doc="Topic of the height (PointStamped, in z). Empty: not published.",
+        doc="Topic of the height (PointStamped, in z). Not published if empty.",
     )
     altimeter_topic: str = tag(
         "altimeterTopicName",
         default="altimeter",
-        doc="Topic of the Altimeter messages. Empty: not published.",
+        doc="Topic of the Altimeter messages. Not published if empty.",
     )
     frame: str = tag("frameId", default="", doc="Frame ID of the messages. Defaults to the link.")
     update_rate: float = tag(
@@ -47,15 +47,15 @@ class HectorBaroParameters:
     noise: float = tag(
         "gaussianNoise", default=0.0, unit="m", doc="Standard deviation of the noise."
     )
-    scale: float = tag("scaleError", default=1.0, doc="Scale factor of the height.")
+    scale: float = tag("scaleError", default=1.0, doc="Scale factor on the height.")
 
 
 class HectorBaro(Plugin[HectorBaroParameters]):
-    """Publishes the height of a link in the world, and its altitude with the air pressure.
+    """Publishes the height of a link in the world, its altitude and the air pressure.
 
-    ``pressure = qnh (1 - altitude / 44330 m) ^ 5.263157``, from the measured altitude. Offset,
-    drift, noise and scale are applied as in ``libhector_gazebo_ros_imu.so``. Source:
-    hector_quadrotor_gazebo_plugins, gazebo_ros_baro.
+    The pressure is computed from the measured altitude: ``pressure = qnh (1 - altitude / 44330 m) ^
+    5.263157``. Offset, drift, noise and scale are applied as in ``libhector_gazebo_ros_imu.so``.
+    Source: hector_quadrotor_gazebo_plugins, gazebo_ros_baro.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libhector_gazebo_ros_baro.so",)

@@ -45,19 +45,23 @@ class HectorImuParameters:
         "updateRate", default=0.0, unit="Hz", doc="Publish rate. 0: every step."
     )
     xyz_offset: tuple[float, float, float] = tag(
-        "xyzOffset", "xyzOffsets", default=_NONE, unit="m", doc="Position of the IMU in the link."
+        "xyzOffset",
+        "xyzOffsets",
+        default=_NONE,
+        unit="m",
+        doc="Position of the IMU in the link frame.",
     )
     rpy_offset: tuple[float, float, float] = tag(
         "rpyOffset",
         "rpyOffsets",
         default=_NONE,
         unit="rad",
-        doc="Orientation of the IMU in the link, as roll, pitch, yaw.",
+        doc="Orientation of the IMU in the link frame, as roll, pitch, yaw.",
     )
     noise: float = tag(
         "gaussianNoise",
         default=0.0,
-        doc="Standard deviation of the noise of angular velocity and acceleration. If positive, "
+        doc="Standard deviation of the noise on angular velocity and acceleration. If positive, "
         "it overrides `<accelGaussianNoise>` and `<rateGaussianNoise>`.",
     )
     accel_offset: tuple[float, float, float] = tag(
@@ -82,7 +86,7 @@ class HectorImuParameters:
         doc="Standard deviation of the acceleration's noise.",
     )
     accel_scale: tuple[float, float, float] = tag(
-        "accelScaleError", default=(1.0,) * 3, doc="Scale factor of the acceleration."
+        "accelScaleError", default=(1.0,) * 3, doc="Scale factor on the acceleration."
     )
     rate_offset: tuple[float, float, float] = tag(
         "rateOffset", default=_NONE, unit="rad/s", doc="Constant error of the angular velocity."
@@ -106,7 +110,7 @@ class HectorImuParameters:
         doc="Standard deviation of the angular velocity's noise.",
     )
     rate_scale: tuple[float, float, float] = tag(
-        "rateScaleError", default=(1.0,) * 3, doc="Scale factor of the angular velocity."
+        "rateScaleError", default=(1.0,) * 3, doc="Scale factor on the angular velocity."
     )
     yaw_offset: float = tag(
         "yawOffset", "headingOffset", default=0.0, unit="rad", doc="Constant error of the yaw."
@@ -136,17 +140,17 @@ class HectorImuParameters:
         "yawScaleError",
         "headingScaleError",
         default=1.0,
-        doc="Accepted for compatibility; no effect.",
+        doc="No effect.",
     )
 
 
 class HectorImu(Plugin[HectorImuParameters]):
-    """Publishes angular velocity, acceleration and orientation of a link, with errors.
+    """Publishes angular velocity, acceleration and orientation of a link, with noise and drift.
 
     The acceleration includes the reaction to gravity. Each quantity has a constant offset, a slow
-    drift with its own standard deviation, and noise. The error of the acceleration also tilts the
-    orientation. The same seed produces the same errors, regardless of subscribers. Source:
-    hector_gazebo_plugins, gazebo_ros_imu; REP 145.
+    drift and noise. The acceleration error also tilts the orientation. The same seed produces the
+    same errors, whether or not the topic has subscribers. Source: hector_gazebo_plugins,
+    gazebo_ros_imu; REP 145.
     """
 
     filenames: ClassVar[tuple[str, ...]] = (

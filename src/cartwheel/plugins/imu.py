@@ -1,8 +1,8 @@
 """``libgazebo_ros_imu.so`` and ``libgazebo_ros_imu_sensor.so``: inertial measurement units.
 
-Both follow REP 145: angular velocity and proper acceleration (including the reaction to gravity)
-in the sensor's axes, and orientation relative to the world. Gazebo's model plugin rotates the
-angular velocity the wrong way and omits gravity.
+Both follow REP 145: angular velocity and proper acceleration (including the reaction to gravity) in
+the sensor frame, and orientation relative to the world. Gazebo's model plugin rotates the angular
+velocity the wrong way and omits gravity.
 """
 
 from __future__ import annotations
@@ -43,14 +43,14 @@ class ImuParameters:
         "rpyOffset",
         default=(0.0, 0.0, 0.0),
         unit="rad",
-        doc="Roll, pitch and yaw of the IMU in the link.",
+        doc="Roll, pitch and yaw of the IMU in the link frame.",
     )
     xyz_offset: tuple[float, float, float] = tag(
         "xyzOffset",
         "xyzOffsets",
         default=(0.0, 0.0, 0.0),
         unit="m",
-        doc="Position of the IMU in the link.",
+        doc="Position of the IMU in the link frame.",
     )
     update_rate: float = tag(
         "updateRate",
@@ -62,7 +62,7 @@ class ImuParameters:
 
 
 class ImuBase(Plugin[Any]):
-    """Base of the IMU plugins: publishes the measurements of an IMU on a link."""
+    """Base class of the IMU plugins, which publish the measurements of an IMU on a link."""
 
     with_gravity: ClassVar[bool] = True
     """Whether the acceleration includes gravity, as that of an accelerometer does."""
@@ -142,7 +142,9 @@ class ImuBase(Plugin[Any]):
 class Imu(ImuBase):
     """Publishes angular velocity, acceleration and orientation of an IMU on a link.
 
-    Source: gazebo_plugins, gazebo_ros_imu; REP 145.
+    The acceleration includes the reaction to gravity, and both vectors are in the IMU frame (REP
+    145). Gazebo's plugin rotates the angular velocity the wrong way and omits gravity. Source:
+    gazebo_plugins, gazebo_ros_imu.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_imu.so",)
@@ -204,20 +206,21 @@ class ImuSensorParameters:
         "initialOrientationAsReference",
         "initial_orientation_as_reference",
         default=False,
-        doc="Publish orientation relative to the spawn orientation instead of the world "
-        "(REP 145). "
-        "The sensor's `<orientation_reference_frame>` has priority.",
+        doc="Publish the orientation relative to the initial orientation instead of the world "
+        "(REP 145). The sensor's `<orientation_reference_frame>` takes precedence.",
     )
 
 
 class ImuSensor(ImuBase):
-    """Publishes the measurements of an ``imu`` sensor, with the noise that its ``<imu>`` states.
+    """Publishes the measurements of an ``imu`` sensor, with the noise specified in its ``<imu>``.
 
     With ``<ros>`` (ROS 2), the default topic is ``~/out``, which a ``<remapping>`` can rename.
-    Without it (ROS 1), the topic of a model in a world is below the model's name unless
-    ``<robotNamespace>`` is set. The orientation is relative to the world, or to the sensor's
-    ``<orientation_reference_frame>``. If ``<enable_orientation>`` is false, it is not measured: the
-    first element of its covariance is -1. Source: gazebo_plugins, gazebo_ros_imu_sensor; REP 145.
+    Without ``<ros>`` (ROS 1), if the model is part of a world file and ``<robotNamespace>`` is not
+    set, the topic is below the model's name.
+
+    The orientation is relative to the world, or to the sensor's ``<orientation_reference_frame>``.
+    If ``<enable_orientation>`` is false, the orientation is not measured and the first element of
+    its covariance is -1. Source: gazebo_plugins, gazebo_ros_imu_sensor; REP 145.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_imu_sensor.so",)
@@ -260,11 +263,11 @@ class GzImuParameters:
 
 
 class GzImu(ImuBase):
-    """Publishes the measurements of an ``imu`` sensor, with the noise that its ``<imu>`` states.
+    """Publishes the measurements of an ``imu`` sensor, with the noise specified in its ``<imu>``.
 
     The orientation is relative to the world, or to ``<orientation_reference_frame>``. If
-    ``<enable_orientation>`` is false, it is not measured: the first element of its covariance is
-    -1.
+    ``<enable_orientation>`` is false, the orientation is not measured and the first element of its
+    covariance is -1.
 
     Source: gz-sensors, ImuSensor; REP 145.
     """

@@ -34,15 +34,15 @@ _NORTH = {
 class InertialUnit:
     """Measures angular velocity, proper acceleration and orientation of an IMU on a link.
 
-    Angular velocity and acceleration are in the IMU's axes.
+    Angular velocity and acceleration are in the IMU frame.
 
     Args:
         part: The model's part of the simulation.
         link: Name of the link that carries the IMU.
         mount: Pose of the IMU in the link.
-        sensor: Sensor whose ``<imu>`` states noise and reference frame; None: neither.
-        from_first: Measure orientation relative to the spawn orientation, unless the sensor
-            states an ``<orientation_reference_frame>``.
+        sensor: Sensor whose ``<imu>`` specifies noise and reference frame; None: neither.
+        from_first: Measure the orientation relative to the initial one, unless the sensor has an
+            ``<orientation_reference_frame>``.
         origin: File and line for the error about an unknown link.
 
     Raises:
@@ -94,10 +94,10 @@ class InertialUnit:
         self.rate_noise, self.acceleration_noise = both
 
     def measure(self) -> tuple[Quat, Sequence[float], Sequence[float]]:
-        """Orientation, angular velocity in rad/s and proper acceleration in m/s², with noise.
+        """Returns orientation, angular velocity (rad/s) and proper acceleration (m/s²), with noise.
 
-        The orientation is relative to the world, or to ``<orientation_reference_frame>``. It has
-        no noise.
+        The orientation is relative to the world, or to ``<orientation_reference_frame>``. It has no
+        noise.
         """
         _, turned = self._link.place()
         orientation = IDENTITY
@@ -113,17 +113,17 @@ class InertialUnit:
 
     @property
     def gravity(self) -> Sequence[float]:
-        """Gravity in the world's axes, m/s²."""
+        """Gravity in the world frame, m/s²."""
         return self._link.gravity
 
     def rates(self) -> Sequence[float]:
-        """Angular velocity in the IMU's axes, rad/s, with the sensor's noise."""
+        """Angular velocity in the IMU frame with the sensor's noise, rad/s."""
         _, turning = self._link.motion(local=True)
         rates = self._turned(turning)
         return rates if self.rate_noise is None else self.rate_noise.add(rates)
 
     def _turned(self, vector: Sequence[float]) -> Sequence[float]:
-        """A vector in the link's axes, transformed to the IMU's."""
+        """Transforms a vector from the link frame to the IMU frame."""
         if self._aligned:
             return vector
         x, y, z = vector

@@ -1,4 +1,4 @@
-"""Checks between the graph and the plugins: commands that cannot be simulated are refused."""
+"""Wrappers that reject commands with values that cannot be simulated."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from cartwheel.simulation import Part
 from cartwheel.simulation.limits import STRONGEST, number
 
 
-def obeyable(
+def checked_callback(
     take: Callable[[Any], None],
     part: Part,
     warn: Callable[[Code, str], None],
@@ -21,13 +21,13 @@ def obeyable(
 ) -> Callable[[Any], None]:
     """Wraps a callback so that it only receives commands that can be simulated.
 
-    Other commands are ignored; the first one causes a warning.
+    Other commands are ignored. Only the first of them causes a warning.
 
     Args:
         take: Receives the valid messages.
-        part: Counts the commands.
+        part: Counts the valid commands.
         warn: Receives the code and the message of the warning.
-        unset: Accept NaN and infinity.
+        unset: Accept NaN and infinity, which some controllers use for values that are not set.
     """
     warned = False
 
@@ -39,21 +39,24 @@ def obeyable(
             take(message)
         elif not warned:
             warned = True
-            text = f"a command is ignored, and so are later commands of this kind: {reason}"
-            warn(running.COMMAND_NOT_SIMULATED, f"{text} cannot be simulated")
+            text = f"a command is ignored because {reason} cannot be simulated"
+            warn(
+                running.COMMAND_NOT_SIMULATED,
+                f"{text} (later ones on this topic are ignored without a warning)",
+            )
 
     return checked
 
 
-def obeyable_positions(
+def checked_positions(
     put: Callable[[Mapping[str, float], float], None], part: Part
 ) -> Callable[[Mapping[str, float], float], None]:
-    """A `JointInput.put` that raises a CartwheelError for positions that cannot be simulated."""
+    """Wraps `JointInput.put` so that positions that cannot be simulated raise a CartwheelError."""
 
     def checked(wanted: Mapping[str, float], seconds: float) -> None:
         for joint, position in wanted.items():
             number(position, f'the position of joint "{joint}"')
-        number(seconds, "the time to get there, in s,")
+        number(seconds, "the duration in s")
         part.count_command()
         put(wanted, seconds)
 

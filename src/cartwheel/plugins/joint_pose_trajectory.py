@@ -1,4 +1,4 @@
-"""``libgazebo_ros_joint_pose_trajectory.so``: joints set to the positions of a trajectory."""
+"""``libgazebo_ros_joint_pose_trajectory.so``: joints that are set to trajectory positions."""
 
 from __future__ import annotations
 
@@ -23,25 +23,25 @@ class JointPoseTrajectoryParameters:
     service: str = tag(
         "serviceName",
         default="set_joint_trajectory",
-        doc="Service of type SetJointTrajectory, which also sets a trajectory.",
+        doc="Service of type SetJointTrajectory, an alternative to the topic.",
     )
     update_rate: float = tag(
         "updateRate",
         "update_rate",
         default=0.0,
         unit="Hz",
-        doc="Rate at which due points are applied. 0: every step.",
+        doc="Rate at which trajectory points are applied. 0: every step.",
     )
 
 
 class JointPoseTrajectory(Plugin[JointPoseTrajectoryParameters]):
-    """Sets joint positions to the points of a trajectory, regardless of forces.
+    """Sets joint positions to the points of a trajectory, without simulating forces.
 
-    A point is applied ``time_from_start`` after the start. The start is the stamp of the header or
-    the time of arrival, whichever is later. (Gazebo accumulates the times of the points instead.)
-    The root link does not move: ``header.frame_id`` must be empty, the root link, ``world`` or
-    ``map``. Trajectories with another reference, and service requests with ``set_model_pose``, are
-    refused. Source: gazebo_plugins, gazebo_ros_joint_pose_trajectory.
+    Each point is applied when its ``time_from_start`` has passed since the start. The start is the
+    header stamp or the time of arrival, whichever is later. In Gazebo, each time counts from the
+    previous point instead. The root link is not moved, so ``header.frame_id`` must be empty, the
+    root link, ``world`` or ``map``. Trajectories with a different frame, and service requests with
+    ``set_model_pose``, are rejected. Source: gazebo_plugins, gazebo_ros_joint_pose_trajectory.
     """
 
     filenames: ClassVar[tuple[str, ...]] = (
@@ -88,7 +88,7 @@ class JointPoseTrajectory(Plugin[JointPoseTrajectoryParameters]):
         return self._Response(success=not problem, status_message=problem)
 
     def _take(self, trajectory: Any) -> str:
-        """Replaces the trajectory; returns an error message, empty if the trajectory is valid."""
+        """Replaces the trajectory. Returns an error message, or "" if the trajectory is valid."""
         names = list(trajectory.joint_names)
         unknown = [name for name in names if name not in self._handles]
         if unknown:

@@ -1,4 +1,4 @@
-"""``libgazebo_ros_joint_state_publisher.so`` and its counterpart of new Gazebo."""
+"""``libgazebo_ros_joint_state_publisher.so`` and its gz-sim counterpart."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from cartwheel.simulation.handles import JointHandle
 
 
 def _joints(plugin: Plugin[Any], names: list[str]) -> list[JointHandle]:
-    """The named joints; without names, all movable ones."""
+    """Returns the joints in the tag, or all movable joints if the tag is empty."""
     description = plugin.part.description
     if not names:
         names = [joint.name for joint in description.joints if joint.drivable]
@@ -39,7 +39,8 @@ class JointStatePublisherParameters:
         "jointName",
         "joint_name",
         default=(),
-        doc="Joints, separated by commas or as repeated tags. Defaults to all movable joints.",
+        doc="Joints to publish, separated by commas or in repeated tags. Defaults to all movable "
+        "joints.",
     )
     update_rate: float = tag(
         "updateRate",
@@ -53,10 +54,10 @@ class JointStatePublisherParameters:
 class JointStatePublisher(Plugin[JointStatePublisherParameters]):
     """Publishes positions and velocities of joints on ``joint_states``.
 
-    In a model of a world, or with an empty ``<robotNamespace>``, the topic is
-    ``/<model>/joint_states``, as in Gazebo Classic. A tag written for
-    ROS 2 (with ``<ros>``, ``<joint_name>`` or ``<update_rate>``) publishes on ``/joint_states``.
-    Source: gazebo_plugins, gazebo_ros_joint_state_publisher.
+    If the model is part of a world file, or if ``<robotNamespace>`` is empty, the topic is
+    ``/<model>/joint_states``, as in Gazebo Classic. A tag that is written for ROS 2 (it contains
+    ``<ros>``, ``<joint_name>`` or ``<update_rate>``) publishes on ``/joint_states``. Source:
+    gazebo_plugins, gazebo_ros_joint_state_publisher.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_joint_state_publisher.so",)
@@ -94,7 +95,7 @@ class GzJointStatePublisherParameters:
     names: tuple[str, ...] = tag(
         "joint_name",
         default=(),
-        doc="Joint, as a repeated tag for several. Defaults to all movable joints.",
+        doc="Joint to publish. Repeat the tag for each joint. Defaults to all movable joints.",
     )
     update_rate: float = tag(
         "update_rate", default=0.0, unit="Hz", doc="Publish rate. 0: every step."

@@ -56,16 +56,18 @@ class KobukiParameters:
     cliff_threshold: float = tag(
         "cliff_detection_threshold",
         unit="m",
-        doc="A cliff is reported if the distance to the floor is at least this.",
+        doc="A cliff is reported if the floor is at least this far from the sensor.",
     )
-    bumper: str = tag("bumper_name", doc="Name of the contact sensor of the bumper.")
+    bumper: str = tag("bumper_name", doc="Name of the bumper's contact sensor.")
     drop_left: str = tag(
         "wheel_drop_left_sensor_name",
-        doc="Name of the left wheel's contact sensor. Without contact, the wheel has dropped.",
+        doc="Name of the left wheel's contact sensor. While it has no contact, a wheel drop is "
+        "reported.",
     )
     drop_right: str = tag(
         "wheel_drop_right_sensor_name",
-        doc="Name of the right wheel's contact sensor. Without contact, the wheel has dropped.",
+        doc="Name of the right wheel's contact sensor. While it has no contact, a wheel drop is "
+        "reported.",
     )
     imu: str = tag("imu_name", doc="Name of the imu sensor.")
     publish_tf: bool = tag(
@@ -82,10 +84,10 @@ class KobukiParameters:
 class Kobuki(WheelDrive):
     """Drives a Kobuki base and publishes its odometry, IMU, bumper, cliff and wheel drop sensors.
 
-    The odometry combines the distance of the wheels with the rotation of the gyroscope. Contacts
-    press the centre bumper up to 30° from straight ahead, and the left and right bumpers from there
-    to 90°. Bumper, cliff and wheel drop events are published when their state changes. The robot
-    stops while its motor power is off. Source: kobuki_gazebo_plugins.
+    The odometry uses the travelled distance of the wheels and the rotation from the gyroscope. A
+    contact within 30° of straight ahead presses the centre bumper; a contact from 30° to 90°
+    presses the left or right bumper. Bumper, cliff and wheel drop events are published when their
+    state changes. The robot stops while its motor power is off. Source: kobuki_gazebo_plugins.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_kobuki.so",)
@@ -246,7 +248,7 @@ class Kobuki(WheelDrive):
     def _check_cliffs(self) -> None:
         for index, side in enumerate(_SIDES):
             scanner = self._floors[side]
-            # Only the first ray counts. Out of its range, the floor is at the maximum range.
+            # Only the first ray is used. If it is out of range, the floor is at the maximum range.
             floor = min(float(scanner.measure().ranges[0, 0]), scanner.pattern.maximum)
             cliff = floor >= self.config.cliff_threshold
             if cliff != self._cliff[side]:
@@ -281,7 +283,7 @@ class Kobuki(WheelDrive):
 
 
 def _bumper_of(normal: Array, heading: float) -> str:
-    """Bumper that a contact presses; empty behind the robot. The normal points into the robot."""
+    """Returns the pressed bumper; empty behind the robot. The normal points into the robot."""
     x, y, _ = (-normal).tolist()
     angle = math.remainder(math.atan2(y, x) - heading, 2 * math.pi)
     if abs(angle) > math.pi / 2:

@@ -21,7 +21,7 @@ class LinkAttacherParameters:
 
 
 class _Attacher(Plugin[LinkAttacherParameters]):
-    """Base of the attachers: stores the joint of each pair of links."""
+    """Base class of the attachers, which stores the joint of each pair of links."""
 
     parameters: ClassVar[type] = LinkAttacherParameters
     for_world: ClassVar[bool] = True
@@ -48,7 +48,7 @@ class _Attacher(Plugin[LinkAttacherParameters]):
         if joint is None:
             joint = self.part.attachment()
             self._joints.append(joint)
-        # If one of the two cannot move, it holds the other.
+        # If one of the links cannot move, it holds the other one.
         holder, link = (one, two) if two in self._surroundings.moving else (two, one)
         joint.hold(holder, link)
         self._pairs[frozenset((one, two))] = joint
@@ -58,7 +58,7 @@ class _Attacher(Plugin[LinkAttacherParameters]):
         self._pairs.pop(frozenset((one, two))).release()
 
     def places(self, *names: str) -> tuple[Place, Place]:
-        """The two links of a request.
+        """Returns the two links in a request.
 
         Args:
             names: Model, link, model, link.
@@ -81,7 +81,7 @@ class _Attacher(Plugin[LinkAttacherParameters]):
 
 
 class LinkAttacher(_Attacher):
-    """Attaches and detaches any two links of the world by service.
+    """Attaches and detaches any two links in the world by service.
 
     Attached links keep their relative pose, as with a fixed joint. Any number of pairs can be
     attached at a time. Failed requests return ``ok: false``. Unknown models and links also cause a
@@ -131,11 +131,11 @@ class LinkAttacher(_Attacher):
 
 
 class LinkAttacherRos2(_Attacher):
-    """Attaches and detaches any two links of the world by service (ROS 2).
+    """Attaches and detaches any two links in the world by service (ROS 2).
 
     Attached links keep their relative pose, as with a fixed joint. Any number of pairs can be
-    attached at a time; the original supports one. Failed requests return ``success: false`` with a
-    message. Source: IFRA-Cranfield, IFRA_LinkAttacher.
+    attached at a time; the original plugin supports one pair. Failed requests return ``success:
+    false`` with a message. Source: IFRA-Cranfield, IFRA_LinkAttacher.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_link_attacher.so",)

@@ -1,4 +1,4 @@
-"""``logical_camera`` sensors: the models in view and their poses."""
+"""``logical_camera`` sensors: models in view and their poses."""
 
 from __future__ import annotations
 
@@ -42,9 +42,9 @@ class LogicalCameraParameters:
 class LogicalCamera(Plugin[LogicalCameraParameters]):
     """Publishes the models in view, each with its pose relative to the sensor.
 
-    The sensor looks along its x axis. A model is in view if its frame is; objects do not hide each
-    other. ``pose`` is the pose of the sensor in the world. Source: gz-sensors,
-    LogicalCameraSensor; ros_gz_bridge.
+    The sensor looks along its x axis. A model is in view if the origin of its frame is in view.
+    Models do not occlude each other. ``pose`` is the pose of the sensor in the world. Source:
+    gz-sensors, LogicalCameraSensor; ros_gz_bridge.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ()

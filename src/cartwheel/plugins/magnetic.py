@@ -41,14 +41,14 @@ class HectorMagneticParameters:
     use_world: bool = tag(
         "useWorldSphericalCoordinates",
         default=False,
-        doc="Take the heading from the world's `<spherical_coordinates>`.",
+        doc="Use the heading in the world's `<spherical_coordinates>`.",
     )
     heading: float | None = tag(
         "referenceHeading",
         default=None,
         unit="degrees",
-        doc="Heading of the world's x axis, clockwise from north. Defaults to 0, or to the world's "
-        "heading with `<useWorldSphericalCoordinates>`.",
+        doc="Heading of the world's x axis, clockwise from north. Defaults to 0, or to the "
+        "world's heading with `<useWorldSphericalCoordinates>`.",
     )
     declination: float = tag(
         "declination",
@@ -81,15 +81,15 @@ class HectorMagneticParameters:
         "gaussianNoise", default=_NONE, doc="Standard deviation of the noise."
     )
     scale: tuple[float, float, float] = tag(
-        "scaleError", default=(1.0,) * 3, doc="Factor on the measured field."
+        "scaleError", default=(1.0,) * 3, doc="Scale factor on the measured field."
     )
 
 
 class HectorMagnetic(Plugin[HectorMagneticParameters]):
-    """Publishes the Earth's magnetic field in a link's axes.
+    """Publishes the Earth's magnetic field in the link frame.
 
-    The error model is that of `libhector_gazebo_ros_imu.so`: scale factor, constant error, drift
-    and noise. Source: hector_gazebo_plugins, gazebo_ros_magnetic.
+    The error model is the same as in `libhector_gazebo_ros_imu.so`: scale factor, constant error,
+    drift and noise. Source: hector_gazebo_plugins, gazebo_ros_magnetic.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libhector_gazebo_ros_magnetic.so",)
@@ -160,7 +160,7 @@ class GzMagnetometerParameters:
 
 
 class GzMagnetometer(Plugin[GzMagnetometerParameters]):
-    """Publishes the world's ``<magnetic_field>`` in the axes of a ``magnetometer`` sensor, in T.
+    """Publishes the world's ``<magnetic_field>`` in the frame of a ``magnetometer`` sensor, in T.
 
     Source: gz-sensors, MagnetometerSensor.
     """

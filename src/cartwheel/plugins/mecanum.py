@@ -29,22 +29,22 @@ class MecanumParameters(GzCommonLimits):
     front_left: tuple[str, ...] = tag(
         "front_left_joint",
         default=("front_left_joint",),
-        doc="Joint of the front left wheel. Repeat the tag for further wheels.",
+        doc="Joint of the front left wheel. Repeat the tag for additional wheels.",
     )
     front_right: tuple[str, ...] = tag(
         "front_right_joint",
         default=("front_right_joint",),
-        doc="Joint of the front right wheel. Repeat the tag for further wheels.",
+        doc="Joint of the front right wheel. Repeat the tag for additional wheels.",
     )
     back_left: tuple[str, ...] = tag(
         "back_left_joint",
         default=("back_left_joint",),
-        doc="Joint of the back left wheel. Repeat the tag for further wheels.",
+        doc="Joint of the back left wheel. Repeat the tag for additional wheels.",
     )
     back_right: tuple[str, ...] = tag(
         "back_right_joint",
         default=("back_right_joint",),
-        doc="Joint of the back right wheel. Repeat the tag for further wheels.",
+        doc="Joint of the back right wheel. Repeat the tag for additional wheels.",
     )
     wheel_base: float = tag(
         "wheelbase", default=1.0, unit="m", doc="Distance between the front and back axles."
@@ -58,10 +58,10 @@ class MecanumParameters(GzCommonLimits):
 class MecanumDrive(Plugin[MecanumParameters]):
     """Drives four mecanum wheels from Twist commands and publishes odometry.
 
-    If the collisions of the wheels model rollers (``<fdir1 gz:expressed_in="...">`` with different
-    ``<mu>`` and ``<mu2>``), friction moves the robot. Otherwise a servo pushes the robot, as
-    `libgazebo_ros_planar_move.so` does, and the wheels turn accordingly. The odometry integrates
-    the rotation of the wheels. Source: gz-sim, MecanumDrive.
+    If the wheel collisions model rollers (``<fdir1 gz:expressed_in="...">`` with different ``<mu>``
+    and ``<mu2>``), friction moves the robot. Otherwise a servo pushes the robot, as with
+    `libgazebo_ros_planar_move.so`, and the wheels turn at the corresponding speeds. The odometry is
+    computed from the rotation of the wheels. Source: gz-sim, MecanumDrive.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("gz-sim-mecanum-drive-system",)

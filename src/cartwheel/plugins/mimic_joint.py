@@ -1,4 +1,4 @@
-"""Joints that follow others: mimic joints, and the differential of a rocker."""
+"""Joints that follow other joints: mimic joints, and the differential of a rocker-bogie chassis."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ class MimicJointParameters:
         "multiplier",
         default=1.0,
         most=MOST_RATIO,
-        doc="Factor: following position = multiplier * leading position + offset.",
+        doc="Factor in: following position = multiplier * leading position + offset.",
     )
     offset: float = tag(
         "offset",
         default=0.0,
         unit="rad or m",
         most=FARTHEST,
-        doc="Added to the product.",
+        doc="Offset of the following position.",
     )
     max_effort: float = tag(
         "maxEffort", default=1.0, unit="N m or N", doc="No effect: the joint follows exactly."
@@ -44,9 +44,9 @@ class MimicJointParameters:
 
 
 class MimicJoint(Plugin[MimicJointParameters]):
-    """Makes a joint follow another one.
+    """Makes a joint follow a leading joint.
 
-    ``<mimic>`` in a URDF does the same without a plugin. Source:
+    ``<mimic>`` in a URDF has the same effect without a plugin. Source:
     roboticsgroup_upatras_gazebo_plugins, MimicJointPlugin.
     """
 
@@ -76,10 +76,10 @@ class DifferentialParameters:
 
 
 class Differential(Plugin[DifferentialParameters]):
-    """Couples two joints so that their angles are equal, like the differential of a rocker.
+    """Couples two joints so that their angles are equal, like a rocker-bogie differential.
 
-    Source: leo_gazebo_plugins, differential_plugin, which couples them by a spring of stiffness
-    ``forceConstant``.
+    In Gazebo, a spring of stiffness ``forceConstant`` couples the joints. Source:
+    leo_gazebo_plugins, differential_plugin.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libleo_gazebo_differential_plugin.so",)

@@ -1,4 +1,4 @@
-"""Propellers of multicopters: plugins of rotors_simulator, PX4 and new Gazebo."""
+"""Multicopter propellers: plugins from rotors_simulator, PX4 and gz-sim."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class _Motor:
         "motorConstant",
         default=8.54858e-06,
         unit="N s²/rad²",
-        doc="Thrust divided by the speed squared.",
+        doc="Thrust divided by the square of the propeller's speed.",
     )
     moment_constant: float = tag(
         "momentConstant",
@@ -46,22 +46,23 @@ class _Motor:
         doc="Torque on the parent link divided by the thrust.",
     )
     up: float = tag(
-        "timeConstantUp", default=1 / 80, unit="s", doc="Time constant of increasing speed."
+        "timeConstantUp", default=1 / 80, unit="s", doc="Time constant while the speed increases."
     )
     down: float = tag(
-        "timeConstantDown", default=1 / 40, unit="s", doc="Time constant of decreasing speed."
+        "timeConstantDown", default=1 / 40, unit="s", doc="Time constant while the speed decreases."
     )
     drag: float = tag(
         "rotorDragCoefficient",
         default=1e-4,
         unit="N s²/(m rad)",
-        doc="Drag for motion across the axis: force / (rotor speed * velocity).",
+        doc="Drag at a velocity perpendicular to the axis: force / (rotor speed * velocity).",
     )
     rolling: float = tag(
         "rollingMomentCoefficient",
         default=1e-6,
         unit="N s²/rad",
-        doc="Rolling moment for motion across the axis: torque / (rotor speed * velocity).",
+        doc="Rolling moment at a velocity perpendicular to the axis: torque / (rotor speed * "
+        "velocity).",
     )
     slowdown: float = tag(
         "rotorVelocitySlowdownSim",
@@ -71,7 +72,7 @@ class _Motor:
 
 
 class _MotorModel(Plugin[Any]):
-    """Turns a joint as commanded; applies thrust and drag to its link, moments to the parent."""
+    """Turns a joint as commanded. Applies thrust and drag to its link, moments to the parent."""
 
     def _start(self, *, topic: str, kind: str, field: str, number: int, fastest: float) -> None:
         config: _Motor = self.config
@@ -123,11 +124,11 @@ class _MotorModel(Plugin[Any]):
         self._wanted = min(float(speeds[self._number]), self._fastest)
 
     def _thrust(self, speed: float) -> float:
-        """N along the link's z axis, for a speed about the joint's axis in rad/s."""
+        """Returns the thrust in N along the link's z axis, at a joint speed in rad/s."""
         return self._sense * math.copysign(speed * speed, speed) * float(self.config.motor_constant)
 
     def _left(self, _along: float) -> float:
-        """Remaining share of the thrust at a velocity along the axis in m/s."""
+        """Returns the remaining fraction of the thrust at a velocity along the axis in m/s."""
         return 1.0
 
     def _rolling(self) -> float:
@@ -165,12 +166,13 @@ class RotorsMotorParameters(_Motor):
     topic: str = tag(
         "commandSubTopic",
         default="command/motor_speed",
-        doc="Topic of the Actuators commands, speeds in rad/s.",
+        doc="Topic of the Actuators commands, with speeds in rad/s.",
     )
     speed_topic: str = tag(
         "motorSpeedPubTopic",
         default="motor_speed",
-        doc="Topic of the velocity of the joint, not of the propeller, in rad/s.",
+        doc="Topic of the joint's velocity in rad/s. The propeller's velocity is "
+        "`<rotorVelocitySlowdownSim>` times larger.",
     )
     position_topic: str = tag(
         "motorPositionPubTopic",
@@ -185,7 +187,7 @@ class RotorsMotorParameters(_Motor):
 class RotorsMotorModel(_MotorModel):
     """Simulates a propeller: thrust proportional to the speed squared, drag and rolling moment.
 
-    The air is at rest. Source: rotors_gazebo_plugins, gazebo_motor_model.
+    There is no wind. Source: rotors_gazebo_plugins, gazebo_motor_model.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("librotors_gazebo_motor_model.so",)
@@ -225,7 +227,7 @@ class Px4MotorParameters(_Motor):
     topic: str = tag(
         "commandSubTopic",
         default="/gazebo/command/motor_speed",
-        doc="Topic of the Actuators commands, speeds in rad/s; below the model's name.",
+        doc="Topic of the Actuators commands, with speeds in rad/s. It is below the model's name.",
     )
     fastest: float = tag(
         "maxRotVelocity", default=838.0, unit="rad/s", doc="Maximum speed of the propeller."
@@ -234,13 +236,13 @@ class Px4MotorParameters(_Motor):
         "maxRelativeAirspeed",
         default=25.0,
         unit="m/s",
-        doc="Velocity along the axis at which the thrust reaches 0.",
+        doc="Velocity along the axis at which the thrust becomes 0.",
     )
     reversible: bool = tag("reversible", default=False, doc="Allow negative thrust.")
 
 
 class Px4MotorModel(_MotorModel):
-    """Simulates a propeller of PX4's models, whose thrust decreases with the airspeed.
+    """Simulates a PX4 propeller, whose thrust decreases with airspeed.
 
     Commands are mav_msgs/Actuators messages instead of PX4's own protocol. Source:
     PX4-SITL_gazebo-classic, gazebo_motor_model.
@@ -280,8 +282,8 @@ class GzMotorParameters(_Motor):
     topic: str = tag(
         "commandSubTopic",
         default="",
-        doc="Topic of the Actuators commands, speeds in rad/s; below `<robotNamespace>`, "
-        "or else below the model's name.",
+        doc="Topic of the Actuators commands, with speeds in rad/s. It is below "
+        "`<robotNamespace>`, or else below the model's name.",
     )
     fastest: float = tag(
         "maxRotVelocity", default=838.0, unit="rad/s", doc="Maximum speed of the propeller."

@@ -50,7 +50,7 @@ class MultiWheelParameters:
 class MultiWheelDrive(WheelDrive):
     """Drives any number of wheels on each side from Twist commands and publishes odometry.
 
-    All wheels of a side turn at the same speed. The odometry is the true pose. Source:
+    All wheels on a side turn at the same speed. The odometry is the ground-truth pose. Source:
     hector_gazebo_plugins, diffdrive_plugin_multi_wheel.
     """
 
@@ -62,12 +62,12 @@ class MultiWheelDrive(WheelDrive):
         left, right = config.left.split(), config.right.split()
         if not left or not right:
             raise PluginError(
-                "<leftJoints> and <rightJoints> must each name a joint",
+                "<leftJoints> and <rightJoints> must each contain a joint",
                 code=devices.WHEELS_UNPAIRED,
                 origin=self.tag.origin,
                 values={"left": len(left), "right": len(right)},
             )
-        # Surplus wheels of one side are paired with the last wheel of the other.
+        # Extra wheels on one side are paired with the last wheel on the other side.
         sides = itertools.zip_longest(left, right)
         pairs = [
             WheelPair(

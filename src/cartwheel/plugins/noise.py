@@ -1,4 +1,4 @@
-"""Sensor errors: SDF's Gaussian noise with bias, and the slow drift of hector_gazebo_plugins."""
+"""Sensor errors: SDF's Gaussian noise with bias, and hector_gazebo_plugins' slow drift."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from cartwheel.simulation import Part
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Noise:
-    """SDF's ``<noise>`` of one measured quantity."""
+    """SDF's ``<noise>`` on one measured quantity."""
 
     mean: float = 0.0
     stddev: float = 0.0
@@ -88,7 +88,7 @@ def read_noise(element: Element | None, report: Callable[[Diagnostic], None]) ->
 
 
 class _Drift:
-    """Gauss-Markov processes. Their values depend on time only, not on when they are read.
+    """Gauss-Markov processes. Their values depend only on time, not on when they are read.
 
     Args:
         part: Provides the seed and the time.
@@ -129,10 +129,10 @@ class _Drift:
         self._value = np.array(value, dtype=float)
 
     def now(self) -> Array:
-        """The current value, shape (n,)."""
+        """Current value, shape (n,)."""
         steps = (self._part.time_ns - self._updated_ns) // self._period_ns
         if steps < 0:
-            # Time was reset.
+            # Simulation time was reset.
             self.restart()
             return self._value
         self._updated_ns += steps * self._period_ns
@@ -143,13 +143,13 @@ class _Drift:
 
 
 class VectorNoise:
-    """Noise of several quantities that are measured together.
+    """Noise on several quantities that are measured together.
 
     Args:
         part: Provides the seed and the time.
         name: Name of the random sequence.
-        noises: One for each quantity.
-        rate: Hz at which they are measured; 0: at every step.
+        noises: Noise on each quantity.
+        rate: Measurement rate in Hz; 0: every step.
     """
 
     def __init__(self, part: Part, name: str, noises: Sequence[Noise], *, rate: float) -> None:
@@ -188,7 +188,7 @@ class VectorNoise:
         return total
 
     def add(self, values: Sequence[float]) -> Sequence[float]:
-        """The values with noise, as measured at the current time."""
+        """Adds noise to the values, as measured at the current time."""
         if self._none:
             return values
         measured = np.asarray(values) + self.offset
@@ -203,13 +203,13 @@ class VectorNoise:
 class DriftingError:
     """The error model of hector_gazebo_plugins: scale factor, offset, slow drift and noise.
 
-    The drift is a Gauss-Markov process with a constant standard deviation. (In the original, the
-    drift grows with the length of the step.) Its value depends on time only, not on subscribers.
+    The drift is a Gauss-Markov process with a constant standard deviation. (In the original plugin,
+    the drift grows with the step length.) Its value depends only on time, not on subscribers.
 
     Args:
         part: Provides the seed and the time.
         name: Name of the random sequence.
-        rate: Hz at which measurements are made; 0: at every step.
+        rate: Measurement rate in Hz; 0: every step.
         offset: Constant error.
         drift: Standard deviation of the drift.
         frequency: Inverse of the drift's time constant, 1/s.
@@ -257,7 +257,7 @@ class DriftingError:
         return total
 
     def add(self, values: Sequence[float] | Array) -> Array:
-        """The values with all errors, as measured at the current time, shape (n,)."""
+        """Adds all errors to the values, as measured at the current time, shape (n,)."""
         noise = self._part.random(self._name).normal(0.0, self._noise)
         measured: Array = np.asarray(values) * self._scale + self.bias + noise
         return measured

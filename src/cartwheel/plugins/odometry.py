@@ -23,7 +23,7 @@ UNKNOWN = 1e12
 
 
 def planar_covariance(x: float, y: float, yaw: float) -> Array:
-    """Covariance of a planar pose (m², rad²) or twist (m²/s², rad²/s²), shape (36,)."""
+    """Returns the covariance of a planar pose (m², rad²) or twist (m²/s², rad²/s²), shape (36,)."""
     return np.diag([x, y, UNKNOWN, UNKNOWN, UNKNOWN, yaw]).ravel()
 
 
@@ -96,8 +96,8 @@ class Odometry:
             time_ns: Time of the state.
             place: Position of the base in the odometry frame, m.
             turn: Orientation of the base in the odometry frame.
-            linear: Velocity in the base's axes, m/s, shape (3,).
-            angular: Angular velocity in the base's axes, rad/s.
+            linear: Velocity in the base frame, m/s, shape (3,).
+            angular: Angular velocity in the base frame, rad/s.
         """
         # The hottest path of all messages. Positional fields and shared sub-messages halve its
         # cost. Local names for the classes save attribute lookups.
@@ -137,7 +137,7 @@ class Odometry:
 
 
 def planar_motion(base: LinkHandle) -> tuple[Vec3, Quat, Vec3, Vec3]:
-    """True pose of a link in the world; planar velocity along its heading, m/s; yaw rate, rad/s."""
+    """Returns ground-truth pose in the world, planar velocity along the heading (m/s), yaw rate."""
     place, turned = base.place()
     (vx, vy, _), (_, _, turn_rate) = base.motion_at(place)
     yaw = yaw_of(turned)
@@ -158,7 +158,7 @@ class DeadReckoning:
 
     def go(self, forward: float, turn: float, seconds: float, *, sideways: float = 0.0) -> None:
         """Adds a motion along an arc: distance in m, rotation in rad, duration in s."""
-        # Along the chord of the arc: exact for constant wheel speeds.
+        # Along the chord of the arc, which is exact for constant wheel speeds.
         shrunk = math.sin(turn / 2) / (turn / 2) if abs(turn) > 1e-9 else 1.0
         cos, sin = math.cos(self.heading + turn / 2), math.sin(self.heading + turn / 2)
         self.x += shrunk * (forward * cos - sideways * sin)
@@ -169,7 +169,7 @@ class DeadReckoning:
             self.turn_rate = turn / seconds
 
     def motion(self) -> tuple[Vec3, Quat, Vec3, Vec3]:
-        """The estimate, in the form of `planar_motion`."""
+        """Returns the estimate in the form of `planar_motion`."""
         half = self.heading / 2
         return (
             (self.x, self.y, 0.0),
@@ -180,7 +180,7 @@ class DeadReckoning:
 
 
 class AxleReckoning(DeadReckoning):
-    """Dead reckoning from the rotation of the two wheels of an axle.
+    """Dead reckoning from the rotation of the two wheels on an axle.
 
     Args:
         left: Joint of the left wheel.
@@ -207,7 +207,8 @@ class AxleReckoning(DeadReckoning):
 
         Args:
             seconds: Time since the last call, s.
-            turn: Rotation of the robot in rad, if a gyroscope measures it; None: from the wheels.
+            turn: Rotation of the robot in rad, if a gyroscope measures it; None: computed from the
+                wheels.
         """
         turned = (self._left.position, self._right.position)
         if self._turned is not None:

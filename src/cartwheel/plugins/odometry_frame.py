@@ -1,4 +1,4 @@
-"""The child frame of ``odom``, chosen so that the transforms of a robot remain one tree."""
+"""The child frame of ``odom``, chosen so that a robot's transforms form a single tree."""
 
 from __future__ import annotations
 
@@ -16,10 +16,11 @@ if TYPE_CHECKING:
 class OdometryFrame:
     """Child frame of a drive's transform, and its pose in ``odom``.
 
-    A drive publishes the pose of its base link, and robot_state_publisher that of each link in its
-    parent. A base link that is fixed to the root would therefore have two parents, and tf would
-    drop one of them. In this case the drive publishes the transform of the root link, which is
-    equivalent, and the fixed transforms between the two on ``/tf_static``.
+    A drive publishes the pose of its base link, and robot_state_publisher publishes the pose of
+    each link relative to its parent. A base link that is fixed to the root link would therefore
+    have two parents, and tf would ignore one of them. In this case the drive publishes the
+    transform of the root link, which is equivalent, and the fixed transforms between the two links
+    on ``/tf_static``.
 
     Args:
         plugin: The drive.
@@ -40,7 +41,7 @@ class OdometryFrame:
         self.child = plugin.frame(chain[0].parent)
         poses = link_poses(description, {})
         to_root = poses[base].inverse() @ poses[chain[0].parent]
-        # If the two coincide, the pose is passed on bit for bit.
+        # If both frames coincide, the pose is passed on bit for bit.
         self._to_root = None if to_root == Pose() else to_root
         self._turned = to_root.orientation != IDENTITY
         for joint in chain:
@@ -60,7 +61,7 @@ class OdometryFrame:
         StaticTransforms.of(self._graph).put(self, self._sent)
 
     def place(self, position: Vec3, orientation: Quat) -> tuple[Vec3, Quat]:
-        """Pose of `child`, given the pose of the base link.
+        """Returns the pose of `child` for a pose of the base link.
 
         An unchanged orientation is returned as the same object.
         """

@@ -44,7 +44,7 @@ class P3DParameters:
         "xyz_offsets",
         default=(0.0, 0.0, 0.0),
         unit="m",
-        doc="Added to the position, in the axes of the frame.",
+        doc="Position offset, expressed in the reference frame.",
     )
     rpy_offset: tuple[float, float, float] = tag(
         "rpyOffset",
@@ -53,7 +53,7 @@ class P3DParameters:
         "rpy_offsets",
         default=(0.0, 0.0, 0.0),
         unit="rad",
-        doc="Rotation applied to the orientation, about the axes of the frame.",
+        doc="Rotation applied to the orientation, about the axes of the reference frame.",
     )
     noise: float = tag(
         "gaussianNoise",
@@ -72,10 +72,11 @@ class P3DParameters:
 
 
 class P3D(Plugin[P3DParameters]):
-    """Publishes the true pose and twist of a link as Odometry.
+    """Publishes the ground-truth pose and twist of a link as Odometry.
 
-    As in Gazebo, the twist is in the axes of the frame, not in those of the link. Source:
-    gazebo_plugins, gazebo_ros_p3d, which rotates the twist the wrong way if the frame is a link.
+    As in Gazebo, the twist is expressed in the reference frame instead of the link frame. If the
+    reference frame is a link, Gazebo rotates the twist the wrong way; Cartwheel does not. Source:
+    gazebo_plugins, gazebo_ros_p3d.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_p3d.so",)
@@ -97,8 +98,8 @@ class P3D(Plugin[P3DParameters]):
             else:
                 self.warn(
                     devices.FRAME_UNKNOWN,
-                    f'<frameName> "{config.frame}" is not a link: the pose in the world is '
-                    "published in a frame of that name; Gazebo publishes nothing",
+                    f'<frameName> "{config.frame}" is not a link, so the pose in the world '
+                    "is published with this frame ID (Gazebo publishes nothing)",
                     values={"frame": config.frame},
                 )
         self._turn = quat_from_rpy(*config.rpy_offset)
@@ -157,20 +158,20 @@ class WorldOdometryParameters(P3DParameters):
         "bodyName",
         "body_name",
         default="",
-        doc="Link whose pose is published. Defaults to the link that `<frameName>` names.",
+        doc="Link whose pose is published. Defaults to the link in `<frameName>`.",
     )
     frame: str = tag(
         "frameName",
         "frame_name",
         default="world",
-        doc="Frame name in the messages. The pose is always relative to the world.",
+        doc="Frame ID of the messages. The pose is always relative to the world.",
     )
 
 
 class WorldOdometry(P3D):
-    """Publishes the true pose of a link in the world, with the twist in the axes of the link.
+    """Publishes a link's ground-truth pose in the world, with the twist in the link frame.
 
-    Like `libgazebo_ros_p3d.so` in all other respects. Source: pal_gazebo_plugins,
+    Everything else is the same as for `libgazebo_ros_p3d.so`. Source: pal_gazebo_plugins,
     gazebo_world_odometry.
     """
 
@@ -188,7 +189,7 @@ class OdometryPublisherParameters:
     base_frame: str = tag(
         "robot_base_frame",
         default="",
-        doc="Frame of the model. Default: `<model>/base_footprint`.",
+        doc="Child frame of the odometry. Default: `<model>/base_footprint`.",
     )
     rate: float = tag(
         "odom_publish_frequency", default=50.0, unit="Hz", doc="Publish rate of all topics."
@@ -212,19 +213,19 @@ class OdometryPublisherParameters:
     dimensions: Literal["2", "3"] = tag(
         "dimensions",
         default="2",
-        doc="2: pose and twist in the ground plane (x, y, yaw); 3: in three dimensions.",
+        doc="2: pose and twist are in the ground plane (x, y, yaw); 3: in three dimensions.",
     )
     xyz_offset: tuple[float, float, float] = tag(
         "xyz_offset",
         default=(0.0, 0.0, 0.0),
         unit="m",
-        doc="Position of the base frame in the model.",
+        doc="Position of the base frame in the model frame.",
     )
     rpy_offset: tuple[float, float, float] = tag(
         "rpy_offset",
         default=(0.0, 0.0, 0.0),
         unit="rad",
-        doc="Roll, pitch and yaw of the base frame in the model.",
+        doc="Roll, pitch and yaw of the base frame in the model frame.",
     )
     noise: float = tag(
         "gaussian_noise",
@@ -234,7 +235,7 @@ class OdometryPublisherParameters:
 
 
 class OdometryPublisher(Plugin[OdometryPublisherParameters]):
-    """Publishes the true pose of the model in the world, with the twist in its own axes.
+    """Publishes the model's ground-truth pose in the world, with the twist in the model frame.
 
     Source: gz-sim, OdometryPublisher.
     """

@@ -37,8 +37,8 @@ def tag(
     """Declares a dataclass field that is read from a tag.
 
     Args:
-        names: The tag and its other spellings; the first one that exists is read. ``a/b`` is a
-            nested tag.
+        names: The tag and its alternative spellings; the first one that exists is read. ``a/b`` is
+            a nested tag.
         default: Value if none of the tags exists. Without a default, the tag is required.
         unit: SI unit of the value.
         most: Largest magnitude. Defaults to `LARGEST`, and for integers to 2**31 - 1.
@@ -52,7 +52,7 @@ def tag(
 
 
 def tags_of(cls: type) -> set[str]:
-    """All tags that a parameter dataclass reads."""
+    """Returns all tags that a parameter dataclass reads."""
     return {name for item in dataclasses.fields(cls) for name in item.metadata["tags"]}
 
 
@@ -78,9 +78,9 @@ def read(
     """Fills a parameter dataclass and reports unsupported tags.
 
     Args:
-        cls: The dataclass, with fields made by `tag`.
+        cls: The dataclass, with fields from `tag`.
         element: The element that contains the tags.
-        ignore: Further tags to accept without a report.
+        ignore: Additional tags to accept without a report.
 
     Returns:
         The parameters and the diagnostics.
@@ -127,7 +127,7 @@ def _unknown(element: Element, known: Iterable[str]) -> Diagnostic:
 
 
 def _first(element: Element) -> tuple[Element, Diagnostic]:
-    """The element with its first word only: Gazebo reads this one if it expects a single number."""
+    """Reduces an element to its first word, which Gazebo reads if it expects a single number."""
     word = element.text.split()[0]
     return dataclasses.replace(element, text=word), devices.PLUGIN_PARAMETER_NOT_SINGLE.diagnostic(
         f"<{element.tag}> must be one number, but contains several, so {word} is used",
@@ -138,11 +138,11 @@ def _first(element: Element) -> tuple[Element, Diagnostic]:
 
 
 def invalid(name: str, value: Value, wanted: str, origin: Origin | None) -> PluginError:
-    """The error for a parameter whose value is not allowed.
+    """Returns the error for a parameter whose value is not allowed.
 
     Args:
         name: The tag.
-        value: The stated value.
+        value: The specified value.
         wanted: The allowed values, as they follow "must be" in the message.
         origin: File and line of the tag.
     """
@@ -157,7 +157,7 @@ def invalid(name: str, value: Value, wanted: str, origin: Origin | None) -> Plug
 
 
 def missing(parent: str, name: str, origin: Origin | None, *, hint: str = "") -> PluginError:
-    """The error for a required tag that is missing in its parent, which is at `origin`."""
+    """Returns the error for a required tag that is missing in its parent, which is at `origin`."""
     return PluginError(
         f"<{parent}> requires <{name}>",
         code=devices.PLUGIN_PARAMETER_MISSING,
@@ -249,6 +249,6 @@ def _number(
 
 
 def shown(text: str) -> str:
-    """A value for an error message, shortened if it is long."""
+    """Returns a value for an error message, shortened if it is long."""
     text = text.strip()
     return text if len(text) <= _SHOWN else f"{text[:_SHOWN]}…"

@@ -1,4 +1,4 @@
-"""``libgazebo_ros_planar_move.so``, ``gz-sim-velocity-control-system``: drives with no wheels."""
+"""``libgazebo_ros_planar_move.so``, ``gz-sim-velocity-control-system``: drives without wheels."""
 
 from __future__ import annotations
 
@@ -70,8 +70,8 @@ class PlanarMoveParameters:
 class PlanarMove(Plugin[PlanarMoveParameters]):
     """Moves the robot in the plane from Twist commands and publishes odometry.
 
-    It needs no wheels: a servo pushes the whole robot, with at most five times its weight, so that
-    a wall stops it. The odometry is the true pose. Source: gazebo_plugins,
+    No wheels are needed: a servo pushes the whole robot with at most five times its weight, so
+    walls stop it. The odometry is the ground-truth pose. Source: gazebo_plugins,
     gazebo_ros_planar_move.
     """
 
@@ -153,7 +153,7 @@ class VelocityControlParameters:
 
 
 class VelocityControl(Plugin[VelocityControlParameters]):
-    """Holds the model at the commanded linear and angular velocity, in its own axes.
+    """Holds the model at the commanded linear and angular velocity, expressed in the model frame.
 
     All six degrees of freedom are controlled. Without an initial velocity, the model moves freely
     until the first command. Source: gz-sim, VelocityControl.
@@ -165,7 +165,7 @@ class VelocityControl(Plugin[VelocityControlParameters]):
     def configure(self) -> None:
         if self.tag.element.find("link_name"):
             raise PluginError(
-                "<link_name> is not supported: only whole models are moved",
+                "<link_name> is not supported because only whole models are moved",
                 code=devices.PLUGIN_PARAMETER_UNSUPPORTED,
                 origin=self.place_of("link_name"),
                 values={"parameter": "link_name"},

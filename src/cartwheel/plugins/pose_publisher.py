@@ -1,4 +1,4 @@
-"""``gz-sim-pose-publisher-system``: poses of the parts of a model."""
+"""``gz-sim-pose-publisher-system``: poses of a model and its parts."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ class PosePublisherParameters:
     nested: bool = tag(
         "publish_nested_model_pose",
         default=False,
-        doc="Publish the pose of the model. Models nested in it have no frames of their own.",
+        doc="Publish the pose of the model. Nested models have no separate frames.",
     )
     vector: bool = tag(
         "use_pose_vector_msg",
@@ -64,7 +64,7 @@ class PosePublisherParameters:
     static: bool = tag(
         "static_publisher",
         default=False,
-        doc="Publish poses that no joint can change on `<topic>_static` instead.",
+        doc="Publish constant poses, which no joint can change, on `<topic>_static` instead.",
     )
     static_rate: float | None = tag(
         "static_update_frequency",
@@ -151,7 +151,7 @@ class PosePublisher(Plugin[PosePublisherParameters]):
                     yield own, f"{own}/{_slashed(part.name)}", partial(_fixed, part.pose)
 
     def _moved(self) -> set[str]:
-        """Frames of links at movable joints, except the canonical link, which is the reference."""
+        """Returns the frames of links at movable joints. The canonical link is the reference."""
         description = self.part.description
         links = {
             link

@@ -1,4 +1,4 @@
-"""``libgazebo_ros_range.so`` and hector's sonar: distance to the nearest object."""
+"""``libgazebo_ros_range.so`` and hector's sonar: the distance to the nearest object."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from cartwheel.plugins.scan_messages import range_reading
 
 
 class _RangeBase(Plugin[Any]):
-    """Base of the plugins that publish the smallest range of a ray sensor."""
+    """Base class of the plugins that publish the smallest range of a ray sensor."""
 
     def _start(
         self,
@@ -39,7 +39,7 @@ class _RangeBase(Plugin[Any]):
         self._frame = self.frame(frame or self.sensor.link)
         rates = [hertz for hertz in (rate, self.sensor.update_rate) if hertz > 0]
         slower = min(rates, default=0.0)
-        # Gazebo ignores the sensor's own noise. Here it applies unless the plugin states noise.
+        # Gazebo ignores the sensor's own noise. Here it applies unless the plugin specifies noise.
         self._own_noise = noise is None
         self._error = DriftingError(
             self.part,
@@ -85,9 +85,9 @@ class RangeParameters:
         default="",
         doc="Frame ID of the messages. Defaults to the sensor's link.",
     )
-    fov: float = tag("fov", default=0.05, unit="rad", doc="Field of view that the messages state.")
+    fov: float = tag("fov", default=0.05, unit="rad", doc="Field of view in the messages.")
     radiation: Literal["ultrasound", "infrared"] = tag(
-        "radiation", default="ultrasound", doc="Radiation type that the messages state."
+        "radiation", default="ultrasound", doc="Radiation type in the messages."
     )
     noise: float | None = tag(
         "gaussianNoise",
@@ -105,7 +105,7 @@ class RangeParameters:
 
 
 class Range(_RangeBase):
-    """Publishes the smallest range of a ray sensor, or its maximum range if no ray hits.
+    """Publishes the smallest range of a ray sensor, or its maximum range if nothing is hit.
 
     Source: gazebo_plugins, gazebo_ros_range.
     """
@@ -142,7 +142,7 @@ class SonarParameters:
         unit="m",
         doc="Standard deviation of the noise. Defaults to the sensor's `<noise>`.",
     )
-    offset: float = tag("offset", default=0.0, unit="m", doc="Added to each range.")
+    offset: float = tag("offset", default=0.0, unit="m", doc="Offset added to each range.")
     drift: float = tag("drift", default=0.0, unit="m", doc="Standard deviation of a slow drift.")
     drift_frequency: float = tag(
         "driftFrequency", default=0.0, unit="1/s", doc="Inverse of the drift's time constant."
@@ -158,7 +158,8 @@ class SonarParameters:
 class HectorSonar(_RangeBase):
     """Publishes the smallest range of a ray sensor as an ultrasound range.
 
-    If no ray hits, it publishes the maximum range. Source: hector_gazebo_plugins, gazebo_ros_sonar.
+    If nothing is hit, the maximum range is published. Source: hector_gazebo_plugins,
+    gazebo_ros_sonar.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libhector_gazebo_ros_sonar.so",)

@@ -30,8 +30,8 @@ class RaySensorParameters:
         "topicName",
         "topic_name",
         default="",
-        doc="Topic of the messages. Defaults to `<plugin name>/out`. "
-        "A `<remapping>` of `~/out` has priority.",
+        doc="Topic of the messages. Defaults to `<plugin name>/out`. A `<remapping>` of `~/out` "
+        "takes precedence.",
     )
     frame: str = tag(
         "frame_name",
@@ -46,7 +46,10 @@ class RaySensorParameters:
         doc="Radiation type of Range messages.",
     )
     min_intensity: float = tag(
-        "min_intensity", "minIntensity", default=0.0, doc="Lower intensities are raised to this."
+        "min_intensity",
+        "minIntensity",
+        default=0.0,
+        doc="Intensities below this value are raised to it.",
     )
     update_rate: float = tag(
         "updateRate",
@@ -61,10 +64,10 @@ class RaySensor(Plugin[RaySensorParameters]):
     """Publishes the ranges of a ray sensor as LaserScan, PointCloud, PointCloud2 or Range.
 
     A LaserScan contains the middle row. Point clouds contain only the points that were hit. A Range
-    is the minimum of all rays: inf if nothing was hit, -inf if an object is closer than the minimum
-    range (REP 117).
+    is the minimum over all rays: inf if nothing was hit, -inf if an object is closer than the
+    minimum range (REP 117).
 
-    Source: gazebo_plugins for ROS 2, gazebo_ros_ray_sensor, and gazebo_ros's conversions.
+    Source: gazebo_plugins in ROS 2, gazebo_ros_ray_sensor; conversions in gazebo_ros.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_ray_sensor.so",)

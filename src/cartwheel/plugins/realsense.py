@@ -18,7 +18,7 @@ from cartwheel.simulation import Part
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class RealSenseParameters:
-    prefix: str = tag("prefix", default="", doc="Prefix of the names of the four sensors.")
+    prefix: str = tag("prefix", default="", doc="Prefix of the four sensor names.")
     color_topic: str = tag("colorTopicName", default="color", doc="Topic of the colour images.")
     infrared1_topic: str = tag(
         "infrared1TopicName", default="infrared", doc="Topic of the first infrared images."
@@ -35,22 +35,22 @@ class RealSenseParameters:
     color_frame: str = tag(
         "colorOpticalframeName",
         default="",
-        doc="Frame of the colour images. Defaults to the sensor's link.",
+        doc="Frame ID of the colour images. Defaults to the sensor's link.",
     )
     infrared1_frame: str = tag(
         "infrared1OpticalframeName",
         default="",
-        doc="Frame of the first infrared images. Defaults to the sensor's link.",
+        doc="Frame ID of the first infrared images. Defaults to the sensor's link.",
     )
     infrared2_frame: str = tag(
         "infrared2OpticalframeName",
         default="",
-        doc="Frame of the second infrared images. Defaults to the sensor's link.",
+        doc="Frame ID of the second infrared images. Defaults to the sensor's link.",
     )
     depth_frame: str = tag(
         "depthOpticalframeName",
         default="",
-        doc="Frame of the depth images and points. Defaults to the sensor's link.",
+        doc="Frame ID of the depth images and points. Defaults to the sensor's link.",
     )
     color_rate: float = tag(
         "colorUpdateRate",
@@ -71,20 +71,29 @@ class RealSenseParameters:
         doc="Rate of the depth images, at most the sensor's. 0: the sensor's rate.",
     )
     nearest: float = tag(
-        "rangeMinDepth", default=0.0, unit="m", doc="Depths up to this are published as 0."
+        "rangeMinDepth",
+        default=0.0,
+        unit="m",
+        doc="Depths at or below this value are published as 0.",
     )
     furthest: float = tag(
-        "rangeMaxDepth", default=65.535, unit="m", doc="Depths from this on are published as 0."
+        "rangeMaxDepth",
+        default=65.535,
+        unit="m",
+        doc="Depths at or above this value are published as 0.",
     )
     points: bool = tag("pointCloud", default=False, doc="Publish point clouds.")
     points_nearest: float = tag(
-        "pointCloudCutoff", default=0.0, unit="m", doc="Points at depths up to this are NaN."
+        "pointCloudCutoff",
+        default=0.0,
+        unit="m",
+        doc="Points with depths at or below this value are NaN.",
     )
     points_furthest: float = tag(
         "pointCloudCutoffMax",
         default=5.0,
         unit="m",
-        doc="Points at depths from this on are NaN.",
+        doc="Points with depths at or above this value are NaN.",
     )
     color_info: str = tag(
         "colorCameraInfoTopicName",
@@ -154,10 +163,10 @@ class _Stream(CameraBase[RealSenseParameters]):
 class RealSense(Plugin[RealSenseParameters]):
     """Publishes the colour, infrared and depth images of an Intel RealSense.
 
-    The images come from the sensors of the model named ``<prefix>color``, ``<prefix>ired1``,
-    ``<prefix>ired2`` and ``<prefix>depth``; missing ones cause a warning. Topics are below the name
-    of the plugin, with ``camera_info`` next to each image. Depth images have the encoding 16UC1 in
-    mm; 0 means no depth. Source: pal-robotics, realsense_gazebo_plugin.
+    The images come from the model's sensors ``<prefix>color``, ``<prefix>ired1``, ``<prefix>ired2``
+    and ``<prefix>depth``. A missing sensor causes a warning. Topics are below the plugin's name,
+    with ``camera_info`` next to each image. Depth images have the encoding 16UC1 in mm; 0 means no
+    depth. Source: pal-robotics, realsense_gazebo_plugin.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("librealsense_gazebo_plugin.so",)
@@ -216,7 +225,7 @@ class RealSense(Plugin[RealSenseParameters]):
         return None
 
     def _quiet_tag(self) -> PluginTag:
-        """The tag without unsupported elements, which were reported already."""
+        """Returns the tag without unsupported elements, which have already been reported."""
         known = tags_of(RealSenseParameters) | {"robotNamespace", "ros"}
         element = self.tag.element
         children = tuple(child for child in element.children if child.tag in known)

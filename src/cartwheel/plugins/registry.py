@@ -36,15 +36,15 @@ _HARMLESS: _Faults = (StaticModelError,)
 def attach(part: Part, graph: Graph, *, lenient: bool = False) -> list[Behaviour]:
     """Creates the plugins of a model and reports unsupported ones.
 
-    A plugin that cannot be created is an error of the model. Left out instead, with a report, are:
-    systems of new Gazebo in a model of a world, as in Gazebo; plugins of sensors without a
-    ``<plugin>``; plugins that would drive a joint of a static model; and plugins that raise an
-    unexpected exception.
+    If a plugin cannot be created, the model is not loaded. These plugins are skipped with a report
+    instead: gz-sim systems in a model that is part of a world, as in Gazebo; plugins for sensors
+    without a ``<plugin>``; plugins that would drive a joint of a static model; and plugins that
+    raise an unexpected exception.
 
     Args:
         part: The model's part of the simulation.
-        graph: Where plugins publish.
-        lenient: Also leave out plugins that name an element which the model does not have.
+        graph: Graph on which the plugins publish.
+        lenient: Also skip plugins that refer to an element that the model does not have.
 
     Raises:
         CartwheelError: A plugin's parameters are invalid. Plugins created before it are closed.
@@ -100,7 +100,7 @@ def _create(
     *,
     forgiven: _Faults,
 ) -> list[Plugin[object]]:
-    """A list of the plugin; empty if it cannot be created, which is reported."""
+    """Returns a list of the plugin; empty, with a report, if it cannot be created."""
     try:
         return [part.made(lambda: plugin(part, graph, tag, sensor))]
     except CartwheelError as error:
@@ -124,7 +124,7 @@ def _serve(
             yield from _create(part, graph, plugin, tag, sensor, forgiven=_ANY)
             continue
         if sensor.plugins:
-            # The diagnostic about the unsupported plugin covers the sensor.
+            # The diagnostic about the unsupported plugin also covers the sensor.
             continue
         reason = (
             (f' and type "{sensor.type}", which publishes nothing without a plugin')
@@ -142,7 +142,7 @@ def _serve(
 
 
 def _report_unknown(part: Part, tag: PluginTag) -> None:
-    # High cutoff: the names of different plugins are similar.
+    # The cutoff is high because the names of different plugins are similar.
     meant = meant_one(tag.filename, [f"lib{name}.so" for name in plugin_names()], cutoff=0.92)
     broken = unloadable()
     suggested = f'Did you mean "{meant}"?' if meant else ""

@@ -19,14 +19,14 @@ _RATE = 10.0
 class RobotDescriptions:
     """Publishes the expanded XML of each robot on a latched topic.
 
-    The topic is ``robot_description`` in the robot's namespace, as ROS tools expect. Further robots
-    in the same namespace use ``/<model>/robot_description``. Create one instance per simulation:
-    two would publish each description twice. All calls belong on the thread that owns the
-    simulation.
+    The topic is ``robot_description`` in the robot's namespace, as ROS tools expect. Additional
+    robots in the same namespace use ``/<model>/robot_description``. Create one instance per
+    simulation: two instances would publish each description twice. Call all methods on the thread
+    that owns the simulation.
 
     Args:
         simulation: The simulation that contains the models.
-        graph: Where descriptions are published.
+        graph: Graph on which the descriptions are published.
     """
 
     def __init__(self, simulation: Simulation, graph: Graph) -> None:
@@ -38,7 +38,7 @@ class RobotDescriptions:
         self._task = simulation.schedule(_RATE, before=self._look)
 
     def topic(self, name: str) -> str | None:
-        """Topic of a model's description; None if the model is not a robot."""
+        """Returns the topic of a model's description; None if the model is not a robot."""
         self._look()
         entry = self._published.get(name)
         return entry[1].topic if entry else None
@@ -77,7 +77,7 @@ class RobotDescriptions:
 
 
 def is_robot(description: RobotDescription) -> bool:
-    """Whether a model is a robot: not static, and with joints, plugins or sensors."""
+    """Whether a model is a robot: it is not static, and has joints, plugins or sensors."""
     if description.static or not description.text:
         return False
     sensing = any(link.sensors for link in description.links)

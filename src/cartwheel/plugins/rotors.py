@@ -1,4 +1,4 @@
-"""Plugins of rotors_simulator's multicopters: relay of commands, motor states, IMU."""
+"""Plugins from rotors_simulator for multicopters: command relay, motor states, IMU."""
 
 from __future__ import annotations
 
@@ -35,15 +35,17 @@ class RotorsControllerParameters:
     attitude_topic: str = tag(
         "commandAttitudeThrustSubTopic",
         default="",
-        doc="No effect, as in Gazebo: the topic is not subscribed.",
+        doc="No effect, as in Gazebo: the plugin does not subscribe to this topic.",
     )
     rate_topic: str = tag(
         "commandRateThrustSubTopic",
         default="",
-        doc="No effect, as in Gazebo: the topic is not subscribed.",
+        doc="No effect, as in Gazebo: the plugin does not subscribe to this topic.",
     )
     imu_topic: str = tag(
-        "imuSubTopic", default="", doc="No effect, as in Gazebo: the topic is not subscribed."
+        "imuSubTopic",
+        default="",
+        doc="No effect, as in Gazebo: the plugin does not subscribe to this topic.",
     )
 
 
@@ -74,7 +76,7 @@ class RotorsBaseParameters:
         "motorPubTopic", default="motor_speed", doc="Topic of the speeds of the propellers."
     )
     joint_topic: str = tag(
-        "jointStatePubTopic", default="joint_states", doc="Topic of the angles of their joints."
+        "jointStatePubTopic", default="joint_states", doc="Topic of the propeller joints' angles."
     )
     slowdown: float = tag(
         "rotorVelocitySlowdownSim",
@@ -131,7 +133,7 @@ class RotorsImuParameters:
         "gyroscopeNoiseDensity",
         default=math.radians(70 / 3600),
         unit="rad/s/√Hz",
-        doc="White noise of the angular velocity.",
+        doc="Noise density of the angular velocity.",
     )
     rate_walk: float = tag(
         "gyroscopeBiasRandomWalk",
@@ -156,7 +158,7 @@ class RotorsImuParameters:
         "accelerometerNoiseDensity",
         default=4e-3,
         unit="m/s²/√Hz",
-        doc="White noise of the acceleration.",
+        doc="Noise density of the acceleration.",
     )
     accel_walk: float = tag(
         "accelerometerRandomWalk",
@@ -181,8 +183,8 @@ class RotorsImuParameters:
 class RotorsImu(ImuBase):
     """Publishes the measurements of an IMU at every step, with white noise and drifting biases.
 
-    Noise densities are converted to standard deviations for the length of a step. The bias is the
-    sum of a constant and a random walk, which starts from its stationary distribution. Source:
+    Noise densities are converted to standard deviations for the step length. The bias is the sum of
+    a constant and a random walk, which starts from its stationary distribution. Source:
     rotors_gazebo_plugins, gazebo_imu_plugin; REP 145.
     """
 

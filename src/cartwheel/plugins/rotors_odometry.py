@@ -1,4 +1,4 @@
-"""``librotors_gazebo_odometry_plugin.so``: the measured pose of a link of a multicopter."""
+"""``librotors_gazebo_odometry_plugin.so``: the measured pose of a multicopter's link."""
 
 from __future__ import annotations
 
@@ -38,13 +38,15 @@ class RotorsOdometryParameters:
         "parentFrameId", default="world", doc="Reference frame; only `world` is supported."
     )
     child: str = tag(
-        "childFrameId", default="odometry_sensor", doc="Frame of the link in the messages."
+        "childFrameId", default="odometry_sensor", doc="Child frame ID of the messages."
     )
     divisor: int = tag("measurementDivisor", default=1, doc="Publish every N steps.")
     delay: int = tag(
         "measurementDelay", default=0, doc="No effect: measurements are published immediately."
     )
-    unknown_delay: float = tag("unknownDelay", default=0.0, unit="s", doc="Added to the stamps.")
+    unknown_delay: float = tag(
+        "unknownDelay", default=0.0, unit="s", doc="Delay added to the stamps."
+    )
     normal_position: tuple[float, float, float] = tag(
         "noiseNormalPosition",
         default=_NONE,
@@ -73,33 +75,33 @@ class RotorsOdometryParameters:
         "noiseUniformPosition",
         default=_NONE,
         unit="m",
-        doc="Bound of uniform noise on the position, in both directions.",
+        doc="Uniform noise on the position is within ± this value.",
     )
     uniform_turn: tuple[float, float, float] = tag(
         "noiseUniformQuaternion",
         default=_NONE,
         unit="rad",
-        doc="Bound of uniform noise on the orientation, in both directions.",
+        doc="Uniform noise on the orientation is within ± this value.",
     )
     uniform_linear: tuple[float, float, float] = tag(
         "noiseUniformLinearVelocity",
         default=_NONE,
         unit="m/s",
-        doc="Bound of uniform noise on the linear velocity, in both directions.",
+        doc="Uniform noise on the linear velocity is within ± this value.",
     )
     uniform_angular: tuple[float, float, float] = tag(
         "noiseUniformAngularVelocity",
         default=_NONE,
         unit="rad/s",
-        doc="Bound of uniform noise on the angular velocity, in both directions.",
+        doc="Uniform noise on the angular velocity is within ± this value.",
     )
 
 
 class RotorsOdometry(Plugin[RotorsOdometryParameters]):
-    """Publishes the pose of a link in the world with noise, as five message types and a transform.
+    """Publishes a link's pose in the world with noise, as five message types and a transform.
 
-    The twist of the Odometry is in the axes of the link. Source:
-    rotors_gazebo_plugins, gazebo_odometry_plugin.
+    The twist in the Odometry messages is in the link frame. Source: rotors_gazebo_plugins,
+    gazebo_odometry_plugin.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("librotors_gazebo_odometry_plugin.so",)
@@ -127,7 +129,7 @@ class RotorsOdometry(Plugin[RotorsOdometryParameters]):
         if config.delay:
             self.warn(
                 devices.PLUGIN_PARAMETER_IGNORED,
-                "<measurementDelay> has no effect: measurements are published at once",
+                "<measurementDelay> has no effect: measurements are published immediately",
                 values={"parameter": "measurementDelay"},
             )
         self._link = part.link(config.link, origin=origin)
@@ -207,7 +209,7 @@ class RotorsOdometry(Plugin[RotorsOdometryParameters]):
             self._others[kind].publish(messages[kind])
 
     def _error(self) -> Array:
-        """Noise on position, orientation, linear and angular velocity, shape (12,)."""
+        """Returns noise on position, orientation, linear and angular velocity, shape (12,)."""
         if not (self._normal.any() or self._uniform.any()):
             return np.zeros(12)
         random = self.part.random(f"odometry {self.tag.name}")
@@ -216,7 +218,7 @@ class RotorsOdometry(Plugin[RotorsOdometryParameters]):
 
 
 def _tilted(turn: Quat, angles: Array) -> Quat:
-    """An orientation, rotated by small angles about its own axes."""
+    """Rotates an orientation by small angles about its own axes."""
     if not angles.any():
         return turn
     x, y, z = (angles / 2).tolist()

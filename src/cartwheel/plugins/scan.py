@@ -22,7 +22,7 @@ _GPU_TYPES = {"gpu_ray", "gpu_lidar"}
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Sweep:
-    """Evenly spaced angles from first to last; if last is less, they decrease."""
+    """Evenly spaced angles from first to last. If last is smaller than first, they decrease."""
 
     count: int
     first: float
@@ -44,7 +44,7 @@ _LEVEL = Sweep(count=1, first=0.0, last=0.0)
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ScanPattern:
-    """Directions, limits and noise of a ray sensor; source: SDF, ``<ray>`` and ``<lidar>``."""
+    """Directions, limits and noise of a ray sensor. Source: SDF, ``<ray>`` and ``<lidar>``."""
 
     horizontal: Sweep
     vertical: Sweep
@@ -75,7 +75,7 @@ def read_pattern(sensor: Sensor, report: Callable[[Diagnostic], None]) -> ScanPa
 
     Args:
         sensor: The sensor.
-        report: Receives diagnostics about values that are not used as stated.
+        report: Receives diagnostics about values that are adjusted.
 
     Raises:
         PluginError: The element is missing or invalid.
@@ -141,7 +141,7 @@ def _sweep(element: Element, report: Callable[[Diagnostic], None], *, samples: i
             values={"parameter": "samples", "value": asked},
         )
     if asked != int(asked):
-        # Mostly the result of dividing angles.
+        # Usually the result of a division of angles.
         report(
             devices.SCAN_SAMPLES_INVALID.diagnostic(
                 f"<samples> must be a whole number (got {asked:g}), so {int(asked)} is used",
@@ -204,7 +204,7 @@ class Scan:
     """The laser_retro of the objects hit, shape (rows, columns)."""
 
     def points(self, directions: Array) -> Array:
-        """Points hit, in the sensor's axes, m, shape (rows, columns, 3).
+        """Points hit in the sensor frame, m, shape (rows, columns, 3).
 
         Points without a finite range are infinite.
         """
@@ -244,7 +244,7 @@ class Scanner:
         """Error of a single range. All rays share its mean and bias."""
 
     def measure(self, *, noisy: bool = True) -> Scan:
-        """The current scan, with the sensor's own noise if `noisy`."""
+        """Measures a scan, with the sensor's own noise if `noisy`."""
         ranges, intensities = self._rays.cast()
         if noisy:
             self._blur(ranges)
@@ -262,7 +262,7 @@ class Scanner:
         measured = np.isfinite(ranges)
         blurred = ranges + self.error.offset
         if noise.stddev > 0:
-            # One number per ray, so that a hit does not change the noise of other rays.
+            # One number per ray, so that a hit does not change the noise on other rays.
             blurred += self.random("noise").normal(0.0, noise.stddev, ranges.shape)
         if precision > 0:
             blurred = np.round(blurred / precision) * precision

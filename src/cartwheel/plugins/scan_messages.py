@@ -15,13 +15,13 @@ _DATATYPES = {np.dtype(np.float32): "FLOAT32", np.dtype(np.uint16): "UINT16"}
 
 
 def laser_scan(moment: Any, pattern: ScanPattern, scan: Scan, *, floor: float = 0.0) -> Any:
-    """A LaserScan of the middle row.
+    """Returns a LaserScan of the middle row.
 
     Args:
         moment: The header.
         pattern: Pattern of the scan.
         scan: The measurement.
-        floor: Lower intensities are raised to this.
+        floor: Intensities below this value are raised to it.
     """
     sweep = pattern.horizontal
     row = pattern.vertical.count // 2
@@ -42,14 +42,14 @@ def laser_scan(moment: Any, pattern: ScanPattern, scan: Scan, *, floor: float = 
 def range_reading(
     moment: Any, pattern: ScanPattern, value: float, *, fov: float, infrared: bool
 ) -> Any:
-    """A Range message.
+    """Returns a Range message.
 
     Args:
         moment: The header.
         pattern: Pattern of the scan, which provides the range limits.
         value: Range, m.
         fov: Field of view, rad.
-        infrared: State infrared as the radiation type, otherwise ultrasound.
+        infrared: Set the radiation type to infrared instead of ultrasound.
     """
     kind = message_class("sensor_msgs/msg/Range")
     return kind(
@@ -64,7 +64,7 @@ def range_reading(
 
 
 def point_cloud(moment: Any, points: Array, intensities: Array) -> Any:
-    """A PointCloud with one channel, ``intensity``.
+    """Returns a PointCloud with one channel, ``intensity``.
 
     Args:
         moment: The header.
@@ -84,7 +84,7 @@ def point_cloud(moment: Any, points: Array, intensities: Array) -> Any:
 
 
 def point_cloud2(moment: Any, cloud: Any, *, dense: bool) -> Any:
-    """A PointCloud2 with the fields of a structured array.
+    """Returns a PointCloud2 with the fields of a structured array.
 
     Args:
         moment: The header.

@@ -67,8 +67,8 @@ class SkidSteerParameters:
 class SkidSteerDrive(WheelDrive):
     """Drives a skid-steered robot with four wheels from Twist commands and publishes odometry.
 
-    The robot turns less than commanded, because its tyres slide sideways. The odometry is the true
-    pose. Source: gazebo_plugins, gazebo_ros_skid_steer_drive.
+    The robot turns less than commanded because its tyres slide sideways. The odometry is the
+    ground-truth pose. Source: gazebo_plugins, gazebo_ros_skid_steer_drive.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_skid_steer_drive.so",)

@@ -6,12 +6,12 @@ from cartwheel.plugins.drive import Drive
 
 
 def toward(value: float, target: float, most: float) -> float:
-    """A value, moved toward a target by at most `most`."""
+    """Moves a value toward a target by at most `most`."""
     return value + min(max(target - value, -most), most)
 
 
 class SteeredDrive(Drive):
-    """Base of drives with steered wheels: stores the command for `_turn_wheels` of a subclass."""
+    """Base class of drives with steered wheels. Stores the command for `_turn_wheels`."""
 
     def reset(self) -> None:
         super().reset()

@@ -1,4 +1,4 @@
-"""``libgazebo_ros_tricycle_drive.so``: one driven and steered wheel, two that roll freely."""
+"""``libgazebo_ros_tricycle_drive.so``: one driven and steered wheel, and two that roll freely."""
 
 from __future__ import annotations
 
@@ -33,13 +33,13 @@ class TricycleParameters:
         "encoderWheelLeftJoint",
         "encoder_wheel_left_joint",
         default="left_wheel_joint",
-        doc="Joint of the left rolling wheel.",
+        doc="Joint of the left passive wheel.",
     )
     right_joint: str = tag(
         "encoderWheelRightJoint",
         "encoder_wheel_right_joint",
         default="right_wheel_joint",
-        doc="Joint of the right rolling wheel.",
+        doc="Joint of the right passive wheel.",
     )
     wheel_diameter: float = tag(
         "actuatedWheelDiameter",
@@ -53,21 +53,21 @@ class TricycleParameters:
         "encoder_wheel_diameter",
         default=0.15,
         unit="m",
-        doc="Diameter of the rolling wheels.",
+        doc="Diameter of the passive wheels.",
     )
     encoder_separation: float = tag(
         "encoderWheelSeparation",
         "wheel_separation",
         default=0.5,
         unit="m",
-        doc="Distance between the rolling wheels.",
+        doc="Distance between the passive wheels.",
     )
     wheel_torque: float | None = tag(
         "wheelTorque",
         "max_wheel_torque",
         default=None,
         unit="N m",
-        doc="Maximum torque of each motor. Default: 5, or 0.15 if written for ROS 2.",
+        doc="Maximum torque of each motor. Default: 5, or 0.15 if the tag is written for ROS 2.",
     )
     wheel_acceleration: float = tag(
         "wheelAcceleration",
@@ -81,8 +81,8 @@ class TricycleParameters:
         "max_wheel_deceleration",
         default=None,
         unit="rad/s²",
-        doc="Maximum deceleration of the driven wheel. Defaults to `<wheelAcceleration>`, "
-        "without which it has no effect.",
+        doc="Maximum deceleration of the driven wheel. Defaults to `<wheelAcceleration>`, and has "
+        "no effect without it.",
     )
     wheel_tolerance: float = tag(
         "wheelSpeedTolerance",
@@ -108,8 +108,8 @@ class TricycleParameters:
     command_topic: str = tag(
         "commandTopic",
         default="cmd_vel",
-        doc="Topic of the Twist commands: linear.x is the speed of the driven wheel in m/s, "
-        "angular.z its steering angle in rad.",
+        doc="Topic of the Twist commands. `linear.x` is the speed of the driven wheel in m/s; "
+        "`angular.z` is its steering angle in rad.",
     )
     odometry_topic: str = tag("odometryTopic", default="odom", doc="Topic of the odometry.")
     odometry_frame: str = tag(
@@ -133,12 +133,14 @@ class TricycleParameters:
         "odometrySource",
         "odometry_source",
         default="world",
-        doc="world or 1: the true pose; encoder or 0: dead reckoning from the rolling wheels.",
+        doc="Source of the odometry. `world` (or `1`): ground-truth pose in the world; `encoder` "
+        "(or `0`): dead reckoning from the passive wheels.",
     )
     publish_odom: bool | None = tag(
         "publish_odom",
         default=None,
-        doc="Publish the odometry and its transform. Default: true, or false if written for ROS 2.",
+        doc="Publish the odometry and its transform. Default: true, or false if the tag is "
+        "written for ROS 2.",
     )
     publish_wheel_tf: bool = tag(
         "publishWheelTF",
@@ -159,11 +161,12 @@ _ROS2 = {"ros"} | {name for name in tags_of(TricycleParameters) if name.islower(
 
 
 class TricycleDrive(SteeredDrive):
-    """Drives a tricycle by its driven, steered wheel from Twist commands and publishes odometry.
+    """Drives a tricycle with one driven, steered wheel from Twist commands and publishes odometry.
 
-    In a model of a world, the topics of a tag written for ROS 1 are below the model's name unless
-    it has a ``<robotNamespace>``. A tag is written for ROS 2 if it contains ``<ros>`` or tags in
-    lower case, such as ``<steering_joint>``. Source: gazebo_plugins, gazebo_ros_tricycle_drive.
+    If the model is part of a world file, the topics of a tag that is written for ROS 1 are below
+    the model's name, unless the tag contains ``<robotNamespace>``. A tag is written for ROS 2 if it
+    contains ``<ros>`` or lower-case tags, such as ``<steering_joint>``. Source: gazebo_plugins,
+    gazebo_ros_tricycle_drive.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_tricycle_drive.so",)
@@ -174,7 +177,7 @@ class TricycleDrive(SteeredDrive):
     def configure(self) -> None:
         config: TricycleParameters = self.config
         origin, part = self.tag.origin, self.part
-        # ROS 2's plugin of the same name publishes only what its tags enable, has less torque,
+        # The ROS 2 plugin with the same name publishes only what its tags enable, has less torque,
         # and does not put its topics below the model's name.
         ros2 = any(child.tag in _ROS2 for child in self.tag.element.children)
         if not ros2:
@@ -198,7 +201,7 @@ class TricycleDrive(SteeredDrive):
             radius=config.encoder_diameter / 2,
             separation=config.encoder_separation,
         )
-        # Without a steering speed, Gazebo sets the angle at once, with unlimited torque.
+        # Without a steering speed, Gazebo sets the angle immediately, with unlimited torque.
         strength = torque if config.steering_speed > 0 else None
         self._fork = part.servo(config.steering_joint, max_effort=strength, origin=origin)
         self._motor = part.velocity_motor(config.wheel_joint, max_effort=torque, origin=origin)

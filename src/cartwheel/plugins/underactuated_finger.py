@@ -22,8 +22,9 @@ class UnderactuatedFingerParameters:
     joints: tuple[str, ...] = tag(
         "virtualJoint",
         default=(),
-        doc="A joint of the finger, by `<name>`. Its target is the motor's angle divided by "
-        "`<scale_factor>`. `<pid_gains>` has no effect: a servo bends the joint.",
+        doc="A joint of the finger, in `<name>`. Its target is the motor's angle divided by "
+        "`<scale_factor>`. `<pid_gains>` has no effect: a servo moves the joint. Repeat the "
+        "tag for each joint.",
     )
 
 
@@ -37,8 +38,8 @@ class _Phalanx:
 class UnderactuatedFinger(Plugin[UnderactuatedFingerParameters]):
     """Bends the joints of a finger in proportion to a motor's angle, within their limits.
 
-    A joint that meets an obstacle exerts at most its effort limit; the others continue. Source:
-    pal_gazebo_plugins, gazebo_underactuated_finger.
+    A joint that meets an obstacle exerts at most its effort limit; the other joints continue to
+    bend. Source: pal_gazebo_plugins, gazebo_underactuated_finger.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_underactuated_finger.so",)

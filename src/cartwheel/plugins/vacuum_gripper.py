@@ -16,23 +16,24 @@ class VacuumGripperParameters:
     topic: str = tag(
         "topicName",
         default="grasping",
-        doc="Topic of a Bool: whether an object is held. ROS 1's plugin requires this tag.",
+        doc="Topic of a Bool that is true while an object is held. ROS 1's plugin requires this "
+        "tag.",
     )
     reach: float = tag(
         "max_distance",
         default=0.05,
         unit="m",
-        doc="Maximum distance between the frames of the cup and of the link that it grips.",
+        doc="Maximum distance between the cup's frame and the frame of the gripped link.",
     )
     fixed: tuple[str, ...] = tag("fixed", default=(), doc="Models or links that are never gripped.")
 
 
 class VacuumGripper(Plugin[VacuumGripperParameters]):
-    """Holds the nearest link of another model within reach while switched on.
+    """Holds the nearest link of a different model within reach while switched on.
 
     The held link keeps its pose relative to the cup, as with a fixed joint. (In Gazebo it is pulled
-    to the cup.) The services `on` and `off` switch the gripper; with ROS 2's `<link_name>`, the
-    service `switch` does. Source: gazebo_plugins, gazebo_ros_vacuum_gripper.
+    toward the cup.) The services `on` and `off` switch the gripper. With ROS 2's ``<link_name>``,
+    the service is `switch`. Source: gazebo_plugins, gazebo_ros_vacuum_gripper.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_vacuum_gripper.so",)

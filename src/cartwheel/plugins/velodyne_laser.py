@@ -35,7 +35,7 @@ class VelodyneParameters:
         "topicName",
         "topic_name",
         default="/points",
-        doc="Topic of the PointCloud2 messages. A `<remapping>` of `~/out` has priority.",
+        doc="Topic of the PointCloud2 messages. A `<remapping>` of `~/out` takes precedence.",
     )
     frame: str = tag(
         "frameName",
@@ -46,11 +46,14 @@ class VelodyneParameters:
     organize: bool = tag(
         "organize_cloud",
         default=False,
-        doc="Publish an organised cloud: a row per column of rays, NaN for missing points.",
+        doc="Publish an organised cloud: each column of rays is a row of the cloud, and missing "
+        "points are NaN.",
     )
-    min_range: float = tag("min_range", default=0.0, unit="m", doc="Nearer points are omitted.")
+    min_range: float = tag(
+        "min_range", default=0.0, unit="m", doc="Points closer than this are omitted."
+    )
     max_range: float = tag(
-        "max_range", default=math.inf, unit="m", doc="Farther points are omitted."
+        "max_range", default=math.inf, unit="m", doc="Points farther than this are omitted."
     )
     min_intensity: float | None = tag(
         "min_intensity", default=None, doc="Points with a lower intensity are omitted."
@@ -60,7 +63,7 @@ class VelodyneParameters:
         "gaussian_noise",
         default=0.0,
         unit="m",
-        doc="Standard deviation of the noise on ranges, in addition to the sensor's.",
+        doc="Standard deviation of the noise on ranges. It is added to the sensor's own noise.",
     )
     update_rate: float = tag(
         "updateRate",
@@ -74,8 +77,8 @@ class VelodyneParameters:
 class VelodyneLaser(Plugin[VelodyneParameters]):
     """Publishes the points that a ray sensor hits as a PointCloud2 with intensity and ring.
 
-    Ring 0 is the lowest. Points are ordered column by column. All are measured at the same time, so
-    their ``time`` is 0.
+    Ring 0 is the lowest ring. Points are ordered column by column. All points are measured at the
+    same time, so their ``time`` is 0.
 
     Source: velodyne_simulator, GazeboRosVelodyneLaser.
     """

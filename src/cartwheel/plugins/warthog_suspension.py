@@ -12,15 +12,21 @@ from cartwheel.plugins.parameters import tag
 @dataclass(frozen=True, kw_only=True, slots=True)
 class WarthogSuspensionParameters:
     stiffness: float = tag(
-        "suspension_k", unit="N m/rad", doc="Stiffness of the spring of each joint, at rest at 0."
+        "suspension_k",
+        unit="N m/rad",
+        doc="Stiffness of each joint's spring, which is at rest at position 0.",
     )
     damping: float = tag("suspension_b", unit="N m s/rad", doc="Damping of each joint.")
-    left: str = tag("left_joint", default="left_diff_unit_joint", doc="Joint of the left side.")
-    right: str = tag("right_joint", default="right_diff_unit_joint", doc="Joint of the right side.")
+    left: str = tag(
+        "left_joint", default="left_diff_unit_joint", doc="Suspension joint on the left side."
+    )
+    right: str = tag(
+        "right_joint", default="right_diff_unit_joint", doc="Suspension joint on the right side."
+    )
 
 
 class WarthogSuspension(Plugin[WarthogSuspensionParameters]):
-    """Applies a spring and a damper to the suspension joint of each side.
+    """Applies a spring and a damper to the suspension joint on each side.
 
     Source: warthog_gazebo, warthog_suspension_plugin, which supports only the default joints.
     """

@@ -17,7 +17,7 @@ from cartwheel.simulation.limits import FARTHEST
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class WheelPair:
-    """Two wheels of one axle."""
+    """Two wheels on one axle."""
 
     left: str
     """Joint of the left wheel."""
@@ -30,13 +30,13 @@ class WheelPair:
 
 
 class WheelDrive(Drive):
-    """Base of plugins that drive pairs of wheels from Twist commands and publish odometry.
+    """Base class of plugins that drive pairs of wheels from Twist commands and publish odometry.
 
     In `configure`, a subclass calls `_take_wheels`, creates its publishers and calls `_run_wheels`.
     """
 
     def _take_wheels(self, pairs: Sequence[WheelPair], *, torque: float | None) -> None:
-        """Obtains joints and motors. `joints` is left, right, pair by pair.
+        """Obtains joints and motors. `joints` alternates left and right, pair by pair.
 
         Raises:
             PluginError: A separation or diameter is not allowed.
@@ -72,7 +72,7 @@ class WheelDrive(Drive):
         self._check_sides(pairs)
 
     def _check_sides(self, pairs: Sequence[WheelPair]) -> None:
-        """Reports a left wheel on the right side, since the robot then turns the wrong way."""
+        """Reports a left wheel on the right side, because the robot then turns the wrong way."""
         description = self.part.description
         poses = link_poses(description, {})
         front = poses[description.canonical_link].inverse()
@@ -82,8 +82,8 @@ class WheelDrive(Drive):
             if left < right:
                 self.warn(
                     robot.WHEELS_SWAPPED,
-                    f'the left wheel of joint "{pair.left}" is to the right of that of '
-                    f'"{pair.right}", so the robot turns in the opposite direction, as in Gazebo',
+                    f'the left wheel ("{pair.left}") is to the right of the right wheel '
+                    f'("{pair.right}"), so the robot turns the wrong way, as in Gazebo',
                     severity="info",
                     values={"left": pair.left, "right": pair.right},
                 )
@@ -104,9 +104,9 @@ class WheelDrive(Drive):
 
         Args:
             command_topic: Topic of the Twist commands.
-            base: Link whose true pose is published if the odometry is not `encoded`.
-            encoded: Odometry is dead reckoning from the first pair of wheels.
-            control_rate: Rate of control, Hz.
+            base: Link whose ground-truth pose is published if the odometry is not `encoded`.
+            encoded: The odometry is dead reckoning from the first pair of wheels.
+            control_rate: Rate of the control loop, Hz.
             rate: Publish rate, Hz.
             acceleration: Maximum acceleration of the rims, m/s²; 0: no limit.
             reverse: Invert the turning direction.

@@ -39,9 +39,10 @@ class WheelSlipParameters:
     wheels: tuple[str, ...] = tag(
         "wheel",
         default=(),
-        doc="A wheel, by the attribute `link_name`, with `<slip_compliance_lateral>`, "
-        "`<slip_compliance_longitudinal>`, `<wheel_normal_force>` in N and `<wheel_radius>` in m "
-        "(default: the radius of its cylinder or sphere).",
+        doc="A wheel: attribute `link_name`, and the tags `<slip_compliance_lateral>`, "
+        "`<slip_compliance_longitudinal>`, `<wheel_normal_force>` in N and `<wheel_radius>` "
+        "in m (default: radius of the wheel's cylinder or sphere). Repeat the tag for each "
+        "wheel.",
     )
     tolerance: float = tag(
         "wheel_spin_tolerance",
@@ -71,13 +72,13 @@ class _Wheel:
 class WheelSlip(Plugin[WheelSlipParameters]):
     """Makes wheels slip in proportion to the friction force.
 
-    The slip speed is: rim speed * slip compliance * friction force / normal force. A wheel that
-    does not turn does not slip. The coefficient of friction limits the force, and thereby the slip.
+    The slip speed is ``rim speed * slip compliance * friction force / normal force``. A wheel that
+    is not turning does not slip. The friction coefficient limits the force, and therefore the slip.
 
     With ``<ros>`` (ROS 2), `libgazebo_ros_wheel_slip.so` publishes the slip of each wheel on
-    ``wheel_slip``: lateral as an angle in rad, longitudinal as a fraction of the rim speed. Without
-    it (ROS 1), the compliances of all wheels can be set by dynamic_reconfigure under
-    ``/<model>/<robotNamespace>``, by default ``/<model>/wheel_slip``.
+    ``wheel_slip``: lateral slip as an angle in rad, longitudinal slip as a fraction of the rim
+    speed. Without ``<ros>`` (ROS 1), dynamic_reconfigure can change the compliances of all wheels
+    under ``/<model>/<robotNamespace>``, by default ``/<model>/wheel_slip``.
 
     Source: Gazebo, WheelSlipPlugin; gazebo_plugins, gazebo_ros_wheel_slip; gz-sim, WheelSlip.
     """
@@ -152,7 +153,7 @@ class WheelSlip(Plugin[WheelSlipParameters]):
         )
 
     def _radius(self, name: str) -> float:
-        """Radius of the wheel's cylinder or sphere, m; 0 if it has neither."""
+        """Returns the radius of the wheel's cylinder or sphere in m; 0 if it has neither."""
         link = self.part.description.link(name)
         shapes = [each.shape for each in link.collisions] if link is not None else []
         round_ones = [shape for shape in shapes if isinstance(shape, Cylinder | Sphere)]
@@ -183,6 +184,6 @@ class WheelSlip(Plugin[WheelSlipParameters]):
 
 
 def _number(element: Element, name: str) -> float:
-    """The number in a child element; 0 if it does not exist."""
+    """Returns the number in a child element; 0 if the element does not exist."""
     child = element.find(name)
     return number(child) if child is not None else 0.0

@@ -40,14 +40,15 @@ class WheelTransforms:
         self._TransformStamped = message_class("geometry_msgs/msg/TransformStamped")
 
     def at(self, time_ns: int) -> list[Any]:
-        """The current ``TransformStamped`` messages."""
+        """Returns the current ``TransformStamped`` messages."""
         Vector3, Quaternion, Transform = self._Vector3, self._Quaternion, self._Transform
         TransformStamped = self._TransformStamped
         sent, of, head = [], None, None
         for joint, parent, child in self._wheels:
             if parent != of:
                 # robot_state_publisher publishes transforms of the same wheels with the stamp of
-                # our joint states. A nanosecond apart, tf does not warn about repeated data.
+                # our joint states. Ours is a nanosecond later, so that tf does not warn about
+                # repeated data.
                 of, head = parent, header(time_ns + 1, parent)
             where, turned = joint.child_place()
             moved = Transform(Vector3(*where), Quaternion(*turned))

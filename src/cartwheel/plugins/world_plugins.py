@@ -1,4 +1,4 @@
-"""The ``<plugin>`` tags of worlds: supported, built-in and unsupported plugins."""
+"""The ``<plugin>`` tags in worlds: supported, built-in and unsupported plugins."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ BUILT_IN = {
 
 
 def left_out(tag: PluginTag, error: CartwheelError) -> Diagnostic:
-    """The diagnostic for a plugin or sensor that cannot be created."""
+    """Returns the diagnostic for a plugin or sensor that cannot be created."""
     return running.PLUGIN_LEFT_OUT.because(
         f"{_title(tag)} is ignored",
         error,
@@ -40,7 +40,7 @@ def left_out(tag: PluginTag, error: CartwheelError) -> Diagnostic:
 
 
 def failed(tag: PluginTag, error: Exception) -> Diagnostic:
-    """The diagnostic for a plugin or sensor that raises an unexpected exception when created."""
+    """Returns the diagnostic for a plugin or sensor with an unexpected exception at creation."""
     return fault(
         f"{_title(tag)} failed and is ignored",
         error,
@@ -55,13 +55,13 @@ def _title(tag: PluginTag) -> str:
 
 
 def attach_world(part: Part, graph: Graph) -> list[Behaviour]:
-    """Creates the plugins of the world and reports those without effect.
+    """Creates the plugins of the world and reports those that have no effect.
 
-    A plugin that cannot be created is left out, with a report.
+    A plugin that cannot be created is skipped with a report.
 
     Args:
         part: The world's part of the simulation.
-        graph: Where the plugins publish.
+        graph: Graph on which the plugins publish.
     """
     behaviours: list[Behaviour] = []
     for tag in part.world.plugins:

@@ -1,4 +1,4 @@
-"""The actions of controllers."""
+"""Action servers of controllers."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from cartwheel.simulation.limits import STRONGEST
 
 
 class ActionServer:
-    """An action below a controller's name, on the graph as such and, if ROS 1 has it, as topics.
+    """An action below a controller's name, also offered as ROS 1 topics if ROS 1 defines its type.
 
     Args:
-        controller: Whose it is; it closes with that.
-        name: Of the action.
-        kind: Its type: ``FollowJointTrajectory`` of control_msgs.
-        on_goal: Takes a new goal: accepts, rejects or ends it.
-        on_cancel: Ends a goal that is to be cancelled.
+        controller: The controller. The action closes with it.
+        name: Name of the action.
+        kind: Type in control_msgs, such as ``FollowJointTrajectory``.
+        on_goal: Accepts, rejects or finishes a new goal.
+        on_cancel: Finishes a goal that a client cancels.
     """
 
     def __init__(
@@ -60,20 +60,20 @@ class ActionServer:
             controller.keep(self._topics)
 
     def message(self, part: str, **fields: Any) -> Any:
-        """A ``Result`` or ``Feedback``."""
+        """Returns a ``Result`` or ``Feedback`` message."""
         return self._action.message(part, **fields)
 
     @property
     def wants_feedback(self) -> bool:
-        """Whether anybody reads how goals go."""
+        """Whether a client receives the feedback."""
         return self._action.wants_feedback
 
     def tick(self, time_ns: int) -> None:
-        """Tells the states of all goals when it is due, for others to see that it is there."""
+        """Publishes the status of all goals when due, by which ROS 1 clients find the server."""
         if self._rhythm.due(time_ns) and self._topics is not None:
             self._topics.tell()
 
     def start(self, time_ns: int) -> None:
-        """Begins to tell."""
+        """Starts to publish the status."""
         self._action.restart()
         self._rhythm.start(time_ns)

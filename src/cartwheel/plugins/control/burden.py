@@ -1,4 +1,4 @@
-"""What the weight of a robot's parts asks of its joints."""
+"""The largest effort that gravity demands of each joint."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ Array = NDArray[np.float64]
 _GRAVITY = 9.8
 """m/s²."""
 _POSES = 500
-"""That are looked at: of six joints they miss a few per cent of the most."""
+"""Number of sampled poses. For six joints they miss a few per cent of the maximum."""
 _TURNS = ("revolute", "continuous")
 
 
 def burdens(description: RobotDescription) -> dict[str, float]:
-    """The most that gravity asks of each joint that turns or slides, N m or N.
+    """Returns the largest effort that gravity demands of each movable joint, N m or N.
 
-    The robot stands upright, in the pose it is described in and in others drawn within its
-    joints' limits: always the same ones.
+    The robot stands upright. The maximum is taken over its zero pose and random poses within the
+    joint limits, which are the same in every run.
     """
     links = {link.name: link for link in description.links}
     inbound: dict[str, Joint] = {}
@@ -34,7 +34,7 @@ def burdens(description: RobotDescription) -> dict[str, float]:
     order = _from_the_root(links, inbound)
     drawn = _draw(description)
     frames: dict[str, tuple[Array, Array]] = {"": (np.eye(3)[None], np.zeros((1, 3)))}
-    """Orientations and places of the links, in all poses."""
+    """Orientations and positions of the links in all poses."""
     pivots: dict[str, tuple[Array, Array]] = {}
     for name in order:
         hung = inbound.get(name)
@@ -56,17 +56,17 @@ def burdens(description: RobotDescription) -> dict[str, float]:
                 turn = turn @ _turns(own, value)
                 place = pivot - turn @ offset
         frames[name] = turn, place
-    return _asked(description, order, inbound, frames, pivots)
+    return _efforts(description, order, inbound, frames, pivots)
 
 
-def _asked(
+def _efforts(
     description: RobotDescription,
     order: list[str],
     inbound: Mapping[str, Joint],
     frames: Mapping[str, tuple[Array, Array]],
     pivots: Mapping[str, tuple[Array, Array]],
 ) -> dict[str, float]:
-    """The same, of links whose frames are known in all poses."""
+    """Returns the largest efforts from the link frames in all poses."""
     mass = dict.fromkeys(order, 0.0)
     moment: dict[str, Any] = dict.fromkeys(order, 0.0)
     for link in description.links:
@@ -75,7 +75,7 @@ def _asked(
             centre = place + turn @ np.array(link.inertial.pose.position)
             mass[link.name] = link.inertial.mass
             moment[link.name] = link.inertial.mass * centre
-    found: dict[str, float] = {}
+    efforts: dict[str, float] = {}
     for name in reversed(order):
         joint = inbound.get(name)
         if joint is None:
@@ -83,31 +83,31 @@ def _asked(
         if name in pivots:
             axis, pivot = pivots[name]
             if joint.type == "prismatic":
-                asked = mass[name] * np.abs(axis[:, 2])
+                effort = mass[name] * np.abs(axis[:, 2])
             else:
                 arm = moment[name] - mass[name] * pivot
-                asked = np.abs(axis[:, 1] * arm[:, 0] - axis[:, 0] * arm[:, 1])
-            found[joint.name] = _GRAVITY * float(asked.max())
+                effort = np.abs(axis[:, 1] * arm[:, 0] - axis[:, 0] * arm[:, 1])
+            efforts[joint.name] = _GRAVITY * float(effort.max())
         if joint.parent in mass:
             mass[joint.parent] += mass[name]
             moment[joint.parent] = moment[joint.parent] + moment[name]
-    return found
+    return efforts
 
 
 def _from_the_root(links: Mapping[str, Any], inbound: Mapping[str, Joint]) -> list[str]:
-    """All links, each behind the one it hangs on."""
+    """Returns the names of all links; each follows its parent."""
     children: dict[str, list[str]] = {}
     for name in links:
         parent = inbound[name].parent if name in inbound else ""
         children.setdefault(parent if parent in links else "", []).append(name)
     order = list(children.get("", ()))
-    for name in order:  # which grows meanwhile
+    for name in order:  # the list grows meanwhile
         order += children.get(name, ())
     return order
 
 
 def _draw(description: RobotDescription) -> dict[str, Array]:
-    """Positions of all joints that turn or slide, by joint; the first ones as near 0 as may be."""
+    """Returns the sampled positions of all movable joints; the first is the one nearest 0."""
     generator = np.random.default_rng(0)
     drawn: dict[str, Array] = {}
     for joint in description.joints:
@@ -129,7 +129,7 @@ def _draw(description: RobotDescription) -> dict[str, Array]:
 
 
 def _turns(axis: Array, angles: Array) -> Array:
-    """Rotations about one axis; (n, 3, 3)."""
+    """Rotations about one axis, shape (n, 3, 3)."""
     x, y, z = axis / np.linalg.norm(axis)
     cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
     sine, cosine = np.sin(angles)[:, None, None], np.cos(angles)[:, None, None]

@@ -1,4 +1,4 @@
-"""The types of controllers there are."""
+"""The supported controller types."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ ACKERMANN = "ackermann_steering_controller/AckermannSteeringController"
 
 @functools.cache
 def controller_types() -> dict[str, type[Controller]]:
-    """All types by name, as ROS 1 and ROS 2 write them."""
+    """Returns all controller types by name, in the spellings of ROS 1 and ROS 2."""
     from cartwheel.plugins.control.diff_drive import DiffDriveController
     from cartwheel.plugins.control.gripper import (
         GripperActionController,
@@ -54,15 +54,15 @@ def controller_types() -> dict[str, type[Controller]]:
 
 
 def find_type(name: str, *, ros2: bool) -> type[Controller]:
-    """The class of a controller type; C++'s ``a::B`` is taken as ``a/B``.
+    """Returns the class of a controller type. The C++ spelling ``a::B`` is read as ``a/B``.
 
     Raises:
-        UnknownNameError: There is none of that name.
+        UnknownNameError: The type is not supported.
     """
     known = controller_types()
     plain = name.strip().replace("::", "/")
     if not ros2 and plain == ACKERMANN:
-        # Two controllers that have nothing but their name in common.
+        # ROS 1 and ROS 2 use this name for two different controllers.
         from cartwheel.plugins.control.steering import SingleSteering
 
         return SingleSteering

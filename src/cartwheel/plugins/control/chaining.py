@@ -1,4 +1,4 @@
-"""Controllers that command other controllers: ros2_control's reference interfaces."""
+"""Chained controllers: the reference interfaces of ros2_control."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ from cartwheel.plugins.control.hardware import JointHardware
 
 
 class Reference(JointHardware):
-    """A joint as a chained controller offers it: its state is the joint's, its command is not.
+    """A reference interface: a joint's state, and a command that another controller executes.
 
     Args:
-        owner: The controller that takes the commands.
-        joint: What it measures and commands; may be a reference of yet another one.
-        interface: Of the commands.
+        owner: The controller that executes the commands.
+        joint: Joint that the owner measures and commands, or a reference of another controller.
+        interface: Interface of the commands.
     """
 
     def __init__(self, owner: str, joint: JointHardware, interface: str) -> None:
-        # Handles and limits are those of the joint; `Hardware` alone writes to it.
+        # Handles and limits are those of the joint. Only `Hardware` writes to the joint.
         vars(self).update(vars(joint))
         self.owner = owner
         self.name = f"{owner}/{joint.name}"
@@ -26,11 +26,11 @@ class Reference(JointHardware):
         self.interfaces = replace(joint.interfaces, name=self.name, commands=(interface,))
         self.pids = {}
         self.taken = False
-        """Whether another controller commands it, and not a topic."""
+        """Whether another controller commands the reference, instead of a topic."""
 
     @property
     def full_name(self) -> str:
-        """As ROS 2 lists it: ``controller/joint/velocity``."""
+        """Name in ROS 2: ``controller/joint/velocity``."""
         return f"{self.name}/{self.interface}"
 
     def activate(self, interface: str) -> None:
@@ -43,11 +43,11 @@ class Reference(JointHardware):
 
     @property
     def own_name(self) -> str:
-        """As its controller calls it."""
+        """Name without the controller: ``joint/velocity``."""
         return self.full_name.removeprefix(f"{self.owner}/")
 
 
 def owners(claims: Iterable[JointHardware]) -> list[str]:
-    """The controllers that claims of another controller lead to."""
-    found = (each.owner for each in claims if isinstance(each, Reference))
-    return list(dict.fromkeys(found))
+    """Returns the names of the controllers whose references are claimed."""
+    names = (each.owner for each in claims if isinstance(each, Reference))
+    return list(dict.fromkeys(names))

@@ -1,4 +1,4 @@
-"""The hardware that ROS 2's controller manager lists: the ``<ros2_control>`` tags."""
+"""Hardware components of ROS 2's controller manager, one for each ``<ros2_control>`` tag."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ _ACTIVE, _FINALIZED = 3, 4
 
 
 class HardwareComponents:
-    """The components, their interfaces, and their states. All are active at first.
+    """The hardware components with their interfaces and states. All are active initially.
 
     Args:
-        systems: The tags.
-        joints: All joints of theirs.
-        sensors: All sensors of theirs.
+        systems: The ``<ros2_control>`` tags.
+        joints: All joints in these tags.
+        sensors: All sensors in these tags.
     """
 
     def __init__(
@@ -51,7 +51,7 @@ class HardwareComponents:
             self._measures[name] = _joined([*parts, *sensed], states)
 
     def lacks(self, controller: Controller | None) -> bool:
-        """Whether a controller commands what is not active."""
+        """Whether a controller commands an interface of a component that is not active."""
         if controller is None:
             return False
         wanted = {f"{joint}/{kind}" for joint, kind in controller.interfaces.items()}
@@ -61,15 +61,15 @@ class HardwareComponents:
         )
 
     def change(self, name: str, target: Any) -> None:
-        """Takes a component to another state.
+        """Changes the state of a component.
 
         Args:
-            name: Of the component.
-            target: ``lifecycle_msgs/State``, by number or by label.
+            name: The component.
+            target: ``lifecycle_msgs/State``, with an ID or a label.
 
         Raises:
-            UnknownNameError: There is no such component, or no such state.
-            GraphError: It is finalized, which is for good.
+            UnknownNameError: The component or the state does not exist.
+            GraphError: The component is finalized, which cannot be undone.
         """
         if name not in self._systems:
             raise UnknownNameError(
@@ -93,25 +93,27 @@ class HardwareComponents:
         self._states[name] = wanted
 
     def state(self, name: str) -> Any:
-        """``lifecycle_msgs/State`` of a component; that of nothing where there is none."""
+        """Returns ``lifecycle_msgs/State`` of a component; ``unknown`` if it does not exist."""
         number = self._states.get(name, 0)
         return message_class("lifecycle_msgs/msg/State")(
             id=number, label=_LABELS.get(number, "unknown")
         )
 
     def interfaces(self, controllers: Iterable[Controller]) -> tuple[list[Any], list[Any]]:
-        """All interfaces for commands and for states, as messages."""
+        """Returns the messages of all command interfaces and of all state interfaces."""
         claimed = _claimed(controllers)
-        commands = [one for name in self._systems for one in self._told(name, claimed)]
+        commands = [
+            one for name in self._systems for one in self._command_interfaces(name, claimed)
+        ]
         states = [
             _interface(each, available=self._states[name] != 1)
-            for name, found in self._measures.items()
-            for each in found
+            for name, interfaces in self._measures.items()
+            for each in interfaces
         ]
         return commands, states
 
     def messages(self, controllers: Iterable[Controller], rate: int) -> list[Any]:
-        """All components, with the rate in Hz at which they are read and written."""
+        """Returns the messages of all components. `rate` is the manager's update rate in Hz."""
         claimed = _claimed(controllers)
         return [
             message_class(f"{_MESSAGES}/HardwareComponentState")(
@@ -122,7 +124,7 @@ class HardwareComponents:
                 class_type="",
                 plugin_name=hardware_of(system),
                 state=self.state(name),
-                command_interfaces=self._told(name, claimed),
+                command_interfaces=self._command_interfaces(name, claimed),
                 state_interfaces=[
                     _interface(each, available=self._states[name] != 1)
                     for each in self._measures[name]
@@ -131,7 +133,7 @@ class HardwareComponents:
             for name, system in self._systems.items()
         ]
 
-    def _told(self, name: str, claimed: set[str]) -> list[Any]:
+    def _command_interfaces(self, name: str, claimed: set[str]) -> list[Any]:
         active = self._states[name] == _ACTIVE
         return [
             _interface(each, available=active, claimed=each in claimed)

@@ -1,4 +1,4 @@
-"""What every controller is."""
+"""The base class of all controllers."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from cartwheel.plugins.control.ros2_parameters import ParameterServices
 from cartwheel.plugins.control.settings import Settings
 from cartwheel.plugins.ft_sensor import JointLoad
 from cartwheel.plugins.inertial_unit import InertialUnit
-from cartwheel.plugins.inputs import obeyable, obeyable_positions
+from cartwheel.plugins.inputs import checked_callback, checked_positions
 from cartwheel.simulation import Part
 from cartwheel.simulation.clock import NANOSECONDS, Beat
 from cartwheel.simulation.pushing import BodyDriveHandle
@@ -27,33 +27,33 @@ from cartwheel.simulation.pushing import BodyDriveHandle
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class SensedLink:
-    """A sensor whose measurements controllers tell."""
+    """A sensor that broadcasters can publish."""
 
     name: str
     type: str
-    """imu or force_torque."""
+    """``imu`` or ``force_torque``."""
     sensor: Sensor
     unit: InertialUnit | JointLoad
-    """Measures, whichever controller asks."""
+    """Measures the sensor, for all controllers."""
 
 
 class Closable(Protocol):
-    """Something on the graph."""
+    """A resource on the graph."""
 
     def close(self) -> None:
-        """Takes it off."""
+        """Removes the resource from the graph."""
 
 
 class Rig:
-    """What controllers get of a robot.
+    """The parts of a robot that its controllers share.
 
     Args:
-        plugin: The manager's.
+        plugin: The plugin of the controller manager.
         hardware: The joints.
-        namespace: Of the controllers.
-        ros2: Whether names and defaults are those of ros2_control.
-        sensors: That broadcasters may tell of.
-        push: A servo of the whole robot, where it was spawned with one.
+        namespace: Namespace of the controllers.
+        ros2: Use the names and defaults of ros2_control.
+        sensors: Sensors that broadcasters can publish.
+        push: Servo that moves the whole robot; None if no controller needs one.
     """
 
     def __init__(
@@ -72,11 +72,11 @@ class Rig:
         self.ros2 = ros2
         self.sensors = {each.name: each for each in sensors}
         self.push = push
-        """Moves the whole robot, for wheels that our friction cannot make do so."""
+        """Moves a robot whose wheels cannot do so by friction: mecanum wheels without rollers."""
         self.period_ns = 0
-        """Of control."""
+        """Control period, ns."""
         self.remappings: dict[str, Mapping[str, str]] = {}
-        """Of controllers' names of topics, by controller."""
+        """Remapped topic names, by controller."""
 
     def report(
         self,
@@ -87,19 +87,19 @@ class Rig:
         hint: str = "",
         values: Mapping[str, Value] | None = None,
     ) -> None:
-        """Reports a warning, at the plugin's place unless another is given; see `Plugin.warn`."""
+        """Reports a warning at `at`, by default at the plugin's tag; see `Plugin.warn`."""
         self.plugin.warn(code, message, at=at, hint=hint, values=values)
 
 
 class Controller:
-    """Base of all controllers; made when it is loaded.
+    """Base class of all controllers, created when a controller is loaded.
 
-    A subclass names its `types`, reads its settings in `configure`, and there says which
-    joints it commands by `claim`. While it runs, `update` is called at the manager's rate.
+    A subclass lists its `types`. Its `configure` reads the parameters and calls `claim` for each
+    joint that it commands. While the controller runs, `update` is called at the manager's rate.
     """
 
     types: ClassVar[tuple[str, ...]]
-    """As ROS 1 and ROS 2 write them."""
+    """Names of the type in ROS 1 and ROS 2."""
 
     def __init__(self, name: str, type_name: str, settings: Settings, rig: Rig) -> None:
         self.name = name
@@ -107,16 +107,16 @@ class Controller:
         self.settings = settings
         self.rig = rig
         self.running = False
-        """Whether it was told to run."""
+        """Whether the controller is running, or starts at the next update."""
         self.started = False
-        """Whether `start` was called since; what is heard before waits for it."""
+        """Whether `start` has been called. Messages that arrive earlier are kept until then."""
         self._early: list[Callable[[], None]] = []
         self.claims: dict[str, JointHardware] = {}
-        """The joints it commands."""
+        """The claimed joints, by name."""
         self.interfaces: dict[str, str] = {}
-        """By which interface."""
+        """The claimed interface of each joint."""
         self.references: list[Reference] = []
-        """What other controllers may command of it."""
+        """Reference interfaces that other controllers can command."""
         self._open: list[Closable | Service] = []
         self._input: JointInput | None = None
         if rig.ros2:
@@ -131,16 +131,16 @@ class Controller:
             ParameterServices(self._offer_parameters, self.graph.nodes[self.node], values)
 
     def configure(self, settings: Settings) -> None:
-        """Reads parameters, claims joints, advertises and subscribes.
+        """Reads parameters, claims joints, and creates publishers and subscriptions.
 
         Raises:
-            PluginError: A parameter makes no sense.
+            PluginError: A parameter is not allowed.
             UnknownNameError: A joint does not exist.
         """
         raise NotImplementedError
 
     def begin(self, time_ns: int) -> None:
-        """Starts it, and lets it hear what came too early."""
+        """Starts the controller, and delivers the messages that arrived before."""
         self.start(time_ns)
         self.started = True
         early, self._early = self._early, []
@@ -150,37 +150,37 @@ class Controller:
             self.graph.joint_inputs.add(self._input)
 
     def end(self, time_ns: int) -> None:
-        """Stops it."""
+        """Stops the controller."""
         self.started = False
         self._early.clear()
         self._leave_joints()
         self.stop(time_ns)
 
     def start(self, time_ns: int) -> None:
-        """It runs from now on; its joints are at their commands."""
+        """Called when the controller starts. The claimed joints are already active."""
 
     def update(self, time_ns: int, seconds: float) -> None:
-        """Commands its joints.
+        """Commands the claimed joints.
 
         Args:
             time_ns: Simulation time.
-            seconds: Since the last update, s.
+            seconds: Time since the last update, s.
         """
 
     def idle(self, time_ns: int) -> None:
-        """In place of `update` while it does not run: tells that its action is there."""
+        """Called instead of `update` while not running, to publish the status of the action."""
 
     senses: bool = False
-    """Whether `sense` has anything to do."""
+    """Whether `sense` has messages to publish."""
 
     def sense(self, time_ns: int) -> None:
-        """Tells what only a settled state shows: accelerations and forces."""
+        """Publishes quantities that are only known after a step: accelerations and forces."""
 
     def stop(self, time_ns: int) -> None:
-        """It runs no longer."""
+        """Called when the controller stops."""
 
     def close(self) -> None:
-        """It is unloaded: takes everything off the graph."""
+        """Removes all topics and services when the controller is unloaded."""
         self.graph.nodes.pop(self.node, None)
         self._leave_joints()
         for item in self._open:
@@ -194,11 +194,11 @@ class Controller:
         self.references.clear()
 
     def claim(self, joint: str, interface: str) -> JointHardware:
-        """A joint that it commands while it runs.
+        """Claims a joint, which the controller commands while it runs.
 
         Raises:
-            UnknownNameError: There is none of that name.
-            PluginError: It does not take such commands.
+            UnknownNameError: The joint does not exist.
+            PluginError: The joint does not have this command interface.
         """
         hardware = self.rig.hardware.joint(joint, interface)
         self.claims[joint] = hardware
@@ -206,19 +206,19 @@ class Controller:
         return hardware
 
     def export(self, joint: JointHardware, interface: str) -> Reference:
-        """Lets other controllers command it: a reference in place of the joint itself."""
-        made = Reference(self.name, joint, interface)
-        self.references.append(made)
-        self.rig.hardware.references[made.full_name] = made
-        return made
+        """Creates a reference interface, by which other controllers can command the joint."""
+        reference = Reference(self.name, joint, interface)
+        self.references.append(reference)
+        self.rig.hardware.references[reference.full_name] = reference
+        return reference
 
     @property
     def chained(self) -> bool:
-        """Whether another controller commands it."""
+        """Whether another controller commands a reference of this one."""
         return any(each.taken for each in self.references)
 
     def state_interfaces(self) -> list[str]:
-        """What it measures, for listings: ``joint/position``; of the joints that it commands."""
+        """Returns the state interfaces of the claimed joints, such as ``joint/position``."""
         return [
             f"{joint.name}/{kind}"
             for joint in self.claims.values()
@@ -226,7 +226,7 @@ class Controller:
         ]
 
     def resolve(self, name: str) -> str:
-        """A name of a topic: below the controller's own unless it begins with ``/``; remapped."""
+        """Returns a topic name after remapping; below the controller's name unless global."""
         full = self._full(f"~/{name}")
         for source, target in self.rig.remappings.get(self.name, {}).items():
             if self._full(source) == full:
@@ -235,7 +235,7 @@ class Controller:
         return self.rig.plugin.resolve(full)
 
     def _full(self, name: str) -> str:
-        """A name as a node resolves it: ``~/…`` is below its own."""
+        """Resolves a name as a node does: ``~/…`` is below the controller's name."""
         space = self.rig.namespace.strip("/")
         if name.startswith("~/"):
             name, space = name.removeprefix("~/"), f"{space}/{self.name}"
@@ -244,7 +244,7 @@ class Controller:
     def advertise(
         self, topic: str, type_name: str, *, rate: float | None = None, qos: Qos = "default"
     ) -> Publisher:
-        """A publisher that closes with the controller; see `resolve`."""
+        """Creates a publisher that closes with the controller; see `resolve`."""
         publisher = self.rig.plugin.graph.advertise(
             self.resolve(topic), type_name, node=self.node, rate=rate, qos=qos
         )
@@ -259,14 +259,15 @@ class Controller:
         *,
         always: bool = False,
     ) -> None:
-        """A subscription that closes with the controller; heard while it runs, or `always`.
+        """Creates a subscription that closes with the controller.
 
-        Messages with a number that is too large are ignored, with a warning. NaN and infinities
-        mean different things to different controllers, which look at them.
+        Messages are received while the controller runs; with `always`, also while it does not.
+        Messages with a number that is too large are ignored with a warning. Each controller decides
+        what NaN and infinity mean.
         """
-        callback = obeyable(callback, self.part, self.warn, unset=True)
+        callback = checked_callback(callback, self.part, self.warn, unset=True)
 
-        def heard(message: Any) -> None:
+        def receive(message: Any) -> None:
             if self.running and not self.started:
                 self._early.append(lambda: callback(message))
             elif self.running or always:
@@ -274,21 +275,21 @@ class Controller:
 
         self._open.append(
             self.rig.plugin.graph.subscribe(
-                self.resolve(topic), heard, type_name=type_name, node=self.node
+                self.resolve(topic), receive, type_name=type_name, node=self.node
             )
         )
 
     def take_positions(self, put: Callable[[Mapping[str, float], float], None]) -> None:
-        """Takes positions for its joints by hand too while it runs; see `JointInput`."""
+        """Accepts manual joint positions while the controller runs; see `JointInput`."""
         self._input = JointInput(
             model=self.part.name,
             owner=self.name,
             joints=tuple(claim.joint for claim in self.claims.values()),
-            put=obeyable_positions(put, self.part),
+            put=checked_positions(put, self.part),
         )
 
-    def hear(self, topic: str, type_name: str, **fields: object) -> None:
-        """Says to itself on one of its topics what another node could have said."""
+    def publish_command(self, topic: str, type_name: str, **fields: object) -> None:
+        """Publishes a message on one of the controller's own command topics."""
         self.graph.publish(self.resolve(topic), type_name, message_class(type_name)(**fields))
 
     def _leave_joints(self) -> None:
@@ -296,22 +297,22 @@ class Controller:
             self.graph.joint_inputs.remove(self._input)
 
     def keep(self, closable: Closable) -> None:
-        """Closes it with the controller."""
+        """Closes a resource with the controller."""
         self._open.append(closable)
 
     def _offer_parameters(self, name: str, type_name: str, handler: Callable[[Any], Any]) -> None:
-        """A service of its parameters; left to another robot's controller of the same name."""
+        """Offers a parameter service, unless another robot's controller already offers it."""
         with contextlib.suppress(GraphError):
             self._open.append(self.graph.serve(name, type_name, handler, node=self.node))
 
     def serve(self, name: str, type_name: str, handler: Callable[[Any], Any]) -> None:
-        """A service that closes with the controller."""
+        """Offers a service that closes with the controller."""
         self._open.append(
             self.rig.plugin.graph.serve(self.resolve(name), type_name, handler, node=self.node)
         )
 
     def frame(self, name: str) -> str:
-        """A frame's name with the robot's prefix."""
+        """Returns a frame ID with the robot's prefix."""
         return self.rig.plugin.frame(name)
 
     @property
@@ -321,12 +322,12 @@ class Controller:
 
     @property
     def graph(self) -> Graph:
-        """Where it publishes."""
+        """The graph that contains the controller's topics."""
         return self.rig.plugin.graph
 
     @property
     def node(self) -> str:
-        """Who publishes, for listings."""
+        """Node name for listings."""
         return f"{self.rig.plugin.part.name}/{self.name}"
 
     def warn(
@@ -346,10 +347,10 @@ class Controller:
 
 
 class Rhythm:
-    """Whether something is due, at fixed multiples of its period since time zero.
+    """Determines when a periodic task is due, at multiples of its period since time 0.
 
     Args:
-        rate: Hz; 0 is always.
+        rate: Hz; 0: always due.
     """
 
     def __init__(self, rate: float) -> None:
@@ -360,11 +361,11 @@ class Rhythm:
         self._due = 0
 
     def start(self, time_ns: int) -> None:
-        """Is due at the first multiple from now on."""
+        """Sets the next due time to the first multiple from now on."""
         self._due = self._beat.due(time_ns)
 
     def due(self, time_ns: int) -> bool:
-        """Whether it is due since the last time it was asked; the next is then."""
+        """Whether the task is due. If it is, the next multiple becomes the next due time."""
         if self._due > time_ns:
             return False
         self._due = self._beat.due(time_ns + 1)

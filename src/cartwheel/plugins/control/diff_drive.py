@@ -1,4 +1,4 @@
-"""``diff_drive_controller``: wheels on the left and on the right, by Twist."""
+"""``diff_drive_controller``: left and right wheels that follow Twist commands."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ from cartwheel.plugins.control.wheels import (
 
 
 class DiffDriveController(Controller):
-    """Drives wheels by velocity, and tells where they took the robot.
+    """Drives left and right wheels from Twist commands, and publishes odometry.
 
-    ROS 1 listens to ``cmd_vel``, ROS 2 to ``cmd_vel`` with TwistStamped or, unless
-    ``use_stamped_vel``, to ``cmd_vel_unstamped``. Where the separation or the radius is not
-    stated, the description's counts. Source: diff_drive_controller.
+    Commands arrive on ``cmd_vel``: Twist in ROS 1, TwistStamped in ROS 2. With ``use_stamped_vel:
+    false``, ROS 2 uses ``cmd_vel_unstamped`` (Twist). If the wheel separation or radius is not
+    specified, it is read from the description. Source: diff_drive_controller.
     """
 
     types: ClassVar[tuple[str, ...]] = ("diff_drive_controller/DiffDriveController",)
@@ -38,7 +38,8 @@ class DiffDriveController(Controller):
         if not left or len(left) != len(right):
             raise settings.error(
                 devices.WHEELS_UNPAIRED,
-                f"needs as many left as right wheels (got {len(left)} and {len(right)})",
+                "the numbers of left and right wheels must be equal and positive "
+                f"(got {len(left)} and {len(right)})",
                 values={"left": len(left), "right": len(right)},
             )
         self._left = [self.claim(name, "velocity") for name in left]
@@ -67,9 +68,9 @@ class DiffDriveController(Controller):
             transform=settings.boolean("enable_odom_tf", True),
             prefix=frame_prefix(self, settings) if ros2 else "",
         )
-        told = settings.boolean("publish_limited_velocity" if ros2 else "publish_cmd", False)
+        published = settings.boolean("publish_limited_velocity" if ros2 else "publish_cmd", False)
         self._out = (
-            self.advertise("cmd_vel_out", "geometry_msgs/msg/TwistStamped") if told else None
+            self.advertise("cmd_vel_out", "geometry_msgs/msg/TwistStamped") if published else None
         )
         self._history = [(0.0, 0.0), (0.0, 0.0)]
         self._turned = (0.0, 0.0)
@@ -82,7 +83,7 @@ class DiffDriveController(Controller):
 
     def update(self, time_ns: int, seconds: float) -> None:
         self._reckon(seconds)
-        self._odometry.tell(time_ns)
+        self._odometry.publish(time_ns)
         forward, _, turn = self._command.at(time_ns)
         (v1, w1), (v0, w0) = self._history
         forward = self._linear.limit(forward, v0, v1, seconds)
@@ -94,7 +95,7 @@ class DiffDriveController(Controller):
         for joint in self._right:
             joint.command = (forward + half) / self._right_radius
         if self._out is not None and self._out.wanted:
-            self._tell_limited(time_ns, forward, turn)
+            self._publish_limited(time_ns, forward, turn)
 
     def stop(self, time_ns: int) -> None:  # noqa: ARG002
         for joint in self.claims.values():
@@ -127,7 +128,7 @@ class DiffDriveController(Controller):
             _mean([joint.position for joint in self._right]),
         )
 
-    def _tell_limited(self, time_ns: int, forward: float, turn: float) -> None:
+    def _publish_limited(self, time_ns: int, forward: float, turn: float) -> None:
         assert self._out is not None
         Vector3 = message_class("geometry_msgs/msg/Vector3")
         self._out.publish(

@@ -1,4 +1,4 @@
-"""Controllers' YAML files, as rosparam and ros2_control read them."""
+"""YAML files with controllers, in the formats of rosparam and ros2_control."""
 
 from __future__ import annotations
 
@@ -32,46 +32,46 @@ class ControllerEntry:
     type: str
     values: Mapping[str, Any]
     namespace: str
-    """As the file has it, without slashes at its ends."""
+    """Namespace in the file, without leading and trailing slashes."""
     source: str
     shared: tuple[str, ...] = ()
-    """Parameters that the file gives to all nodes: those that it does not know are no fault."""
+    """Parameters that the file gives to all nodes. Unknown ones cause no warning."""
     remappings: Mapping[str, str] = field(default_factory=dict)
-    """Names of topics, as written, by the names that stand for them."""
+    """Remapped topic names: new names by old names."""
 
     def settings(self) -> Settings:
-        """Its parameters, to be read."""
-        made = Settings(self.values, self.name, self.source)
-        made.ignore("use_sim_time", *self.shared)
-        return made
+        """Returns the parameters of the controller."""
+        settings = Settings(self.values, self.name, self.source)
+        settings.ignore("use_sim_time", *self.shared)
+        return settings
 
 
 class ControllerFiles:
-    """The files whose controllers the next robot starts by itself.
+    """The files whose controllers the next robot starts automatically.
 
-    A robot's manager takes them when it is made.
+    A robot's controller manager takes the files when it is created.
     """
 
     def __init__(self) -> None:
         self.paths: tuple[Path, ...] = ()
         self.loaded: list[Controller] = []
-        """What managers loaded by themselves, for those who tell the user."""
+        """Controllers that managers have loaded from files."""
 
     @classmethod
     def of(cls, graph: Graph) -> ControllerFiles:
-        """Those of a graph, none at first."""
-        found = _BY_GRAPH.get(graph)
-        if found is None:
-            found = _BY_GRAPH[graph] = cls()
-        return found
+        """Returns the files of a graph, which are empty initially."""
+        files = _BY_GRAPH.get(graph)
+        if files is None:
+            files = _BY_GRAPH[graph] = cls()
+        return files
 
     @property
     def started(self) -> list[Controller]:
-        """Those of them that run; others want joints that one of these has."""
+        """The loaded controllers that run. One whose joint is already commanded does not start."""
         return [controller for controller in self.loaded if controller.running]
 
     def take(self) -> tuple[Path, ...]:
-        """The files, for one robot alone."""
+        """Returns the files and clears them, so that only one robot uses them."""
         paths, self.paths = self.paths, ()
         return paths
 
@@ -80,13 +80,13 @@ _BY_GRAPH: weakref.WeakKeyDictionary[Graph, ControllerFiles] = weakref.WeakKeyDi
 
 
 def read_parameters(path: Path) -> dict[str, Any]:
-    """A file's mapping of controllers.
+    """Reads the controllers of a file, by name.
 
-    A file that is one controller itself, which launch files load into a namespace, is named as
-    the file is, or as ``NAME=FILE`` says.
+    A file can contain the parameters of a single controller, which launch files load into a
+    namespace. Its name is the file's stem, or NAME if the path is given as ``NAME=FILE``.
 
     Raises:
-        PluginError: As `read_yaml`.
+        PluginError: See `read_yaml`.
     """
     name, equals, file = str(path).partition("=")
     if not equals or path.exists():
@@ -98,12 +98,12 @@ def read_parameters(path: Path) -> dict[str, Any]:
 
 
 def read_yaml(path: Path) -> dict[str, Any]:
-    """A file's mapping.
+    """Reads the mapping in a YAML file.
 
     Raises:
-        PluginError: It cannot be read, is no YAML, or no mapping; with its place.
+        PluginError: The file cannot be read, is not valid YAML, or is not a mapping.
     """
-    # Only robots with controllers pay for the import.
+    # The import is slow, and only robots with controllers need it.
     import yaml
 
     origin = Origin(file=str(path))
@@ -136,9 +136,9 @@ def _unreadable(message: str, origin: Origin) -> PluginError:
 
 
 def _join(node: Any, seen: set[int]) -> None:
-    """Joins mappings of a file that stand under the same key, as ROS 2 reads them.
+    """Merges mappings with the same key, as ROS 2 does.
 
-    YAML's own rule, which ROS 1 keeps to, is that the last one counts.
+    In YAML, and in ROS 1, the last of them is used.
     """
     if node.id == "scalar" or id(node) in seen:
         return
@@ -159,10 +159,10 @@ def _join(node: Any, seen: set[int]) -> None:
 
 
 def for_robot(content: dict[str, Any], path: Path, robot: RobotDescription) -> dict[str, Any]:
-    """A file's content with what launch files put into it.
+    """Replaces the substitutions in a file, such as ``$(arg name)``, which launch files evaluate.
 
     Raises:
-        PluginError: As `substitute`.
+        PluginError: See `substitute`.
     """
     arguments = launch_arguments(content, robot)
     filled: dict[str, Any] = substitute(content, path, arguments)
@@ -170,14 +170,14 @@ def for_robot(content: dict[str, Any], path: Path, robot: RobotDescription) -> d
 
 
 def read_ros2(path: Path, robot: RobotDescription) -> dict[str, Any]:
-    """A file of ROS 2's nodes, with what launch files put into it.
+    """Reads a ROS 2 parameter file and replaces its substitutions.
 
     Args:
-        path: Of the file.
-        robot: Whose controllers it has.
+        path: The file.
+        robot: The robot whose arguments are used.
 
     Raises:
-        PluginError: As `read_yaml` and `for_robot`, or it is no such file.
+        PluginError: See `read_yaml` and `for_robot`; or the file is not a ROS 2 parameter file.
     """
     content = for_robot(read_yaml(path), path, robot)
     if content and not is_ros2(content):
@@ -191,7 +191,7 @@ def read_ros2(path: Path, robot: RobotDescription) -> dict[str, Any]:
 
 
 def ros1_entries(content: Mapping[str, Any], source: str) -> list[ControllerEntry]:
-    """The controllers of a file for rosparam: mappings with a ``type``, wherever they are."""
+    """Returns the controllers in a rosparam file: mappings with a ``type``, nested or not."""
     return list(_ros1_entries(content, (), source))
 
 
@@ -214,7 +214,7 @@ def _ros1_entries(
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Ros2File:
-    """What a ros2_control file says."""
+    """The parameters in one or more ros2_control files."""
 
     manager: Mapping[str, Any]
     """Parameters of the controller manager."""
@@ -223,11 +223,11 @@ class Ros2File:
     shared: Mapping[str, Any]
     """Parameters of all nodes."""
     elsewhere: tuple[str, ...]
-    """Nodes of other namespaces."""
+    """Names of nodes in other namespaces."""
 
 
 def is_ros2(content: Mapping[str, Any]) -> bool:
-    """Whether a file's parameters are those of ROS 2's nodes."""
+    """Whether a file contains ROS 2 parameters: ``ros__parameters`` below a node name."""
     return any(
         isinstance(value, Mapping) and (_ROS2 in value or is_ros2(value))
         for value in content.values()
@@ -237,14 +237,14 @@ def is_ros2(content: Mapping[str, Any]) -> bool:
 def ros2_file(
     contents: Sequence[Mapping[str, Any]], namespace: str, manager: str = "controller_manager"
 ) -> Ros2File:
-    """Several files' parameters for the nodes of a namespace; later ones win.
+    """Combines the parameters in several files, for the nodes of a namespace. Later files win.
 
-    ``/**`` stands for all nodes, ``/ns/node`` and nested names for one. Source:
+    ``/**`` applies to all nodes; ``/ns/node`` and nested names apply to one. Source:
     rcl_yaml_param_parser.
 
     Args:
-        contents: Of the files.
-        namespace: Of the nodes.
+        contents: Contents of the files.
+        namespace: Namespace of the nodes.
         manager: Name of the controller manager's node.
     """
     shared: dict[str, Any] = {}
@@ -266,34 +266,34 @@ def ros2_file(
 
 
 def _copy(values: Mapping[str, Any]) -> dict[str, Any]:
-    """One that can be changed; lists stay what they are."""
+    """Copies nested mappings. Lists are shared with the original."""
     return {key: _copy(one) if isinstance(one, Mapping) else one for key, one in values.items()}
 
 
-def controller_entries(found: Ros2File, namespace: str, source: str) -> list[ControllerEntry]:
-    """The controllers whose type the manager's or their own parameters state."""
-    manager = Settings(found.manager, "controller_manager", source)
+def controller_entries(file: Ros2File, namespace: str, source: str) -> list[ControllerEntry]:
+    """Returns the controllers whose type is specified, in the manager's or their own parameters."""
+    manager = Settings(file.manager, "controller_manager", source)
     return [
         entry
-        for name in dict.fromkeys((*manager.names(), *found.nodes))
-        if (entry := controller_entry(found, name, namespace, source)).type
+        for name in dict.fromkeys((*manager.names(), *file.nodes))
+        if (entry := controller_entry(file, name, namespace, source)).type
     ]
 
 
-def controller_entry(found: Ros2File, name: str, namespace: str, source: str) -> ControllerEntry:
-    """A controller by its name; its type is empty where nothing states it.
+def controller_entry(file: Ros2File, name: str, namespace: str, source: str) -> ControllerEntry:
+    """Returns a controller by its name. Its type is empty if no file specifies it.
 
-    Some files state it below a further ``ros__parameters``: ROS 2 does not find it there, and
-    their launch files give it to the spawner.
+    In some files the type is below an additional ``ros__parameters``. ROS 2 does not find it there,
+    and their launch files pass the type to the spawner.
     """
-    own = found.nodes.get(name, {})
-    listed = Settings(found.manager, "controller_manager", source).raw(name)
+    own = file.nodes.get(name, {})
+    listed = Settings(file.manager, "controller_manager", source).raw(name)
     listed = listed if isinstance(listed, Mapping) else {}
     deeper = listed.get(_ROS2)
     if isinstance(deeper, Mapping):
         listed = {**deeper, **listed}
     kind = listed.get("type") if isinstance(listed.get("type"), str) else own.get("type")
-    values = _copy(found.shared)
+    values = _copy(file.shared)
     merge(values, _copy(own))
     return ControllerEntry(
         name=name,
@@ -301,13 +301,13 @@ def controller_entry(found: Ros2File, name: str, namespace: str, source: str) ->
         values=values,
         namespace=namespace,
         source=source,
-        shared=tuple(key for key in found.shared if key not in own),
+        shared=tuple(key for key in file.shared if key not in own),
         remappings=remappings(listed.get("node_options_args", [])),
     )
 
 
 def remappings(arguments: Any) -> dict[str, str]:
-    """What ``-r from:=to`` among a node's arguments makes of names. Source: rcl."""
+    """Returns the remappings (``-r from:=to``) among a node's arguments. Source: rcl."""
     words = arguments.split() if isinstance(arguments, str) else list(arguments)
     pairs = [
         str(word).partition(":=")
@@ -324,8 +324,8 @@ def _ros2_nodes(
         if not isinstance(value, Mapping):
             continue
         parts = (*path, *(part for part in str(key).split("/") if part))
-        found = value.get(_ROS2)
-        if isinstance(found, Mapping):
-            yield parts or ("**",), found
+        parameters = value.get(_ROS2)
+        if isinstance(parameters, Mapping):
+            yield parts or ("**",), parameters
         else:
             yield from _ros2_nodes(value, parts)

@@ -1,4 +1,4 @@
-"""``gripper_action_controller``: a finger that closes on what is there."""
+"""Gripper action controllers: a joint that moves until it reaches its goal or stalls."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ from cartwheel.plugins.control.settings import Settings
 class GripperActionController(Controller):
     """Moves one joint by the action ``gripper_cmd``, with at most the goal's effort.
 
-    A goal ends where the joint is within ``goal_tolerance``, or stalled: slower than
-    ``stall_velocity_threshold`` for ``stall_timeout``. ROS 2's ``allow_stalling`` makes that a
-    success. Source: gripper_action_controller.
+    A goal is reached when the joint is within ``goal_tolerance``. The joint has stalled when it is
+    slower than ``stall_velocity_threshold`` for ``stall_timeout``: the goal is then aborted, or
+    succeeds with ROS 2's ``allow_stalling``. Source: gripper_action_controller.
     """
 
     types: ClassVar[tuple[str, ...]] = (
@@ -46,7 +46,7 @@ class GripperActionController(Controller):
         self._monitor = Rhythm(settings.number("action_monitor_rate", 20.0))
         self._target = self._place = 0.0
         self._speed = math.inf
-        """rad/s or m/s at which `_place` goes to `_target`."""
+        """Speed in rad/s or m/s at which `_place` moves to `_target`."""
         self._limit = self._effort
         self._active: Goal | None = None
         self._moved_ns = 0
@@ -106,15 +106,15 @@ class GripperActionController(Controller):
             self._finish("succeed" if self._stalls_well else "abort", stalled=True)
             return
         if self._monitor.due(time_ns) and self._action.wants_feedback:
-            goal.feedback(self._told("Feedback"))
+            goal.feedback(self._message("Feedback"))
 
     def _on_goal(self, goal: Goal) -> None:
-        position, effort, speed = self._asked(goal.goal.command)
+        position, effort, speed = self._limits(goal.goal.command)
         if not self.running or not math.isfinite(position):
             text = "the controller is not running"
             if self.running:
                 text = "the position is not a finite number"
-            goal.reject(self._told("Result"), text)
+            goal.reject(self._message("Result"), text)
             return
         self._finish("abort" if self.rig.ros2 else "cancel")
         self._active = goal
@@ -134,18 +134,18 @@ class GripperActionController(Controller):
             self._target = self._place = self._joint.position
             self._finish("cancel")
         else:
-            goal.cancel(self._told("Result"))
+            goal.cancel(self._message("Result"))
 
-    def _asked(self, command: Any) -> tuple[float, float, float]:
-        """Position, the most effort (0 is the controller's) and the most velocity of a goal."""
+    def _limits(self, command: Any) -> tuple[float, float, float]:
+        """Returns position, maximum effort (0: the controller's) and maximum velocity of a goal."""
         return float(command.position), float(command.max_effort), math.inf
 
     def _finish(self, how: str, *, reached: bool = False, stalled: bool = False) -> None:
         goal, self._active = self._active, None
         if goal is not None:
-            getattr(goal, how)(self._told("Result", reached=reached, stalled=stalled))
+            getattr(goal, how)(self._message("Result", reached=reached, stalled=stalled))
 
-    def _told(self, part: str, *, reached: bool = False, stalled: bool = False) -> Any:
+    def _message(self, part: str, *, reached: bool = False, stalled: bool = False) -> Any:
         return self._action.message(
             part,
             position=self._joint.position,
@@ -156,9 +156,9 @@ class GripperActionController(Controller):
 
 
 class ParallelGripperActionController(GripperActionController):
-    """The same by the action ``ParallelGripperCommand``, whose goal may bound the velocity too.
+    """Like `GripperActionController`, with the action ``ParallelGripperCommand``.
 
-    Source: parallel_gripper_controller.
+    Its goals can limit the velocity as well. Source: parallel_gripper_controller.
     """
 
     types: ClassVar[tuple[str, ...]] = (
@@ -173,14 +173,14 @@ class ParallelGripperActionController(GripperActionController):
             # Without it the controller's own bound is nobody's.
             self._effort = self._limit = 0.0
 
-    def _asked(self, command: Any) -> tuple[float, float, float]:
+    def _limits(self, command: Any) -> tuple[float, float, float]:
         if len(command.position) != 1:
             return math.nan, 0.0, math.inf
         speed = float(command.velocity[0]) if len(command.velocity) else 0.0
         effort = float(command.effort[0]) if len(command.effort) else 0.0
         return float(command.position[0]), effort, speed if speed > 0 else math.inf
 
-    def _told(self, part: str, *, reached: bool = False, stalled: bool = False) -> Any:
+    def _message(self, part: str, *, reached: bool = False, stalled: bool = False) -> Any:
         joint = self._joint
         state = message_class("sensor_msgs/msg/JointState")(
             header=header(self.part.time_ns, ""),

@@ -1,4 +1,4 @@
-"""The joints of a robot as controllers see them: state, command, limits, PID."""
+"""The joints of a robot for controllers: states, commands, limits and PIDs."""
 
 from __future__ import annotations
 
@@ -19,22 +19,22 @@ from cartwheel.simulation.handles import JointHandle, MotorHandle
 from cartwheel.simulation.servo import ServoHandle
 
 _STRONGEST = 1e5
-"""N m or N of a joint that states no effort limit."""
+"""Effort in N m or N of a joint without an effort limit."""
 
 
 class JointHardware:
-    """One joint; what is commanded is limited as joint_limits_interface does.
+    """A joint. Commands are limited as in joint_limits_interface.
 
     Args:
-        plugin: Whose robot it is.
-        interfaces: What it offers.
-        gains: An interface whose commands become efforts by a PID.
-        limits: Parameters that go before the description's limits; with them, even if there are
-            none, its soft limits count.
-        needs: What weight asks of the robot's joints at most, N m or N.
+        plugin: Plugin of the controller manager.
+        interfaces: Interfaces of the joint.
+        gains: An interface whose commands a PID converts to efforts, with the gains.
+        limits: Parameters that override the limits in the description. If given, even empty, the
+            soft limits in the description apply.
+        needs: Returns the largest effort that gravity demands of each joint, N m or N.
 
     Raises:
-        PluginError: A limit is no number.
+        PluginError: A limit is not a number.
     """
 
     def __init__(
@@ -50,7 +50,7 @@ class JointHardware:
         assert joint is not None
         self.name = name
         self.joint = name
-        """Of the description, where `name` is that of a controller's reference to it."""
+        """Name in the description. `name` differs from it for a controller's reference."""
         self.interfaces = interfaces
         self.type = joint.type
         self.axis: Axis = joint.axis
@@ -76,21 +76,21 @@ class JointHardware:
                 name, max_effort=strength, beyond=strength > self.effort_limit, origin=origin
             )
         self.active: str = ""
-        """The interface that is commanded."""
+        """The commanded interface."""
         self.command = 0.0
         self.rate = 0.0
-        """How a commanded position changes, rad/s or m/s, where a controller knows it."""
+        """Rate of change of a commanded position, rad/s or m/s; 0 if unknown."""
         self.strength = math.inf
-        """N m or N that a held position may take, where a controller grips more gently."""
+        """Maximum effort of a position command, N m or N. A gripper controller can lower it."""
         self._damping = 0.0
         self._led = joint.mimic is not None or interfaces.mimic is not None
-        """Whether it follows another joint, and must not be held while nothing commands it."""
+        """Whether the joint follows another joint. It is then not held while it has no command."""
         if interfaces.mimic is not None and joint.mimic is None:
             leader, multiplier = interfaces.mimic
             part.mimic(name, Mimic(joint=leader, multiplier=multiplier), origin=origin)
 
     def _strength(self, plugin: Plugin[Any], needs: Callable[[], Mapping[str, float]]) -> float:
-        """N m or N with which a position or velocity is held, at most."""
+        """Returns the maximum effort of position and velocity commands, N m or N."""
         limit, commands = self.effort_limit, self.interfaces.commands
         if "position" in commands and "position" not in self.pids and limit < math.inf:
             need = needs().get(self.name, 0.0)
@@ -108,7 +108,7 @@ class JointHardware:
         return min(limit, _STRONGEST)
 
     def _take_limits(self, limits: Settings) -> None:
-        """Source: joint_limits_interface, joint_limits_rosparam."""
+        """Reads the limits. Source: joint_limits_interface, joint_limits_rosparam."""
         if limits.boolean("has_position_limits", False):
             self.lower, self.upper = limits.number("min_position"), limits.number("max_position")
         if limits.boolean("has_velocity_limits", False):
@@ -117,7 +117,7 @@ class JointHardware:
             self.effort_limit = limits.number("max_effort")
 
     def _velocity_bounds(self) -> tuple[float, float]:
-        """The least and the largest velocity: near a soft limit less of it. Source: PR2."""
+        """Returns the lowest and highest velocity, reduced near a soft limit. Source: PR2."""
         most, soft = self.velocity_limit, self._soft
         if soft is None or math.inf in (-self.lower, self.upper):
             return -most, most
@@ -139,16 +139,16 @@ class JointHardware:
 
     @property
     def lightness(self) -> float:
-        """rad/s² for 1 N m, or m/s² for 1 N."""
+        """Acceleration per effort: rad/s² for 1 N m, or m/s² for 1 N."""
         return self.state.lightness
 
     @property
     def effort(self) -> float:
-        """N m or N that drove it in the last step."""
+        """Effort of the last step, N m or N."""
         return self.state.effort
 
     def activate(self, interface: str) -> None:
-        """Commands are of this interface from now on; the joint stays where it is."""
+        """Selects the commanded interface. The joint stays at its position."""
         self.active = interface
         self._damping = 0.0
         self.strength = math.inf
@@ -158,16 +158,19 @@ class JointHardware:
             pid.reset()
 
     def release(self) -> None:
-        """No controller commands it any more: positions are kept, velocities and efforts are 0."""
+        """Called when no controller commands the joint any more.
+
+        A position command is kept; velocity and effort commands become 0.
+        """
         self.rate = self._damping = 0.0
         if self.active in ("velocity", "effort"):
             self.command = 0.0
 
     def rest(self, *, holds: bool) -> None:
-        """Before any controller commands it.
+        """Called before any controller commands the joint.
 
         Args:
-            holds: Whether one that takes efforts holds as well, as in ros2_control's simulations.
+            holds: Hold joints with an effort interface as well, as ros2_control's simulations do.
         """
         commands = self.interfaces.commands
         if not commands:
@@ -182,16 +185,16 @@ class JointHardware:
             self.command = self.position
 
     def set_effort(self, effort: float, *, damping: float = 0.0) -> None:
-        """An effort that falls with the velocity, for controllers with a PID of their own."""
+        """Commands an effort that decreases with velocity, for controllers with their own PID."""
         self.command = effort
         self._damping = damping
 
     def write(self, seconds: float, *, lead: float = 0.0) -> None:
-        """Brings the command to the joint.
+        """Applies the command to the joint.
 
         Args:
-            seconds: Since the last time, s.
-            lead: Since the command was given, s; what it changes by goes on.
+            seconds: Time since the last call, s.
+            lead: Time since the command was set, s. A position command is extrapolated by it.
         """
         match self.active:
             case "position":
@@ -205,7 +208,7 @@ class JointHardware:
                 self.servo.command_position(self.command)
 
     def halt(self) -> None:
-        """Stops: efforts are 0, and what holds a velocity or a position stands."""
+        """Sets efforts to 0, and brakes joints with velocity or position commands."""
         if self.motor is not None:
             self.motor.command(0.0)
         elif self.servo is not None and self.active == "effort":
@@ -258,14 +261,14 @@ class JointHardware:
         damping = self._damping
         effort = min(max(self.command, -self.effort_limit), self.effort_limit)
         if self._soft is not None:
-            # As a damper towards the bound, which the physics takes implicitly.
+            # As a damper toward the bound, which the physics integrates implicitly.
             gain, output = self._soft.k_velocity, effort - damping * self.velocity
             slowest, fastest = self._velocity_bounds()
             if output < gain * (slowest - self.velocity):
                 effort, damping = gain * slowest, gain
             elif output > gain * (fastest - self.velocity):
                 effort, damping = gain * fastest, gain
-        # Beyond a limit it may only come back.
+        # Beyond a limit, only efforts that move the joint back are applied.
         if self.position < self.lower or self.velocity < -self.velocity_limit:
             effort = max(effort, 0.0)
         elif self.position > self.upper or self.velocity > self.velocity_limit:
@@ -275,12 +278,12 @@ class JointHardware:
 
 
 class Hardware:
-    """All joints of a robot that controllers can see.
+    """All joints of a robot that controllers can use.
 
     Args:
-        plugin: Whose robot it is.
-        joints: What they offer.
-        gains: Of joints whose commands of an interface go through a PID, by joint.
+        plugin: Plugin of the controller manager.
+        joints: Interfaces of the joints.
+        gains: Interface and gains of each joint whose commands a PID converts to efforts.
         limits: ROS 1's parameters ``joint_limits``; None in ROS 2, which has no soft limits.
     """
 
@@ -305,11 +308,11 @@ class Hardware:
             for each in joints
         }
         self.references: dict[str, JointHardware] = {}
-        """What controllers take commands for, by its full name: ``controller/joint/velocity``."""
+        """Reference interfaces by full name, such as ``controller/joint/velocity``."""
         self.holds = False
-        """Whether joints that take efforts hold as well before a controller commands them."""
+        """Whether joints with an effort interface are held before a controller commands them."""
         self.halted = False
-        """Whether all joints stop, whatever they are told."""
+        """Whether all joints are stopped, regardless of commands."""
 
     @property
     def names(self) -> list[str]:
@@ -317,11 +320,11 @@ class Hardware:
         return list(self._joints)
 
     def joint(self, name: str, interface: str | None = None) -> JointHardware:
-        """A joint, which must offer a command interface where one is given; or a reference to one.
+        """Returns a joint, or a reference to one if `interface` is given.
 
         Raises:
-            UnknownNameError: There is none of that name.
-            PluginError: It has no such interface, or no tag gives it to controllers.
+            UnknownNameError: The joint does not exist.
+            PluginError: The joint does not have this command interface, or no interface at all.
         """
         if interface is not None and f"{name}/{interface}" in self.references:
             return self.references[f"{name}/{interface}"]
@@ -340,22 +343,22 @@ class Hardware:
                 [*self._joints, *(each.name for each in self.references.values())],
                 code=devices.CONTROLLER_JOINT_UNKNOWN,
             )
-        found = self._joints[name]
-        if interface is not None and interface not in found.interfaces.commands:
-            offered = ", ".join(found.interfaces.commands)
+        joint = self._joints[name]
+        if interface is not None and interface not in joint.interfaces.commands:
+            offered = ", ".join(joint.interfaces.commands)
             raise PluginError(
                 f'joint "{name}" has no {interface} interface',
                 code=devices.CONTROLLER_INTERFACE_MISMATCH,
-                origin=found.interfaces.origin,
+                origin=joint.interfaces.origin,
                 hint=f"Available interfaces: {offered}."
                 if offered
                 else "The joint has no command interface.",
                 values={"joint": name, "interface": interface, "offered": offered},
             )
-        return found
+        return joint
 
     def start(self) -> None:
-        """Before any controller runs: joints hold; those that take efforts are free in ROS 1."""
+        """Holds the joints before any controller runs, except effort joints in ROS 1."""
         for joint in self._joints.values():
             initial = joint.interfaces.initial_position
             if initial is not None:
@@ -364,11 +367,11 @@ class Hardware:
 
     @property
     def follows(self) -> bool:
-        """Whether joints must be led at every step: those that have a PID."""
+        """Whether commands must be written at every step because a joint has a PID."""
         return any(joint.pids for joint in self._joints.values())
 
     def write(self, seconds: float, *, lead: float = 0.0) -> None:
-        """Brings all commands to the joints; see `JointHardware.write`."""
+        """Applies all commands to the joints; see `JointHardware.write`."""
         for joint in self._joints.values():
             if self.halted:
                 joint.halt()

@@ -1,4 +1,4 @@
-"""What a description offers to controllers: ``<transmission>`` and ``<ros2_control>``."""
+"""Joint and sensor interfaces in ``<transmission>`` and ``<ros2_control>`` tags."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from cartwheel.plugins.parameters import invalid
 from cartwheel.simulation.limits import FARTHEST
 
 COMMANDS = ("position", "velocity", "effort")
-"""What a joint can be commanded by."""
+"""Supported command interfaces of a joint."""
 SYSTEMS = (
     "gazebo_ros2_control/GazeboSystem",
     "gz_ros2_control/GazeboSimSystem",
     "ign_ros2_control/IgnitionSystem",
 )
-"""Hardware of ros2_control that stands for a simulation."""
+"""Hardware plugins of ros2_control that are simulated."""
 _HARDWARE = {
     "PositionJointInterface": "position",
     "VelocityJointInterface": "velocity",
@@ -34,25 +34,25 @@ _STATES_ONLY = ("JointStateInterface", "ImuSensorInterface", "ForceTorqueSensorI
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class JointInterfaces:
-    """What controllers may do with a joint."""
+    """Interfaces of a joint."""
 
     name: str
     commands: tuple[str, ...] = ()
-    """Some of `COMMANDS`."""
+    """Command interfaces, each one of `COMMANDS`."""
     states: tuple[str, ...] = ("position", "velocity", "effort")
     initial_position: float | None = None
     mimic: tuple[str, float] | None = None
-    """The joint that it follows, and by which factor."""
+    """The joint that this joint follows, and the multiplier."""
     by_pid: str = ""
-    """The command that becomes an effort by a PID: position or velocity."""
+    """The interface whose commands a PID converts to efforts: ``position`` or ``velocity``."""
     gains: Mapping[str, float] = field(default_factory=dict)
-    """``pos_kp``, ``vel_ki`` and so on, as written beside the joint."""
+    """``pos_kp``, ``vel_ki`` and so on, from the joint's ``<param>`` tags."""
     origin: Origin
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class SensorInterfaces:
-    """A sensor of ``<ros2_control>``."""
+    """A sensor in a ``<ros2_control>`` tag."""
 
     name: str
     states: tuple[str, ...]
@@ -63,17 +63,17 @@ class SensorInterfaces:
 def transmissions(
     description: RobotDescription, *, several: bool = False
 ) -> tuple[list[JointInterfaces], list[Diagnostic]]:
-    """The joints that transmissions drive, as ros_control's robot simulation takes them.
+    """Reads the joints of all transmissions, as ros_control's robot simulation does.
 
-    Only what they say of the joint counts; reductions are between motor and joint, where
-    nothing is simulated. Source: transmission_interface, gazebo_ros_control.
+    Reductions have no effect: they are between motor and joint, and motors are not simulated.
+    Source: transmission_interface, gazebo_ros_control.
 
     Args:
         description: The robot.
-        several: Whether a transmission may have several joints, such as a wrist's differential;
-            the default simulation takes none.
+        several: Accept transmissions with several joints, such as a wrist's differential. The
+            default simulation ignores them.
     """
-    found: dict[str, JointInterfaces] = {}
+    by_name: dict[str, JointInterfaces] = {}
     notes: list[Diagnostic] = []
 
     def warn(code: Code, element: Element, message: str, **values: Value) -> None:
@@ -84,7 +84,7 @@ def transmissions(
         joints = list(element.find_all("joint"))
         kind = element.find("type")
         if kind is None and element.attribute("type"):
-            # Of a format before ros_control's, which its parser skips as well.
+            # A format older than ros_control, which its parser also ignores.
             notes.append(
                 devices.TRANSMISSION_IGNORED.diagnostic(
                     f"{label} uses the PR2 format, so it drives no joint",
@@ -122,23 +122,23 @@ def transmissions(
                 text = f'{label}: "{name}" is not a movable joint'
                 warn(devices.TRANSMISSION_JOINT_UNKNOWN, element, text, joint=name)
                 continue
-            before = found[name].commands if name in found else ()
-            found[name] = JointInterfaces(
+            before = by_name[name].commands if name in by_name else ()
+            by_name[name] = JointInterfaces(
                 name=name,
                 commands=tuple(dict.fromkeys((*before, *commands))),
                 origin=element.origin,
             )
-    return list(found.values()), notes
+    return list(by_name.values()), notes
 
 
 def hardware_of(system: Element) -> str:
-    """The hardware plugin that a ``<ros2_control>`` names."""
+    """Returns the hardware plugin of a ``<ros2_control>`` tag."""
     plugin = system.find("hardware/plugin")
     return plugin.text.strip() if plugin is not None else ""
 
 
 def simulated_systems(description: RobotDescription) -> list[Element]:
-    """The ``<ros2_control>`` tags for a simulation; all of them where none is."""
+    """Returns the ``<ros2_control>`` tags with simulated hardware; all tags if there are none."""
     simulated = [each for each in description.ros2_control if hardware_of(each) in SYSTEMS]
     return simulated or list(description.ros2_control)
 
@@ -146,10 +146,10 @@ def simulated_systems(description: RobotDescription) -> list[Element]:
 def ros2_control(
     description: RobotDescription,
 ) -> tuple[list[JointInterfaces], list[SensorInterfaces], list[Diagnostic]]:
-    """The joints and sensors of all ``<ros2_control>`` tags. Source: ros2_control.
+    """Reads the joints and sensors of all ``<ros2_control>`` tags. Source: ros2_control.
 
     Raises:
-        PluginError: A number is none.
+        PluginError: A value is not a number.
     """
     joints: dict[str, JointInterfaces] = {}
     sensors: list[SensorInterfaces] = []
@@ -208,7 +208,7 @@ def _joint(element: Element, name: str, notes: list[Diagnostic]) -> JointInterfa
                 )
             )
             continue
-        # Its min and max bind nothing, as in gazebo_ros2_control and gz_ros2_control.
+        # The tag's min and max have no effect, as in gazebo_ros2_control and gz_ros2_control.
         commands.append(kind)
         if written != kind:
             by_pid = kind
@@ -249,7 +249,7 @@ def _parameters(element: Element) -> dict[str, str]:
 def _number(
     values: Mapping[str, str], name: str, element: Element, most: float = math.inf
 ) -> float | None:
-    """A parameter's number; None where there is none, or a nan, by which ROS 2 leaves it open."""
+    """Returns a parameter's number; None if missing or NaN, which ROS 2 uses for "not set"."""
     text = values.get(name, "")
     if not text or re.fullmatch(r"[{$].*", text):
         return None

@@ -1,4 +1,4 @@
-"""Controllers that pass commands on to joints, straight or through a PID."""
+"""Controllers that forward commands to joints, directly or through a PID."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _FLOAT = "std_msgs/msg/Float64"
 
 
 class JointCommand(Controller):
-    """One joint by ``command``, Float64, straight to the interface that the type names.
+    """Forwards ``command`` (Float64) of one joint to the interface in the type's name.
 
     Source: forward_command_controller, ForwardCommandController.
     """
@@ -50,9 +50,10 @@ class JointCommand(Controller):
 
 
 class JointPid(Controller):
-    """One joint held by a PID on its effort or velocity: ``command``, Float64, and ``state``.
+    """Controls one joint with a PID whose output is an effort or a velocity.
 
-    Source: effort_controllers and velocity_controllers.
+    The topic ``command`` (Float64) sets the target; ``state`` is published. Source:
+    effort_controllers and velocity_controllers.
     """
 
     types: ClassVar[tuple[str, ...]] = (
@@ -99,7 +100,7 @@ class JointPid(Controller):
         else:
             joint.command = output
         self._count += 1
-        # As ros_control: every tenth update.
+        # As in ros_control, every tenth update.
         if self._count % 10 == 1 and self._publisher.wanted:
             gains = self._gains
             self._publisher.publish(
@@ -125,9 +126,9 @@ class JointPid(Controller):
 
 
 class JointGroup(Controller):
-    """Several joints by one Float64MultiArray: ``command``, in ROS 2 ``commands``.
+    """Forwards a Float64MultiArray to several joints: ``command``, or ``commands`` in ROS 2.
 
-    A group of position controllers on efforts has a PID for each joint. Source:
+    ``effort_controllers/JointGroupPositionController`` has a PID for each joint. Source:
     forward_command_controller, effort_controllers/JointGroupPositionController.
     """
 
@@ -150,7 +151,7 @@ class JointGroup(Controller):
                     raise settings.invalid("interface_names", names, "a list of one interface")
                 interface = names[0]
         else:
-            # Published files state it for these too, whose type says it.
+            # Published files also specify it for these types, whose name contains the interface.
             settings.ignore("interface_name")
         names = (
             [settings.text("joint")]
@@ -162,10 +163,10 @@ class JointGroup(Controller):
         self._joints: list[JointHardware] = [self.claim(name, interface) for name in names]
         self._pids: list[Pid] = []
         if self.type == "effort_controllers/JointGroupPositionController":
-            # ROS 2's files have them where trajectory controllers do.
+            # ROS 2 files have the gains under the same key as for trajectory controllers.
             form = "gains/{}" if self.rig.ros2 and settings.raw("gains") else "{}/pid"
-            found = [Gains.read(settings.section(form.format(name))) for name in names]
-            self._pids = [Pid(gains) for gains in found]
+            gains = [Gains.read(settings.section(form.format(name))) for name in names]
+            self._pids = [Pid(each) for each in gains]
             for name in ("gains", *names):
                 settings.ignore(name)
         self._commands: list[float] | None = None
@@ -198,14 +199,15 @@ class JointGroup(Controller):
     def _put(self, topic: str, wanted: Mapping[str, float]) -> None:
         values = np.array([wanted[joint.joint] for joint in self._joints])
         layout = zero("std_msgs/msg/MultiArrayLayout")
-        self.hear(topic, "std_msgs/msg/Float64MultiArray", layout=layout, data=values)
+        self.publish_command(topic, "std_msgs/msg/Float64MultiArray", layout=layout, data=values)
 
     def _on_commands(self, message: Any) -> None:
         values = [float(value) for value in message.data]
         if len(values) != len(self._joints):
             self.warn(
                 running.COMMAND_IGNORED,
-                f"a command has {len(values)} values for {len(self._joints)} joints",
+                f"a command is ignored because it has {len(values)} values for "
+                f"{len(self._joints)} joints",
                 values={"got": len(values), "joints": len(self._joints)},
             )
         elif all(math.isfinite(value) for value in values):
@@ -213,6 +215,6 @@ class JointGroup(Controller):
 
 
 def _put(controller: Controller, wanted: Mapping[str, float]) -> None:
-    """Sends the one joint there by its command."""
+    """Commands the controller's only joint on its topic."""
     (value,) = wanted.values()
-    controller.hear("command", _FLOAT, data=float(value))
+    controller.publish_command("command", _FLOAT, data=float(value))

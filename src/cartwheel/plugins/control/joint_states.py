@@ -1,4 +1,4 @@
-"""``joint_state_controller`` and ``joint_state_broadcaster``: where joints are."""
+"""``joint_state_controller`` and ``joint_state_broadcaster``: publishers of joint states."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ _DYNAMIC = f"control_msgs{TWIN}/msg/DynamicJointState"
 
 
 class JointStateController(Controller):
-    """Publishes the state of all joints of the hardware.
+    """Publishes the states of all joints with interfaces.
 
-    ROS 1: on ``joint_states`` of the namespace, at ``publish_rate``, with ``extra_joints``
-    that are told as they are written. ROS 2: at the manager's rate, and on ``dynamic_joint_states``
-    each joint's interfaces by name; ``use_local_topics`` puts both below the controller.
-    ``joints`` and ``interfaces`` choose some. Source: joint_state_controller,
-    joint_state_broadcaster.
+    In ROS 1, ``joint_states`` in the controllers' namespace is published at ``publish_rate``, with
+    the ``extra_joints`` as they are written. In ROS 2 it is published at the manager's rate, and
+    ``dynamic_joint_states`` contains all state interfaces of each joint. With ``use_local_topics``,
+    both are below the controller's name. ``joints`` and ``interfaces`` select a subset. Source:
+    joint_state_controller, joint_state_broadcaster.
     """
 
     types: ClassVar[tuple[str, ...]] = (
@@ -65,8 +65,8 @@ class JointStateController(Controller):
         self._JointState = message_class("sensor_msgs/msg/JointState")
 
     def _choose(self, settings: Settings, names: list[str]) -> list[str]:
-        """ROS 2's parameters: which joints are told, and of which interfaces; the joints."""
-        # One of them alone chooses nothing, and is told as what has no effect.
+        """Reads ROS 2's parameters for the published joints and interfaces; returns the joints."""
+        # Only both together select anything. One alone is reported as a parameter without effect.
         if {"joints", "interfaces"} <= set(settings.names()):
             joints, interfaces = settings.texts("joints"), settings.texts("interfaces")
             if joints and interfaces:
@@ -85,21 +85,21 @@ class JointStateController(Controller):
             if self._chosen and source not in self._chosen:
                 self._sources[kind] = ""
         self._frame = settings.text("frame_id", "base_link")
-        # Every joint is one of the URDF's.
+        # All joints are in the URDF.
         settings.ignore("use_urdf_to_filter")
         return names
 
     def _read_extra(self, entries: Any, known: list[str]) -> list[tuple[str, float, float, float]]:
         if not isinstance(entries, list):
             raise self.settings.invalid("extra_joints", entries, "a list")
-        found = []
+        extra = []
         for index, entry in enumerate(entries):
             each = Settings(
                 entry if isinstance(entry, dict) else {}, f"{self.name}/extra_joints/{index}"
             )
             name = each.text("name")
             if name not in known:
-                found.append(
+                extra.append(
                     (
                         name,
                         each.number("position", 0.0),
@@ -107,13 +107,13 @@ class JointStateController(Controller):
                         each.number("effort", 0.0),
                     )
                 )
-        return found
+        return extra
 
     def state_interfaces(self) -> list[str]:
         return [f"{joint.name}/{kind}" for joint in self._joints for kind in self._kinds(joint)]
 
     def _kinds(self, joint: JointHardware) -> list[str]:
-        """The interfaces of a joint that are told."""
+        """Returns the published interfaces of a joint."""
         return self._chosen or list(joint.interfaces.states)
 
     def start(self, time_ns: int) -> None:
@@ -146,24 +146,24 @@ class JointStateController(Controller):
             self._dynamic.publish(self._interfaces_as_message(head))
 
     def _interfaces_as_message(self, head: Any) -> Any:
-        told = [
+        states = [
             (kinds := self._kinds(joint), [_value(joint, kind) for kind in kinds])
             for joint in self._joints
         ]
-        told += [(list(COMMANDS), list(values)) for _, *values in self._extra]
+        states += [(list(COMMANDS), list(values)) for _, *values in self._extra]
         InterfaceValue = message_class(f"control_msgs{TWIN}/msg/InterfaceValue")
         return message_class(_DYNAMIC)(
             header=head,
             joint_names=self._names,
             interface_values=[
                 InterfaceValue(interface_names=kinds, values=np.array(values))
-                for kinds, values in told
+                for kinds, values in states
             ],
         )
 
 
 def _value(joint: JointHardware, kind: str) -> float:
-    """Of an interface for its state; nan where there is none of that name."""
+    """Returns the value of a state interface; NaN if it does not exist."""
     match kind:
         case "position":
             return joint.position

@@ -1,4 +1,4 @@
-"""``joint_trajectory_controller``: joints along trajectories, by topic and by action."""
+"""``joint_trajectory_controller``: moves joints along trajectories from a topic or an action."""
 
 from __future__ import annotations
 
@@ -31,18 +31,17 @@ from cartwheel.simulation.clock import NANOSECONDS
 
 _TRAJECTORY = "trajectory_msgs/msg/JointTrajectory"
 _SETTLING_NS = 300_000_000
-"""What a joint that stops gets to stand still, before a goal counts as missed."""
+"""Time that joints have to come to rest after the last point before a goal counts as missed, ns."""
 
 
 class JointTrajectoryController(Controller):
-    """Follows trajectories, holds where they end, and where it is told to stop.
+    """Follows trajectories, and holds the last position.
 
-    ROS 1 listens to ``command``, ROS 2 to ``joint_trajectory``; both take the action
-    ``follow_joint_trajectory``. A goal ends with success when the last point's time has come
-    and all joints are within their goal tolerances; where they are not within ``goal_time``
-    more, or leave their path's tolerance, it is aborted, and the joints stand. Those of UR and of
-    Pilz, which can be slowed down or held from outside, go on at full speed. Source:
-    joint_trajectory_controller.
+    ROS 1 uses the topic ``command``, ROS 2 ``joint_trajectory``. Both offer the action
+    ``follow_joint_trajectory``. A goal succeeds when the time of the last point has passed and all
+    joints are within their goal tolerances. It is aborted, and the joints are held, if they are not
+    within these tolerances after another ``goal_time``, or if one leaves its path tolerance. The
+    scaled controllers of UR and Pilz always run at full speed. Source: joint_trajectory_controller.
     """
 
     types: ClassVar[tuple[str, ...]] = (
@@ -89,7 +88,9 @@ class JointTrajectoryController(Controller):
         topic = "joint_trajectory" if ros2 else "command"
         self.subscribe(topic, _TRAJECTORY, self._on_trajectory)
         self.take_positions(
-            lambda wanted, seconds: self.hear(topic, _TRAJECTORY, **self._way(wanted, seconds))
+            lambda wanted, seconds: self.publish_command(
+                topic, _TRAJECTORY, **self._way(wanted, seconds)
+            )
         )
         self._action = ActionServer(
             self,
@@ -131,7 +132,7 @@ class JointTrajectoryController(Controller):
         self._action.tick(time_ns)
         due = self._rhythm.due(time_ns)
         if due and self._state.wanted:
-            self._tell_state(time_ns, wanted, errors)
+            self._publish_state(time_ns, wanted, errors)
 
     def idle(self, time_ns: int) -> None:
         self._action.tick(time_ns)
@@ -141,7 +142,7 @@ class JointTrajectoryController(Controller):
         how = "abort" if self.rig.ros2 else "cancel"
         self._finish(how, INVALID_GOAL, "the controller was stopped")
 
-    # -- commands to the joints
+    # -- joint commands
 
     def _take_interface(self, settings: Settings) -> str:
         kind = self.type.partition("_")[0]
@@ -154,7 +155,7 @@ class JointTrajectoryController(Controller):
             if interface in wanted:
                 return interface
         raise settings.invalid(
-            "command_interfaces", wanted, "position, velocity or effort, or several of them"
+            "command_interfaces", wanted, "a list of position, velocity or effort"
         )
 
     def _read_gains(self, settings: Settings) -> None:
@@ -205,12 +206,12 @@ class JointTrajectoryController(Controller):
                 joint.command = law.effort - law.damping * joint.velocity + forward
 
     def _hold(self, time_ns: int) -> None:
-        """Stands where it is."""
+        """Holds the current position."""
         self._next = None
         self._following = Trajectory.hold(time_ns, [joint.position for joint in self._joints])
 
     def _way(self, wanted: Mapping[str, float], seconds: float) -> dict[str, object]:
-        """The fields of a trajectory that ends at positions, at rest."""
+        """Returns the fields of a trajectory that ends at the wanted positions, at rest."""
         values = np.array([wanted[joint.joint] for joint in self._joints])
         whole, rest = divmod(round(seconds * NANOSECONDS), NANOSECONDS)
         point = zero("trajectory_msgs/msg/JointTrajectoryPoint")
@@ -218,7 +219,7 @@ class JointTrajectoryController(Controller):
         point.time_from_start.sec, point.time_from_start.nanosec = whole, rest
         return {"header": header(0, ""), "joint_names": list(self._names), "points": [point]}
 
-    # -- trajectories that come in
+    # -- the command topic
 
     def _on_trajectory(self, message: Any) -> None:
         time_ns = self.part.time_ns
@@ -257,7 +258,7 @@ class JointTrajectoryController(Controller):
         try:
             if goal.goal.multi_dof_trajectory.points:
                 raise InvalidTrajectoryError(
-                    INVALID_GOAL, "joints of several degrees of freedom are not supported"
+                    INVALID_GOAL, "joints with several degrees of freedom are not supported"
                 )
             if not goal.goal.trajectory.points:
                 raise InvalidTrajectoryError(INVALID_GOAL, "the trajectory has no points")
@@ -285,11 +286,11 @@ class JointTrajectoryController(Controller):
             goal.cancel(self._result(SUCCESSFUL, ""), "cancelled")
 
     def _watch(self, time_ns: int, wanted: State, errors: list[tuple[float, float]]) -> None:
-        """Ends the goal when it is reached or missed, and tells how it goes."""
+        """Finishes the goal when it is reached or missed, and sends feedback."""
         goal = self._active
         assert goal is not None
         if self._monitor.due(time_ns) and self._action.wants_feedback:
-            self._tell_feedback(goal, time_ns, wanted, errors)
+            self._send_feedback(goal, time_ns, wanted, errors)
         followed = self._next or self._following
         if time_ns < followed.end_ns:
             if self._next is not None:
@@ -317,7 +318,7 @@ class JointTrajectoryController(Controller):
             self._hold(time_ns)
 
     def _preempt(self, text: str) -> None:
-        """In ROS 2 only a client can cancel a goal."""
+        """Cancels a replaced goal, or aborts it in ROS 2, where only clients cancel goals."""
         if self.rig.ros2:
             self._finish("abort", INVALID_GOAL, text)
         else:
@@ -331,9 +332,11 @@ class JointTrajectoryController(Controller):
     def _result(self, code: int, text: str) -> Any:
         return self._action.message("Result", error_code=code, error_string=text)
 
-    # -- what is told
+    # -- published state and feedback
 
-    def _tell_state(self, time_ns: int, wanted: State, errors: list[tuple[float, float]]) -> None:
+    def _publish_state(
+        self, time_ns: int, wanted: State, errors: list[tuple[float, float]]
+    ) -> None:
         desired, actual, error = self._points(wanted, errors)
         fields = {"header": header(time_ns, ""), "joint_names": self._names, "error": error}
         if not self.rig.ros2:
@@ -352,7 +355,7 @@ class JointTrajectoryController(Controller):
         self._state.publish(message)
 
     def _output(self) -> Any:
-        """What the joints are commanded."""
+        """Returns the commands of the joints."""
         if self._interface == "effort":
             return _point(effort=[joint.effort for joint in self._joints])
         commands = [joint.command for joint in self._joints]
@@ -360,7 +363,7 @@ class JointTrajectoryController(Controller):
             return _point(velocities=commands)
         return _point(commands)
 
-    def _tell_feedback(
+    def _send_feedback(
         self, goal: Goal, time_ns: int, wanted: State, errors: list[tuple[float, float]]
     ) -> None:
         message = zero("control_msgs_ros2/action/FollowJointTrajectory_Feedback")
@@ -369,7 +372,7 @@ class JointTrajectoryController(Controller):
         goal.feedback(message)
 
     def _points(self, wanted: State, errors: list[tuple[float, float]]) -> tuple[Any, Any, Any]:
-        """Where the joints are to be, where they are, and by how much they are off."""
+        """Returns the desired state, the actual state, and the error."""
         joints = self._joints
         return (
             _point(wanted.position, wanted.velocity, wanted.acceleration),

@@ -1,7 +1,8 @@
-"""Values for the ``$(arg name)`` and ``$(var name)`` of controllers' files.
+"""Values for ``$(arg name)`` and ``$(var name)`` in controller files.
 
-Launch files mostly give them to the robot's xacro as well, under the same name. One that the
-xacro does not have is a prefix of joints: the one with which its words name joints.
+Launch files usually pass the same values to the robot's xacro, under the same name. A name that the
+xacro does not declare is assumed to be a joint prefix: the one for which the text after it
+completes the name of a joint.
 """
 
 from __future__ import annotations
@@ -16,11 +17,11 @@ _BEFORE_NAME = re.compile(r"\$\(\s*(?:arg|var)\s+(\w+)\s*\)(\w+)")
 
 
 def launch_arguments(content: Any, robot: RobotDescription) -> dict[str, str]:
-    """The robot's arguments, and those of the file that can be told from its joints.
+    """Returns the robot's arguments, and the joint prefixes that the file requires.
 
     Args:
-        content: Of the file, as read.
-        robot: Whose controllers it has.
+        content: Content of the file.
+        robot: The robot that the controllers belong to.
     """
     prefixes: dict[str, set[str]] = {}
     for text in _texts(content):
@@ -30,8 +31,8 @@ def launch_arguments(content: Any, robot: RobotDescription) -> dict[str, str]:
             }
             if able:
                 prefixes[name] = prefixes.get(name, able) & able
-    found = {name: min(able, key=len) for name, able in prefixes.items() if able}
-    return {**found, **robot.arguments}
+    shortest = {name: min(able, key=len) for name, able in prefixes.items() if able}
+    return {**shortest, **robot.arguments}
 
 
 def _texts(content: Any) -> Iterator[str]:

@@ -1,4 +1,4 @@
-"""Limits on what a drive is told: velocity, acceleration, jerk."""
+"""Limits on a drive's commands: velocity, acceleration, jerk."""
 
 from __future__ import annotations
 
@@ -11,21 +11,21 @@ from cartwheel.plugins.control.settings import Settings
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Limiter:
-    """Source: diff_drive_controller, speed_limiter; each pair is least and largest."""
+    """Minimum and maximum of each quantity. Source: diff_drive_controller, speed_limiter."""
 
     velocity: tuple[float, float] | None = None
     acceleration: tuple[float, float] | None = None
-    """While it grows faster."""
+    """While the speed increases."""
     deceleration: tuple[float, float] | None = None
-    """While it slows down; as the acceleration where ROS 1 states one for both."""
+    """While the speed decreases. Equals the acceleration if ROS 1 specifies one for both."""
     jerk: tuple[float, float] | None = None
 
     @classmethod
     def read(cls, settings: Settings) -> Limiter:
-        """``max_velocity``, ``min_velocity`` and so on; ROS 1 asks for ``has_…_limits`` as well.
+        """Reads ``max_velocity``, ``min_velocity`` and so on; in ROS 1 also ``has_…_limits``.
 
         Raises:
-            PluginError: A limit is missing, or is no number.
+            PluginError: A limit is missing, or is not a number.
         """
         acceleration = _pair(settings, "acceleration")
         deceleration = acceleration
@@ -42,13 +42,13 @@ class Limiter:
         )
 
     def limit(self, wanted: float, last: float, before: float, seconds: float) -> float:
-        """The command that the limits allow.
+        """Returns the limited command.
 
         Args:
-            wanted: m/s or rad/s.
-            last: The last command.
-            before: The one before it.
-            seconds: Between commands.
+            wanted: The requested command, m/s or rad/s.
+            last: The previous command.
+            before: The command before the previous one.
+            seconds: Time between two commands, s.
         """
         value = wanted
         if self.jerk is not None:
@@ -68,7 +68,7 @@ class Limiter:
 
 
 def _pair(settings: Settings, kind: str) -> tuple[float, float] | None:
-    """Least and largest of a kind; None where it is not limited."""
+    """Returns the minimum and maximum of a quantity; None without a limit."""
     high = settings.optional_number(f"max_{kind}")
     low = settings.optional_number(f"min_{kind}")
     stated = settings.raw(f"has_{kind}_limits")
@@ -87,6 +87,6 @@ def _pair(settings: Settings, kind: str) -> tuple[float, float] | None:
             values={"parameter": f"min_{kind}", "value": low, "most": high},
         )
     if stated is None and low == high == 0 and kind != "velocity":
-        # Written for releases that ask for has_…_limits too; obeyed, nothing would ever move.
+        # Written for releases that also require has_…_limits. If applied, nothing would ever move.
         return None
     return low, high

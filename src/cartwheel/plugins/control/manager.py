@@ -1,4 +1,4 @@
-"""Controllers loaded, started, run and unloaded: what ros_control calls a controller manager."""
+"""The controller manager, which loads, starts, updates and unloads controllers."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from cartwheel.plugins.control.settings import Settings
 
 
 class ControllerManager:
-    """The controllers of one robot; for the simulation's thread alone.
+    """The controllers of one robot. Used only on the thread that owns the simulation.
 
     Args:
         rig: The robot.
@@ -24,64 +24,64 @@ class ControllerManager:
         self.rig = rig
         self._controllers: dict[str, Controller] = {}
         self._order: list[Controller] = []
-        """As they are updated: those that command others first."""
+        """Controllers in the order of updates: those that command other controllers first."""
         self._begun: set[str] = set()
-        """Controllers that were started once."""
+        """Names of controllers that have been started before."""
         self._starting: list[Controller] = []
         self._stopping: list[Controller] = []
         self._last_ns: int | None = None
         self.writes = True
-        """Whether each update brings the commands to the joints; else `write` does."""
+        """Whether each update applies the commands to the joints; otherwise `write` does."""
 
     @property
     def controllers(self) -> list[Controller]:
-        """All that are loaded, in that order."""
+        """The loaded controllers, in the order of loading."""
         return list(self._controllers.values())
 
     def find(self, name: str) -> Controller | None:
-        """The controller of that name, if it is loaded."""
+        """Returns the loaded controller with this name, or None."""
         return self._controllers.get(name)
 
     def state(self, controller: Controller) -> str:
-        """``initialized``, ``running`` or ``stopped``."""
+        """Returns ``initialized``, ``running`` or ``stopped``."""
         if controller.running:
             return "running"
         return "stopped" if controller.name in self._begun else "initialized"
 
     def load(self, name: str, settings: Settings, type_name: str) -> Controller:
-        """Makes a controller.
+        """Creates a controller.
 
         Raises:
-            CartwheelError: It is loaded already, there is no such type, or its parameters or
-                joints do not fit; nothing has changed.
+            CartwheelError: The controller is already loaded, its type does not exist, or its
+                parameters or joints are invalid. Nothing has changed.
         """
         if name in self._controllers:
             raise wrong_state(name, "is already loaded")
         family = find_type(type_name, ros2=self.rig.ros2)
-        made = family(name, type_name.strip().replace("::", "/"), settings, self.rig)
+        controller = family(name, type_name.strip().replace("::", "/"), settings, self.rig)
         settings.ignore("type")
         unread = settings.unread()
         if unread:
             self.rig.report(
                 devices.CONTROLLER_PARAMETER_UNKNOWN,
-                f'controller "{name}" does not read these parameters: {", ".join(unread)}',
+                f'controller "{name}" ignores unknown parameters: {", ".join(unread)}',
                 at=Origin(file=settings.source) if settings.source else None,
                 values={"controller": name, "parameters": tuple(unread)},
             )
-        self._controllers[name] = made
+        self._controllers[name] = controller
         self._sort()
-        return made
+        return controller
 
     def load_entry(self, entry: ControllerEntry) -> Controller:
-        """Makes a controller as its file describes it; see `load`."""
+        """Creates a controller from a file; see `load`."""
         self.rig.remappings[entry.name] = entry.remappings
         return self.load(entry.name, entry.settings(), entry.type)
 
     def unload(self, name: str) -> None:
-        """Takes a controller away that does not run.
+        """Closes a controller that is not running.
 
         Raises:
-            GraphError: There is none of that name, or it runs.
+            GraphError: The controller is not loaded, or is running.
         """
         controller = self._controllers.get(name)
         if controller is None:
@@ -94,16 +94,17 @@ class ControllerManager:
         controller.close()
 
     def switch(self, start: Sequence[str], stop: Sequence[str], *, strict: bool = True) -> None:
-        """Stops some controllers and starts others, at the next time of control.
+        """Stops some controllers and starts others at the next update.
 
         Args:
-            start: Names.
-            stop: Names.
-            strict: All of it or nothing; else what is possible.
+            start: Names of the controllers to start.
+            stop: Names of the controllers to stop.
+            strict: Change nothing if one of them cannot be switched; otherwise switch all that can
+                be.
 
         Raises:
-            GraphError: A name is not loaded, is running or not running already, or commands a
-                joint that another one does; while strict.
+            GraphError: With `strict`, if a controller is not loaded, already is in the requested
+                state, or would command a joint of another controller.
         """
         stopping = [each for name in stop if (each := self._one(name, True, strict))]
         for name in self.with_leaders(stop)[len(stop) :]:
@@ -113,7 +114,7 @@ class ControllerManager:
                 self._refuse(led[0], problem, strict)
             stopping = [each for each in stopping if each.name not in led]
         starting = [each for name in start if (each := self._one(name, False, strict))]
-        # What is stopped and started at once begins anew.
+        # A controller that is both stopped and started is restarted.
         for name in start:
             controller = self._controllers.get(name)
             if controller in stopping and controller not in starting and controller is not None:
@@ -143,20 +144,23 @@ class ControllerManager:
             self._starting.append(controller)
 
     def with_leaders(self, names: Sequence[str]) -> list[str]:
-        """Some controllers and all that run and command one of them: what must stop with them."""
-        found = list(names)
+        """Returns the names, and those of all running controllers that command them.
+
+        These must stop together.
+        """
+        together = list(names)
         for each in reversed(self._order):
             led = self._led(each.name)
-            if each.running and each.name not in found and any(name in found for name in led):
-                found.append(each.name)
-        return found
+            if each.running and each.name not in together and any(name in together for name in led):
+                together.append(each.name)
+        return together
 
     def update(self, time_ns: int, nominal: float) -> None:
         """Starts, stops and updates controllers, and commands the joints.
 
         Args:
             time_ns: Simulation time.
-            nominal: Of control, s: what the first update counts for.
+            nominal: Control period in s, which the first update uses as its duration.
         """
         seconds = nominal if self._last_ns is None else (time_ns - self._last_ns) / 1e9
         if self._last_ns is None:
@@ -183,28 +187,28 @@ class ControllerManager:
             self.rig.hardware.write(seconds)
 
     def write(self, time_ns: int, seconds: float) -> None:
-        """Brings the commands to the joints, between updates as well.
+        """Applies the commands to the joints between updates.
 
         Args:
             time_ns: Simulation time.
-            seconds: Since the last time, s.
+            seconds: Time since the last call, s.
         """
         if self._last_ns is not None:
             self.rig.hardware.write(seconds, lead=(time_ns - self._last_ns) / 1e9)
 
     def sense(self, time_ns: int) -> None:
-        """Lets controllers tell what only a settled state shows: accelerations and forces."""
+        """Lets controllers publish quantities that are only known after a step."""
         for controller in self._controllers.values():
             if controller.started:
                 controller.sense(time_ns)
 
     @property
     def senses(self) -> bool:
-        """Whether `sense` has anything to do."""
+        """Whether a running controller has such quantities to publish."""
         return any(each.running and each.senses for each in self._controllers.values())
 
     def reset(self) -> None:
-        """Everything stands where it was spawned: running controllers begin anew."""
+        """Restarts the running controllers after a reset of the simulation."""
         self._last_ns = None
         self._stopping.clear()
         self._starting = [each for each in self._controllers.values() if each.running]
@@ -212,7 +216,7 @@ class ControllerManager:
             controller.started = False
 
     def close(self) -> None:
-        """Unloads everything."""
+        """Unloads all controllers."""
         for controller in self._controllers.values():
             controller.close()
         self._controllers.clear()
@@ -227,7 +231,7 @@ class ControllerManager:
         self._order = [self._controllers[name] for name in names]
 
     def _led(self, name: str) -> list[str]:
-        """The controllers that one commands."""
+        """Returns the names of the controllers that this one commands."""
         return owners(self._controllers[name].claims.values())
 
     def _hindrance(
@@ -237,13 +241,13 @@ class ControllerManager:
         stopping: Sequence[Controller],
         held: Mapping[str, str],
     ) -> str:
-        """Why a controller cannot start; nothing where it can.
+        """Returns why a controller cannot start; empty if it can.
 
         Args:
-            controller: That shall start.
-            starting: What starts as well.
-            stopping: What stops.
-            held: Joints that are commanded, and by whom.
+            controller: The controller.
+            starting: Controllers that start at the same time.
+            stopping: Controllers that stop at the same time.
+            held: The commanding controller of each commanded joint.
         """
         for name, claim in controller.claims.items():
             if name in held:
@@ -258,21 +262,21 @@ class ControllerManager:
     def _offered(
         self, claim: Reference, starting: Sequence[Controller], stopping: Sequence[Controller]
     ) -> bool:
-        """Whether its controller runs then, and was not loaded anew since it was claimed."""
+        """Whether the reference's controller will run and was not reloaded since the claim."""
         owner = self._controllers.get(claim.owner)
         if owner is None or not any(each is claim for each in owner.references):
             return False
         return owner in starting or (owner.running and owner not in stopping)
 
     def _refuse(self, name: str, message: str, strict: bool) -> None:
-        """Raises the conflict of a controller while strict; else reports it."""
+        """Raises a conflict if `strict`, otherwise reports it."""
         values = {"controller": name}
         if strict:
             raise GraphError(message, code=running.CONTROLLER_CONFLICT, values=values)
         self.rig.report(running.CONTROLLER_CONFLICT, message, values=values)
 
     def _one(self, name: str, runs: bool, strict: bool) -> Controller | None:
-        """A controller that is to change its state; None where it cannot and need not."""
+        """Returns a controller whose state is to change; None if it cannot or need not change."""
         controller = self._controllers.get(name)
         problem = ""
         if controller is None:
@@ -289,11 +293,11 @@ class ControllerManager:
 
 
 def wrong_state(name: str, problem: str, *, hint: str = "") -> GraphError:
-    """The error for a request that does not fit the state of a controller.
+    """Returns the error for a request that does not fit the state of a controller.
 
     Args:
         name: The controller.
-        problem: Its state, behind its name.
+        problem: Its state, as it follows the name in the message.
         hint: What to do.
     """
     return GraphError(
@@ -304,8 +308,8 @@ def wrong_state(name: str, problem: str, *, hint: str = "") -> GraphError:
     )
 
 
-def tell(rig: Rig, error: CartwheelError) -> None:
-    """Reports the error of a request that came over a wire."""
+def report_error(rig: Rig, error: CartwheelError) -> None:
+    """Reports the error of a service request."""
     rig.report(
         error.code, error.message, at=error.origin, hint=error.hint or "", values=error.values
     )

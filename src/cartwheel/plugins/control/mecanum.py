@@ -1,4 +1,4 @@
-"""``mecanum_drive_controller``: four wheels with rollers, in all directions."""
+"""``mecanum_drive_controller``: four wheels with rollers, for motion in all directions."""
 
 from __future__ import annotations
 
@@ -31,13 +31,13 @@ _AROUND = (-1.0, 1.0, -1.0, 1.0)
 
 
 class MecanumDriveController(Controller):
-    """Turns four wheels by Twist, and tells where they took the robot.
+    """Turns four mecanum wheels as Twist commands require, and publishes odometry.
 
-    Where they grip along their rollers alone, friction takes the robot along: see `has_rollers`.
-    Otherwise a servo pushes it, as for gz-sim-mecanum-drive-system, where these parameters are
-    known when the robot is spawned. ROS 1 listens to ``cmd_vel``, ROS 2 to ``reference``;
-    husarion's controller of the same name, which has parameters of its own, to ``cmd_vel``.
-    Source: mecanum_drive_controller; husarion_controllers.
+    If the wheels model rollers, friction moves the robot; see `has_rollers`. Otherwise a servo
+    pushes it, as for gz-sim-mecanum-drive-system, provided that the controller's parameters are
+    known when the robot is spawned. ROS 1 uses the topic ``cmd_vel``, ROS 2 ``reference``.
+    Husarion's controller with the same name has different parameters and uses ``cmd_vel``. Source:
+    mecanum_drive_controller; husarion_controllers.
     """
 
     types: ClassVar[tuple[str, ...]] = ("mecanum_drive_controller/MecanumDriveController",)
@@ -81,7 +81,7 @@ class MecanumDriveController(Controller):
         if self._radius <= 0 or self._reach <= 0:
             raise settings.error(
                 devices.CONTROLLER_PARAMETER_INVALID,
-                "the radius and the separations of the wheels must be positive "
+                "the wheel radius and separations must be positive "
                 f"(got {self._radius:g} and {self._reach:g})",
                 values={"radius": self._radius, "reach": self._reach},
             )
@@ -95,7 +95,7 @@ class MecanumDriveController(Controller):
         topic = "reference" if nested else "cmd_vel"
         if ros2 and not stamped:
             topic += "_unstamped"
-        # In ROS 2 a command counts for ever where nothing else is stated.
+        # In ROS 2, commands do not expire by default.
         limit = ("reference_timeout", 0.0) if nested else ("cmd_vel_timeout", 0.5)
         timeout = settings.number(*limit)
         self._command = TwistCommand(self, topic, timeout=timeout, stamped=stamped)
@@ -111,7 +111,8 @@ class MecanumDriveController(Controller):
         self._frame = prefix + settings.text("odom_frame_id", "odom")
         self._state = self.advertise("controller_state", _STATE) if nested else None
         if husarion:
-            # Wheels are read by their positions, and what they turned is told.
+            # No effect: wheel positions are always measured, and their changes published as
+            # odometry.
             settings.ignore("position_feedback")
             for name in ("open_loop", "publish_limited_velocity"):
                 if settings.boolean(name, False):
@@ -124,7 +125,7 @@ class MecanumDriveController(Controller):
         if self.rig.push is None and not has_rollers(description):
             self.warn(
                 running.WHEELS_WITHOUT_ROLLERS,
-                "the wheels roll like ordinary ones, so the robot does not move sideways",
+                "the wheels do not model rollers, so the robot does not move sideways",
                 hint="Pass the controller's parameters when the robot is spawned.",
             )
 
@@ -141,7 +142,7 @@ class MecanumDriveController(Controller):
         across = sum(sign * way for sign, way in zip(_SIDEWAYS, ways, strict=True)) / 4
         around = sum(sign * way for sign, way in zip(_AROUND, ways, strict=True)) / 4
         self._reckon(sum(ways) / 4, across, around / self._reach, seconds)
-        self._odometry.tell(time_ns)
+        self._odometry.publish(time_ns)
         command = self._limited(self._command.at(time_ns), seconds)
         forward, sideways, turn = self._at_centre(command)
         for wheel, side, round_ in zip(self._wheels, _SIDEWAYS, _AROUND, strict=True):
@@ -158,8 +159,8 @@ class MecanumDriveController(Controller):
         message.header = header(time_ns, self._frame)
         for corner, wheel in zip(_CORNERS, self._wheels, strict=True):
             setattr(message, f"{corner}_wheel_velocity", wheel.velocity)
-        told = message.reference_velocity
-        told.linear.x, told.linear.y, told.angular.z = command
+        reference = message.reference_velocity
+        reference.linear.x, reference.linear.y, reference.angular.z = command
         return message
 
     def _limited(self, wanted: tuple[float, float, float], seconds: float) -> Vec3:
@@ -172,7 +173,7 @@ class MecanumDriveController(Controller):
         return x, y, turn
 
     def _at_centre(self, command: Vec3) -> Vec3:
-        """The motion of the wheels' centre where the base frame moves by a command."""
+        """Returns the motion of the wheels' centre for a commanded motion of the base frame."""
         x, y, theta = self._offset
         forward, sideways, turn = command
         cos, sin = math.cos(theta), math.sin(theta)
@@ -183,7 +184,7 @@ class MecanumDriveController(Controller):
         )
 
     def _reckon(self, forward: float, sideways: float, turn: float, seconds: float) -> None:
-        """The base frame's way from that of the wheels' centre: `_at_centre` backwards."""
+        """Updates the odometry of the base frame from the motion of the wheels' centre."""
         x, y, theta = self._offset
         forward, sideways = forward - y * turn, sideways + x * turn
         cos, sin = math.cos(theta), math.sin(theta)

@@ -1,4 +1,4 @@
-"""``unitree_legged_control``: the motor of a leg, whose commands bring their gains along."""
+"""``unitree_legged_control``: a leg motor, whose commands contain the gains."""
 
 from __future__ import annotations
 
@@ -11,26 +11,26 @@ from cartwheel.plugins.control.pid import Gains, Pid
 from cartwheel.plugins.control.settings import Settings
 
 _BRAKE, _SERVO = 0x00, 0x0A
-"""Modes of a command; any other changes nothing."""
+"""Modes of a command. In any other mode the command is ignored."""
 _NO_POSITION, _NO_VELOCITY = 2.146e9, 16000.0
-"""Targets that switch their gain off."""
+"""Targets that disable their gain."""
 _BRAKING = 20.0
 """N m s/rad."""
 
 
 class UnitreeJointController(Controller):
-    """One joint by ``command``, MotorCmd: a position, a velocity and a torque, with their gains.
+    """Controls one joint by ``command`` (MotorCmd): position, velocity and torque, with gains.
 
-    It gives ``Kp (q - position) + Kd (dq - velocity) + tau``, within the joint's limits; it brakes
-    until it is commanded. ``state``, MotorState, comes at every update. Source:
-    unitree_legged_control.
+    The torque is ``Kp (q - position) + Kd (dq - velocity) + tau``, within the joint's limits. The
+    joint brakes until the first command. ``state`` (MotorState) is published at every update.
+    Source: unitree_legged_control.
     """
 
     types: ClassVar[tuple[str, ...]] = ("unitree_legged_control/UnitreeJointController",)
 
     def configure(self, settings: Settings) -> None:
         self._joint = self.claim(settings.text("joint"), "effort")
-        # Theirs are read only by a build for tuning.
+        # The original reads these gains only in a tuning build.
         settings.ignore("pid")
         self._command(Gains(p=0.0, d=_BRAKING))
         self.subscribe("command", "unitree_legged_msgs/msg/MotorCmd", self._on_command)
@@ -79,5 +79,5 @@ class UnitreeJointController(Controller):
 
 
 def _is(value: float, mark: float) -> bool:
-    """Whether a number of 32 bits is one that means none."""
+    """Whether a 32-bit value is the given marker."""
     return math.isclose(value, mark, rel_tol=1e-6)

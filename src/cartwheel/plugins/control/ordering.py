@@ -1,4 +1,4 @@
-"""Which of a file's controllers start first."""
+"""The order in which the controllers of a file start."""
 
 from __future__ import annotations
 
@@ -15,10 +15,11 @@ _PLAIN = re.compile(
 
 
 def in_order(entries: Sequence[ControllerEntry]) -> list[ControllerEntry]:
-    """Controllers of a file so that each comes after those whose references it names.
+    """Sorts controllers so that each follows those whose references it uses.
 
-    Of wheels that a base's controller and one of plain commands both want, as a choice for a
-    launch file, the base has them: what commands single joints comes last.
+    Some files contain both a drive controller and forward controllers for the same wheels, so that
+    a launch file can choose. Controllers of single joints come last, so the drive controller
+    starts.
     """
     if any(_BASE.search(entry.type) for entry in entries):
         entries = sorted(entries, key=lambda entry: bool(_PLAIN.search(entry.type)))
@@ -38,7 +39,7 @@ def in_order(entries: Sequence[ControllerEntry]) -> list[ControllerEntry]:
 
 
 def _named(values: Any, names: Mapping[str, Any]) -> list[str]:
-    """Of some controllers those that begin a text of the parameters, before a slash."""
+    """Returns the controllers whose name begins a string in the parameters, before a slash."""
     if isinstance(values, str):
         return [first] if (first := values.partition("/")[0]) in names and "/" in values else []
     if isinstance(values, Mapping):

@@ -1,4 +1,4 @@
-"""The PID law of ros_control."""
+"""PID controllers as in ros_control."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from cartwheel.plugins.control.settings import Settings
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Gains:
-    """Source: control_toolbox."""
+    """Gains and limits of a PID. Source: control_toolbox."""
 
     p: float
     i: float = 0.0
@@ -18,17 +18,17 @@ class Gains:
     i_min: float = 0.0
     i_max: float = 0.0
     antiwindup: bool = False
-    """Clamps the integral itself, not only what it gives."""
+    """Clamps the integral itself, in addition to the integral term."""
     u_min: float = -math.inf
-    """Of all together."""
+    """Limits of the sum of all terms."""
     u_max: float = math.inf
 
     @classmethod
     def read_ros2(cls, settings: Settings) -> Gains:
-        """The same of ROS 2's joint_trajectory_controller: nothing must be stated or is clamped.
+        """Reads the gains of ROS 2 controllers: all are optional, and not clamped by default.
 
         Raises:
-            PluginError: A value is no number.
+            PluginError: A value is not a number.
         """
         clamp = abs(settings.number("i_clamp", math.inf))
         strategy = settings.text("antiwindup_strategy", "legacy")
@@ -48,12 +48,12 @@ class Gains:
 
     @classmethod
     def read(cls, settings: Settings) -> Gains:
-        """``p``, ``i``, ``d``, ``i_clamp`` or ``i_clamp_min`` and ``i_clamp_max``, ``antiwindup``.
+        """Reads ``p``, ``i``, ``d``, ``i_clamp``, ``i_clamp_min``, ``i_clamp_max``, ``antiwindup``.
 
-        The integral gives nothing where no clamp is stated, as in ros_control.
+        Without a clamp the integral term is 0, as in ros_control.
 
         Raises:
-            PluginError: A value is no number, or there is no ``p``.
+            PluginError: A value is not a number, or ``p`` is missing.
         """
         clamp = abs(settings.number("i_clamp", 0.0))
         settings.ignore("publish_state")
@@ -68,14 +68,15 @@ class Gains:
 
 
 _STIFF = 0.1
-"""(omega T)² of a spring with a joint that the controller sees twenty times in a swing."""
+"""(omega T)² of a spring and a joint that oscillate with a period of twenty control periods."""
 
 
 @dataclass(frozen=True, slots=True)
 class Law:
-    """An effort that falls with the joint's velocity: ``effort - damping * velocity``.
+    """An effort that decreases with the joint's velocity: ``effort - damping * velocity``.
 
-    The physics takes the damping implicitly, so a derivative gain is stable at any step.
+    The physics integrates the damping implicitly, so a derivative gain is stable at any step
+    size.
     """
 
     effort: float
@@ -83,14 +84,14 @@ class Law:
 
 
 class Pid:
-    """Holds a position or a velocity by effort."""
+    """Controls a position or a velocity by an effort."""
 
     def __init__(self, gains: Gains) -> None:
         self.gains = gains
         self.reset()
 
     def reset(self) -> None:
-        """Forgets the integral and the last target."""
+        """Clears the integral and the last target."""
         self._integral = 0.0
         self._target: float | None = None
 
@@ -103,14 +104,14 @@ class Pid:
         rate: float | None = None,
         lightness: float = 0.0,
     ) -> Law:
-        """The law for an error of position.
+        """Returns the effort for a position error.
 
         Args:
             error: Target minus position, rad or m.
-            seconds: Since the last call, s.
-            target: Of position; how it changes is part of the derivative.
-            rate: Of the target, rad/s or m/s, where it is known.
-            lightness: Of the joint: how much faster an effort of 1 makes it in 1 s.
+            seconds: Time since the last call, s.
+            target: Target position. Its rate of change is part of the derivative.
+            rate: Rate of change of the target, rad/s or m/s; None: computed from the last target.
+            lightness: Acceleration of the joint per effort.
         """
         if rate is None:
             before = target if self._target is None else self._target
@@ -120,25 +121,25 @@ class Pid:
         effort = gains.p * error + self._integrate(error, seconds) + gains.d * rate
         damping = gains.d
         if gains.p * seconds * seconds * lightness > _STIFF:
-            # The spring of where the joint will be, not of where it is: what swings faster than
-            # the controller looks would swing ever wider.
+            # The spring acts on the predicted position instead of the current one: the oscillation
+            # of a joint that is fast compared with the control rate would grow.
             damping += gains.p * seconds
             effort += gains.p * seconds * rate
         return Law(effort, damping)
 
     def velocity(self, target: float, velocity: float, seconds: float) -> Law:
-        """The law for a wanted velocity, rad/s or m/s; the derivative is the target's alone."""
+        """Returns the effort for a target velocity in rad/s or m/s. `d` acts on the target only."""
         before = target if self._target is None else self._target
         self._target = target
         gains = self.gains
-        # Of the measured velocity it would be an inertia, and one that acts a step late and is
-        # larger than the joint's own makes it swing ever wider, at any step.
+        # The derivative of the measured velocity would act as an inertia, one step late. If it is
+        # larger than the joint's own inertia, the oscillation grows at any step size.
         change = (target - before) / seconds if seconds > 0 else 0.0
         effort = gains.p * target + self._integrate(target - velocity, seconds) + gains.d * change
         return Law(effort, gains.p)
 
     def bounded(self, law: Law, velocity: float) -> Law:
-        """A law that gives no more than the gains allow at a velocity, rad/s or m/s."""
+        """Limits a law to the output limits, at a velocity in rad/s or m/s."""
         output = law.effort - law.damping * velocity
         clamped = min(max(output, self.gains.u_min), self.gains.u_max)
         return law if clamped == output else Law(clamped)

@@ -1,4 +1,4 @@
-"""``pid_controller``: joints that follow references by a PID, which others may command."""
+"""``pid_controller``: joints that follow references, which other controllers can set, by a PID."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ _NOTHING = (math.nan, math.nan)
 
 
 class PidController(Controller):
-    """Commands joints by a PID on the error of their references, and ``feedforward_gain`` times
-    these.
+    """Commands joints by a PID on the error of their references, with feedforward.
 
-    References come from a chained controller that names ``<controller>/<joint>`` for its joint,
-    or else on ``reference``, MultiDOFCommand. What is measured is the joint, or with
-    ``use_external_measured_states`` what ``measured_state`` says. Source: pid_controller.
+    The references come from another controller that uses ``<controller>/<joint>`` as its joint, or
+    else from ``reference`` (MultiDOFCommand). The measured values are those of the joint, or with
+    ``use_external_measured_states`` those on ``measured_state``. ``feedforward_gain`` times the
+    reference is added to the output. Source: pid_controller.
     """
 
     types: ClassVar[tuple[str, ...]] = ("pid_controller/PidController",)
@@ -50,7 +50,7 @@ class PidController(Controller):
         self._loops = []
         for name, state_name in zip(names, self._names, strict=True):
             joint = self.claim(name, interface)
-            # Of a joint of another name the state alone counts.
+            # Only the state of a joint with a different name is used.
             state = joint if name == state_name else self.rig.hardware.joint(state_name)
             section = settings.section(f"gains/{name}")
             self._loops.append(
@@ -68,7 +68,7 @@ class PidController(Controller):
         if self._external:
             self.subscribe("measured_state", _COMMAND, self._on_measured)
         self.serve("set_feedforward_control", "std_srvs/srv/SetBool", self._on_feedforward)
-        self._told = self.advertise("controller_state", _STATE)
+        self._state_publisher = self.advertise("controller_state", _STATE)
 
     def start(self, time_ns: int) -> None:  # noqa: ARG002
         for loop in self._loops:
@@ -85,35 +85,35 @@ class PidController(Controller):
             if not self._external:
                 loop.measured = loop.sensed()
             loop.command(seconds, ahead=self._feeds_forward)
-        if self._told.wanted:
+        if self._state_publisher.wanted:
             message = zero(_STATE)
             message.header = header(time_ns, "")
             message.dof_states = [
-                loop.told(name, seconds)
+                loop.state_message(name, seconds)
                 for name, loop in zip(self._names, self._loops, strict=True)
             ]
-            self._told.publish(message)
+            self._state_publisher.publish(message)
 
-    # -- what comes in
+    # -- subscriptions and services
 
     def _on_reference(self, message: Any) -> None:
         if self.chained:
             return
-        for loop, said in zip(self._loops, self._ordered(message, "reference"), strict=False):
-            if math.isfinite(said[0]):
-                for reference, value in zip(loop.references, said, strict=False):
+        for loop, values in zip(self._loops, self._ordered(message, "reference"), strict=False):
+            if math.isfinite(values[0]):
+                for reference, value in zip(loop.references, values, strict=False):
                     reference.command = value
 
     def _on_measured(self, message: Any) -> None:
-        for loop, said in zip(self._loops, self._ordered(message, "measured state"), strict=False):
-            loop.measured = said
+        for loop, state in zip(self._loops, self._ordered(message, "measured state"), strict=False):
+            loop.measured = state
 
     def _on_feedforward(self, request: Any) -> Any:
         self._feeds_forward = bool(request.data)
         return message_class("std_srvs/srv/SetBool_Response")(success=True, message="")
 
     def _ordered(self, message: Any, what: str) -> list[tuple[float, float]]:
-        """Values and how they change, in our joints' order; nothing where they do not fit."""
+        """Returns values and their rates of change in the order of our joints; empty if invalid."""
         names = list(message.dof_names) or self._names
         values = [float(each) for each in message.values]
         rates = [float(each) for each in message.values_dot] or [math.nan] * len(names)
@@ -121,33 +121,34 @@ class PidController(Controller):
         if not fits or sorted(names) != sorted(self._names):
             self.warn(
                 running.COMMAND_IGNORED,
-                f"a {what} is ignored: it must have values for {', '.join(self._names)}",
+                f"a {what} is ignored because it must contain one value for each joint",
+                hint=f"Joints: {', '.join(self._names)}.",
             )
             return []
-        said = dict(zip(names, zip(values, rates, strict=True), strict=True))
-        return [said[name] for name in self._names]
+        by_name = dict(zip(names, zip(values, rates, strict=True), strict=True))
+        return [by_name[name] for name in self._names]
 
 
 @dataclass(kw_only=True, slots=True)
 class _Loop:
-    """One joint with its PID."""
+    """A joint with its PID."""
 
     joint: JointHardware
-    """That is commanded."""
+    """The commanded joint."""
     state: JointHardware
-    """That is measured."""
+    """The measured joint."""
     references: tuple[Reference, ...]
-    """The value, and maybe how it changes."""
+    """References of the value and, optionally, of its rate of change."""
     damps: bool
-    """Whether the derivative may damp the joint itself, which the physics takes implicitly."""
+    """Whether the derivative damps the joint itself, which the physics integrates implicitly."""
     forward: float
     wraps: bool
     pid: Pid
     measured: tuple[float, float] = _NOTHING
-    """A value and how it changes; nan where it is not known."""
+    """Measured value and its rate of change; NaN if unknown."""
 
     def sensed(self) -> tuple[float, float]:
-        """The joint's own state: a value and how it changes."""
+        """Returns the joint's own state: a value and its rate of change."""
         match self.references[0].interface:
             case "position":
                 return self.state.position, self.state.velocity
@@ -157,22 +158,22 @@ class _Loop:
 
     @property
     def wanted(self) -> tuple[float, float]:
-        """The reference and how it changes; nan where nobody said."""
+        """The reference and its rate of change; NaN if not set."""
         value, *rate = (each.command for each in self.references)
         return value, rate[0] if rate else math.nan
 
     @property
     def error(self) -> float:
-        """How far it is off."""
+        """Reference minus measured value."""
         off = self.wanted[0] - self.measured[0]
         return math.remainder(off, 2 * math.pi) if self.wraps and math.isfinite(off) else off
 
     def command(self, seconds: float, *, ahead: bool) -> None:
-        """Commands the joint, where there is a reference.
+        """Commands the joint if it has a reference.
 
         Args:
-            seconds: Since the last time, s.
-            ahead: Whether the reference is fed forward.
+            seconds: Time since the last call, s.
+            ahead: Add the feedforward term.
         """
         (wanted, rate), (measured, speed), error = self.wanted, self.measured, self.error
         if not math.isfinite(error):
@@ -197,8 +198,8 @@ class _Loop:
         else:
             self.joint.command = law.effort - law.damping * speed
 
-    def told(self, name: str, seconds: float) -> Any:
-        """As a message."""
+    def state_message(self, name: str, seconds: float) -> Any:
+        """Returns the state as a message."""
         return message_class(_ONE_STATE)(
             name=name,
             reference=self.wanted[0],

@@ -1,4 +1,4 @@
-"""What the plugins of ros_control and ros2_control share."""
+"""The base class of the ros_control and ros2_control plugins."""
 
 from __future__ import annotations
 
@@ -35,11 +35,11 @@ class ControlPlugin(Plugin[Any]):
         super().close()
 
     def _run(self, rig: Rig, rate: float) -> ControllerManager:
-        """Makes the manager, and schedules it.
+        """Creates the controller manager and schedules it.
 
         Args:
-            rig: Of its controllers.
-            rate: Hz; 0 is every step.
+            rig: The robot.
+            rate: Control rate, Hz; 0: every step.
         """
         manager = self.manager = ControllerManager(rig)
         part = self.part
@@ -48,7 +48,7 @@ class ControlPlugin(Plugin[Any]):
         part.schedule(rate, before=lambda: manager.update(part.time_ns, nominal))
         step_ns = part.period_ns(0)
         if rig.hardware.follows and rig.period_ns > step_ns:
-            # As in Gazebo: controllers at their rate, joints at every step.
+            # As in Gazebo, controllers run at their rate, and PIDs of joints at every step.
             manager.writes = False
             part.schedule(0, before=lambda: manager.write(part.time_ns, part.period_ns(0) / 1e9))
         part.schedule(
@@ -57,7 +57,7 @@ class ControlPlugin(Plugin[Any]):
         return manager
 
     def _sensors(self) -> list[SensedLink]:
-        """The robot's sensors that a broadcaster can tell of."""
+        """Returns the robot's sensors that a broadcaster can publish."""
         return [
             SensedLink(name=each.name, type=each.type, sensor=each, unit=self._unit(each))
             for link in self.part.description.links
@@ -73,7 +73,7 @@ class ControlPlugin(Plugin[Any]):
         )
 
     def _push(self, types: Iterable[str]) -> BodyDriveHandle | None:
-        """A servo of the whole robot where a controller among these needs one."""
+        """Returns a servo of the whole robot if one of the controller types needs it."""
         if has_rollers(self.part.description):
             return None
         if any(name in MecanumDriveController.types for name in types):
@@ -81,7 +81,7 @@ class ControlPlugin(Plugin[Any]):
         return None
 
     def _start(self, entries: Iterable[ControllerEntry]) -> None:
-        """Loads and starts controllers; one that does not fit is told and left."""
+        """Loads and starts controllers. One that cannot be started is reported and skipped."""
         manager = self.manager
         assert manager is not None
         loaded = ControllerFiles.of(self.graph).loaded

@@ -1,4 +1,4 @@
-"""``libgazebo_ros2_control.so`` and ``gz_ros2_control-system``: ROS 2's controllers."""
+"""``libgazebo_ros2_control.so`` and ``gz_ros2_control-system``: ROS 2 controllers."""
 
 from __future__ import annotations
 
@@ -37,34 +37,41 @@ from cartwheel.plugins.parameters import tag
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Ros2ControlParameters:
     files: tuple[str, ...] = tag(
-        "parameters", default=(), doc="YAML files of the manager and its controllers."
+        "parameters",
+        default=(),
+        doc="YAML files with the parameters of the controller manager and its controllers.",
     )
     manager: str = tag(
         "controller_manager_name",
         "controller_manager_node_name",
         default="controller_manager",
-        doc="Name of the manager's node, under which the files have its parameters.",
+        doc="Name of the controller manager's node, and of its section in the YAML files.",
     )
     hold_joints: bool = tag(
-        "hold_joints", default=True, doc="Joints that no controller commands yet hold still."
+        "hold_joints", default=True, doc="Hold joints that no controller has commanded yet."
     )
     gain: float = tag(
         "position_proportional_gain",
         default=0.1,
-        doc="Without effect: positions are held as fast as the joint's effort allows.",
+        doc="No effect: positions are held as firmly as the joint's effort limit allows.",
     )
     description: str = tag(
-        "robot_param", default="robot_description", doc="Without effect: the robot is this one."
+        "robot_param",
+        default="robot_description",
+        doc="No effect: the description is the one that contains the plugin.",
     )
     description_node: str = tag(
-        "robot_param_node", default="", doc="Without effect, as robot_param."
+        "robot_param_node",
+        default="",
+        doc="No effect: the description is the one that contains the plugin.",
     )
 
 
 class Ros2Control(ControlPlugin):
-    """Runs the controllers that its files name, at the manager's ``update_rate``.
+    """Runs the controllers in its YAML files, at the `update_rate` of the controller manager.
 
-    Source: gazebo_ros2_control, gz_ros2_control.
+    The files are those in ``<parameters>`` and those that `cartwheel run` receives by
+    `--controllers`. Source: gazebo_ros2_control, gz_ros2_control.
     """
 
     filenames: ClassVar[tuple[str, ...]] = (
@@ -82,17 +89,17 @@ class Ros2Control(ControlPlugin):
         named = [self._path(text) for text in config.files]
         paths = [*(path for path in named if path is not None), *own]
         contents = [read_ros2(path, part.description) for path in paths]
-        found = ros2_file(contents, self.namespace, config.manager)
+        merged = ros2_file(contents, self.namespace, config.manager)
         source = ", ".join(str(path) for path in paths)
-        if found.elsewhere and not found.manager:
+        if merged.elsewhere and not merged.manager:
             self.warn(
                 devices.CONTROLLERS_FILE_WITHOUT_CONTROLLERS,
-                f"the controller files have parameters for {', '.join(found.elsewhere)}, but the "
+                f"the controller files have parameters for {', '.join(merged.elsewhere)}, but the "
                 f'controller manager is "/{self.namespace}/{config.manager}", so no controller '
                 "starts".replace("//", "/"),
-                values={"nodes": tuple(found.elsewhere)},
+                values={"nodes": tuple(merged.elsewhere)},
             )
-        settings = Settings(found.manager, config.manager, source)
+        settings = Settings(merged.manager, config.manager, source)
         rate = settings.number("update_rate", 100.0)
         if rate <= 0:
             raise settings.invalid("update_rate", rate, "positive")
@@ -116,14 +123,14 @@ class Ros2Control(ControlPlugin):
                     at=sensor.origin,
                     values={"name": sensor.name},
                 )
-        entries = controller_entries(found, self.namespace, source)
-        if paths and not entries and not found.elsewhere:
+        entries = controller_entries(merged, self.namespace, source)
+        if paths and not entries and not merged.elsewhere:
             self.warn(
                 devices.CONTROLLERS_FILE_WITHOUT_CONTROLLERS,
                 "no parameter specifies a controller type, so no controller starts",
                 at=Origin(file=source),
             )
-        hardware = Hardware(self, joints, _gains(joints, found.nodes))
+        hardware = Hardware(self, joints, _gains(joints, merged.nodes))
         hardware.holds = config.hold_joints
         rig = Rig(
             self,
@@ -144,12 +151,13 @@ class Ros2Control(ControlPlugin):
         )
 
     def _path(self, text: str) -> Path | None:
-        """The file that a tag names; one that is not there costs what it would start."""
+        """Returns the file in a ``<parameters>`` tag; None, with a report, if it does not exist."""
         text = text.strip()
         path = Path(text)
         origin = self.tag.origin
         if not path.is_absolute():
-            # A text that came over a wire has no folder: the current one, as for its meshes.
+            # A description from a service has no folder. Like its meshes, it uses the current
+            # folder.
             path = Path("" if origin.file.startswith("<") else origin.file).parent / path
         if not path.is_file():
             self.warn(
@@ -176,29 +184,29 @@ class Ros2Control(ControlPlugin):
 def _gains(
     joints: list[JointInterfaces], nodes: Mapping[str, Mapping[str, Any]]
 ) -> dict[str, tuple[str, Gains]]:
-    """Of joints whose commands go through a PID.
+    """Returns the PID of each joint whose commands a PID converts to efforts.
 
-    They stand beside the joint, or in the files under ``pid_gains``. Source:
+    The gains are in the joint's ``<param>`` tags, or in the files under ``pid_gains``. Source:
     gazebo_ros2_control.
 
     Raises:
-        PluginError: A gain is no number.
+        PluginError: A gain is not a number.
     """
     gains = {}
     for joint in joints:
         if not joint.by_pid:
             continue
         prefix = f"{joint.by_pid[:3]}_"
-        found: Mapping[str, Any] = {
+        written: Mapping[str, Any] = {
             key.removeprefix(prefix): value
             for key, value in joint.gains.items()
             if key.startswith(prefix)
         }
         for name, values in nodes.items():
             listed = Settings(values, name).section(f"pid_gains/{joint.by_pid}/{joint.name}")
-            if not found and listed.names():
-                found = {key: listed.raw(key) for key in listed.names()}
-        settings = Settings(found, f"gains of {joint.name}")
+            if not written and listed.names():
+                written = {key: listed.raw(key) for key in listed.names()}
+        settings = Settings(written, f"gains of {joint.name}")
         most = settings.number("max_integral_error", math.inf)
         gains[joint.name] = (
             joint.by_pid,

@@ -1,4 +1,4 @@
-"""The parameters of a controller manager and of its controllers, as their nodes have them."""
+"""The parameter services of the ROS 2 controller manager and its controllers."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ Serve = Callable[[str, str, Callable[[Any], Any]], Any]
 
 
 class ParameterServices:
-    """The services by which a node's parameters are read, and with `open_` set.
+    """The services that read a node's parameters and, with `open_`, set them.
 
     Args:
-        serve: Offers them.
-        node: The node's name, with its namespace.
-        values: What cannot be set, by name with dots.
-        open_: Whether parameters of any other name may be set, as the spawner does.
+        serve: Offers a service.
+        node: Name of the node, with its namespace.
+        values: Parameters that cannot be set, by name with dots.
+        open_: Whether any other parameter can be set, as the spawner does.
     """
 
     def __init__(
@@ -44,7 +44,7 @@ class ParameterServices:
             serve(f"{node}/{name}", f"{_PACKAGE}/srv/{kind}", handler)
 
     def below(self, name: str) -> dict[str, Any]:
-        """Plain values of all parameters below a name that were set."""
+        """Returns the values of all parameters below a name that were set."""
         prefix = f"{name}."
         return {
             key.removeprefix(prefix): getattr(value, FIELDS[value.type])
@@ -57,7 +57,7 @@ class ParameterServices:
         return zero(f"{_PACKAGE}/msg/ParameterValue") if value is None else value
 
     def _refusal(self, name: str) -> str:
-        """Why a parameter cannot be set; nothing where it can."""
+        """Returns why a parameter cannot be set; empty if it can."""
         if self._open:
             return ""
         if name in self._stated:
@@ -102,10 +102,10 @@ class ParameterServices:
     def _describe(self, request: Any) -> Any:
         descriptors = []
         for name in request.names:
-            made = zero(f"{_PACKAGE}/msg/ParameterDescriptor")
-            made.name, made.type = name, self._value(name).type
-            made.read_only = not self._open
-            descriptors.append(made)
+            descriptor = zero(f"{_PACKAGE}/msg/ParameterDescriptor")
+            descriptor.name, descriptor.type = name, self._value(name).type
+            descriptor.read_only = not self._open
+            descriptors.append(descriptor)
         return _response("DescribeParameters", descriptors=descriptors)
 
 

@@ -1,4 +1,4 @@
-"""The services of ROS 2's controller manager: what ``ros2 control`` and ``spawner`` call."""
+"""The services of ROS 2's controller manager, which ``ros2 control`` and ``spawner`` call."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from cartwheel.plugins.control.files import (
     remappings,
     ros2_file,
 )
-from cartwheel.plugins.control.manager import ControllerManager, tell, wrong_state
+from cartwheel.plugins.control.manager import ControllerManager, report_error, wrong_state
 from cartwheel.plugins.control.ros2_parameters import ParameterServices
 
 _MESSAGES = "controller_manager_msgs_ros2"
@@ -30,19 +30,20 @@ _BASE = "controller_interface::ControllerInterface"
 
 
 class Ros2ManagerServices:
-    """``controller_manager/list_controllers`` and the others, in the manager's namespace.
+    """``controller_manager/list_controllers`` and the other services, in the manager's namespace.
 
-    A controller is unconfigured, inactive or active; those that are configured are the
-    manager's. What runs from the start is taken for what a launch file is about to start: to
-    configure it makes it inactive, and then it is as if the spawner had loaded it. Source:
-    ros2_control, controller_manager.
+    A controller is unconfigured, inactive or active. The controller manager has only configured
+    ones; this class has the others. Controllers that start automatically are configured and active,
+    although a launch file may still load and configure them. The first request to configure such a
+    controller stops it, so that it is inactive as the spawner expects. Source: ros2_control,
+    controller_manager.
 
     Args:
-        plugin: Whose services they are.
-        manager: Has the controllers.
-        name: Of the manager's node.
-        entries: The controllers that the robot's files name.
-        components: The hardware.
+        plugin: The plugin of the controller manager.
+        manager: The manager of the configured controllers.
+        name: Name of the manager's node.
+        entries: The controllers in the robot's files.
+        components: The hardware components.
     """
 
     def __init__(
@@ -58,7 +59,7 @@ class Ros2ManagerServices:
         self._components = components
         self._entries = {entry.name: entry for entry in entries}
         self._by_itself = {each.name for each in manager.controllers}
-        """Controllers that nobody but the files asked for yet."""
+        """Controllers that started automatically and that no request has named yet."""
         self._unconfigured: dict[str, ControllerEntry] = {}
         self._name = name
         namespace = manager.rig.namespace.strip("/")
@@ -90,12 +91,12 @@ class Ros2ManagerServices:
     # -- controllers
 
     def _list(self, request: Any) -> Any:  # noqa: ARG002
-        found = [self._state(each) for each in self._manager.controllers]
-        found += [
+        states = [self._state(each) for each in self._manager.controllers]
+        states += [
             _controller_state(name=entry.name, type=entry.type, state="unconfigured")
             for entry in self._unconfigured.values()
         ]
-        return _response("ListControllers")(controller=found)
+        return _response("ListControllers")(controller=states)
 
     def _state(self, controller: Controller) -> Any:
         commands = [f"{joint}/{kind}" for joint, kind in controller.interfaces.items()]
@@ -141,16 +142,16 @@ class Ros2ManagerServices:
         self._unconfigured[name] = entry
 
     def _entry(self, name: str) -> ControllerEntry:
-        """What files and parameters say of a controller; the parameters win.
+        """Returns a controller's type and parameters; parameters that were set override files.
 
         Raises:
-            CartwheelError: They do not name its type, or a file cannot be read.
+            CartwheelError: The type is not specified, or a file cannot be read.
         """
         stated = self._parameters.below(name)
         namespace = self._manager.rig.namespace
-        found = self._entries.get(name)
-        if found is None:
-            found = ControllerEntry(
+        entry = self._entries.get(name)
+        if entry is None:
+            entry = ControllerEntry(
                 name=name, type="", values={}, namespace=namespace, source="parameters"
             )
         files = stated.get("params_file", [])
@@ -160,9 +161,9 @@ class Ros2ManagerServices:
             contents = [read_ros2(path, robot) for path in paths]
             read = ros2_file(contents, namespace, self._name)
             more = controller_entry(read, name, namespace, ", ".join(map(str, paths)))
-            values = {**found.values, **more.values}
-            found = replace(more, type=more.type or found.type, values=values)
-        kind = stated.get("type") or found.type
+            values = {**entry.values, **more.values}
+            entry = replace(more, type=more.type or entry.type, values=values)
+        kind = stated.get("type") or entry.type
         if not kind:
             raise GraphError(
                 f'the type of controller "{name}" is not specified because there is no parameter '
@@ -172,7 +173,7 @@ class Ros2ManagerServices:
                 values={"controller": name, "parameter": f"{name}.type"},
             )
         renamed = remappings(stated.get("node_options_args", []))
-        return replace(found, type=kind, remappings={**found.remappings, **renamed})
+        return replace(entry, type=kind, remappings={**entry.remappings, **renamed})
 
     def _configure(self, request: Any) -> None:
         name = request.name
@@ -235,7 +236,7 @@ class Ros2ManagerServices:
             wanted = [name for name in start if name not in (*unready, *away)]
             self._manager.switch(wanted, stop, strict=strict)
         except CartwheelError as error:
-            tell(self._manager.rig, error)
+            report_error(self._manager.rig, error)
             return _response("SwitchController")(ok=False, message=error.message)
         self._by_itself.difference_update(start, stop)
         return _response("SwitchController")(ok=True, message="")
@@ -263,7 +264,7 @@ class Ros2ManagerServices:
             ]
             self._manager.switch([], self._manager.with_leaders(away))
         except CartwheelError as error:
-            tell(self._manager.rig, error)
+            report_error(self._manager.rig, error)
             return _response("SetHardwareComponentState")(
                 ok=False, state=self._components.state(request.name)
             )
@@ -272,13 +273,13 @@ class Ros2ManagerServices:
         )
 
     def _answer(self, kind: str, function: Callable[[Any], None]) -> Callable[[Any], Any]:
-        """A service that says ``ok`` or not; why not is reported."""
+        """Returns a service handler that responds with ``ok`` and reports errors."""
 
         def handler(request: Any) -> Any:
             try:
                 function(request)
             except CartwheelError as error:
-                tell(self._manager.rig, error)
+                report_error(self._manager.rig, error)
                 return _response(kind)(ok=False)
             return _response(kind)(ok=True)
 

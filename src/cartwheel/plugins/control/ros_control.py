@@ -1,4 +1,4 @@
-"""``libgazebo_ros_control.so``: ROS 1's controllers on the joints of transmissions."""
+"""``libgazebo_ros_control.so``: ROS 1 controllers for the joints of transmissions."""
 
 from __future__ import annotations
 
@@ -32,25 +32,30 @@ _PLAIN = ("gazebo_ros_control/DefaultRobotHWSim", "DefaultRobotHWSim", "")
 @dataclass(frozen=True, kw_only=True, slots=True)
 class RosControlParameters:
     sim_type: str = tag(
-        "robotSimType", "robot_sim_type", default="", doc="Hardware; only the default is simulated."
+        "robotSimType",
+        "robot_sim_type",
+        default="",
+        doc="Hardware plugin. Only the default, DefaultRobotHWSim, is simulated.",
     )
     period: float = tag(
-        "controlPeriod", default=0.0, unit="s", doc="Between updates; every step when missing."
+        "controlPeriod", default=0.0, unit="s", doc="Control period. 0: every step."
     )
     legacy: bool = tag(
         "legacyModeNS",
         default=True,
-        doc="PID gains may be in the global namespace; always looked for.",
+        doc="No effect: PID gains are always read from the global namespace as well.",
     )
-    stop_topic: str = tag("eStopTopic", default="", doc="Bool that stops all joints while true.")
+    stop_topic: str = tag(
+        "eStopTopic", default="", doc="Topic of a Bool. While it is true, all joints are stopped."
+    )
 
 
 class RosControl(ControlPlugin):
-    """Runs controllers that the services of its controller manager load.
+    """Runs the controllers that are loaded by the services of its controller manager.
 
-    Without ROS, those of the files that the robot was started with run from the start. The
-    namespace is the global one where the tag and the spawner state none, as with spawn_model.
-    Source: gazebo_ros_control.
+    The controllers in the files that `cartwheel run` receives by `--controllers` start
+    automatically. If neither the tag nor the spawner specifies a namespace, the global one is used,
+    as with spawn_model. Source: gazebo_ros_control.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_control.so",)
@@ -90,8 +95,8 @@ class RosControl(ControlPlugin):
                 "no <transmission> drives a joint, so controllers have no joint to command",
             )
         rate = 0.0 if config.period == 0 else 1.0 / config.period
-        found = self.graph.parameters.get(f"/{self.namespace}/joint_limits")
-        limits = Settings(found if isinstance(found, Mapping) else {}, "joint_limits")
+        stated = self.graph.parameters.get(f"/{self.namespace}/joint_limits")
+        limits = Settings(stated if isinstance(stated, Mapping) else {}, "joint_limits")
         hardware = Hardware(self, joints, self._gains(joints), limits)
         self._hardware = hardware
         manager = self._run(
@@ -111,13 +116,13 @@ class RosControl(ControlPlugin):
         self._start([replace(entry, values=self._parameters_of(entry)) for entry in entries])
 
     def _parameters_of(self, entry: ControllerEntry) -> Mapping[str, Any]:
-        found: Mapping[str, Any] = self.graph.parameters.get(
+        values: Mapping[str, Any] = self.graph.parameters.get(
             f"/{self.namespace}/{entry.name}", entry.values
         )
-        return found
+        return values
 
     def _known_types(self) -> list[str]:
-        """Of controllers whose parameters are there already."""
+        """Returns the types of controllers whose parameters exist already."""
         values = self.graph.parameters.get(f"/{self.namespace}" if self.namespace else "/")
         if not isinstance(values, Mapping):
             return []
@@ -127,7 +132,7 @@ class RosControl(ControlPlugin):
         self._hardware.halted = bool(message.data)
 
     def _load(self, path: str, content: Mapping[str, Any]) -> list[ControllerEntry]:
-        """Puts a file's parameters into the namespace, as rosparam would; its controllers."""
+        """Sets a file's parameters in the namespace, as rosparam does; returns its controllers."""
         if is_ros2(content):
             raise PluginError(
                 "the file is for ros2_control, but the robot has gazebo_ros_control",
@@ -145,7 +150,7 @@ class RosControl(ControlPlugin):
         spaces = {entry.namespace for entry in entries}
         inner: Any = content
         if len(spaces) == 1 and (space := spaces.pop()):
-            # A file for the whole server names the namespace itself.
+            # A file for the whole parameter server contains the namespace itself.
             for name in space.split("/"):
                 inner = next(
                     (value for key, value in inner.items() if str(key).strip("/") == name), inner
@@ -159,15 +164,15 @@ class RosControl(ControlPlugin):
         return entries
 
     def _gains(self, joints: list[JointInterfaces]) -> dict[str, tuple[str, Gains]]:
-        """Of the joints whose commands are to go through a PID."""
+        """Returns the PID of each joint whose commands a PID converts to efforts."""
         path = "gazebo_ros_control/pid_gains"
         parameters = self.graph.parameters
-        found = parameters.get(f"/{self.namespace}/{path}") or parameters.get(f"/{path}")
+        listed = parameters.get(f"/{self.namespace}/{path}") or parameters.get(f"/{path}")
         gains: dict[str, tuple[str, Gains]] = {}
-        if not isinstance(found, Mapping):
+        if not isinstance(listed, Mapping):
             return gains
         for joint in joints:
-            values = found.get(joint.name)
+            values = listed.get(joint.name)
             moves = [kind for kind in joint.commands if kind in ("position", "velocity")]
             if isinstance(values, Mapping) and moves:
                 settings = Settings(values, f"{path}/{joint.name}", f"/{self.namespace}")
@@ -176,7 +181,7 @@ class RosControl(ControlPlugin):
 
 
 def _below_root(content: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
-    """A mapping's names and values; what stands under ``/`` or no name is no deeper for it."""
+    """Yields names and values of a mapping. The keys ``/`` and "" do not add a level."""
     for key, value in content.items():
         name = str(key).strip("/")
         if name:

@@ -1,4 +1,4 @@
-"""Broadcasters of sensors: IMU and force-torque."""
+"""Sensor broadcasters: IMU and force-torque."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from cartwheel.plugins.inertial_unit import InertialUnit
 
 
 class _SensorBroadcaster(Controller):
-    """Tells what sensors of one type measure."""
+    """Base class of broadcasters, which publish the measurements of one sensor type."""
 
     kind: ClassVar[str]
     message: ClassVar[str]
@@ -28,23 +28,23 @@ class _SensorBroadcaster(Controller):
         self._outlets: list[tuple[SensedLink, Publisher, str]] = []
         rate = 0.0 if self.rig.ros2 else settings.number("publish_rate")
         self._rhythm = Rhythm(rate)
-        found = [each for each in self.rig.sensors.values() if each.type == self.kind]
+        sensors = [each for each in self.rig.sensors.values() if each.type == self.kind]
         if self.rig.ros2:
             name = settings.text("sensor_name", "")
-            if not name and len(found) == 1:
-                name = found[0].name
-            if name not in [each.name for each in found]:
+            if not name and len(sensors) == 1:
+                name = sensors[0].name
+            if name not in [each.name for each in sensors]:
                 raise UnknownNameError(
                     f"{self.kind} sensor",
                     name,
-                    [each.name for each in found],
+                    [each.name for each in sensors],
                     code=running.UNKNOWN_SENSOR,
                 )
             chosen = self.rig.sensors[name]
             frame = settings.text("frame_id", chosen.sensor.link)
             self._outlets.append((chosen, self.advertise(self.topic, self.message), frame))
         else:
-            if not found:
+            if not sensors:
                 raise settings.error(
                     running.UNKNOWN_SENSOR,
                     f"the robot has no {self.kind} sensor in a <gazebo> tag",
@@ -57,12 +57,12 @@ class _SensorBroadcaster(Controller):
                     self.advertise(f"{space}{each.name}", self.message, rate=rate),
                     each.sensor.link,
                 )
-                for each in found
+                for each in sensors
             ]
         self.take(settings)
 
     def take(self, settings: Settings) -> None:
-        """Reads what else there is."""
+        """Reads the other parameters."""
 
     def start(self, time_ns: int) -> None:
         self._rhythm.start(time_ns)
@@ -79,15 +79,16 @@ class _SensorBroadcaster(Controller):
                 publisher.publish(self.measure(sensed, header(time_ns, self.frame(frame))))
 
     def measure(self, sensed: SensedLink, head: Any) -> Any:
-        """The message."""
+        """Returns the message of a measurement."""
         raise NotImplementedError
 
 
 class ImuBroadcaster(_SensorBroadcaster):
-    """Publishes Imu: ROS 2 on ``imu`` below its name, ROS 1 on the sensor's name.
+    """Publishes Imu messages: on ``imu`` below its name in ROS 2, on the sensor's name in ROS 1.
 
-    Rates and proper acceleration in the sensor's axes, with its noise; orientation against the
-    world (REP 145). Source: imu_sensor_broadcaster, imu_sensor_controller.
+    Angular velocity and proper acceleration are in the sensor frame, with the sensor's noise. The
+    orientation is relative to the world (REP 145). Source: imu_sensor_broadcaster,
+    imu_sensor_controller.
     """
 
     types: ClassVar[tuple[str, ...]] = (
@@ -121,10 +122,11 @@ class ImuBroadcaster(_SensorBroadcaster):
 
 
 class ForceTorqueBroadcaster(_SensorBroadcaster):
-    """Publishes WrenchStamped: what a joint's child exerts on its parent, in the child's axes.
+    """Publishes the wrench that a joint's child link exerts on its parent, as WrenchStamped.
 
-    The sensor's ``<frame>``, ``<measure_direction>`` and noise count. ROS 2 on ``wrench`` below
-    its name, ROS 1 on the sensor's name. Source: force_torque_sensor_broadcaster,
+    By default the wrench is in the child link's frame. The sensor's ``<frame>``,
+    ``<measure_direction>`` and noise are applied. The topic is ``wrench`` below the controller's
+    name in ROS 2, and the sensor's name in ROS 1. Source: force_torque_sensor_broadcaster,
     force_torque_sensor_controller.
     """
 

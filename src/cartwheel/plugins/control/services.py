@@ -14,20 +14,21 @@ from cartwheel.messages import message_class
 from cartwheel.plugins.base import Plugin
 from cartwheel.plugins.control.catalogue import controller_types
 from cartwheel.plugins.control.controller import Controller
-from cartwheel.plugins.control.manager import ControllerManager, tell, wrong_state
+from cartwheel.plugins.control.manager import ControllerManager, report_error, wrong_state
 from cartwheel.plugins.control.settings import Settings
 
 T = TypeVar("T")
 _MESSAGES = "controller_manager_msgs"
 _BASE = "controller_interface::ControllerBase"
 _PATIENCE = 30.0
-"""s for the simulation's thread to answer."""
+"""Maximum time in s for the thread that owns the simulation to respond."""
 
 
 class ManagerServices:
-    """``controller_manager/list_controllers`` and the others, in the manager's namespace.
+    """``controller_manager/list_controllers`` and the other services, in the manager's namespace.
 
-    What asks for parameters, which may be another process's, runs on its caller's thread.
+    ``load_controller`` reads parameters, possibly from the parameter server of another process, so
+    it runs on its caller's thread.
     """
 
     def __init__(self, plugin: Plugin[Any], manager: ControllerManager) -> None:
@@ -77,8 +78,8 @@ class ManagerServices:
         try:
             path = resolve_name(name, self._manager.rig.namespace)
         except GraphError as error:
-            fault = error  # the name of an except clause ends with it
-            self._plugin.graph.post(lambda: tell(self._manager.rig, fault))
+            fault = error  # Python deletes the name of an except clause at its end.
+            self._plugin.graph.post(lambda: report_error(self._manager.rig, fault))
             return _response("LoadController")(ok=False)
         values = self._plugin.graph.parameters.get(path)
 
@@ -131,7 +132,7 @@ class ManagerServices:
         try:
             return function()
         except CartwheelError as error:
-            tell(self._manager.rig, error)
+            report_error(self._manager.rig, error)
             return False
 
     def _on_owner(self, function: Callable[[], T]) -> T:

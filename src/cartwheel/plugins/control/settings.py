@@ -1,4 +1,4 @@
-"""A controller's parameters, read with their kinds checked and their file named."""
+"""The parameters of a controller, with checks of their types."""
 
 from __future__ import annotations
 
@@ -20,51 +20,51 @@ _MOST_COUNT = 1_000_000
 class Settings:
     """The parameters of one controller.
 
-    Names have slashes: ``linear/x/max_velocity``. What ROS 2 writes with dots is the same.
+    Names contain slashes, such as ``linear/x/max_velocity``. ROS 2's dots are equivalent.
 
     Args:
-        values: By name; mappings may be nested.
-        name: Of the controller, or the parameters' namespace.
-        source: The file or server they come from, for errors.
+        values: Values by name; mappings can be nested.
+        name: Name of the controller, or the namespace of the parameters.
+        source: Their file or parameter server, for errors.
     """
 
     def __init__(self, values: Mapping[str, Any], name: str, source: str = "") -> None:
         self._values = _nested(values)
         self.name = name
         self.source = source
-        self._asked: set[str] = set()
+        self._read: set[str] = set()
         """Full names; shared with all sections."""
         self._prefix = ""
 
     def has(self, name: str) -> bool:
-        """Whether there is a value of that name."""
+        """Whether a parameter exists."""
         return self._find(name) is not _MISSING
 
     def raw(self, name: str) -> Any:
-        """The value as it is; None where there is none."""
-        found = self._find(name)
-        return None if found is _MISSING else found
+        """Returns the value without a check; None if the parameter does not exist."""
+        value = self._find(name)
+        return None if value is _MISSING else value
 
     def section(self, name: str) -> Settings:
-        """The parameters below a name; empty where there are none."""
-        found = self._find(name)
-        values = found if isinstance(found, Mapping) else {}
-        self._asked.discard(self._prefix + name)
-        made = Settings({}, self.name, self.source)
-        made._values = dict(values)
-        made._asked = self._asked
-        made._prefix = f"{self._prefix}{name}/"
-        return made
+        """Returns the parameters below a name; empty if there are none."""
+        value = self._find(name)
+        values = value if isinstance(value, Mapping) else {}
+        self._read.discard(self._prefix + name)
+        section = Settings({}, self.name, self.source)
+        section._values = dict(values)
+        section._read = self._read
+        section._prefix = f"{self._prefix}{name}/"
+        return section
 
     def names(self) -> list[str]:
-        """The top names."""
+        """Returns the names at the top level."""
         return list(self._values)
 
     def number(self, name: str, default: float = _MISSING) -> float:
-        """A number, or either infinity."""
+        """Returns a number, which can be infinite."""
         value = self._get(name, default)
         if isinstance(value, str):
-            # rosparam keeps numbers such as 1e-3, which YAML takes for text.
+            # rosparam stores numbers such as 1e-3 as strings, as YAML 1.1 reads them.
             try:
                 value = float(value)
             except ValueError:
@@ -74,14 +74,14 @@ class Settings:
         return self._bounded(name, value)
 
     def optional_number(self, name: str) -> float | None:
-        """A number, or None where there is none, or a nan, by which ROS 2 leaves it open."""
+        """Returns a number; None if it is missing or NaN, which ROS 2 uses for "not set"."""
         value = self._find(name)
         if value is _MISSING or (isinstance(value, float) and math.isnan(value)):
             return None
         return self.number(name)
 
     def integer(self, name: str, default: int = _MISSING) -> int:
-        """A whole number."""
+        """Returns a whole number."""
         value = self.number(name, default)
         if abs(value) > _MOST_COUNT or value != int(value):
             raise self.invalid(
@@ -90,7 +90,7 @@ class Settings:
         return int(value)
 
     def boolean(self, name: str, default: bool = _MISSING) -> bool:
-        """True or false."""
+        """Returns true or false."""
         value = self._get(name, default)
         if isinstance(value, str) and value.strip().lower() in ("true", "false"):
             return value.strip().lower() == "true"
@@ -101,14 +101,14 @@ class Settings:
         raise self.invalid(name, value, "true or false")
 
     def text(self, name: str, default: str = _MISSING) -> str:
-        """A text."""
+        """Returns a string."""
         value = self._get(name, default)
         if not isinstance(value, str):
             raise self.invalid(name, value, "a string")
         return value.strip()
 
     def texts(self, name: str, default: Sequence[str] = _MISSING) -> list[str]:
-        """A list of texts; a single one is a list of one."""
+        """Returns a list of strings. A single string is a list of one."""
         value = self._get(name, default)
         if isinstance(value, str):
             return [value.strip()]
@@ -117,7 +117,7 @@ class Settings:
         return [one.strip() for one in value]
 
     def numbers(self, name: str, default: Sequence[float] = _MISSING) -> list[float]:
-        """A list of numbers."""
+        """Returns a list of numbers."""
         value = self._get(name, default)
         good = isinstance(value, list | tuple) and all(
             isinstance(one, int | float) and not isinstance(one, bool) for one in value
@@ -127,23 +127,23 @@ class Settings:
         return [self._bounded(name, one) for one in value]
 
     def unread(self) -> list[str]:
-        """Names of the values that nobody asked for."""
+        """Returns the names of the parameters that have not been read."""
         return [
             name
             for name in _leaves(self._values)
-            if not any(name == asked or name.startswith(f"{asked}/") for asked in self._asked)
+            if not any(name == read or name.startswith(f"{read}/") for read in self._read)
         ]
 
     def flat(self) -> dict[str, Any]:
-        """All values by the names that ROS 2 gives them, with dots; none of it counts as read."""
+        """Returns all values by ROS 2's names, with dots. They do not count as read."""
         return {
             name.replace("/", "."): functools.reduce(getitem, name.split("/"), self._values)
             for name in _leaves(self._values)
         }
 
     def ignore(self, *names: str) -> None:
-        """Counts names as read: they have no meaning here and do no harm."""
-        self._asked.update(self._prefix + name for name in names)
+        """Counts parameters as read that have no effect here and are no error."""
+        self._read.update(self._prefix + name for name in names)
 
     def error(
         self,
@@ -153,7 +153,7 @@ class Settings:
         hint: str = "",
         values: Mapping[str, Value] | None = None,
     ) -> PluginError:
-        """The error for parameters that cannot be used, with their file; the caller raises it."""
+        """Returns the error for invalid parameters, with their file. The caller raises it."""
         return PluginError(
             f'controller "{self.name}": {message}',
             code=code,
@@ -163,12 +163,12 @@ class Settings:
         )
 
     def invalid(self, name: str, value: Any, wanted: str) -> PluginError:
-        """The error for a parameter whose value is not allowed; the caller raises it.
+        """Returns the error for a parameter whose value is not allowed. The caller raises it.
 
         Args:
             name: The parameter.
-            value: As it is stated.
-            wanted: What is allowed, behind "must be".
+            value: The specified value.
+            wanted: The allowed values, as they follow "must be" in the message.
         """
         stated = f"{value:g}" if isinstance(value, float) else shown(repr(value))
         return self.error(
@@ -178,7 +178,7 @@ class Settings:
         )
 
     def missing(self, name: str, hint: str = "") -> PluginError:
-        """The error for a parameter that is needed; the caller raises it."""
+        """Returns the error for a required parameter that is missing. The caller raises it."""
         meant = meant_one(name, list(_leaves(self._values)))
         return self.error(
             devices.CONTROLLER_PARAMETER_MISSING,
@@ -188,7 +188,7 @@ class Settings:
         )
 
     def _bounded(self, name: str, value: float) -> float:
-        # A whole number of YAML can be too long for a float.
+        # A YAML integer can be too long for a float.
         unset = isinstance(value, float) and math.isnan(value)
         if unset or LARGEST < abs(value) < math.inf:
             wanted = "a number" if unset else f"from {-LARGEST:g} to {LARGEST:g}"
@@ -196,7 +196,7 @@ class Settings:
         return float(value)
 
     def _find(self, name: str) -> Any:
-        self._asked.add(self._prefix + name)
+        self._read.add(self._prefix + name)
         node: Any = self._values
         for part in name.split("/"):
             if not isinstance(node, Mapping) or part not in node:
@@ -205,16 +205,16 @@ class Settings:
         return node
 
     def _get(self, name: str, default: Any) -> Any:
-        found = self._find(name)
-        if found is not _MISSING:
-            return found
+        value = self._find(name)
+        if value is not _MISSING:
+            return value
         if default is _MISSING:
             raise self.missing(name)
         return default
 
 
 def _nested(values: Mapping[str, Any]) -> dict[str, Any]:
-    """The tree that dotted and slashed names stand for."""
+    """Returns the tree for names with dots and slashes."""
     tree: dict[str, Any] = {}
     for key, value in values.items():
         *parents, last = [part for part in str(key).replace("/", ".").split(".") if part] or [""]
@@ -234,7 +234,7 @@ def _nested(values: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def merge(tree: dict[str, Any], other: Mapping[str, Any]) -> None:
-    """Puts values into a tree, beside those that it has; where both have one, `other` wins."""
+    """Merges values into a tree. For the same key, `other` wins."""
     for key, value in other.items():
         below = tree.get(key)
         if isinstance(below, dict) and isinstance(value, Mapping):

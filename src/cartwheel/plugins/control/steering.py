@@ -1,4 +1,4 @@
-"""Drives that steer: ackermann, bicycle, tricycle, in ROS 1's and ROS 2's spelling."""
+"""Steering drives: Ackermann, bicycle and tricycle, with the parameters of ROS 1 and ROS 2."""
 
 from __future__ import annotations
 
@@ -29,9 +29,9 @@ _STATE = f"control_msgs{TWIN}/msg/SteeringControllerStatus"
 
 
 class SingleSteering(Controller):
-    """One driven wheel and one steered joint, as ROS 1 has them.
+    """One driven wheel and one steered joint, as in ROS 1.
 
-    ``cmd_vel`` states the speed and, in ``angular.z``, the angle of the steering. Source:
+    ``linear.x`` on ``cmd_vel`` is the speed, ``angular.z`` the steering angle. Source:
     ackermann_steering_controller and steer_drive_controller of ROS 1.
     """
 
@@ -83,7 +83,7 @@ class SingleSteering(Controller):
         if self._open_loop:
             way, angle = self._history[1][0] * seconds, self._history[1][1]
         self._odometry.go(way, way * math.tan(angle) / self._base, seconds)
-        self._odometry.tell(time_ns)
+        self._odometry.publish(time_ns)
         forward, _, steer = self._command.at(time_ns)
         (v1, w1), (v0, w0) = self._history
         forward = self._linear.limit(forward, v0, v1, seconds)
@@ -101,11 +101,12 @@ class SingleSteering(Controller):
 
 
 class SteeringController(Controller):
-    """Driven wheels and steered ones, as ROS 2's steering_controllers_library has them.
+    """Driven and steered wheels, as in ROS 2's steering_controllers_library.
 
-    Listens to ``reference``, TwistStamped, or with ``use_stamped_vel: false`` to
-    ``reference_unstamped``. Which of two wheels is the left one their places say. Source:
-    ackermann_steering_controller, bicycle_steering_controller, tricycle_steering_controller.
+    Commands arrive on ``reference`` (TwistStamped), or with ``use_stamped_vel: false`` on
+    ``reference_unstamped`` (Twist). Of two wheels, the one with the larger y is the left one.
+    Source: ackermann_steering_controller, bicycle_steering_controller,
+    tricycle_steering_controller.
     """
 
     types: ClassVar[tuple[str, ...]] = (
@@ -132,7 +133,7 @@ class SteeringController(Controller):
                 )
         self._traction = self._axle(traction, "velocity")
         self._steering = self._axle(steering, "position")
-        # What is told of them is in the order of the lists.
+        # The published state has the order of the parameter lists.
         self._listed = [[self.claims[name] for name in names] for names in (traction, steering)]
         self._state = self.advertise("controller_state", _STATE)
         for joint in self._steering:
@@ -168,20 +169,20 @@ class SteeringController(Controller):
             tf_topic="tf_odometry",
             transform=settings.boolean("enable_odom_tf", True),
         )
-        self._told = (0.0, 0.0)
+        self._commanded = (0.0, 0.0)
         self._turned = 0.0
 
     def start(self, time_ns: int) -> None:
         self._command.stop()
         self._odometry.start(time_ns)
         self._turned = self._rolled()
-        self._told = (0.0, 0.0)
+        self._commanded = (0.0, 0.0)
 
     def update(self, time_ns: int, seconds: float) -> None:
         self._reckon(seconds)
-        self._odometry.tell(time_ns)
+        self._odometry.publish(time_ns)
         forward, _, turn = self._command.at(time_ns)
-        self._told = (forward, turn)
+        self._commanded = (forward, turn)
         angle = _steering_angle(forward, turn, self._base)
         speed = forward / self._radius
         if forward == 0 and turn != 0:
@@ -192,7 +193,7 @@ class SteeringController(Controller):
             self._state.publish(self._state_message(time_ns))
 
     def _state_message(self, time_ns: int) -> Any:
-        """Wheels by their positions or velocities, whichever the odometry is of."""
+        """Returns positions or velocities of the wheels, depending on ``position_feedback``."""
         traction, steering = self._listed
         message = zero(_STATE)
         message.header = header(time_ns, "")
@@ -214,7 +215,7 @@ class SteeringController(Controller):
         super().close()
 
     def _axle(self, names: Sequence[str], interface: str) -> list[JointHardware]:
-        """The wheels of an axle, the left one first."""
+        """Claims the wheels of an axle; returns the left one first."""
         claimed = [self.claim(name, interface) for name in names]
         return sorted(
             claimed, key=lambda joint: -joint_place(self.part.description, joint.joint)[1]
@@ -230,7 +231,7 @@ class SteeringController(Controller):
         right.command = math.atan2(self._base * sin, self._base * cos + half * sin)
 
     def _drive(self, speed: float, angle: float) -> None:
-        # How much the wheels of the axle differ, of its middle's speed.
+        # Speed difference of a wheel from the middle of the axle, as a fraction of the speed there.
         share = self._traction_track / 2 * math.tan(angle) / self._base
         if abs(math.cos(angle)) < 1e-6:
             share = 0.0
@@ -243,7 +244,7 @@ class SteeringController(Controller):
 
     def _reckon(self, seconds: float) -> None:
         if self._open_loop:
-            forward, turn = self._told
+            forward, turn = self._commanded
             self._odometry.go(forward * seconds, turn * seconds, seconds)
             return
         rolled = self._rolled()
@@ -261,7 +262,7 @@ class SteeringController(Controller):
         return [(-1.0, self._steering[0]), (1.0, self._steering[1])]
 
     def _middle(self, joint: JointHardware, side: float) -> float:
-        """The angle that the middle of the axle would have, from that of one wheel."""
+        """Converts a wheel's steering angle to that of a virtual wheel midway between them."""
         tangent = math.tan(joint.position)
         return math.atan(
             tangent * self._base / (self._base - side * tangent * self._steering_track / 2)
@@ -287,7 +288,7 @@ class SteeringController(Controller):
 
 
 class TricycleController(Controller):
-    """One wheel in front that is driven and steered. Source: tricycle_controller."""
+    """A front wheel that is driven and steered. Source: tricycle_controller."""
 
     types: ClassVar[tuple[str, ...]] = ("tricycle_controller/TricycleController",)
 
@@ -325,7 +326,7 @@ class TricycleController(Controller):
         )
         self._history = [0.0, 0.0]
         self._angle = 0.0
-        self._told = (0.0, 0.0)
+        self._commanded = (0.0, 0.0)
 
     def start(self, time_ns: int) -> None:
         self._command.stop()
@@ -333,7 +334,7 @@ class TricycleController(Controller):
         self._history = [0.0, 0.0]
         self._angle = self._steer.position
         self._turned = self._traction.position
-        self._told = (0.0, 0.0)
+        self._commanded = (0.0, 0.0)
 
     def update(self, time_ns: int, seconds: float) -> None:
         turned = self._traction.position
@@ -341,19 +342,19 @@ class TricycleController(Controller):
         self._turned = turned
         angle = self._steer.position
         if self._open_loop:
-            self._odometry.go(self._told[0] * seconds, self._told[1] * seconds, seconds)
+            self._odometry.go(self._commanded[0] * seconds, self._commanded[1] * seconds, seconds)
         else:
             self._odometry.go(rim * math.cos(angle), rim * math.sin(angle) / self._base, seconds)
-        self._odometry.tell(time_ns)
+        self._odometry.publish(time_ns)
         forward, _, turn = self._command.at(time_ns)
-        self._told = (forward, turn)
+        self._commanded = (forward, turn)
         wanted = _steering_angle(forward, turn, self._base)
         wanted = min(max(wanted, self._steering_range[0]), self._steering_range[1])
         if forward == 0:
             speed = abs(turn) * self._base / self._radius
         else:
             speed = forward / (self._radius * math.cos(wanted))
-        # It drives as far as it points where it shall go.
+        # The speed is reduced while the wheel does not yet have the steering angle.
         off = abs(wanted - angle)
         speed *= 1.0 if off < math.pi / 6 else 0.01 if off > math.pi / 2 else math.cos(off)
         speed = self._traction_limits.limit(speed, self._history[1], self._history[0], seconds)
@@ -372,7 +373,7 @@ class TricycleController(Controller):
 
 
 def _steering_angle(forward: float, turn: float, base: float) -> float:
-    """Of one wheel in the middle, rad."""
+    """Returns the steering angle of a single wheel in the middle, rad."""
     if forward == 0:
         return math.copysign(math.pi / 2, turn) if turn else 0.0
     return math.atan(turn * base / forward)

@@ -1,6 +1,7 @@
-"""``$(arg …)``, ``$(var …)``, ``$(find …)`` and the like in parameter files.
+"""Substitutions in parameter files, such as ``$(arg …)``, ``$(var …)`` and ``$(find …)``.
 
-Launch files replace them where they load a file; here the robot's own arguments count.
+Launch files evaluate them when they load a file. Here they are evaluated with the robot's own
+arguments.
 """
 
 from __future__ import annotations
@@ -20,12 +21,12 @@ _CALL = re.compile(r"\$\(\s*([\w-]+)((?:\s[^()]*)?)\)")
 
 
 def substitute(content: Any, path: Path, arguments: Mapping[str, str]) -> Any:
-    """A file's content with everything replaced; what a replaced text then says is YAML.
+    """Replaces all substitutions in a file. A string with a substitution is then read as YAML.
 
     Args:
-        content: As read.
-        path: Of the file; packages are looked for around it.
-        arguments: The robot's, by name.
+        content: Content of the file.
+        path: The file, from which packages are searched.
+        arguments: Arguments of the robot, by name.
 
     Raises:
         PluginError: An argument, a variable or a package does not exist.
@@ -65,9 +66,9 @@ def substitute(content: Any, path: Path, arguments: Mapping[str, str]) -> Any:
             values={"name": match[0]},
         )
 
-    def text(found: str) -> str:
+    def text(template: str) -> str:
         try:
-            return _CALL.sub(value, found)
+            return _CALL.sub(value, template)
         except PluginError:
             raise
         except CartwheelError as error:
@@ -79,27 +80,26 @@ def substitute(content: Any, path: Path, arguments: Mapping[str, str]) -> Any:
                 values=error.values,
             ) from None
 
-    def walk(found: Any) -> Any:
-        if isinstance(found, Mapping):
+    def walk(node: Any) -> Any:
+        if isinstance(node, Mapping):
             return {
-                text(key) if isinstance(key, str) else key: walk(each)
-                for key, each in found.items()
+                text(key) if isinstance(key, str) else key: walk(each) for key, each in node.items()
             }
-        if isinstance(found, list):
-            return [walk(each) for each in found]
-        if isinstance(found, str) and _CALL.search(found):
-            return _parsed(text(found))
-        return found
+        if isinstance(node, list):
+            return [walk(each) for each in node]
+        if isinstance(node, str) and _CALL.search(node):
+            return _parsed(text(node))
+        return node
 
     return walk(content)
 
 
 def _parsed(text: str) -> Any:
-    """A number or a truth where the text is one."""
+    """Returns a number or boolean if the text is one, otherwise the text."""
     import yaml
 
     try:
-        made = yaml_text.load(text)
+        parsed = yaml_text.load(text)
     except yaml.YAMLError:
         return text
-    return made if isinstance(made, bool | int | float) else text
+    return parsed if isinstance(parsed, bool | int | float) else text

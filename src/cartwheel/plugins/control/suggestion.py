@@ -1,4 +1,4 @@
-"""Which files could start the controllers of a robot of ros_control, which starts none itself."""
+"""Controller files to suggest for a robot whose controller manager has none."""
 
 from __future__ import annotations
 
@@ -21,16 +21,16 @@ from cartwheel.plugins.control.files import (
 
 _ROS2_CONTROL = "gz_ros2_control-system"
 _LEVELS = 4
-"""Folders above the robot's file that are looked through."""
+"""Number of folders above the robot's file that are searched for its package."""
 _MOST = 400
-"""Files that are looked at."""
+"""Maximum number of files to read."""
 
 
 def suggested(robot: RobotDescription) -> list[Path]:
-    """The files beside a robot that has a manager of controllers and none to manage.
+    """Returns the controller files near a robot whose controller manager has none.
 
-    Of a manager that names files of its own, which are there, none. Nor what only names wheels that
-    a plugin drives: their controllers would hold them.
+    Returns nothing if the manager's tag contains an existing file. Files with controllers for
+    wheels that a plugin drives are left out, because both would command the wheels.
     """
     driven = {
         part.text.strip()
@@ -49,16 +49,16 @@ def suggested(robot: RobotDescription) -> list[Path]:
 
 
 def files_for(robot: Path, joints: Sequence[str], *, ros2: bool = False) -> list[Path]:
-    """YAML files whose controllers name a robot's joints, or tell of all joints.
+    """Returns YAML files with controllers for a robot's joints, or for the states of all joints.
 
-    Looked for below folders named ``config`` in the robot's package and those beside it.
+    The folders named ``config`` in the robot's package and in the packages beside it are searched.
 
     Args:
-        robot: Its file.
-        joints: That move.
-        ros2: Whether they are for ROS 2's nodes.
+        robot: File of the robot.
+        joints: Names of the movable joints.
+        ros2: Search for ROS 2 parameter files.
     """
-    found = []
+    files = []
     for path in _candidates(robot):
         try:
             content = read_parameters(path)
@@ -71,12 +71,12 @@ def files_for(robot: Path, joints: Sequence[str], *, ros2: bool = False) -> list
         named = any(joint in word for joint in joints for word in words)
         broadcasts = len(entries) == 1 and "joint_state" in entries[0].type
         if named or broadcasts:
-            found.append(path)
-    return found
+            files.append(path)
+    return files
 
 
 def _manager(tag: PluginTag) -> str:
-    """Of the two kinds of managers, by one of its names; empty for any other plugin."""
+    """Returns which controller manager a plugin is, by its name; empty for other plugins."""
     plugin = plugin_named(tag.filename)
     for name in (ROS_CONTROL, _ROS2_CONTROL):
         if plugin is not None and plugin is plugin_named(name):

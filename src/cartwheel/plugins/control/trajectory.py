@@ -1,4 +1,4 @@
-"""Joint trajectories: polynomials between points, as smooth as the points state."""
+"""Joint trajectories: polynomials between points."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ Vector = tuple[float, ...]
 
 @dataclass(frozen=True, slots=True)
 class State:
-    """Of some joints at one time: rad or m, and their rates; one number for each joint."""
+    """State of several joints at one time, a number for each joint: rad or m, and derivatives."""
 
     position: Vector
     velocity: Vector
@@ -21,26 +21,25 @@ class State:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Waypoint:
-    """A point of a trajectory. Velocities and accelerations are empty where it states none."""
+    """A point of a trajectory. Velocities and accelerations are empty if not specified."""
 
     time: float
-    """s, since the trajectory's start."""
+    """Time since the start of the trajectory, s."""
     position: Vector
     velocity: Vector = ()
     acceleration: Vector = ()
 
 
 class Trajectory:
-    """Through points, from one to the next.
+    """A trajectory through points.
 
-    A segment is a line where one of its ends has no velocities, a cubic where both have, a
-    quintic where both have accelerations as well. Before its first point a trajectory is at the
-    first, after its last at the last, at rest. Source: joint_trajectory_controller,
-    QuinticSplineSegment.
+    A segment is linear if one of its ends has no velocities, cubic if both have velocities, and
+    quintic if both also have accelerations. Before its first point and after its last point, the
+    trajectory is at rest at that point. Source: joint_trajectory_controller, QuinticSplineSegment.
 
     Args:
-        start_ns: Simulation time of its time zero.
-        points: In the order of their times, each later than the one before; at least one.
+        start_ns: Simulation time of the trajectory's time 0.
+        points: At least one point, with strictly increasing times.
     """
 
     def __init__(self, start_ns: int, points: Sequence[Waypoint]) -> None:
@@ -51,21 +50,21 @@ class Trajectory:
 
     @classmethod
     def hold(cls, start_ns: int, position: Sequence[float]) -> Trajectory:
-        """Stands at a position."""
+        """Returns a trajectory that stays at a position."""
         return cls(start_ns, [Waypoint(time=0.0, position=tuple(position))])
 
     @property
     def end_ns(self) -> int:
-        """Simulation time of its last point."""
+        """Simulation time of the last point."""
         return self.start_ns + round(self._times[-1] * 1e9)
 
     @property
     def last(self) -> Vector:
-        """Its last position."""
+        """Position of the last point."""
         return self._points[-1].position
 
     def at(self, time_ns: int) -> State:
-        """The state at a simulation time."""
+        """Returns the state at a simulation time."""
         time = (time_ns - self.start_ns) / 1e9
         index = bisect_right(self._times, time) - 1
         if index < 0:
@@ -89,23 +88,23 @@ def _rest(position: Vector) -> State:
 
 
 def _segment(a: Waypoint, b: Waypoint) -> list[tuple[float, ...]]:
-    """Coefficients of each joint's polynomial, the constant first."""
+    """Returns the coefficients of each joint's polynomial, the constant first."""
     span = b.time - a.time
-    made: list[tuple[float, ...]] = []
+    coefficients: list[tuple[float, ...]] = []
     for joint, (start, end) in enumerate(zip(a.position, b.position, strict=True)):
         if not a.velocity or not b.velocity:
-            made.append((start, (end - start) / span, 0.0, 0.0, 0.0, 0.0))
+            coefficients.append((start, (end - start) / span, 0.0, 0.0, 0.0, 0.0))
             continue
         va, vb = a.velocity[joint], b.velocity[joint]
         way = end - start
         if not a.acceleration or not b.acceleration:
             c2 = (3 * way / span - 2 * va - vb) / span
             c3 = (va + vb - 2 * way / span) / span**2
-            made.append((start, va, c2, c3, 0.0, 0.0))
+            coefficients.append((start, va, c2, c3, 0.0, 0.0))
             continue
         aa, ab = a.acceleration[joint], b.acceleration[joint]
         c3 = (20 * way - (8 * vb + 12 * va) * span - (3 * aa - ab) * span**2) / (2 * span**3)
         c4 = (-30 * way + (14 * vb + 16 * va) * span + (3 * aa - 2 * ab) * span**2) / (2 * span**4)
         c5 = (12 * way - 6 * (vb + va) * span + (ab - aa) * span**2) / (2 * span**5)
-        made.append((start, va, aa / 2, c3, c4, c5))
-    return made
+        coefficients.append((start, va, aa / 2, c3, c4, c5))
+    return coefficients

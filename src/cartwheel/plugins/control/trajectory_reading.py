@@ -1,4 +1,4 @@
-"""Trajectories as messages: whether they can be followed, and as polynomials."""
+"""Conversion of trajectory messages to polynomials, with checks."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from cartwheel.plugins.control.trajectory import State, Trajectory, Waypoint
 SUCCESSFUL, INVALID_GOAL, INVALID_JOINTS, OLD_HEADER, PATH, GOAL = 0, -1, -2, -3, -4, -5
 """Error codes of FollowJointTrajectory."""
 _STILL = 1e-5
-"""rad/s or m/s that a joint that stops may still have at its last point, in ROS 2."""
+"""Maximum velocity at the last point in ROS 2, rad/s or m/s, if joints must stop there."""
 
 
 class InvalidTrajectoryError(PluginError):
@@ -30,15 +30,15 @@ class InvalidTrajectoryError(PluginError):
 
 
 class TrajectoryReader:
-    """Reads ``trajectory_msgs/JointTrajectory`` for some joints.
+    """Reads ``trajectory_msgs/JointTrajectory`` messages for some joints.
 
     Source: joint_trajectory_controller.
 
     Args:
-        names: Of the joints, as trajectories call them.
-        joints: What moves, in the same order.
-        settings: The controller's: what trajectories may leave out.
-        ros2: Whether the rules are those of ROS 2.
+        names: Names of the joints in the messages.
+        joints: The joints, in the same order.
+        settings: Parameters of the controller, which define what messages can omit.
+        ros2: Apply the rules of ROS 2.
     """
 
     def __init__(
@@ -57,15 +57,15 @@ class TrajectoryReader:
         self._must_stop = ros2 and not may_go_on
 
     def read(self, message: Any, time_ns: int, following: Trajectory) -> Trajectory:
-        """A message as a trajectory that begins where the joints are to be then.
+        """Reads a message as a trajectory that begins at the desired state of its start time.
 
         Args:
             message: The trajectory.
             time_ns: Simulation time.
-            following: What the joints do until it begins.
+            following: The trajectory that the joints follow until then.
 
         Raises:
-            InvalidTrajectoryError: It cannot be followed.
+            InvalidTrajectoryError: The trajectory cannot be followed.
         """
         names = list(message.joint_names)
         order = self._order(names)
@@ -83,21 +83,21 @@ class TrajectoryReader:
             if time < 0 or time <= last:
                 raise InvalidTrajectoryError(
                     INVALID_GOAL,
-                    f"the time of point {number} must be later than the time of the previous point",
+                    f"the time of point {number} must be at least 0 and later than the previous one",
                 )
             last = time
             moved = time - (begin_ns - start_ns) / 1e9
-            made = self._waypoint(point, number, order, begin, moved)
-            if not made.position:
-                made = self._integrated(before, made, number)
-            before = made
+            waypoint = self._waypoint(point, number, order, begin, moved)
+            if not waypoint.position:
+                waypoint = self._integrated(before, waypoint, number)
+            before = waypoint
             if moved > 1e-9:
-                points.append(made)
+                points.append(waypoint)
             elif number == len(message.points) - 1 and stamp_ns == 0:
-                # At once, as fast as the joints can: it ends when they may be there.
-                return Trajectory(time_ns, [replace(made, time=self._shortest(made))])
+                # The joints move as fast as they can. The goal ends when they can have arrived.
+                return Trajectory(time_ns, [replace(waypoint, time=self._shortest(waypoint))])
         if not points:
-            raise InvalidTrajectoryError(OLD_HEADER, "all its points are in the past")
+            raise InvalidTrajectoryError(OLD_HEADER, "all points are in the past")
         if self._must_stop and any(abs(rate) > _STILL for rate in points[-1].velocity):
             raise InvalidTrajectoryError(INVALID_GOAL, "the last point has a nonzero velocity")
         self._unwind(points, begin)
@@ -110,12 +110,12 @@ class TrajectoryReader:
         return Trajectory(begin_ns, [first, *points])
 
     def _shortest(self, point: Waypoint) -> float:
-        """s that the joints need for a way at least."""
+        """Returns the shortest time in s in which the joints can reach a point."""
         ways = zip(point.position, self._joints, strict=True)
         return max(abs(place - joint.position) / joint.velocity_limit for place, joint in ways)
 
     def _order(self, names: list[str]) -> list[int]:
-        """Where each of our joints is in a message; -1 where it is not."""
+        """Returns the index of each of our joints in a message; -1 if missing."""
         unknown = [name for name in names if name not in self._names]
         if unknown:
             raise InvalidTrajectoryError(
@@ -157,7 +157,7 @@ class TrajectoryReader:
         )
 
     def _integrated(self, before: Waypoint, point: Waypoint, number: int) -> Waypoint:
-        """A point without positions: where its velocities lead, by the trapezoidal rule."""
+        """Computes the positions of a point from velocities, by the trapezoidal rule."""
         if not self._integrates or not point.velocity:
             raise InvalidTrajectoryError(INVALID_GOAL, f"point {number} has no positions")
         span = max(point.time - before.time, 0.0)
@@ -171,7 +171,7 @@ class TrajectoryReader:
         )
 
     def _unwind(self, points: list[Waypoint], begin: State) -> None:
-        """Joints without limits go the short way: whole turns are taken off."""
+        """Lets continuous joints take the shorter direction, by subtracting full turns."""
         for joint, hardware in enumerate(self._joints):
             if hardware.type != "continuous":
                 continue

@@ -1,4 +1,4 @@
-"""What drives on wheels share: sizes from the description, commands that expire, odometry."""
+"""Shared parts of wheeled drives: dimensions, commands that expire, and odometry."""
 
 from __future__ import annotations
 
@@ -20,51 +20,51 @@ if TYPE_CHECKING:
     from cartwheel.plugins.base import Plugin
 
 LEFT, UP = (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
-"""What wheels and steerings turn about, in the robot's axes."""
+"""Rotation axes of wheels and of steering joints, in the robot's base frame."""
 _MOST_KEPT = 10_000
-"""Velocities that an average is taken of."""
+"""Maximum number of averaged velocities."""
 _NEVER = -(1 << 62)
 
 
 def joint_place(description: RobotDescription, joint: str) -> tuple[float, float, float]:
-    """Where a joint's child link is in the robot, m, at zero positions."""
-    found = description.joint(joint)
-    assert found is not None
+    """Returns the position of a joint's child link in the robot in m, at zero joint positions."""
+    described = description.joint(joint)
+    assert described is not None
     poses = link_poses(description, {})
     front = poses[description.canonical_link].inverse()
-    return (front @ poses[found.child]).position
+    return (front @ poses[described.child]).position
 
 
 def check_axis(controller: Controller, joint: str, wanted: tuple[float, float, float]) -> None:
-    """Tells of a joint that turns the other way than its drive expects.
+    """Warns about a joint whose axis is opposite to the one that the drive expects.
 
     Args:
         controller: The drive.
-        joint: Of a wheel or a steering.
-        wanted: About what it should turn, in the robot's axes.
+        joint: Joint of a wheel, or a steering joint.
+        wanted: Expected axis, in the robot's base frame.
     """
     description = controller.part.description
-    found = description.joint(joint)
-    assert found is not None
+    described = description.joint(joint)
+    assert described is not None
     poses = link_poses(description, {})
     front = poses[description.canonical_link].inverse()
-    turn = matrix_from_quat((front @ poses[found.child]).orientation)
-    axis = turn @ np.array(found.axis.xyz)
+    turn = matrix_from_quat((front @ poses[described.child]).orientation)
+    axis = turn @ np.array(described.axis.xyz)
     if float(axis @ np.array(wanted)) < -0.5:
         name = "xyz"[max(range(3), key=lambda index: wanted[index])]
         controller.warn(
             robot.WHEEL_AXIS_MISALIGNED,
-            f'the axis of joint "{joint}" points along -{name} of the robot, so it turns in the '
-            "opposite direction",
-            at=found.origin,
+            f'the axis of joint "{joint}" points along the robot\'s -{name} axis, so it turns '
+            "in the opposite direction",
+            at=described.origin,
             values={"joint": joint, "axis": f"-{name}"},
         )
 
 
 def wheel_radius(description: RobotDescription, joint: str) -> float | None:
-    """Of a joint's wheel, m: that of its cylinder or sphere; None where it has neither."""
-    found = description.joint(joint)
-    link = description.link(found.child) if found is not None else None
+    """Returns the radius of a joint's wheel in m: its cylinder's or sphere's, or None."""
+    described = description.joint(joint)
+    link = description.link(described.child) if described is not None else None
     if link is None:
         return None
     shapes = [part.shape for part in link.collisions] + [part.shape for part in link.visuals]
@@ -75,7 +75,7 @@ def wheel_radius(description: RobotDescription, joint: str) -> float | None:
 
 
 def frame_prefix(controller: Controller, settings: Settings) -> str:
-    """What ROS 2's drives put before their frames: ``tf_frame_prefix``, or the namespace."""
+    """Returns the prefix of a ROS 2 drive's frames: ``tf_frame_prefix``, or the namespace."""
     wanted = settings.boolean("tf_frame_prefix_enable", True)
     own = settings.text("tf_frame_prefix", "")
     space = (own or controller.rig.namespace).strip("/")
@@ -83,13 +83,13 @@ def frame_prefix(controller: Controller, settings: Settings) -> str:
 
 
 class TwistCommand:
-    """The last Twist heard, which counts for a limited time.
+    """The last Twist command, which expires.
 
     Args:
-        controller: Whose topic it is.
-        topic: Its name.
-        timeout: s; 0 is endless.
-        stamped: Whether it is a TwistStamped.
+        controller: The controller that subscribes to the topic.
+        topic: Name of the topic.
+        timeout: Time after which a command expires, s; 0: never.
+        stamped: Whether the type is TwistStamped.
     """
 
     def __init__(
@@ -100,21 +100,21 @@ class TwistCommand:
         self._stamped = stamped
         self.stop()
         controller.subscribe(
-            topic, f"geometry_msgs/msg/Twist{'Stamped' if stamped else ''}", self._heard
+            topic, f"geometry_msgs/msg/Twist{'Stamped' if stamped else ''}", self._on_command
         )
 
     def stop(self) -> None:
-        """Forgets it."""
+        """Clears the command."""
         self._values = (0.0, 0.0, 0.0)
         self._time_ns = _NEVER
 
     def at(self, time_ns: int) -> tuple[float, float, float]:
-        """Velocities along x and y in m/s and about z in rad/s; zeros when it is too old."""
+        """Returns x and y velocities in m/s and the yaw rate in rad/s; 0 after the timeout."""
         if self._timeout_ns > 0 and time_ns - self._time_ns > self._timeout_ns:
             return (0.0, 0.0, 0.0)
         return self._values
 
-    def _heard(self, message: Any) -> None:
+    def _on_command(self, message: Any) -> None:
         twist = message.twist if self._stamped else message
         values = (float(twist.linear.x), float(twist.linear.y), float(twist.angular.z))
         if all(math.isfinite(value) for value in values):
@@ -123,13 +123,13 @@ class TwistCommand:
 
 
 class WheelOdometry:
-    """Dead reckoning from wheels, told at a rate; velocities are a mean of the last ones.
+    """Publishes dead reckoning from wheels, with velocities averaged over the last updates.
 
     Args:
-        controller: Whose topics and frames count.
+        controller: The controller that publishes the topic.
         settings: ``publish_rate``, frames, covariances, ``velocity_rolling_window_size``.
-        topic: Of the odometry.
-        transform: Whether the transform is published.
+        topic: Topic of the odometry.
+        transform: Whether to publish the transform.
     """
 
     def __init__(
@@ -167,19 +167,19 @@ class WheelOdometry:
         )
 
     def start(self, time_ns: int) -> None:
-        """From the origin, at rest."""
+        """Restarts at the origin, at rest."""
         self.reckoning.restart()
         self._recent.clear()
         self._rhythm.start(time_ns)
 
     def go(self, forward: float, turn: float, seconds: float, *, sideways: float = 0.0) -> None:
-        """A way in m and a turn in rad, in a time in s."""
+        """Adds a distance in m and a rotation in rad, made in a time in s."""
         self.reckoning.go(forward, turn, seconds, sideways=sideways)
         if seconds > 0:
             self._recent.append((forward / seconds, sideways / seconds, turn / seconds))
 
-    def tell(self, time_ns: int) -> None:
-        """Publishes when it is due and read."""
+    def publish(self, time_ns: int) -> None:
+        """Publishes the odometry if it is due and has subscribers."""
         if not self._rhythm.due(time_ns) or not self._odometry.wanted():
             return
         place, turn, _, _ = self.reckoning.motion()
@@ -190,12 +190,12 @@ class WheelOdometry:
         self._odometry.publish(time_ns, place, turn, (forward, sideways, 0.0), (0.0, 0.0, rate))
 
     def close(self) -> None:
-        """The controller is unloaded."""
+        """Closes the topics when the controller is unloaded."""
         self._odometry.close()
 
 
 def _covariance(settings: Settings, name: str) -> Array:
-    """Shape (36,)."""
+    """Returns a covariance, shape (36,)."""
     values = settings.numbers(name, [0.0] * 6)
     if len(values) == 36:
         return np.array(values)
