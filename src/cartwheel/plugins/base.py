@@ -64,7 +64,7 @@ class Plugin(Generic[C]):
     prefixes_by_namespace: ClassVar[bool] = False
     """Whether frame IDs are prefixed with the namespace if there is no ``tf_prefix``."""
     serves: ClassVar[tuple[str, ...]] = ()
-    """Types of sensors that the plugin serves without a ``<plugin>``, like new Gazebo's systems.
+    """Types of sensors that the plugin supports without a ``<plugin>``, like gz-sim's systems.
 
     The parameters of such a plugin are read from the ``<sensor>`` itself.
     """

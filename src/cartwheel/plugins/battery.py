@@ -18,7 +18,7 @@ from cartwheel.plugins.parameters import tag
 _RATE = 50.0
 """Rate of the state messages, Hz."""
 _CHARGED = 0.9
-"""Share of the capacity at which charging stops."""
+"""Fraction of the capacity at which charging stops."""
 _HOUR = 3600.0
 
 

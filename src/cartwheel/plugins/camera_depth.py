@@ -27,7 +27,7 @@ POINT = np.dtype(
         "itemsize": 32,
     }
 )
-"""Layout of ``xyz`` and ``rgb`` by sensor_msgs' PointCloud2Modifier."""
+"""Layout of ``xyz`` and ``rgb`` as in sensor_msgs' PointCloud2Modifier."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -40,10 +40,10 @@ class DepthOptions:
     """Topics; empty ones are not published."""
     nearest: float = 0.0
     furthest: float = np.inf
-    """m; depths up to `nearest` and from `furthest` on are published as `beyond`."""
+    """m; depths at or below `nearest` and at or above `furthest` are published as `beyond`."""
     points_nearest: float | None = None
     points_furthest: float | None = None
-    """m; limits of the points, if they differ."""
+    """m; limits of the points, if different."""
     beyond: Literal["nan", "inf"] = "nan"
     """Value outside the limits: nan, or -inf if too near and inf if too far (REP 118)."""
     millimetres: bool = False

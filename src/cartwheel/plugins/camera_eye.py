@@ -32,7 +32,7 @@ _RATE = ReconfigureParameter(
     level=3,
     description="Frame rate, Hz",
 )
-"""From GazeboRosCamera.cfg of gazebo_plugins."""
+"""From GazeboRosCamera.cfg in gazebo_plugins."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -40,10 +40,10 @@ class EyeTopics:
     """Topics and services of a lens."""
 
     image: str
-    """Empty for no images."""
+    """Empty if no images are published."""
     info: str
     base: str
-    """Namespace of the services; empty without those that need one."""
+    """Namespace of the services; empty if no service needs one."""
     set_info: bool = True
     """Whether ``set_camera_info`` is offered."""
     adjustable: bool = True

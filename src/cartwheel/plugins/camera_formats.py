@@ -97,5 +97,5 @@ FORMATS = {
     )
     for pattern in ("RGGB", "BGGR", "GBRG", "GRBG")
 }
-"""By SDF's format in capitals. Source: SDF, ``<camera><image><format>``; gazebo_ros_camera_utils.
+"""Formats by SDF name in capitals. Source: SDF, ``<camera><image><format>``; gazebo_ros_camera_utils.
 """

@@ -24,7 +24,7 @@ _ZONES = ("bump_right", "bump_front_right", "bump_front_center", "bump_front_lef
 _BRIGHTEST = 3500.0
 """Intensity that an infrared sensor measures at distance 0."""
 _DROPPED, _LIFTED = 0.95, 0.75
-"""Shares of the threshold at which a wheel counts as dropped, and as lifted again."""
+"""Fractions of the threshold above which a wheel has dropped, and below which it is back."""
 
 
 def out_topic(plugin: Plugin[Any]) -> str:

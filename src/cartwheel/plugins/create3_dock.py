@@ -14,13 +14,13 @@ from cartwheel.plugins.parameters import tag
 
 OPCODE = "irobot_create_msgs/msg/IrOpcode"
 _CHECKS = 20.0
-"""Rate of checks, Hz. The dock counts as visible if a code arrived within one period."""
+"""Rate of checks, Hz. The dock is visible if a code arrived within one period."""
 _NEAR, _AHEAD = 0.075, math.pi / 30
 """Maximum distance in m and angles in rad between robot and dock when docked."""
 _HALO = 0.6096
 """Range of the dock's halo, which surrounds it, m."""
 _BUOYS, _OPENING, _SHARE = 1.0, math.radians(50), 0.6
-"""Range in m and angle in rad of the dock's two buoys; each covers this share, on its side."""
+"""Range in m and angle in rad of the dock's two buoys; fraction of it that each covers."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -18,7 +18,7 @@ _RATE = 100.0
 _OPEN = 1.0
 """Travel of the opening door, m, as in Gazebo; less if the joint's limit is lower."""
 _LIFT_EFFORT = 1e5
-"""N; used if the joint states no effort limit."""
+"""N; used if the joint has no effort limit."""
 _DOOR_EFFORT = 100.0
 _LIFT_SPEED, _LIFT_ACCELERATION = 1.5, 1.0
 """m/s and m/s²; low enough for passengers to remain standing."""

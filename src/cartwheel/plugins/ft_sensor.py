@@ -165,7 +165,7 @@ class JointLoad:
     def __init__(self, part: Part, sensor: Sensor) -> None:
         element = sensor.element.find("force_torque") or sensor.element
         self.axes = _word(element, "frame", ("child", "parent", "sensor"))
-        """Axes of the measurement: child, parent or sensor."""
+        """Frame of the measurement: child, parent or sensor."""
         self._sign = 1.0
         if _word(element, "measure_direction", ("child_to_parent", "parent_to_child")) == (
             "parent_to_child"

@@ -22,7 +22,7 @@ _POINT = np.dtype(
         "itemsize": 32,
     }
 )
-"""Layout of gz-sensors."""
+"""Layout as in gz-sensors."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -36,7 +36,7 @@ SYSTEMS = {
     "gz-sim-air-speed-system": ("air_speed",),
     "gz-sim-forcetorque-system": ("force_torque",),
 }
-"""Sensor types that each system enables. Naming a system has no other effect: Cartwheel's plugins
+"""Sensor types that each system enables. A system has no other effect: Cartwheel's plugins
 serve the types themselves.
 """
 

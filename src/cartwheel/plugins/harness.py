@@ -52,7 +52,7 @@ class _Rope:
     link: LinkHandle
     joint: AttachmentHandle
     own_axis: Vec3
-    """In the link's frame."""
+    """In the link frame."""
     limits: tuple[float, float]
     """m."""
     attached: bool = False

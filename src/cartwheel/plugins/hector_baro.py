@@ -11,7 +11,7 @@ from cartwheel.plugins.noise import DriftingError
 from cartwheel.plugins.parameters import tag
 
 _SCALE_HEIGHT = 44330.0
-"""m; the pressure of the formula is 0 at this altitude."""
+"""m; the formula gives a pressure of 0 at this altitude."""
 _EXPONENT = 5.263157
 
 

@@ -65,7 +65,7 @@ class ImuBase(Plugin[Any]):
     """Base class of the IMU plugins, which publish the measurements of an IMU on a link."""
 
     with_gravity: ClassVar[bool] = True
-    """Whether the acceleration includes gravity, as that of an accelerometer does."""
+    """Whether the acceleration includes gravity, as measured by an accelerometer."""
 
     def start(
         self,

@@ -28,7 +28,7 @@ _NORTH = {
     "NWU": (0.0, 0.0, math.pi / 2),
     "NED": (math.pi, 0.0, math.pi / 2),
 }
-"""Roll, pitch and yaw of SDF's localizations, relative to east, north, up."""
+"""Roll, pitch and yaw for SDF's localizations, relative to east, north, up."""
 
 
 class InertialUnit:

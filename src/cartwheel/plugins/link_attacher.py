@@ -12,7 +12,7 @@ from cartwheel.plugins.base import Plugin
 from cartwheel.simulation.attaching import AttachmentHandle
 
 Place = tuple[str, str]
-"""Model and link."""
+"""Names of a model and a link."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

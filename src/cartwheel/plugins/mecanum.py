@@ -18,7 +18,7 @@ from cartwheel.plugins.parameters import tag
 from cartwheel.plugins.rollers import has_rollers
 
 CONTROL_RATE = 100.0
-"""Hz at which limits are applied and the rotation of the wheels is integrated."""
+"""Rate in Hz at which limits are applied and the wheel rotation is integrated."""
 _CORNERS = ("front_left", "front_right", "back_left", "back_right")
 _SIDEWAYS = (-1.0, 1.0, 1.0, -1.0)
 _LEFT_RIGHT = (-1.0, 1.0, -1.0, 1.0)

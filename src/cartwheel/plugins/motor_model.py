@@ -19,7 +19,7 @@ ACTUATORS = "mav_msgs/msg/Actuators"
 GZ_ACTUATORS = "actuator_msgs/msg/Actuators"
 _FLOAT = "std_msgs/msg/Float32"
 SLOWDOWN = 10.0
-"""Default factor by which a joint turns slower than the propeller that it represents."""
+"""Default ratio of the speed of the propeller to the speed of its joint."""
 _NO_MOMENT = (0.0, 0.0, 0.0)
 
 

@@ -82,9 +82,9 @@ class P3D(Plugin[P3DParameters]):
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_p3d.so",)
     parameters: ClassVar[type] = P3DParameters
     in_link: ClassVar[bool] = False
-    """Whether the twist is in the axes of the link instead of the frame."""
+    """Whether the twist is in the link frame instead of the reference frame."""
     in_world: ClassVar[bool] = False
-    """Whether the frame is only a name: the pose is always relative to the world."""
+    """Whether the frame only sets the frame ID, because the pose is relative to the world."""
 
     def configure(self) -> None:
         config, part = self.config, self.part

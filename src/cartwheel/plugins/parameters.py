@@ -18,7 +18,7 @@ C = TypeVar("C")
 _COMMON = {"ros", "robotNamespace", "alwaysOn", "always_on", "robotParam", "rosDebugLevel"}
 """Tags that the base class of all plugins reads, or that have no effect and need no report."""
 _SHOWN = 80
-"""Characters of a value that an error message shows."""
+"""Maximum length of a value in an error message."""
 SMALLEST = 1e-9
 """Smallest value of parameters that must be positive, in SI units."""
 _MOST_COUNT = 2**31 - 1

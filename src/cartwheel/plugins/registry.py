@@ -30,7 +30,7 @@ from cartwheel.simulation.resident import Behaviour
 _Faults = tuple[type[CartwheelError], ...]
 _ANY: _Faults = (CartwheelError,)
 _HARMLESS: _Faults = (StaticModelError,)
-"""Errors after which any plugin is left out, with a report."""
+"""Errors after which a plugin is skipped, with a report."""
 
 
 def attach(part: Part, graph: Graph, *, lenient: bool = False) -> list[Behaviour]:

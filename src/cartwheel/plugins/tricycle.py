@@ -157,7 +157,7 @@ class TricycleParameters:
 
 
 _ROS2 = {"ros"} | {name for name in tags_of(TricycleParameters) if name.islower()}
-"""Tags of ROS 2's plugin: they have no capital letters, whereas ROS 1's have."""
+"""Tags of ROS 2's plugin: unlike those of ROS 1, they contain no capital letters."""
 
 
 class TricycleDrive(SteeredDrive):

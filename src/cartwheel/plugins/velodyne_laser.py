@@ -26,7 +26,7 @@ _POINT = np.dtype(
         ("time", "<f4"),
     ]
 )
-"""Layout of the points of the velodyne driver: 22 bytes."""
+"""Point layout of the velodyne driver: 22 bytes."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

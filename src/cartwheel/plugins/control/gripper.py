@@ -170,7 +170,7 @@ class ParallelGripperActionController(GripperActionController):
         settings.ignore("state_interfaces", "max_velocity", "max_velocity_interface")
         super().configure(settings)
         if not settings.text("max_effort_interface", ""):
-            # Without it the controller's own bound is nobody's.
+            # Without this interface, the parameter max_effort has no effect.
             self._effort = self._limit = 0.0
 
     def _limits(self, command: Any) -> tuple[float, float, float]:
