@@ -97,5 +97,5 @@ FORMATS = {
     )
     for pattern in ("RGGB", "BGGR", "GBRG", "GRBG")
 }
-"""Formats by SDF name in capitals. Source: SDF, ``<camera><image><format>``; gazebo_ros_camera_utils.
+"""By upper-case SDF format. Source: SDF, ``<camera><image><format>``; gazebo_ros_camera_utils.
 """

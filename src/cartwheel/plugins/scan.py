@@ -16,7 +16,7 @@ from cartwheel.plugins.parameters import number
 from cartwheel.simulation import Part
 
 _MOST_RAYS = 1_000_000
-"""Maximum number of rays in a scan. The densest real sensors have about 300,000; a ray needs 200 bytes."""
+"""Maximum number of rays. The densest real sensors have about 300,000; a ray needs 200 bytes."""
 _GPU_TYPES = {"gpu_ray", "gpu_lidar"}
 
 

@@ -83,7 +83,7 @@ class TrajectoryReader:
             if time < 0 or time <= last:
                 raise InvalidTrajectoryError(
                     INVALID_GOAL,
-                    f"the time of point {number} must be at least 0 and later than the previous one",
+                    f"the time of point {number} must be at least 0 and after the previous one",
                 )
             last = time
             moved = time - (begin_ns - start_ns) / 1e9
