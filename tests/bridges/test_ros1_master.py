@@ -106,6 +106,35 @@ def test_a_restart_between_two_looks_is_noticed_too(bridge: Bridge, master: Mast
     wait_for(lambda: run.reported(ROS_MASTER_BACK), "the report")
 
 
+def test_a_master_that_is_frozen_for_a_while_holds_up_nothing(
+    bridge: Bridge, master: Master
+) -> None:
+    run = bridge()
+    reader = Subscriber(master, "/odom")
+    call = run.simulation.call
+    for number in (1, 2):
+        wait_for(lambda: "/imu/service" in master.state()[2], "the registration")
+        pid = master.api.getPid("/test")[2]
+        os.kill(pid, signal.SIGSTOP)
+        try:
+            short = call(lambda: run.graph.advertise("/short", "std_msgs/msg/String"))
+            time_ns = run.simulation.time_ns
+            wait_for(lambda number=number: run.reported(ROS_MASTER_LOST, losses=number), "the loss")  # type: ignore[misc]
+            call(short.result(PATIENCE).close).result(PATIENCE)
+            call(lambda: run.graph.advertise("/long", "std_msgs/msg/String")).result(PATIENCE)
+            for _ in range(20):
+                reader.read()
+            assert run.simulation.time_ns > time_ns
+        finally:
+            os.kill(pid, signal.SIGCONT)
+        wait_for(lambda number=number: run.reported(ROS_MASTER_BACK, losses=number), "its return")  # type: ignore[misc]
+        wait_for(lambda: "/long" in master.state()[0], "what came meanwhile")
+        # The master carries out what was asked of it while it was frozen.
+        wait_for(lambda: "/short" not in master.state()[0], "the end of what went meanwhile")
+    reader.read()
+    reader.close()
+
+
 def test_the_users_wall_time_is_left_alone(bridge: Bridge, master: Master) -> None:
     master.api.setParam("/test", "/use_sim_time", False)
     run = bridge(robot=False)

@@ -29,7 +29,7 @@ ROS_MASTER_NOT_STARTED = Code(
 ROS_MASTER_LOST = Code(
     "CW806", "ros-master-lost", "warning", "a ROS master that stopped responding"
 )
-ROS_MASTER_BACK = Code("CW807", "ros-master-back", "info", "a ROS master that responds again")
+ROS_MASTER_BACK = Code("CW807", "ros-master-back", "warning", "a ROS master that responds again")
 ROS_NODE_ENDED = Code(
     "CW808",
     "ros-node-ended",

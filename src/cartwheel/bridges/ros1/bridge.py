@@ -119,6 +119,7 @@ class Ros1Bridge:
             on_fault=self._fault,
         )
         self._lost = False
+        self._losses = 0
 
     @property
     def name(self) -> str:
@@ -215,12 +216,13 @@ class Ros1Bridge:
     def _lost_master(self, reason: str) -> None:
         if not self._lost:
             self._lost = True
+            self._losses += 1
             self._warn(
                 ROS_MASTER_LOST.diagnostic(
                     f"the ROS master no longer responds: {reason}",
                     hint="The simulation continues, and registers again when a master responds at "
                     "this address.",
-                    values={"uri": self.master_uri, "reason": reason},
+                    values={"uri": self.master_uri, "reason": reason, "losses": self._losses},
                 )
             )
         if self._core is not None and self._core.dead and not self._closed:
@@ -233,7 +235,8 @@ class Ros1Bridge:
         self._lost = False
         self._warn(
             ROS_MASTER_BACK.diagnostic(
-                "a ROS master responds again; topics and services have been registered"
+                "a ROS master responds again; topics and services have been registered",
+                values={"uri": self.master_uri, "losses": self._losses},
             )
         )
 

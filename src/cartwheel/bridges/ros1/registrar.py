@@ -74,6 +74,8 @@ class Registrar:
         self._stopped = False
         self._lost = False
         self._registered: dict[Entry, None] = {}
+        self._doubtful: dict[Entry, None] = {}
+        """Registrations without an answer: a master that was frozen may still carry them out."""
         self._wanted: list[Entry] = []
         self._thread = threading.Thread(target=self._run, name="ros1 registrar", daemon=True)
 
@@ -92,7 +94,7 @@ class Registrar:
         self._event.set()
         free = self._exclusive.acquire(timeout=_FAREWELL)
         try:
-            entries = list(self._registered)
+            entries = list(self._registered | self._doubtful)
             if entries and not self._lost:
                 calls = [self._unregister(entry) for entry in entries]
                 call_all(Peer(self._master_uri, timeout=_FAREWELL), calls)
@@ -155,7 +157,7 @@ class Registrar:
         if self._stopped:
             return
         wanted = dict.fromkeys(self._wanted)
-        gone = [entry for entry in self._registered if entry not in wanted]
+        gone = [entry for entry in self._registered | self._doubtful if entry not in wanted]
         new = [entry for entry in wanted if entry not in self._registered]
         values = self._parameters.take()
         if not (gone or new or values):
@@ -165,10 +167,12 @@ class Registrar:
         ]
         calls += [self._unregister(entry) for entry in gone]
         calls += [self._register(entry) for entry in new]
+        self._doubtful.update(dict.fromkeys(new))
         answers = call_all(self._peer, calls)
+        self._doubtful.clear()
         self._parameters.sent(values)
         for entry in gone:
-            del self._registered[entry]
+            self._registered.pop(entry, None)
         for entry, answer in zip(new, answers[len(calls) - len(new) :], strict=True):
             self._registered[entry] = None
             if entry.kind == "Subscriber" and isinstance(answer, list):
