@@ -137,7 +137,9 @@ class BridgeProcess:
                 code=BRIDGE_SLOW,
                 values={"bridge": self.title, "seconds": timeout},
             ) from None
-        except ControlError:
+        except ControlError as error:
+            if error.code is not BRIDGE_ENDED:
+                raise  # What the bridge says itself, such as a port that is in use.
             raise ControlError(
                 self._death, code=BRIDGE_ENDED, values={"bridge": self.title}
             ) from None
