@@ -344,7 +344,12 @@ def test_a_port_that_something_else_has_is_told(
                 bridge.close()
             return False
 
-        time.sleep(0.5)
+        def listens() -> bool:
+            with contextlib.suppress(OSError), socket.create_connection(("127.0.0.1", port)):
+                return True
+            return False
+
+        wait_for(listens, "the other program")
         assert refused()
     finally:
         server.kill()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import itertools
+import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -224,6 +225,29 @@ def test_a_goal_is_followed_and_told_of(bridged: Ros2Bridged, peer: Peer) -> Non
         ]
 
     wait_for(lambda: {EXECUTING, SUCCEEDED} <= set(states()), "both states")
+
+
+def test_a_flood_of_changes_is_told_at_a_bounded_rate(bridged: Ros2Bridged, peer: Peer) -> None:
+    """A message has the states of all goals, for each of which the simulation's thread is asked."""
+    identity, _ = send(peer, point(1, 0.0, 0.0))
+    result(peer, identity)
+    offered = bridged.bridge._actions[ARM]
+    sent: list[bytes] = []
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(offered._status, "send", sent.append)
+
+        def flood() -> float:
+            begin = time.monotonic()
+            goal = offered.action.goals[-1]
+            for _ in range(200):
+                offered.goal_changed(goal)
+            return time.monotonic() - begin
+
+        seconds = bridged.simulation.call(flood).result(60)
+        # The last of them is published too.
+        wait_for(lambda: not offered._status_due, "the states")
+        bridged.bridge._loop.call(lambda: None).result(60)
+    assert 1 <= len(sent) <= seconds / 0.05 + 2
 
 
 def test_names_and_points_that_make_no_sense_are_rejected(peer: Peer) -> None:

@@ -114,6 +114,13 @@ def test_a_flood_of_goals_is_bounded(worker):
         last = goal
     assert len(worker.action.goals) <= 100
     assert max(told) <= 100
+    # Messages with the states of all goals do not grow in number with the goals.
+    assert len(told) <= 10
+    worker.now = NANO
+    worker.submit("later").cancel(worker.result())
+    assert len(told) == 12
+    topics.tell()
+    assert len(told) == 13
     # The latest are still known, and one under way is not forgotten.
     assert worker.action.goal("quick 250") is not None
     assert worker.action.goal("quick 100") is None

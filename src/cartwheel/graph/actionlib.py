@@ -11,6 +11,10 @@ from cartwheel.messages.ros2_types import ros2_name
 
 STATUS_RATE = 5.0
 """Hz at which states are told at least."""
+_AT_ONCE, _AT_ONCE_RATE = 10, 20
+"""Changes of goals whose states are published at once, and further ones per s of simulation time.
+Later changes are published with the next regular states. A message has the states of up to 100
+goals, and takes several times as long as a goal."""
 _TOLD_NS = 5_000_000_000
 """How long a goal that is done is told of."""
 _STATES = {
@@ -42,6 +46,8 @@ class ActionTopics:
         self._kind = f"{package}/msg/{name}"
         self._goal = f"{action.type}_Goal"
         self._open: list[Publisher | Subscription] = []
+        self._credit, self._credit_ns = float(_AT_ONCE), 0
+        """Changes that may be published at once, as of a time."""
 
         def advertise(topic: str, kind: str, rate: float | None = None) -> Publisher:
             made = graph.advertise(f"{action.name}/{topic}", kind, node=action.node, rate=rate)
@@ -94,7 +100,19 @@ class ActionTopics:
         """See `ActionListener`."""
         if goal.done and self._result.wanted:
             self._publish(self._result, "Result", goal, goal.result)
-        self.tell()
+        if self._is_at_once():
+            self.tell()
+
+    def _is_at_once(self) -> bool:
+        now = self._action.time_ns()
+        # Time may begin anew.
+        passed = max(0, now - self._credit_ns) / 1e9
+        self._credit = min(_AT_ONCE, self._credit + passed * _AT_ONCE_RATE)
+        self._credit_ns = now
+        if self._credit < 1.0:
+            return False
+        self._credit -= 1.0
+        return True
 
     def goal_goes_on(self, goal: Goal, feedback: Any) -> None:
         """See `ActionListener`."""

@@ -5,7 +5,9 @@ Source: rcl_action; the design article on actions.
 
 from __future__ import annotations
 
+import functools
 import hashlib
+import time
 from collections.abc import Callable
 from typing import Any
 
@@ -40,6 +42,9 @@ _STATES = {
 }
 _NONE, _REFUSED, _UNKNOWN_GOAL, _TERMINATED = range(4)
 """What an attempt to cancel has come to."""
+_STATUS_PAUSE = 0.05
+"""s between two messages with the states of all goals. Each takes the simulation's thread several
+times as long as a goal."""
 _WAITING = 100
 """Requests for results that may wait at a time."""
 
@@ -78,6 +83,9 @@ class OfferedAction:
         self._waiting: dict[str, list[Reply]] = {}
         """Who asks for the results of goals under way; on the owner's thread."""
         self._closed = False
+        self._status_due = False
+        self._status_at = 0.0
+        """When the states were published last; on the owner's thread, as `_status_due`."""
         base, kind = f"{action.name}/_action", action.type
         self._types = {
             "send_goal": f"{kind}_SendGoal",
@@ -153,7 +161,7 @@ class OfferedAction:
         """See `ActionListener`."""
         if self._submitting:
             return
-        self._tell_status()
+        self._have_status_told()
         if goal.done:
             for reply in self._waiting.pop(goal.id, ()):
                 self._send_result(goal, reply)
@@ -239,7 +247,21 @@ class OfferedAction:
         else:
             self._respond(reply, "get_result", status=_STATES[goal.state], result=goal.result)
 
+    def _have_status_told(self) -> None:
+        """Publishes the states, at once or with those of the next changes."""
+        if self._status_due:
+            return
+        wait = self._status_at + _STATUS_PAUSE - time.monotonic()
+        if wait <= 0:
+            self._tell_status()
+            return
+        self._status_due = True
+        later = functools.partial(self._graph.post, self._tell_status)
+        self._loop.post(lambda: self._loop.after(wait, later))
+
     def _tell_status(self) -> None:
+        self._status_due = False
+        self._status_at = time.monotonic()
         GoalStatus = message_class("action_msgs/msg/GoalStatus")
         self._publish(
             self._status.send,
