@@ -163,7 +163,7 @@ def _same_code(number: str, name: str, severity: Severity, summary: str) -> Code
     return known if known == code else code
 
 
-UNCLASSIFIED = Code("CW000", "unclassified", "error", "a diagnostic without a code of its own")
+UNCLASSIFIED = Code("CW000", "unclassified", "error", "a diagnostic without a specific code")
 """Of diagnostics that have no code yet."""
 
 

@@ -115,7 +115,7 @@ def test_a_run_without_ros_is_for_those_without(masters: list[Master], client: C
         wait_for(lambda: entry_of(process), "the simulation")
         waiting = client(masters[0].environment)
         assert waiting.stderr is not None
-        assert "waiting for a simulation of the ROS master" in waiting.stderr.readline()
+        assert "waiting for a simulation that uses the ROS master" in waiting.stderr.readline()
         with simulation(masters[1], "empty.world") as other:
             joined(other)
             # Of the two it is the only one without ROS.

@@ -58,7 +58,7 @@ def test_a_foreign_page_cannot_upload_a_file(simulation: Running) -> None:
             upload(browser)
     simulation.process.terminate()
     out, _ = simulation.process.communicate(timeout=60)
-    assert "the viewer refused a web page of the origin http://evil.example" in out
+    assert "the viewer rejected a web page from the origin http://evil.example" in out
     assert "--allow-origin http://evil.example" in out
 
 

@@ -44,7 +44,7 @@ CONTROL_REQUEST_INVALID = Code(
     "a request on the control socket with invalid parameters",
 )
 REQUEST_REFUSED = Code(
-    "CW020", "request-refused", "error", "a request that the simulation refused without a code"
+    "CW020", "request-refused", "error", "a request that the simulation rejected without a code"
 )
 CONTROL_LIMIT = Code(
     "CW021", "control-limit", "error", "more clients or messages than the control socket allows"
@@ -81,9 +81,7 @@ OUTPUT_SLOW = Code(
 RECORDING_UNFINISHED = Code(
     "CW031", "recording-unfinished", "warning", "a recording whose writer was interrupted"
 )
-SYSTEM_LIMIT = Code(
-    "CW032", "system-limit", "error", "a resource that the operating system refused"
-)
+SYSTEM_LIMIT = Code("CW032", "system-limit", "error", "a resource that the operating system denied")
 INTERNAL_FAULT = Code("CW033", "internal-fault", "error", "an unexpected error in Cartwheel")
 FILE_TOO_DEEP = Code(
     "CW034", "file-too-deep", "error", "a file that is nested too deeply to be read"

@@ -85,7 +85,7 @@ MASS_IN_GRAMS = Code(
 )
 MASS_IMPLAUSIBLE = Code("CW225", "mass-implausible", "warning", "a link weighs more than 100 t")
 DRIVE_JOINT_UNKNOWN = Code(
-    "CW226", "drive-joint-unknown", "error", "a drive plugin names a joint that does not exist"
+    "CW226", "drive-joint-unknown", "error", "a drive plugin refers to a joint that does not exist"
 )
 DRIVE_JOINT_NOT_CONTINUOUS = Code(
     "CW227",
@@ -118,7 +118,7 @@ WHEEL_DIAMETER_MISMATCH = Code(
     "CW232",
     "wheel-diameter-mismatch",
     "warning",
-    "a specified wheel diameter or radius differs from that of the wheels",
+    "a specified wheel diameter or radius differs from the actual size of the wheels",
 )
 WHEEL_FRICTIONLESS = Code(
     "CW233", "wheel-frictionless", "warning", "a driven wheel has no friction"

@@ -50,12 +50,12 @@ LOOP_WITHOUT_ROOT = Code(
     "CW617",
     "loop-without-root",
     "error",
-    "a link is part of a loop of joints that is connected to nothing else",
+    "a link is part of an isolated loop of joints",
 )
 PLANE_NOT_STATIC = Code(
     "CW618", "plane-not-static", "error", "an infinite plane is part of a model that moves"
 )
-MODEL_NOT_BUILT = Code("CW619", "model-not-built", "error", "the physics engine refuses a model")
+MODEL_NOT_BUILT = Code("CW619", "model-not-built", "error", "the physics engine rejects a model")
 PHYSICS_SETTING_IGNORED = Code(
     "CW620", "physics-setting-ignored", "info", "a physical property that is not simulated"
 )

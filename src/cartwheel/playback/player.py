@@ -56,7 +56,7 @@ class Player(Run):
         super().__init__()
         span = span_of(recording)
         if span is None:
-            raise RecordingError("the recording holds no messages", code=RECORDING_EMPTY)
+            raise RecordingError("the recording contains no messages", code=RECORDING_EMPTY)
         self.start_ns, self.end_ns = span
         self.time_ns = self.start_ns
         self.step_ns = _STEP_NS

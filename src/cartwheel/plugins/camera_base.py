@@ -143,7 +143,7 @@ class CameraBase(Plugin[C]):
         self.warn(
             devices.CAMERA_VIEW_NARROWED,
             f"the field of view of {lens.horizontal_fov:g} rad is rendered as {_WIDEST_VIEW:g} "
-            "rad, the maximum of a pinhole camera",
+            "rad, the maximum for a pinhole camera",
             values={"stated": lens.horizontal_fov, "used": _WIDEST_VIEW},
         )
         return dataclasses.replace(lens, horizontal_fov=_WIDEST_VIEW)

@@ -205,8 +205,8 @@ class DiffDrive(WheelDrive):
         lefts, rights = config.left_joint, config.right_joint
         if not len(lefts) == len(rights) == config.pairs:
             raise PluginError(
-                f"{config.pairs} pairs of wheels need as many left and right joints "
-                f"(got {len(lefts)} left, {len(rights)} right)",
+                f"{config.pairs} pairs of wheels require {config.pairs} left joints and "
+                f"{config.pairs} right joints (got {len(lefts)} left, {len(rights)} right)",
                 code=devices.WHEELS_UNPAIRED,
                 origin=self.tag.origin,
                 hint="<num_wheel_pairs> is the number of pairs.",

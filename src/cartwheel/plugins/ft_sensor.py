@@ -126,7 +126,7 @@ class FtSensor(_JointWrench):
             return
         if not name:
             raise PluginError(
-                "a force-torque sensor needs <jointName>",
+                "a force-torque sensor requires <jointName>",
                 code=devices.PLUGIN_PARAMETER_MISSING,
                 origin=self.tag.origin,
                 values={"parameter": "jointName"},

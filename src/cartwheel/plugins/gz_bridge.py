@@ -183,7 +183,7 @@ def _bridged(entry: Any, origin: Origin) -> Bridged:
     ros, gz = ros or gz, gz or ros
     kind = entry.get("ros_type_name")
     if not isinstance(gz, str) or not isinstance(ros, str) or not isinstance(kind, str):
-        raise _invalid("an entry needs ros_topic_name, gz_topic_name and ros_type_name", origin)
+        raise _invalid("an entry requires ros_topic_name, gz_topic_name and ros_type_name", origin)
     try:
         name = resolve_name(ros)
     except GraphError as error:

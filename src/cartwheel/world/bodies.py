@@ -143,8 +143,8 @@ class BodyBuilder:
         lost = [link for link in description.links if link.name not in bodies]
         if lost:
             raise WorldError(
-                f'link "{lost[0].name}" is part of a loop of joints that is connected to nothing '
-                "else",
+                f'link "{lost[0].name}" is part of a loop of joints that is not connected to any '
+                "other link",
                 code=world_codes.LOOP_WITHOUT_ROOT,
                 origin=lost[0].origin,
                 values={"link": lost[0].name},

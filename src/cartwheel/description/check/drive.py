@@ -91,7 +91,7 @@ def wheels_swapped(subject: Subject) -> Iterator[Diagnostic]:
             instead=nodes.written(element.tag, {}, right.name),
             place="element",
             mark=left.name,
-            hint="Swap the two names, or the robot turns the wrong way.",
+            hint="Swap the two names. Otherwise, the robot turns in the wrong direction.",
         )
 
 

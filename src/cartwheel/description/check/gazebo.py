@@ -205,7 +205,7 @@ def _all_spellings(robot: Robot, link: str) -> str:
         return f'The link "{link}" has no collision.'
     right = _gazebo_names(robot).get(link, [])
     others = [name for c in found for name in (c.name, *c.aliases) if name not in right][:4]
-    text = f'In Gazebo 11 the collision of "{link}" is named {", ".join(right[:4])}.'
+    text = f'In Gazebo 11, the collision of "{link}" is named {", ".join(right[:4])}.'
     return text + (f" Cartwheel also accepts {', '.join(others)}." if others else "")
 
 

@@ -38,7 +38,7 @@ _LIGHTEST_IN_KG = 0.1
 _ROUNDED = 1e-9
 """Relative: what is left of a 0 by rounding."""
 _NEVERTHELESS = (
-    "Gazebo Classic simulates this inertia anyway, and gz-sim rejects it. Cartwheel raises the "
+    "Gazebo Classic simulates this inertia anyway, but gz-sim rejects it. Cartwheel raises the "
     "smaller moments."
 )
 _WITHOUT = "Gazebo Classic divides by zero. Cartwheel uses the inertia of the geometry."
@@ -144,7 +144,7 @@ def inertia_missing(subject: Subject) -> Iterator[Diagnostic]:
             what, consequence = f'the root link "{root}"', "does not load the robot"
             if holder is not None:
                 what = f'the moving link "{root}"'
-                consequence = "drops it and everything attached to it"
+                consequence = "drops the link and everything attached to it"
             yield robot_codes.INERTIA_MISSING.diagnostic(
                 message=f"{what} has no <inertial>, so Gazebo {consequence}",
                 values={"link": root},

@@ -99,7 +99,7 @@ def effort_zero(subject: Subject) -> Iterator[Diagnostic]:
             usual = _holding(movers[name], name, slides=slides)
             yield robot_codes.EFFORT_ZERO.diagnostic(
                 message=f'the effort limit of the driven joint "{name}" is 0, so Gazebo cannot '
-                "move it",
+                "move the joint",
                 values={"joint": name, "attribute": "effort"},
                 origin=limit.origin,
                 instead=f'effort="{nodes.short(usual)}"',
@@ -110,8 +110,8 @@ def effort_zero(subject: Subject) -> Iterator[Diagnostic]:
             )
         if nodes.number(limit.attributes.get("velocity")) == 0.0:
             yield robot_codes.EFFORT_ZERO.diagnostic(
-                message=f'the velocity limit of the driven joint "{name}" is 0, so Gazebo '
-                "cannot move it",
+                message=f'the velocity limit of the driven joint "{name}" is 0, so Gazebo cannot '
+                "move the joint",
                 values={"joint": name, "attribute": "velocity"},
                 origin=limit.origin,
                 instead=f'velocity="{"1" if slides else "10"}"',

@@ -206,7 +206,7 @@ def _remark(robot: Robot, solid: Solid, factor: float, usual: float) -> Diagnost
         place = "element"
     return robot_codes.SHAPE_OUT_OF_SCALE.diagnostic(
         message=f'a {what} of link "{solid.link}" is {solid.extent:.4g} m long, while the other '
-        f"shapes are about {usual:.3g} m",
+        f"shapes are about {usual:.3g} m long",
         values={"link": solid.link, "tag": what, "size": solid.extent, "usual": usual},
         hint="Is it in millimetres?" if factor < 1 else "Is it scaled twice?",
         origin=shape.origin if shape is not None else part.origin,

@@ -108,7 +108,7 @@ def plugin_obsolete(subject: Subject) -> Iterator[Diagnostic]:
             known = any(element.find(name) for name in ("wheelTorque", "max_wheel_torque"))
             if torque is not None and not known:
                 yield devices_codes.PLUGIN_PARAMETER_OBSOLETE.diagnostic(
-                    message="Gazebo 11 ignores <torque>: the wheels get 5 N m instead of "
+                    message="Gazebo 11 ignores <torque>, so the wheels get 5 N m instead of "
                     f"{torque.text.strip()}",
                     values={"tag": "torque", "plugin": drive.tag.name},
                     origin=torque.origin,

@@ -38,8 +38,8 @@ def view_blocked(subject: Subject) -> Iterator[Diagnostic]:
                 part = "visual" if view.drawn else "collision"
                 yield devices_codes.VIEW_BLOCKED.diagnostic(
                     message=f'the {view.kind} "{sensor.name}" is inside the {part} of link '
-                    f'"{block.link}": in Gazebo {block.share:.0%} of its rays end there, after '
-                    f"{block.distance:.3g} m"
+                    f'"{block.link}", so in Gazebo {block.share:.0%} of its rays end there '
+                    f"after {block.distance:.3g} m"
                     if block.within
                     else f'{block.share:.0%} of the rays of the {view.kind} "{sensor.name}" '
                     f'end at the {part} of link "{block.link}", {block.distance:.3g} m in '
@@ -77,7 +77,7 @@ def rate_above_physics(subject: Subject) -> Iterator[Diagnostic]:
             rate = nodes.number(element.text)
             if rate is not None and rate > highest * 1.001:
                 yield devices_codes.RATE_ABOVE_PHYSICS.diagnostic(
-                    message=f"{rate:g} Hz is more than the {highest:g} physics steps per second",
+                    message=f"{rate:g} Hz exceeds the physics rate of {highest:g} steps per second",
                     values={"tag": element.tag, "rate": rate, "highest": highest},
                     origin=element.origin,
                     instead=nodes.written(element.tag, {}, nodes.short(highest)),

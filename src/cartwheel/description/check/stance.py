@@ -81,7 +81,7 @@ def wheel_no_collision(subject: Subject) -> Iterator[Diagnostic]:
                 continue
             radius = wheel_radius(robot, joint) or 0.1
             yield robot_codes.WHEEL_WITHOUT_COLLISION.diagnostic(
-                message=f'the driven wheel "{link.name}" has no <collision>, so it does not '
+                message=f'the driven wheel "{link.name}" has no <collision>, so the wheel does not '
                 "touch the ground",
                 values={"link": link.name},
                 origin=link.origin,
@@ -113,7 +113,8 @@ def base_no_collision(subject: Subject) -> Iterator[Diagnostic]:
                 None,
             )
             yield robot_codes.BASE_WITHOUT_COLLISION.diagnostic(
-                message="no link of the robot has a <collision>, so it falls through the ground"
+                message="no link in the robot has a <collision>, so the robot falls through the "
+                "ground"
                 if nowhere
                 else f'the body "{seen.name}" has visuals but no <collision>, so it passes '
                 "through everything",

@@ -66,7 +66,7 @@ def joint_link_unknown(subject: Subject) -> Iterator[Diagnostic]:
                     message=f'joint "{name}" has no <{which}>',
                     values={"joint": name, "tag": which},
                     origin=joint.origin,
-                    hint=f'Write <{which} link="…"/> in it.',
+                    hint=f'Add <{which} link="…"/> to the joint.',
                 )
                 continue
             link = nodes.text_of(end, "link")

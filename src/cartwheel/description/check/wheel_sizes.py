@@ -86,8 +86,8 @@ def wheel_diameter(subject: Subject) -> Iterator[Diagnostic]:
                 robot_codes.WHEEL_DIAMETER_MISMATCH,
                 one,
                 real,
-                f'that of the wheel "{wheel.child}" is {real:.4g} m, so the robot drives {far:.0%} '
-                f"too {slow}",
+                f'the {one.measure} of the wheel "{wheel.child}" is {real:.4g} m, so the robot '
+                f"drives {far:.0%} too {slow}",
             )
 
 

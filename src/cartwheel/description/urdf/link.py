@@ -316,7 +316,7 @@ def _mesh(node: Node, kind: str, link: str, ctx: UrdfContext) -> Mesh | None:
         load_mesh(mesh, origin=node.origin)
     except DescriptionError as error:
         # As in Gazebo, and as in a world: it costs the one shape.
-        rest = " and collides with nothing" if kind == "collision" else ""
+        rest = " and does not collide" if kind == "collision" else ""
         ctx.report(
             loss(
                 error,

@@ -37,7 +37,7 @@ class PidController(Controller):
         names = settings.texts("dof_names")
         self._names = settings.texts("reference_and_state_dof_names", []) or names
         if not names or len(self._names) != len(names):
-            wanted = f"a list of as many names as dof_names, {len(names)}"
+            wanted = f"a list of {len(names)} names, as many as in dof_names"
             raise settings.invalid("reference_and_state_dof_names", self._names, wanted)
         kinds = settings.texts("reference_and_state_interfaces")
         if not (len(kinds) == 1 and kinds[0] in COMMANDS) and kinds != ["position", "velocity"]:
