@@ -5,13 +5,13 @@ from __future__ import annotations
 import os
 import tempfile
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from tests.description.check.seeded import ROBOT, seeded_faults
 
-from benchmarks import mutations
+from benchmarks import mutations, mutations_of_sdf, mutations_of_xacro
 from benchmarks.figure import Effort, Figure
 from benchmarks.mutations import Mutation
 from cartwheel.checks.run import check
@@ -22,6 +22,8 @@ from cartwheel.description.packages import share
 from cartwheel.description.shipped import shipped_descriptions
 from cartwheel.errors import Code, DescriptionError, Diagnostic
 
+KINDS = {"URDF": mutations, "SDF": mutations_of_sdf, "xacro": mutations_of_xacro}
+"""The kinds of documents that are mutated."""
 SITES = 5
 """Of one mutation in one robot."""
 _ROOT = Path(__file__).parents[1]
@@ -51,14 +53,24 @@ def figures(effort: Effort) -> Iterator[Figure]:
     with tempfile.TemporaryDirectory() as folder:
         room = Path(folder)
         seeded = _seeded(room, effort.every)
-        mutated = _mutated(room, mutations.FAULTS, effort.every)
-        harmless = _mutated(room, mutations.HARMLESS, effort.every)
+        of_kind = {
+            kind: _mutated(room, module.FAULTS, bases(kind), effort.every)
+            for kind, module in KINDS.items()
+        }
+        harmless = [
+            trial
+            for kind, module in KINDS.items()
+            for trial in _mutated(room, module.HARMLESS, bases(kind), effort.every)
+        ]
+    mutated = [trial for trials in of_kind.values() for trial in trials]
     faults = [*seeded, *mutated]
     yield from _by_code(faults, mutated)
     yield _recall("documents of the tests", seeded)
-    yield _recall("mutations", mutated)
+    for kind, trials in of_kind.items():
+        yield _recall(f"mutations of {kind}", trials)
     yield _recall("all", faults)
-    yield _precision("mutations", mutated)
+    for kind, trials in of_kind.items():
+        yield _precision(f"mutations of {kind}", trials)
     alarms = [trial for trial in harmless if trial.new]
     yield Figure(
         group="check: all",
@@ -84,10 +96,11 @@ def _seeded(room: Path, every: int) -> list[Trial]:
     return trials
 
 
-def _mutated(room: Path, kinds: Sequence[Mutation], every: int) -> list[Trial]:
-    """The mutations of the cart and of the tests' robot."""
-    robots = bases()
-    usual = {name: _counted(_findings(room, text)) for name, text in robots.items()}
+def _mutated(
+    room: Path, kinds: Sequence[Mutation], robots: Mapping[str, str], every: int
+) -> list[Trial]:
+    """The mutations of some documents, by the names of their files."""
+    usual = {name: _counted(_findings(room, text, name)) for name, text in robots.items()}
     documents = [
         (kind, name, document)
         for kind in kinds
@@ -96,15 +109,21 @@ def _mutated(room: Path, kinds: Sequence[Mutation], every: int) -> list[Trial]:
     ]
     trials = []
     for kind, name, document in documents[::every]:
-        new = _counted(_findings(room, document)) - usual[name]
+        new = _counted(_findings(room, document, name)) - usual[name]
         allowed = frozenset({kind.code, *kind.follows} - {""})
         trials.append(Trial(name=kind.name, expected=kind.code, allowed=allowed, new=new))
     return trials
 
 
-def bases() -> dict[str, str]:
-    """The robots that are mutated, as URDF: the cart, and the tests' robot with an arm."""
-    return {"cart": to_urdf(share() / _CART, absolute=True), "tester": ROBOT}
+def bases(kind: str) -> dict[str, str]:
+    """The documents of a kind that are mutated, by the names of their files.
+
+    As URDF, these are the cart, and the tests' robot with an arm.
+    """
+    if kind == "URDF":
+        return {"cart.urdf": to_urdf(share() / _CART, absolute=True), "tester.urdf": ROBOT}
+    name = {"SDF": "rover.world", "xacro": "rover.xacro"}[kind]
+    return {name: (Path(__file__).parent / "bases" / name).read_text()}
 
 
 def _findings(

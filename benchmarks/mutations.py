@@ -9,6 +9,7 @@ from typing import Any
 
 from lxml import etree
 
+_SPACES = {"xacro": "http://www.ros.org/wiki/xacro"}
 Element = Any
 """An element of lxml, which has no types."""
 Edit = Callable[[Element], bool | None]
@@ -33,9 +34,9 @@ def documents(text: str, mutation: Mutation, most: int) -> Iterator[str]:
     """The documents that a mutation makes of one, each with one change, at most so many."""
     root = etree.fromstring(text.encode())
     count = 0
-    for index in range(len(root.xpath(mutation.at))):
+    for index in range(len(root.xpath(mutation.at, namespaces=_SPACES))):
         changed = copy.deepcopy(root)
-        if mutation.edit(changed.xpath(mutation.at)[index]) is False:
+        if mutation.edit(changed.xpath(mutation.at, namespaces=_SPACES)[index]) is False:
             continue
         yield written(changed)
         count += 1
@@ -86,7 +87,8 @@ def misspell_text(node: Element) -> None:
 
 def misspell_tag(node: Element) -> None:
     """Misspells an element's name."""
-    node.tag = swap_letters(node.tag)
+    space, brace, name = node.tag.rpartition("}")
+    node.tag = space + brace + swap_letters(name)
 
 
 def set_attributes(**values: str) -> Edit:

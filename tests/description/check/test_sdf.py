@@ -198,3 +198,24 @@ def test_an_empty_attribute_says_nothing(bench):
     )
     assert bench.report(world(state.format("")), "x.sdf").findings == ()
     assert bench.find(world(state.format("box")), "tag-ignored", "x.sdf")
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong", "code"),
+    [
+        ("<box><size>1 1 1</size></box>", "<bxo><size>1 1 1</size></bxo>", "type-unknown"),
+        ("<size>1 1 1</size>", "<size>1 1 -1</size>", "value-invalid"),
+        ("<xyz>0 0 1</xyz>", "<xyz>0 0 0</xyz>", "axis-zero"),
+        ("<lower>-1</lower>", "<lower>3</lower>", "limit-reversed"),
+    ],
+)
+def test_an_element_without_what_could_not_be_read_is_not_reported_as_well(
+    bench, right, wrong, code
+):
+    arm = (
+        '<link name="arm"/><joint name="j" type="revolute"><parent>box</parent><child>arm</child>'
+        "<axis><xyz>0 0 1</xyz><limit><lower>-1</lower><upper>1</upper></limit></axis></joint>"
+    )
+    usual = {each.identity for each in bench.report(model(arm), "m.sdf").findings}
+    report = bench.report(model(arm).replace(right, wrong, 1), "m.sdf")
+    assert [each.code.name for each in report.findings if each.identity not in usual] == [code]

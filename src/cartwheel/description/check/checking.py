@@ -37,7 +37,7 @@ from cartwheel.description.check.subject import PluginKnowledge, Robot, Subject
 from cartwheel.description.loading import Opened, open_description, understand
 from cartwheel.description.model import RobotDescription, WorldDescription
 from cartwheel.description.node import Node
-from cartwheel.errors import DescriptionError, Diagnostic
+from cartwheel.errors import DescriptionError, Diagnostic, Origin
 
 RULES: tuple[Rule, ...] = (
     *structure.RULES,
@@ -141,7 +141,8 @@ def _subject(opened: Opened, known: PluginKnowledge | None, given: Sequence[Path
     if tree.tag == "robot":
         mended |= mend(tree)
     cut: set[str] = set()
-    read, failures = _read(opened, tree, mended, cut)
+    gaps: list[Origin] = []
+    read, failures = _read(opened, tree, mended, cut, gaps)
     described: tuple[RobotDescription, ...] = ()
     if isinstance(read, WorldDescription):
         described = read.models
@@ -162,13 +163,14 @@ def _subject(opened: Opened, known: PluginKnowledge | None, given: Sequence[Path
         read=read,
         robots=robots,
         failures=tuple(failures),
+        gaps=tuple(gaps),
         plugins=known,
         control=control_files(robots, opened.packages, given, search),
     )
 
 
 def _read(
-    opened: Opened, tree: Node, mended: set[str], cut: set[str]
+    opened: Opened, tree: Node, mended: set[str], cut: set[str], gaps: list[Origin]
 ) -> tuple[RobotDescription | WorldDescription | None, list[Diagnostic]]:
     """Reads a tree, without what keeps it from being read.
 
@@ -177,6 +179,7 @@ def _read(
         tree: Of it, from which parts are cut.
         mended: Links whose inertia is replaced, added to.
         cut: Links from which something is cut, added to.
+        gaps: Places of elements that lack what is cut, and of their holders, added to.
     """
     failures: list[Diagnostic] = []
     holed: set[int] = set()
@@ -195,6 +198,8 @@ def _read(
             cut |= _links_around(tree, node)
             parent.drop(node)
             holed.add(id(parent))
+            holder = nodes.parent_of(tree, parent)
+            gaps += [each.origin for each in (parent, holder) if each is not None]
             if tree.tag == "robot":
                 mended |= mend(tree)
 

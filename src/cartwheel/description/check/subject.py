@@ -305,6 +305,8 @@ class Subject:
     robots: tuple[Robot, ...] = ()
     failures: tuple[Diagnostic, ...] = ()
     """What ended its reading, apart from what has a rule of its own."""
+    gaps: Sequence[Origin] = ()
+    """The places of elements that lack a part that could not be read, and of their holders."""
     plugins: PluginKnowledge | None = None
     control: Sequence[tuple[Robot, ControlFile]] = ()
     """The files of each robot's controllers."""

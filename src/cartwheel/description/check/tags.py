@@ -21,6 +21,8 @@ from cartwheel.errors import Diagnostic
 
 _ELSEWHERE = frozenset({*codes_of("robot"), devices.CONTACT_COLLISION_UNKNOWN})
 """Codes whose warnings have a rule with more detail."""
+_OF_GAPS = (codes.DEFAULT_USED, codes.TAG_EMPTY)
+"""Codes of elements that lack a part."""
 _GUESSED = frozenset({
     codes.TAG_IGNORED, codes.MATERIAL_UNKNOWN, codes.MATERIAL_UNDEFINED, files.ARGUMENT_UNKNOWN,
 })  # fmt: skip
@@ -123,12 +125,14 @@ def passed(subject: Subject) -> Iterator[Diagnostic]:
 
 def _relevant(subject: Subject) -> Iterator[Diagnostic]:
     """The readers' diagnostics that no rule has in more detail, as they are."""
+    gaps = {id(origin) for origin in subject.gaps}
     lacking = {link for robot in subject.robots for link in robot.incomplete}
     for diagnostic in _diagnostics(subject):
         if diagnostic.code in ABSENT or _has_place(diagnostic):
             continue
-        # A link that lacks a part only because it could not be read is no news.
+        # An element that lacks a part only because it could not be read is no news.
         follows = "missing" in diagnostic.values and diagnostic.values.get("link") in lacking
+        follows |= diagnostic.code in _OF_GAPS and id(diagnostic.origin) in gaps
         if diagnostic.severity == "error" or (diagnostic.code not in _ELSEWHERE and not follows):
             yield diagnostic
 
