@@ -29,7 +29,7 @@ def coded(source: Any, code: Code, **values: object) -> list[Diagnostic]:
 
 @contextlib.contextmanager
 def raises(
-    code: Code, kind: type[CartwheelError] = CartwheelError, **values: Value
+    code: Code, kind: type[CartwheelError] = CartwheelError, /, **values: Value
 ) -> Iterator[pytest.ExceptionInfo[CartwheelError]]:
     """Expects an error with a code and, among others, these values."""
     with pytest.raises(kind) as caught:
@@ -37,3 +37,14 @@ def raises(
     assert caught.value.code is code, repr(caught.value)
     found = {name: caught.value.values.get(name) for name in values}
     assert found == values
+
+
+def named(each: Diagnostic | CartwheelError) -> str:
+    """The name of its code, and the likely meant name where it has one."""
+    meant = each.values.get("meant")
+    return f"{each.code.name} {meant}" if meant else each.code.name
+
+
+def placed(each: Diagnostic) -> str:
+    """Its place, severity and `named`."""
+    return f"{each.origin} {each.severity} {named(each)}"

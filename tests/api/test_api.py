@@ -8,6 +8,7 @@ from tests.coded import coded, raises
 import cartwheel as cw
 from cartwheel.codes import devices
 from cartwheel.codes.graph import FIELD_UNKNOWN
+from cartwheel.codes.world import UNKNOWN_JOINT
 from cartwheel.errors import CartwheelError, UnknownNameError
 
 
@@ -130,7 +131,7 @@ def test_a_joint_that_is_none_is_named(make, rosbots):
     world = make.world()
     cart = world.spawn(rosbots, z=0.05)
     assert cart.joint("wheel_left_joint") == pytest.approx(0.0)
-    with pytest.raises(UnknownNameError, match="joint"):
+    with raises(UNKNOWN_JOINT, UnknownNameError, name="caster_joint"):
         cart.joint("caster_joint")
 
 

@@ -32,7 +32,7 @@ from cartwheel.bridges.recording.opening import open_recording
 from cartwheel.bridges.recording.patterns import Patterns
 from cartwheel.bridges.recording.sink import Sink
 from cartwheel.bridges.recording.writing import open_writer
-from cartwheel.codes.command import OPTION_INVALID
+from cartwheel.codes.command import OPTION_INVALID, OPTIONS_CONFLICT
 from cartwheel.codes.recording import (
     DISK_SLOW,
     ENCODING_UNFIT,
@@ -864,5 +864,5 @@ def test_one_file_for_two_recordings_is_refused(tmp_path: Path) -> None:
         cwd=tmp_path, capture_output=True, text=True, timeout=300, check=False,
     )  # fmt: skip
     assert done.returncode == 2
-    assert done.stderr.startswith('error: --record specifies "a.mcap" twice')
+    assert f"[{OPTIONS_CONFLICT}]" in done.stderr
     assert not list(tmp_path.iterdir())

@@ -13,6 +13,9 @@ from typing import Any
 import pytest
 from tests.cli.conftest import Program
 
+from cartwheel.codes.recording import RECORDING_BROKE_OFF
+from cartwheel.codes.wires import BRIDGE_ENDED
+
 _PATIENCE = 60.0
 _MARK = "cartwheel.bridges.apart.child"
 
@@ -106,7 +109,7 @@ def test_a_wire_that_dies_is_told_and_the_simulation_goes_on(program: Program) -
     out, error = process.communicate(timeout=_PATIENCE)
     assert process.returncode == 0, error
     assert "simulated 6.000 s" in out
-    assert "the process that runs ROS 2 has exited" in error
+    assert f"[{BRIDGE_ENDED}]" in error
 
 
 def test_a_recorder_that_dies_ends_the_run(program: Program) -> None:
@@ -116,7 +119,7 @@ def test_a_recorder_that_dies_ends_the_run(program: Program) -> None:
     os.kill(child, signal.SIGKILL)
     _, error = process.communicate(timeout=_PATIENCE)
     assert process.returncode == 2
-    assert 'the recording "drive.mcap" stopped' in error
+    assert f"[{RECORDING_BROKE_OFF}]" in error
     assert "Traceback" not in error
 
 

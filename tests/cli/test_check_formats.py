@@ -10,6 +10,8 @@ import jsonschema
 import pytest
 from tests.cli.test_check import ERROR, GOOD, NOTE, WARNING
 
+from cartwheel.codes.command import OUTPUT_NOT_WRITTEN
+
 SARIF = {
     # What code scanning needs of SARIF 2.1.0; the names and types are the standard's.
     "type": "object",
@@ -176,6 +178,7 @@ def test_json_is_valid_whatever_a_name_holds(checked, form):
     assert json.loads(done.stdout)
 
 
+@pytest.mark.wording
 def test_a_name_of_a_stranger_makes_no_command_in_plain_text_either(checked):
     text = ERROR.replace('name="bar"', 'name="x&#10;  ::stop-commands::x"')
     done = checked(text, status=1)
@@ -195,4 +198,4 @@ def test_of_a_file_on_one_line_the_place_is_shown(checked):
 
 def test_a_baseline_that_cannot_be_written_is_an_error_of_the_user(checked):
     done = checked(ERROR, "--write-baseline", "nowhere/base.json", status=2)
-    assert "nowhere/base.json cannot be written" in done.stderr and "[CW" in done.stderr
+    assert f"[{OUTPUT_NOT_WRITTEN}]" in done.stderr

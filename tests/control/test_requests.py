@@ -19,6 +19,7 @@ from cartwheel.codes.graph import (
     TOPIC_TYPE_MISMATCH,
     TOPIC_UNKNOWN,
 )
+from cartwheel.codes.world import MODEL_NAME_TAKEN, UNKNOWN_MODEL
 from cartwheel.control import ControlClient
 from cartwheel.errors import ControlError
 from cartwheel.messages import decode_cdr, encode_cdr, from_dict
@@ -77,11 +78,11 @@ def test_spawn_list_delete(client, tmp_path):
     assert one["rpy"][2] == pytest.approx(math.pi / 2, abs=1e-3)
     assert one["mass"] == 1.0
     assert other["name"] == "other"
-    with pytest.raises(ControlError, match="crate_1"):
+    with raises(MODEL_NAME_TAKEN, ControlError, name="crate"):
         client.request("spawn", file=file)
     client.request("delete", model="crate")
     assert client.request("status")["models"] == ["other"]
-    with pytest.raises(ControlError, match="Valid names: other"):
+    with raises(UNKNOWN_MODEL, ControlError, name="crate"):
         client.request("delete", model="crate")
 
 

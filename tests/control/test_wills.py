@@ -83,7 +83,7 @@ def test_a_last_message_that_cannot_be_published_is_reported(
     eventually(lambda: any(each.code is TOPIC_TYPE_MISMATCH for each in session.diagnostics))
 
 
-def test_wrong_and_too_many_are_refused(server, commands, session):
+def test_wrong_and_too_many_are_refused(server, commands, session, eventually):
     for index in range(MOST):
         session.graph.subscribe(f"/other_{index}", commands.append, type_name=TWIST)
     with ControlClient() as client:
@@ -94,4 +94,6 @@ def test_wrong_and_too_many_are_refused(server, commands, session):
         with raises(CONTROL_LIMIT, most=MOST):
             client.publish("/cmd_vel", TWIST, GO, at_end=STOP)
         # A refused one has not moved anything.
+        eventually(lambda: len(commands) >= MOST)
+        client.request("status")
         assert len(commands) == MOST

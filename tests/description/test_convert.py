@@ -1,10 +1,10 @@
 """URDF as text: complete, clean, stable."""
 
-import pytest
+from tests.coded import raises
 
+from cartwheel.codes.files import WRONG_KIND
 from cartwheel.description import load_robot, load_text
 from cartwheel.description.convert import to_urdf
-from cartwheel.errors import DescriptionError
 
 SDF = '<sdf version="1.6"><model name="m"><link name="l"/></model></sdf>'
 
@@ -48,7 +48,5 @@ def test_special_characters_survive(tmp_path):
 def test_sdf_is_none(tmp_path):
     path = tmp_path / "m.sdf"
     path.write_text(SDF)
-    with pytest.raises(
-        DescriptionError, match="the file is not a URDF file: its root element is <sdf>"
-    ):
+    with raises(WRONG_KIND, kind="sdf"):
         to_urdf(path)

@@ -5,8 +5,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from tests.coded import raises
-from tests.description.coded import coded, placed
+from tests.coded import named, placed, raises
 
 from cartwheel.codes import files
 from cartwheel.description import load, load_robot, load_text, load_world
@@ -40,7 +39,7 @@ def write(path, text):
 def failure(path, call=load, **more):
     with pytest.raises(DescriptionError) as caught:
         call(path, **more)
-    return f"{caught.value.origin} {coded(caught.value)}"
+    return f"{caught.value.origin} {named(caught.value)}"
 
 
 def hint(path):

@@ -69,4 +69,4 @@ def test_files_that_include_each_other_end_the_search(workspace):
             XACRO.format(INCLUDE.format(f"{other}.xacro"))
         )
     hint = hint_of(workspace, "$(find laser_x)/l.xacro", "a.xacro")
-    assert "Also named" not in hint
+    assert "Also missing" not in hint

@@ -3,8 +3,7 @@
 import tempfile
 
 import pytest
-from tests.coded import raises
-from tests.description.coded import coded
+from tests.coded import named, raises
 
 from cartwheel.codes import files
 from cartwheel.description import packages as packages_module
@@ -94,12 +93,10 @@ def test_folder_without_manifest_is_the_second_choice(tmp_path):
 
 def test_missing_package_says_where_it_was_searched_and_what_may_be_meant(tmp_path):
     own = package(tmp_path / "ws" / "src" / "my_robot")
-    with pytest.raises(DescriptionError) as caught:
+    with raises(files.FILE_MISSING, kind="package", name="my_robt", meant="my_robot") as caught:
         packages(robot(own)).find("my_robt", HERE)
-    text = str(caught.value)
-    assert text.startswith('robot.urdf:3: the package "my_robt" was not found')
-    assert 'Did you mean "my_robot"?' in text
-    assert str(own.parent) in text
+    assert caught.value.origin is HERE
+    assert str(own.parent) in caught.value.hint
 
 
 def test_uris(tmp_path):
@@ -163,7 +160,7 @@ def test_files_that_are_not_there(tmp_path, uri, code):
     (own / "wheel.stl").touch()
     with pytest.raises(DescriptionError) as caught:
         packages(robot(own)).resolve(uri, HERE)
-    assert coded(caught.value) == code
+    assert named(caught.value) == code
     assert str(caught.value.origin) == "robot.urdf:3"
 
 

@@ -9,7 +9,7 @@ import zlib
 import numpy as np
 import pytest
 from PIL import Image
-from tests.coded import raises
+from tests.coded import coded, raises
 
 import cartwheel as cw
 from cartwheel.codes import files
@@ -17,6 +17,7 @@ from cartwheel.description import load_text
 from cartwheel.description.model import Heightmap
 from cartwheel.description.pictures import MOST_PIXELS, thumbnail
 from cartwheel.description.terrain import TerrainError, heights_of
+from cartwheel.errors import CartwheelError
 
 RAMP = np.tile(np.arange(0, 256, 4, dtype=np.uint8), (64, 1))
 
@@ -50,30 +51,41 @@ def test_a_picture_that_is_too_large_is_refused_before_it_is_decoded(tmp_path, s
     path.write_bytes(png(*size))
     with raises(files.PICTURE_UNREADABLE):
         thumbnail(path, 100)
-    with pytest.raises(TerrainError, match=r'"bomb.png" cannot be read: it is too large') as error:
+    with raises(files.PICTURE_UNREADABLE, kind="heightmap") as error:
         heights_of(Heightmap(path=path, size=(1, 1, 1)))
     assert f"{MOST_PIXELS // 1_000_000} million" in error.value.hint
 
 
-@pytest.mark.parametrize(
-    "content",
-    [
-        b"",
-        b"text",
-        png(64, 64),
-        DEEP[:60],
-        DEEP[:33] + b"\xff" * 30,
-        b"P5\n8 x 255\n",
-        # Pillow would start ghostscript for it.
-        saved(Image.fromarray(RAMP), "EPS"),
-    ],
-    ids=["empty", "text", "no pixels", "cut off", "damaged", "no number", "program"],
-)
+UNREADABLE = {
+    "empty": b"",
+    "text": b"text",
+    "no pixels": png(64, 64),
+    "cut off": DEEP[:60],
+    "damaged": DEEP[:33] + b"\xff" * 30,
+    "no number": b"P5\n8 x 255\n",
+    # Pillow would start ghostscript for it.
+    "program": saved(Image.fromarray(RAMP), "EPS"),
+}
+
+
+@pytest.mark.parametrize("content", UNREADABLE.values(), ids=UNREADABLE)
+def test_a_picture_that_cannot_be_read_is_refused(tmp_path, content):
+    path = tmp_path / "a.png"
+    path.write_bytes(content)
+    for source in (path, content):
+        with raises(files.PICTURE_UNREADABLE):
+            thumbnail(source, 100)
+    with raises(files.PICTURE_UNREADABLE, kind="heightmap", name=str(path)):
+        heights_of(Heightmap(path=path, size=(1, 1, 1)))
+
+
+@pytest.mark.wording
+@pytest.mark.parametrize("content", UNREADABLE.values(), ids=UNREADABLE)
 def test_a_picture_that_cannot_be_read_says_why(tmp_path, content):
     path = tmp_path / "a.png"
     path.write_bytes(content)
     for source in (path, content):
-        with raises(files.PICTURE_UNREADABLE) as error:
+        with pytest.raises(CartwheelError, match=r"cannot be read: .") as error:
             thumbnail(source, 100)
         assert "None" not in str(error.value)
     with pytest.raises(TerrainError, match=r'the heightmap "a.png" cannot be read: .'):
@@ -117,10 +129,10 @@ def test_a_texture_that_cannot_be_read_leaves_its_surface_with_a_warning(tmp_pat
     with cw.World() as world:
         world.spawn(crate)
         world.run(0.01)
-        (note,) = [n for n in world.session.simulation.diagnostics if "wood.png" in n.message]
+        (note,) = coded(world.session.simulation, files.PICTURE_UNREADABLE)
     assert note.severity == "warning"
     assert note.origin.line == 1
-    assert "cannot be read" in note.message
+    assert note.values["name"] == picture.name
 
 
 def test_an_unreadable_texture_that_is_remembered_holds_no_picture(tmp_path):

@@ -3,9 +3,11 @@
 import numpy as np
 import pytest
 from PIL import Image
+from tests.coded import raises
 
+from cartwheel.codes.files import PICTURE_UNREADABLE
 from cartwheel.description.model import Heightmap
-from cartwheel.description.terrain import TerrainError, heights_of
+from cartwheel.description.terrain import heights_of
 
 
 def test_the_brightest_pixel_is_as_high_as_the_size_says(tmp_path):
@@ -41,5 +43,5 @@ def test_a_fine_image_is_thinned_out_with_its_corners_kept(tmp_path):
 def test_no_image_is_an_error_of_ours(tmp_path):
     path = tmp_path / "hills.png"
     path.write_text("x")
-    with pytest.raises(TerrainError, match=r"hills\.png"):
+    with raises(PICTURE_UNREADABLE, kind="heightmap", name=str(path)):
         heights_of(Heightmap(path=path, size=(1, 1, 1.0)))

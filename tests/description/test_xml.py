@@ -1,10 +1,9 @@
 """What is told of malformed XML and of numbers that are none; what nobody read."""
 
 import pytest
-from tests.coded import raises
-from tests.description.coded import coded, placed
+from tests.coded import named, placed, raises
 
-from cartwheel.codes import tags
+from cartwheel.codes import files, tags
 from cartwheel.description import numbers, xml
 from cartwheel.description.model import Element
 from cartwheel.errors import DescriptionError, Origin
@@ -64,7 +63,7 @@ def test_malformed_text_names_its_place(text, line, code):
     with pytest.raises(DescriptionError) as caught:
         xml.parse(text, "robot.urdf")
     assert caught.value.origin == Origin(file="robot.urdf", line=line)
-    assert coded(caught.value) == code
+    assert named(caught.value) == code
 
 
 def test_external_entities_are_not_fetched(tmp_path):
@@ -73,7 +72,7 @@ def test_external_entities_are_not_fetched(tmp_path):
     text = f'<!DOCTYPE a [<!ENTITY x SYSTEM "{secret.as_uri()}">]><a>&x;</a>'
     with pytest.raises(DescriptionError) as caught:
         xml.parse(text)
-    assert coded(caught.value) == "xml-entity"
+    assert named(caught.value) == "xml-entity"
 
 
 @pytest.mark.parametrize("text", ["1", "-1.5", ".5", "1.", "1e-3", "+2E+2", " 3 "])
@@ -118,7 +117,7 @@ def test_vectors_count_their_numbers():
     for text in ("1 2", "1, 2, 3"):
         with pytest.raises(DescriptionError) as caught:
             numbers.vector(text, 3, "xyz", HERE)
-        assert coded(caught.value) == "value-invalid"
+        assert named(caught.value) == "value-invalid"
         assert caught.value.values == {"name": "xyz", "stated": text}
 
 
@@ -130,14 +129,14 @@ def test_truth_values(text, value):
 def test_what_is_no_truth_value():
     with pytest.raises(DescriptionError) as caught:
         numbers.boolean("maybe", "static", HERE)
-    assert coded(caught.value) == "value-invalid"
+    assert named(caught.value) == "value-invalid"
 
 
 def test_whole_numbers():
     assert numbers.integer("10.0", "width", HERE) == 10
     with pytest.raises(DescriptionError) as caught:
         numbers.integer("10.5", "width", HERE)
-    assert coded(caught.value) == "value-invalid"
+    assert named(caught.value) == "value-invalid"
 
 
 def test_attributes_and_descendants():
@@ -160,7 +159,7 @@ def test_missing_attribute_names_the_likely_meant_one():
     root = xml.parse('<box sice="1 1 1"/>')
     with pytest.raises(DescriptionError) as caught:
         root.vec3_of("size")
-    assert coded(caught.value) == "tag-missing sice"
+    assert named(caught.value) == "tag-missing sice"
 
 
 def test_missing_child_names_the_likely_meant_one():
@@ -206,18 +205,18 @@ def test_files_that_are_no_text(tmp_path, content):
     path.write_bytes(content)
     with pytest.raises(DescriptionError) as caught:
         xml.read_file(path)
-    assert coded(caught.value) == "file-unreadable"
+    assert named(caught.value) == "file-unreadable"
 
 
 def test_a_file_that_is_not_there(tmp_path):
     (tmp_path / "robot.urdf").write_text("<robot/>")
     with pytest.raises(DescriptionError) as caught:
         xml.read_file(tmp_path / "robt.urdf")
-    assert coded(caught.value) == "file-missing"
+    assert named(caught.value) == "file-missing"
     assert caught.value.hint == 'Did you mean "robot.urdf"?'
     with pytest.raises(DescriptionError) as caught:
         xml.read_file(tmp_path)
-    assert coded(caught.value) == "file-unreadable"
+    assert named(caught.value) == "file-unreadable"
 
 
 def test_utf16_and_latin1_are_decoded_as_declared():
@@ -235,7 +234,7 @@ def test_a_declaration_after_a_comment_is_read_as_gazebo_reads_it():
 
 def test_bytes_that_are_not_utf_8_are_named_with_the_remedy():
     text = '<robot name="r">\n<link name="Tür"/></robot>'
-    with pytest.raises(DescriptionError, match="the byte 0xfc at column 14 is not UTF-8") as got:
+    with raises(files.XML_MALFORMED, byte=0xFC, column=14) as got:
         xml.parse(text.encode("latin-1"), "r.urdf")
     assert str(got.value.origin) == "r.urdf:2"
     declared = '<?xml version="1.0" encoding="ISO-8859-1"?>'

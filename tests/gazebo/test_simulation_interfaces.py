@@ -4,9 +4,11 @@ import math
 from pathlib import Path
 
 import pytest
+from tests.coded import coded
 from tests.gazebo.conftest import Gazebo
 
 import cartwheel as cw
+from cartwheel.codes.tags import NAME_UNKNOWN
 from cartwheel.gazebo.ros2_api import Ros2Api
 from cartwheel.geometry import Pose
 from cartwheel.messages import message_class
@@ -220,7 +222,7 @@ def test_places_are_the_frames_that_stay(tmp_path: Path):
     file.write_text(WORLD)
     with cw.World(str(file)) as world:
         api = interfaces(world)
-        (told,) = [one for one in world.diagnostics if '"lost"' in one.message]
+        (told,) = coded(world, NAME_UNKNOWN)
         assert (told.severity, told.origin.line) == ("warning", 5)
         places = {each.name: each.pose for each in api("get_named_poses").poses}
         assert list(places) == ["door", "mat"]

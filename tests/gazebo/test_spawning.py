@@ -1,11 +1,14 @@
 """Models in, by their text, and out again."""
 
 import math
+import re
 import threading
 from concurrent.futures import ThreadPoolExecutor
 
 import pytest
+from tests.coded import coded
 
+from cartwheel.codes.files import FILE_MISSING
 from cartwheel.geometry import Pose, quat_from_rpy
 
 from .conftest import SDF, URDF
@@ -161,7 +164,7 @@ def test_packages_are_found_on_the_path(make, gazebo, tmp_path):
 
     def told(api):
         api.done("spawn_urdf_model", model_xml=text)
-        return [d for d in api.world.session.diagnostics if "things" in d.message]
+        return coded(api.world.session, FILE_MISSING, kind="package", name="things")
 
     (lost,) = told(gazebo(make.world()))
     assert lost.severity == "error"
@@ -216,7 +219,7 @@ def test_after_the_end_there_is_an_answer(make, gazebo):
         future = pool.submit(api.world.graph.call, "/gazebo/spawn_urdf_model", request)
         answer = future.result(timeout=60).result(timeout=60)
     assert not answer.success
-    assert "has ended" in answer.status_message
+    assert re.fullmatch(r"SpawnModel: .+", answer.status_message)
 
 
 LAMP = """<?xml version="1.0"?>
@@ -240,8 +243,9 @@ def test_a_light(make, api):
     light = api.simulation.model.light("mine")
     assert light.pos.tolist() == pytest.approx([5, 2, 2])
     assert light.diffuse.tolist() == pytest.approx([0.25, 0.5, 0.75])
-    message = api.refused("spawn_sdf_model", model_name="mine", model_xml=LAMP)
-    assert 'light "mine" already exists' in message
+    lights = api.simulation.model.nlight
+    assert api.refused("spawn_sdf_model", model_name="mine", model_xml=LAMP)
+    assert api.simulation.model.nlight == lights
     broken = LAMP.replace("point", "pint")
     assert "<model_xml of other>:4" in api.refused(
         "spawn_sdf_model", model_name="other", model_xml=broken

@@ -23,10 +23,6 @@ def services(world: cw.World) -> Gazebo:
     return Gazebo(world, api=Ros2Api, prefix="/world/test")
 
 
-def told(world: cw.World) -> list[str]:
-    return [each.message for each in world.diagnostics if each.severity == "warning"]
-
-
 def test_models_and_lights_are_created_moved_and_removed(make):
     api = services(make.world(ground=None, gravity=0.0))
     simulation = api.simulation

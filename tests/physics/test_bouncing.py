@@ -4,8 +4,10 @@ import math
 
 import numpy as np
 import pytest
+from tests.coded import coded
 
 import cartwheel as cw
+from cartwheel.codes.world import PHYSICS_SETTING_IGNORED
 from cartwheel.description import load_text
 
 G = 9.8
@@ -81,7 +83,7 @@ def test_what_meets_below_the_threshold_stays(threshold, bounces):
     bounce = surface(0.8, threshold, 1.0)
     with scene(body("b", 0, 0.55, bounce), floor=bounce) as world:
         found = peaks(world, "b", 1.0)
-        told = [d.message for d in world.diagnostics if "restitution has no effect" in d.message]
+        told = coded(world, PHYSICS_SETTING_IGNORED, setting="restitution")
     assert (max(found, default=0.0) > 0.1) == bounces
     assert len(told) == (0 if threshold else 2)  # one for each model
     if threshold:

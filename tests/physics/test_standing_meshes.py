@@ -4,10 +4,14 @@ import mujoco
 import numpy as np
 import pytest
 import trimesh
+from tests.coded import coded
 
-from cartwheel.codes.world import MODELS_OVERLAP
+from cartwheel.codes.world import MODELS_OVERLAP, PHYSICS_SETTING_IGNORED
 from cartwheel.description.meshes.standing import standing_pieces
 from cartwheel.geometry import Pose
+
+SURFACE = "the surface of a mesh"
+"""What has no effect where a part of it has too many facets."""
 
 
 def static_mesh(make, path, name="thing"):
@@ -38,7 +42,7 @@ def test_a_ring_has_room_inside_and_its_wall_stops_a_ball(make, ring):
     world = make.world(
         static_mesh(make, ring), ball(make, 0, 0, 0.1), ball(make, 2.9, 0, 0.7, name="top")
     )
-    assert not [d for d in world.session.diagnostics if d.code is MODELS_OVERLAP]
+    assert not coded(world.session, MODELS_OVERLAP)
     simulation = world.session.simulation
     simulation.data.joint("ball::l").qvel[0] = 2.0
     world.run(3.0)
@@ -119,8 +123,7 @@ def test_a_surface_of_too_many_facets_is_told(make, ring, monkeypatch):
     world = make.world(static_mesh(make, ring), ground=None)
     loading._standing.cache_clear()
     assert world.session.simulation.model.ngeom == 1
-    told = [d.message for d in world.session.diagnostics]
-    assert any("the surface of a mesh has no effect" in message for message in told)
+    assert coded(world.session, PHYSICS_SETTING_IGNORED, setting=SURFACE)
 
 
 def test_a_flat_sheet_carries_what_lies_on_it(make, tmp_path):
@@ -138,7 +141,7 @@ def test_a_finely_meshed_ring_is_as_hollow_as_a_coarse_one(make, tmp_path):
     tyre = trimesh.creation.torus(0.5, 0.1, major_sections=128, minor_sections=64)
     tyre.export(path)
     world = make.world(static_mesh(make, path), ground=None)
-    assert not [d for d in world.session.diagnostics if "surface of a mesh" in d.message]
+    assert not coded(world.session, PHYSICS_SETTING_IGNORED, setting=SURFACE)
     simulation = world.session.simulation
     # Corners within 3 cm along each axis are one, in their middle.
     off = 0.03 * np.sqrt(3)

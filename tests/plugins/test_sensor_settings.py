@@ -4,8 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from tests.coded import coded
-from tests.description.coded import coded as named
+from tests.coded import coded, named
 from tests.plugins.cameras import pixels_of, sensor, take
 from tests.plugins.test_navigation import spherical
 

@@ -4,7 +4,9 @@ import math
 import socket
 
 import pytest
+from tests.coded import raises
 
+from cartwheel.codes.wires import ADDRESS_UNAVAILABLE
 from cartwheel.description.model import Axis, Joint, Link, RobotDescription
 from cartwheel.errors import ControlError, Origin
 from cartwheel.geometry import Pose
@@ -71,5 +73,5 @@ def test_sliders_reach_from_limit_to_limit_or_a_turn_or_a_metre():
 def test_a_port_in_use_is_refused():
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = taken.getsockname()[1]
-        with pytest.raises(ControlError, match=str(port)):
+        with raises(ADDRESS_UNAVAILABLE, ControlError, port=port):
             DescriptionViewer(arm(joint()), port=port)

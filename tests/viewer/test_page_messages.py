@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 from websockets.exceptions import ConnectionClosed
 
+from cartwheel.codes import files
 from cartwheel.viewer import uploads
 
 from .browsing import CAMERA, browsing
@@ -153,10 +154,10 @@ def hidden(transfer: str):
 def test_an_upload_reads_nothing_of_this_machine(simulation, tmp_path):
     (tmp_path / "secret.yaml").write_text("word: hidden")
     attacks = {
-        f"${{xacro.load_yaml('{tmp_path}/secret.yaml')['word']}}": "outside the folders",
-        "$(env HOME)": "is not set",
-        "${().__class__.__base__.__subclasses__()}": "not allowed in an",
-        "${10**10**10}": "4096 bits",
+        f"${{xacro.load_yaml('{tmp_path}/secret.yaml')['word']}}": files.FILE_NOT_ALLOWED.number,
+        "$(env HOME)": files.XACRO_NAME_UNKNOWN.number,
+        "${().__class__.__base__.__subclasses__()}": files.EXPRESSION_INVALID.number,
+        "${10**10**10}": files.EXPANSION_TOO_LARGE.number,
     }
     with browsing(simulation.port) as browser:
         browser.look()

@@ -4,8 +4,9 @@ import socket
 import subprocess
 import sys
 
-import pytest
+from tests.coded import raises
 
+from cartwheel.codes.wires import ADDRESS_UNAVAILABLE
 from cartwheel.description.model import WorldDescription
 from cartwheel.errors import ControlError
 from cartwheel.session import Session
@@ -16,14 +17,14 @@ def test_a_port_in_use_is_refused_at_once():
     session = Session(WorldDescription(name="empty"))
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = taken.getsockname()[1]
-        with pytest.raises(ControlError, match=str(port)):
+        with raises(ADDRESS_UNAVAILABLE, ControlError, port=port):
             Viewer(session, port=port)
     session.close()
 
 
 def test_a_port_that_is_none_is_refused():
     session = Session(WorldDescription(name="empty"))
-    with pytest.raises(ControlError, match="70000"):
+    with raises(ADDRESS_UNAVAILABLE, ControlError, port=70000):
         Viewer(session, port=70000)
     session.close()
 

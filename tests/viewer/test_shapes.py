@@ -5,7 +5,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tests.coded import raises
 
+from cartwheel.codes.files import FILE_MISSING
 from cartwheel.description.model import (
     Box,
     Capsule,
@@ -21,7 +23,7 @@ from cartwheel.description.model import (
     Sphere,
     Visual,
 )
-from cartwheel.errors import CartwheelError, Origin
+from cartwheel.errors import Origin
 from cartwheel.geometry import Pose
 from cartwheel.viewer.shapes import (
     DEFAULT,
@@ -145,5 +147,5 @@ def test_merging_gives_one_mesh_for_each_colour_and_loses_no_triangle():
 def test_a_mesh_that_is_missing_is_an_error_that_names_it():
     mesh = Mesh(uri="package://a/b.stl", path=Path("/nowhere/b.stl"))
     collision = Collision(name="c", shape=mesh, origin=ORIGIN)
-    with pytest.raises(CartwheelError, match=r"b\.stl"):
+    with raises(FILE_MISSING, name="/nowhere/b.stl"):
         surfaces_of_collision(collision, DEFAULT)

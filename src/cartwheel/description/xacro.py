@@ -240,6 +240,7 @@ class _Run:
             raise DescriptionError(
                 f"there are more than {MAX_CALLS:,} macro calls; the last is <{call.tagName}>",
                 code=codes.EXPANSION_TOO_LARGE,
+                values={"kind": "calls", "most": MAX_CALLS, "tag": call.tagName},
                 origin=replace(call.origin, stack=call.origin.stack[:MAX_SHOWN]),
                 hint="Check whether a macro calls itself or another macro more often than "
                 "necessary.",
@@ -262,6 +263,7 @@ class _Run:
             raise DescriptionError(
                 f"the macros expand to more than {MAX_ELEMENTS} elements",
                 code=codes.EXPANSION_TOO_LARGE,
+                values={"kind": "elements", "most": MAX_ELEMENTS},
                 origin=self.origin(),
             )
 
@@ -418,6 +420,7 @@ def _to_node(element: Any) -> Node:
             raise DescriptionError(
                 f"the expanded text contains the character {found[0]!a}, which XML does not allow",
                 code=codes.XACRO_INVALID,
+                values={"character": f"U+{ord(found[0]):04X}"},
                 origin=element.origin,
             )
     return Node(element.tagName, values, element.origin, children, text)
@@ -531,12 +534,12 @@ def _bind(module: ModuleType, run: _Run) -> None:
         return "".join(parts)
 
     def eval_expression(text: str, symbols: Any) -> object:
+        shown = text.strip() if len(text) < 200 else f"{text[:200].strip()} …"
         try:
             return evaluator.evaluate(str(eval_text(text, symbols)), symbols)
         except ExpressionError as error:
             if "expression" in error.values:
                 raise
-            shown = text.strip() if len(text) < 200 else f"{text[:200].strip()} …"
             raise ExpressionError(
                 f"{error.message}, when evaluating ${{{shown}}}",
                 code=error.code,
@@ -545,7 +548,7 @@ def _bind(module: ModuleType, run: _Run) -> None:
             ) from error
         except Exception as error:
             raise space.XacroException(
-                exc=error, suffix=f"\nwhen evaluating expression '{text}'"
+                exc=error, suffix=f"\nwhen evaluating expression '{shown}'"
             ) from error
 
     def is_valid_name(name: str) -> bool:
@@ -554,7 +557,8 @@ def _bind(module: ModuleType, run: _Run) -> None:
     def parse_macro_arg(text: str) -> tuple[str, tuple[str | None, str | None] | None, str]:
         if len(text) > MAX_PARAMETERS:
             raise ExpressionError(
-                f"a macro's parameters have more than {MAX_PARAMETERS} characters"
+                f"a macro's parameters have more than {MAX_PARAMETERS} characters",
+                values={"kind": "parameters", "most": MAX_PARAMETERS},
             )
         found = _PARAMETER.match(text)
         if found is None:
@@ -632,7 +636,10 @@ def _bind(module: ModuleType, run: _Run) -> None:
 
     def tokenize(text: str, sep: str = ",; ", skip_empty: bool = True) -> list[str]:
         if re.search(r"[][\\]", sep):
-            raise ExpressionError("the separators of xacro.tokenize contain a bracket or backslash")
+            raise ExpressionError(
+                "the separators of xacro.tokenize contain a bracket or backslash",
+                values={"refused": sep},
+            )
         words = re.split(f"[{sep}]", text)
         return [word for word in words if word] if skip_empty else words
 

@@ -61,6 +61,7 @@ def explain(failure: Failure) -> DescriptionError:
         return DescriptionError(
             "macros, includes or properties refer to each other in an endless loop",
             code=codes.EXPANSION_TOO_LARGE,
+            values={"kind": "recursion"},
             origin=Origin(file=origin.file, line=origin.line, stack=origin.stack[:6]),
         )
     if isinstance(inner, FileNotFoundError):
@@ -79,6 +80,7 @@ def explain(failure: Failure) -> DescriptionError:
         if match[1] in failure.arguments:
             hint = f"It is an argument. Write $(arg {match[1]})."
         code, values = _unknown("property", match[1], near)
+        values["expression"] = _evaluated(text)
     elif match := _ARGUMENT.search(text):
         hint, near = _meant(match[1], failure.arguments)
         message = f'the argument "{match[1]}" {"is not declared" if hint else "has no value"}'
@@ -125,7 +127,8 @@ def explain(failure: Failure) -> DescriptionError:
         reason = str(inner).splitlines()[0] if str(inner) else type(inner).__name__
         reason = reason.replace("(<expression>, line 1)", "").strip()
         message = f"{reason}{_expression(text)}"
-        code = codes.EXPRESSION_INVALID
+        code, values = codes.EXPRESSION_INVALID, {"cause": type(inner).__name__}
+        values["expression"] = _evaluated(text)
     elif isinstance(inner, IndexError | KeyError | AttributeError | AssertionError):
         message = f"xacro fails at this element: {type(inner).__name__}: {inner}"
     return DescriptionError(message, code=code, origin=origin, hint=hint, values=values)
@@ -153,9 +156,15 @@ def _innermost(error: BaseException) -> BaseException:
     return error
 
 
-def _expression(text: str) -> str:
+def _evaluated(text: str) -> str:
+    """The expression that failed; empty where it is unknown."""
     match = _EXPRESSION.search(text)
-    return f", when evaluating ${{{match[1].strip()}}}" if match else ""
+    return match[1].strip() if match else ""
+
+
+def _expression(text: str) -> str:
+    evaluated = _evaluated(text)
+    return f", when evaluating ${{{evaluated}}}" if evaluated else ""
 
 
 def _meant(name: str, known: list[str] | tuple[str, ...]) -> tuple[str | None, str]:

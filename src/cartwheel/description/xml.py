@@ -15,7 +15,7 @@ from xml.parsers import expat
 from cartwheel.codes import files as codes
 from cartwheel.description import numbers
 from cartwheel.description.node import Node, copied, needs_xacro, to_element, unread
-from cartwheel.errors import DescriptionError, Origin
+from cartwheel.errors import DescriptionError, Origin, Value
 
 __all__ = [
     "Handler", "Node", "copied", "near_files", "needs_xacro", "parse", "read_bytes", "read_file",
@@ -207,11 +207,17 @@ def run_expat(text: str | bytes, file: str, handler: Handler) -> None:
     except expat.ExpatError as error:
         byte = plain[parser.ErrorByteIndex :][:1] if isinstance(plain, bytes) else b""
         reason, hint = _explain(error, still_open)
+        values: dict[str, Value] = {"column": error.offset + 1}
         if error.code == _INVALID_TOKEN and byte > b"\x7f":
             reason = f"the byte 0x{byte.hex()} at column {error.offset + 1} is not UTF-8"
             hint = f"Save the file as UTF-8, or declare its encoding in line 1: {_DECLARATION}"
+            values["byte"] = byte[0]
         raise DescriptionError(
-            reason, code=codes.XML_MALFORMED, origin=Origin(file=file, line=error.lineno), hint=hint
+            reason,
+            code=codes.XML_MALFORMED,
+            origin=Origin(file=file, line=error.lineno),
+            hint=hint,
+            values=values,
         ) from error
     except (ValueError, LookupError) as error:  # encodings that expat or Python do not know
         raise DescriptionError(

@@ -11,6 +11,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from cartwheel.codes.files import MESH_UNREADABLE
 from cartwheel.description.meshes import MeshError, load_mesh
 from cartwheel.description.model import Mesh
 
@@ -83,4 +84,4 @@ def test_noise(folder, kind, content):
     try:
         load_mesh(Mesh(uri="", path=path))
     except MeshError as error:
-        assert str(path) in str(error)
+        assert error.code is MESH_UNREADABLE and error.values["name"] == str(path)

@@ -1,6 +1,6 @@
 """The names of collisions: Gazebo's own, those of merged links, and the older spelling."""
 
-from tests.description.coded import placed
+from tests.coded import placed
 
 from cartwheel.description import load_robot, load_text
 

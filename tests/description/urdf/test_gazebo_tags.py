@@ -1,7 +1,7 @@
 """What ``<gazebo>`` tags say, tag by tag, and what is told of those that do nothing."""
 
 import pytest
-from tests.description.coded import coded, placed
+from tests.coded import named, placed
 
 from cartwheel.description import load_text
 from cartwheel.description import model as m
@@ -317,7 +317,7 @@ def test_errors(tags, code):
     with pytest.raises(DescriptionError) as caught:
         load(tags)
     assert str(caught.value.origin) == "robot.urdf:2"
-    assert coded(caught.value) == code
+    assert named(caught.value) == code
 
 
 def test_a_fudge_factor_is_no_loss():

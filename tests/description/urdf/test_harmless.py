@@ -1,6 +1,6 @@
 """What is told of parts that nobody ever read."""
 
-from tests.description.coded import coded
+from tests.coded import named
 
 from cartwheel.description import load_text
 
@@ -17,7 +17,7 @@ def test_leftovers_are_notes_and_the_unknown_is_a_warning():
         <joint_properties damping="1"/></joint></robot>"""
     )
     told = [
-        (each.severity, coded(each), each.values.get("attribute", each.values["tag"]))
+        (each.severity, named(each), each.values.get("attribute", each.values["tag"]))
         for each in robot.diagnostics
     ]
     assert told == [

@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from tests.description.coded import placed
+from tests.coded import placed
 
 from cartwheel.description import load_text
 from cartwheel.geometry import Pose

@@ -4,7 +4,7 @@ import math
 from pathlib import Path
 
 import pytest
-from tests.description.coded import coded, placed
+from tests.coded import named, placed
 
 from cartwheel.description import load_text
 from cartwheel.description import model as m
@@ -373,14 +373,14 @@ def test_errors(text, line, code):
     with pytest.raises(DescriptionError) as caught:
         load(text)
     assert str(caught.value.origin) == f"robot.urdf:{line}"
-    assert coded(caught.value) == code
+    assert named(caught.value) == code
 
 
 @pytest.mark.parametrize("mass", [1, 40])
 def test_an_inertia_without_a_moment_above_zero_is_an_error(mass):
     with pytest.raises(DescriptionError) as caught:
         load(with_part('<inertia ixx="-1" iyy="-1" izz="-1"/>', mass=mass))
-    assert coded(caught.value) == "inertia-impossible"
+    assert named(caught.value) == "inertia-impossible"
     assert caught.value.origin.line == 3
 
 

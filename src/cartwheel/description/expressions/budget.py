@@ -34,9 +34,18 @@ class ExpressionError(DescriptionError):
 
 
 class TooLargeError(ExpressionError):
-    """An expansion or a value that exceeds a limit."""
+    """An expansion or a value that exceeds a limit.
+
+    Args:
+        message: One sentence.
+        kind: What exceeds it, for programs.
+        most: The limit.
+    """
 
     code = EXPANSION_TOO_LARGE
+
+    def __init__(self, message: str, kind: str, most: float) -> None:
+        super().__init__(message, values={"kind": kind, "most": most})
 
 
 class Budget:
@@ -73,9 +82,17 @@ class Budget:
             ExpressionError: As `spend`.
         """
         if self._operations > MAX_OPERATIONS:
-            raise TooLargeError(f"the xacro file requires more than {MAX_OPERATIONS:,} operations")
+            raise TooLargeError(
+                f"the xacro file requires more than {MAX_OPERATIONS:,} operations",
+                "operations",
+                MAX_OPERATIONS,
+            )
         if time.thread_time() > self._end:
-            raise TooLargeError(f"the xacro file takes more than {self._seconds:g} s to expand")
+            raise TooLargeError(
+                f"the xacro file takes more than {self._seconds:g} s to expand",
+                "time",
+                self._seconds,
+            )
 
     def make(self, size: int) -> None:
         """Counts characters that were made.
@@ -85,7 +102,9 @@ class Budget:
         """
         self._total += size
         if self._total > MAX_TOTAL:
-            raise TooLargeError(f"the xacro file expands to more than {MAX_TOTAL:,} characters")
+            raise TooLargeError(
+                f"the xacro file expands to more than {MAX_TOTAL:,} characters", "memory", MAX_TOTAL
+            )
 
     def text(self, length: int) -> None:
         """Counts a text before it is made.
@@ -94,7 +113,9 @@ class Budget:
             ExpressionError: It is too long.
         """
         if length > MAX_CHARACTERS:
-            raise TooLargeError(f"the text has more than {MAX_CHARACTERS:,} characters")
+            raise TooLargeError(
+                f"the text has more than {MAX_CHARACTERS:,} characters", "text", MAX_CHARACTERS
+            )
         self.make(length)
 
     def items(self, count: int) -> None:
@@ -161,10 +182,14 @@ class Budget:
             if isinstance(each, str):
                 characters += len(each)
                 if characters > MAX_CHARACTERS:
-                    raise TooLargeError(f"the value has more than {MAX_CHARACTERS:,} characters")
+                    raise TooLargeError(
+                        f"the value has more than {MAX_CHARACTERS:,} characters",
+                        "value",
+                        MAX_CHARACTERS,
+                    )
                 continue
             if isinstance(each, self.opaque):
-                raise ExpressionError("a namespace is not a value")
+                raise ExpressionError("a namespace is not a value", values={"refused": "namespace"})
             if isinstance(each, dict):
                 count += 2 * len(each)
             elif isinstance(each, list | tuple | set | frozenset):
@@ -172,7 +197,9 @@ class Budget:
             else:
                 continue
             if count > MAX_ITEMS:
-                raise TooLargeError(f"the value has more than {MAX_ITEMS:,} items")
+                raise TooLargeError(
+                    f"the value has more than {MAX_ITEMS:,} items", "value", MAX_ITEMS
+                )
             if isinstance(each, dict):
                 left.extend(dict.keys(each))
                 left.extend(dict.values(each))
@@ -190,7 +217,7 @@ def room(count: int) -> None:
         ExpressionError: They are too many.
     """
     if count > MAX_ITEMS:
-        raise TooLargeError(f"the list has more than {MAX_ITEMS:,} items")
+        raise TooLargeError(f"the list has more than {MAX_ITEMS:,} items", "list", MAX_ITEMS)
 
 
 def bits(count: int) -> None:
@@ -200,4 +227,4 @@ def bits(count: int) -> None:
         ExpressionError: They are too many.
     """
     if count > MAX_BITS:
-        raise TooLargeError(f"the number has more than {MAX_BITS} bits")
+        raise TooLargeError(f"the number has more than {MAX_BITS} bits", "number", MAX_BITS)

@@ -130,7 +130,9 @@ def _range(evaluator: Evaluator, *args: Any) -> range:
 
 def _round(_: Evaluator, value: Any, ndigits: Any = None) -> Any:
     if isinstance(ndigits, int) and abs(ndigits) > 400:
-        raise ExpressionError("round() supports at most 400 digits")
+        raise ExpressionError(
+            "round() supports at most 400 digits", values={"kind": "round", "most": 400}
+        )
     return round(value, ndigits)
 
 
@@ -157,7 +159,10 @@ def _factorial(name: str) -> Function:
 
     def run(evaluator: Evaluator, *args: Any) -> Any:
         if any(isinstance(each, int) and abs(each) > MAX_FACTORIAL for each in args):
-            raise ExpressionError(f"math.{name} supports numbers up to {MAX_FACTORIAL}")
+            raise ExpressionError(
+                f"math.{name} supports numbers up to {MAX_FACTORIAL}",
+                values={"kind": f"math.{name}", "most": MAX_FACTORIAL},
+            )
         return evaluator.budget.result(plain(*args))
 
     return Function(name, run)

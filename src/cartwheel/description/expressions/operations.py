@@ -63,14 +63,19 @@ def remainder(budget: Budget, a: Any, b: Any) -> Any:
     """``a % b``: of numbers, or the values of a text with fields."""
     if isinstance(a, str):
         if _NESTED_KEY.search(a):
-            raise ExpressionError("the key of a format field contains a parenthesis")
+            raise ExpressionError(
+                "the key of a format field contains a parenthesis", values={"refused": "("}
+            )
         inside = budget.weigh(b)
         fields = width = 0
         for field in _FIELD.finditer(a):
             fields += 1
             sizes = (field["width"] or "", field["more"] or "")
             if "*" in sizes or any(len(size) > 4 or int(size or 0) > MAX_WIDTH for size in sizes):
-                raise ExpressionError(f"a format field is wider than {MAX_WIDTH} characters")
+                raise ExpressionError(
+                    f"a format field is wider than {MAX_WIDTH} characters",
+                    values={"kind": "field", "most": MAX_WIDTH},
+                )
             width += sum(int(size or 0) for size in sizes)
         budget.text((fields if isinstance(b, dict) else 1) * inside + fields + width)
     return budget.result(a % b)

@@ -77,13 +77,17 @@ class Evaluator:
             return found.run(self, *args, **named)
         if isinstance(found, _Lambda):
             if self._calls >= MAX_CALLS:
-                raise ExpressionError(f"lambda calls are nested more than {MAX_CALLS} deep")
+                raise ExpressionError(
+                    f"lambda calls are nested more than {MAX_CALLS} deep",
+                    values={"kind": "lambda", "most": MAX_CALLS},
+                )
             self._calls += 1
             try:
                 return found.run(args, named)
             finally:
                 self._calls -= 1
-        raise ExpressionError(f"a {type(called).__name__} cannot be called")
+        kind = type(called).__name__
+        raise ExpressionError(f"a {kind} cannot be called", values={"refused": kind})
 
     def method(self, value: Any, name: str, args: list[Any], named: dict[str, Any]) -> Any:
         """Calls a method of a value, or a function of a namespace."""
@@ -99,25 +103,32 @@ class Evaluator:
             return self.budget.result(known[name](self.budget, value, *args, **named))
         if isinstance(value, self.dotted) and not hasattr(dict, name):
             return self.call(self.attribute(value, name), args, named)
-        raise ExpressionError(
-            f"{type(value).__name__}.{name}() is not allowed in an expression",
+        raise not_allowed(
+            f"{type(value).__name__}.{name}()",
             hint=f"Allowed methods: {', '.join(sorted(known))}." if known else None,
         )
 
     def attribute(self, value: Any, name: str) -> Any:
         """An entry of a namespace, or of a dict that YAML made."""
         if name.startswith("_"):
-            raise ExpressionError(f'"{name}" is not allowed in an expression')
+            raise not_allowed(f'"{name}"')
         if isinstance(value, self.namespace):
             return _entry(value, name)
         if isinstance(value, self.dotted) and not hasattr(dict, name):
             return getattr(value, name)
         if isinstance(value, int | float | complex) and name in ("real", "imag"):
             return getattr(value, name)
-        raise ExpressionError(
-            f'"{type(value).__name__}.{name}" is not allowed in an expression',
+        raise not_allowed(
+            f'"{type(value).__name__}.{name}"',
             hint=f"Call it: .{name}(…)." if name in methods_of(value) else None,
         )
+
+
+def not_allowed(part: str, *, hint: str | None = None) -> ExpressionError:
+    """The error for a part that no expression may have; without its quotes it is a value."""
+    return ExpressionError(
+        f"{part} is not allowed in an expression", hint=hint, values={"refused": part.strip('"')}
+    )
 
 
 @dataclass(slots=True)
@@ -156,24 +167,32 @@ def _kept(text: str) -> _Code:
 
 def _compiled(text: str) -> _Code:
     if len(text) > MAX_LENGTH:
-        raise ExpressionError(f"the expression has more than {MAX_LENGTH} characters")
+        raise ExpressionError(
+            f"the expression has more than {MAX_LENGTH} characters",
+            values={"kind": "expression", "most": MAX_LENGTH},
+        )
     try:
         # Python warns on the terminal of what it finds odd. The filters are the process's.
         with _lock, warnings.catch_warnings():
             warnings.simplefilter("ignore")
             tree = compile(text, "<expression>", "eval", ast.PyCF_ONLY_AST, dont_inherit=True)
     except (MemoryError, RecursionError):
-        raise ExpressionError("the expression is nested too deeply") from None
+        raise ExpressionError(
+            "the expression is nested too deeply", values={"kind": "nesting"}
+        ) from None
     return _code(cast("ast.Expression", tree).body, 0)
 
 
 def _code(node: ast.expr, depth: int) -> _Code:
     if depth > MAX_NESTING:
-        raise ExpressionError(f"the expression is nested more than {MAX_NESTING} deep")
+        raise ExpressionError(
+            f"the expression is nested more than {MAX_NESTING} deep",
+            values={"kind": "nesting", "most": MAX_NESTING},
+        )
     make = _NODES.get(type(node))
     if make is None:
         what = _WORDS.get(type(node).__name__, type(node).__name__)
-        raise ExpressionError(f"{what} is not allowed in an expression")
+        raise not_allowed(what)
     return make(node, depth + 1)
 
 
@@ -186,7 +205,7 @@ _WORDS = {
 def _constant(node: ast.Constant, _: int) -> _Code:
     value = node.value
     if value is not None and not isinstance(value, str | int | float | complex):
-        raise ExpressionError(f"{value!r} is not allowed in an expression")
+        raise not_allowed(repr(value))
     if isinstance(value, int) and not isinstance(value, bool):
         bits(value.bit_length())
     return lambda _: value
@@ -195,7 +214,7 @@ def _constant(node: ast.Constant, _: int) -> _Code:
 def _name(node: ast.Name, _: int) -> _Code:
     name = node.id
     if name.startswith("__"):
-        raise ExpressionError(f'"{name}" is not allowed in an expression')
+        raise not_allowed(f'"{name}"')
 
     def run(scope: _Scope) -> Any:
         if scope.local and name in scope.local:
@@ -209,13 +228,13 @@ def _entry(names: Any, name: str) -> Any:
     try:
         return names[name]
     except KeyError:
-        raise NameError(f"name '{name}' is not defined") from None
+        raise NameError(f"name '{name}' is not defined", name=name) from None
 
 
 def _attribute(node: ast.Attribute, depth: int) -> _Code:
     inner, name = _code(node.value, depth), node.attr
     if name.startswith("_"):
-        raise ExpressionError(f'"{name}" is not allowed in an expression')
+        raise not_allowed(f'"{name}"')
     return lambda scope: scope.evaluator.attribute(inner(scope), name)
 
 
@@ -244,7 +263,7 @@ def _slice(node: ast.Slice, depth: int) -> _Code:
 def _binary(node: ast.BinOp, depth: int) -> _Code:
     operation = BINARY.get(type(node.op).__name__)
     if operation is None:
-        raise ExpressionError("the operator @ is not allowed in an expression")
+        raise not_allowed("the operator @")
     left, right = _code(node.left, depth), _code(node.right, depth)
     plain = FLOATS.get(type(node.op).__name__)
 
@@ -383,7 +402,7 @@ def _call(node: ast.Call, depth: int) -> _Code:
     if isinstance(node.func, ast.Attribute):
         inner, method = _code(node.func.value, depth), node.func.attr
         if method.startswith("_"):
-            raise ExpressionError(f'"{method}" is not allowed in an expression')
+            raise not_allowed(f'"{method}"')
         return lambda scope: scope.evaluator.method(
             inner(scope), method, items(scope), words(scope)
         )
@@ -394,7 +413,7 @@ def _call(node: ast.Call, depth: int) -> _Code:
 def _lambda(node: ast.Lambda, depth: int) -> _Code:
     given = node.args
     if given.vararg or given.kwarg or given.kwonlyargs:
-        raise ExpressionError("a lambda's * is not allowed in an expression")
+        raise not_allowed("a lambda's *")
     names = [each.arg for each in (*given.posonlyargs, *given.args)]
     defaults = [_code(each, depth) for each in given.defaults]
     body = _code(node.body, depth)
@@ -422,7 +441,7 @@ def _loop(
     """Runs `visit` for each round of nested loops; it appends to the list that is returned."""
     for loop in loops:
         if loop.is_async:
-            raise ExpressionError("async is not allowed in an expression")
+            raise not_allowed("async")
     parts = [
         (_target(each.target), _code(each.iter, depth), [_code(test, depth) for test in each.ifs])
         for each in loops
@@ -468,7 +487,9 @@ def _target(node: ast.expr) -> Callable[[_Scope, Any], None]:
                 target(scope, part)
 
         return spread
-    raise ExpressionError("only names can be assigned in an expression")
+    raise ExpressionError(
+        "only names can be assigned in an expression", values={"refused": "assignment"}
+    )
 
 
 def _comprehension(node: ast.ListComp | ast.GeneratorExp, depth: int) -> _Code:

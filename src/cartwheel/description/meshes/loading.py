@@ -62,7 +62,12 @@ def load_mesh(mesh: model.Mesh, *, origin: Origin | None = None) -> tuple[Submes
     """
     # Below and above these a single-precision coordinate is nothing, or without an end.
     if not all(1e-30 < abs(factor) < 1e30 for factor in mesh.scale):
-        raise MeshError(mesh.path, f"the scale {mesh.scale} reduces it to zero size", origin=origin)
+        raise MeshError(
+            mesh.path,
+            f"the scale {mesh.scale} reduces it to zero size",
+            origin=origin,
+            values={"scale": mesh.scale},
+        )
     submeshes = _loaded(mesh.path, origin).submeshes
     if mesh.submesh is not None:
         submeshes = _select(mesh, submeshes, origin)
@@ -125,6 +130,7 @@ def _select(
             origin=origin,
             hint=suggestion(mesh.submesh, known),
             meant=meant(mesh.submesh, known),
+            values={"submesh": mesh.submesh},
         )
     if not mesh.center_submesh:
         return chosen
@@ -139,7 +145,13 @@ def _loaded(path: Path, origin: Origin | None) -> _Loaded:
         return _read(path, status.st_mtime_ns, status.st_size)
     except MeshError as error:
         raise MeshError(
-            path, error.reason, code=error.code, origin=origin, hint=error.hint, meant=error.meant
+            path,
+            error.reason,
+            code=error.code,
+            origin=origin,
+            hint=error.hint,
+            meant=error.meant,
+            values=error.values,
         ) from error
     except FileNotFoundError:
         raise MeshError(path, "does not exist", code=FILE_MISSING, origin=origin) from None
@@ -158,12 +170,16 @@ def _read(path: Path, _mtime_ns: int, size: int) -> _Loaded:
             path,
             f'the format "{kind}" is not supported',
             hint=f"Convert it to a supported format: {known}.",
+            values={"format": kind},
         )
     if not size:
         raise MeshError(path, "is empty")
     if size > MOST_BYTES:
         raise MeshError(
-            path, f"is {size >> 20} MiB large; the limit is {MOST_BYTES >> 20} MiB", hint=_COARSER
+            path,
+            f"is {size >> 20} MiB large; the limit is {MOST_BYTES >> 20} MiB",
+            hint=_COARSER,
+            values={"bytes": size, "most": MOST_BYTES},
         )
     notes: list[str] = []
     try:
@@ -177,7 +193,10 @@ def _read(path: Path, _mtime_ns: int, size: int) -> _Loaded:
     count = sum(len(part.faces) for part in submeshes)
     if count > MOST_TRIANGLES:
         raise MeshError(
-            path, f"has {count} triangles; the limit is {MOST_TRIANGLES}", hint=_COARSER
+            path,
+            f"has {count} triangles; the limit is {MOST_TRIANGLES}",
+            hint=_COARSER,
+            values={"triangles": count, "most": MOST_TRIANGLES},
         )
     return _Loaded(tuple(submeshes), tuple(notes))
 

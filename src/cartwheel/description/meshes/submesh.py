@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -10,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cartwheel.codes.files import MESH_UNREADABLE
-from cartwheel.errors import Code, DescriptionError, Origin
+from cartwheel.errors import Code, DescriptionError, Origin, Value
 
 if TYPE_CHECKING:
     from cartwheel.description.model import Rgba
@@ -34,6 +35,7 @@ class MeshError(DescriptionError):
         origin: The element that names it.
         hint: The likely fix.
         meant: The submesh that was likely meant, where one is unknown.
+        values: What else the reason names, for programs.
     """
 
     code = MESH_UNREADABLE
@@ -47,6 +49,7 @@ class MeshError(DescriptionError):
         origin: Origin | None = None,
         hint: str | None = None,
         meant: str = "",
+        values: Mapping[str, Value] | None = None,
     ) -> None:
         self.path = path
         self.reason = reason
@@ -56,7 +59,7 @@ class MeshError(DescriptionError):
             code=code,
             origin=origin,
             hint=hint,
-            values={"kind": "mesh", "name": str(path), "meant": meant},
+            values={**(values or {}), "kind": "mesh", "name": str(path), "meant": meant},
         )
 
 

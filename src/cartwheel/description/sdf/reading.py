@@ -116,7 +116,7 @@ def _whole(node: Node, ctx: Context) -> Model:
             code=lacking.code,
             origin=lacking.origin,
             hint=f"Without it: {error.message}.",
-            values=lacking.values,
+            values={**lacking.values, "without": error.values.get("name")},
         ) from error
 
 
