@@ -1,1 +1,1 @@
-"""The gate before the page's and Foxglove's servers: who may connect is decided here."""
+"""Access control in front of the web viewer's and Foxglove's servers."""

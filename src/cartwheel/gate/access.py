@@ -1,4 +1,4 @@
-"""Who may connect: names of this server, origins of web pages, and the token."""
+"""Access rules: host names of this server, origins of web pages, and the token."""
 
 from __future__ import annotations
 
@@ -14,61 +14,61 @@ from cartwheel.errors import ControlError, Diagnostic
 from cartwheel.gate.listening import is_loopback, resolve
 
 PARAMETER = "token"
-"""Of the query of an address, where a token is needed."""
+"""Query parameter that contains the token."""
 _AUTHORITY = re.compile(r"(?P<name>[a-z0-9._-]+|\[[0-9a-f:.]+\])(?::(?P<port>\d{1,5}))?")
 _ORIGIN = re.compile(r"(?P<scheme>[a-z][a-z0-9+.-]*)://(?P<authority>[^/?#@\s]*)/?")
 _PORTS = {"http": "80", "https": "443"}
 _ANY = {"": "127.0.0.1", "0.0.0.0": "127.0.0.1", "::": "::1"}  # noqa: S104
-"""All addresses of this computer, and the one that it reaches itself by."""
+"""Wildcard addresses, and the loopback address that reaches each of them."""
 _TOKEN_BYTES = 24
 _NOBODY = ("null", "")
-"""Origins that name no site."""
+"""Origins that do not identify a site."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Asked:
-    """What a request says of itself."""
+    """The parts of a request that the rules examine."""
 
     target: str
     """Path and query."""
     host: str
     origin: str | None
-    """Of the web page that asks; None where no browser says one."""
+    """Origin of the requesting web page. None if the request has no such header."""
     cookies: str = ""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Refusal:
-    """Why a request is not let through."""
+    """Why a request is refused."""
 
     status: int
-    """Of HTTP."""
+    """HTTP status."""
     text: str
-    """For whoever asked."""
+    """Response body for the client."""
     origin: str | None = None
-    """The web page's, where that was the reason."""
+    """Origin of the web page, if the origin is the reason."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Access:
-    """The rules of a run, the same for its page and for Foxglove.
+    """Access rules of a run, which the web viewer and Foxglove share.
 
-    On a loopback address whoever has an account on this computer may connect. On others a token
-    is needed as well.
+    On a loopback address, any user of this computer may connect. On other addresses, clients
+    also need a token.
     """
 
     host: str
-    """That the servers listen on, as the user wrote it."""
+    """Host that the servers listen on, as the user specified it."""
     origins: tuple[str, ...] = ()
-    """Of web pages that may connect beside the server's own."""
+    """Origins of additional web pages that may connect."""
     token: str | None = field(default=None, repr=False)
 
     @classmethod
     def of(cls, host: str, origins: Sequence[str] = ()) -> Access:
-        """The rules for an address; with a new token where other computers reach it.
+        """Rules for an address, with a new token if other computers can reach the address.
 
         Raises:
-            ControlError: `host` is unknown, or one of `origins` is malformed.
+            ControlError: `host` cannot be resolved, or one of `origins` is malformed.
         """
         try:
             _, (address, _) = resolve(host, 0)
@@ -90,12 +90,12 @@ class Access:
         return self.token is not None
 
     def url(self, scheme: str, port: int, *, elsewhere: bool = False) -> str:
-        """The address of a server, with the token where one is needed.
+        """URL of a server, with the token if one is required.
 
         Args:
-            scheme: http or ws.
-            port: That the server listens on.
-            elsewhere: As other computers know it; else as this one does.
+            scheme: ``http`` or ``ws``.
+            port: Port of the server.
+            elsewhere: Whether the URL is for other computers instead of this one.
         """
         host = _ANY.get(self.host, self.host)
         if elsewhere and self.host in _ANY:
@@ -106,12 +106,12 @@ class Access:
         return f"{scheme}://{host}:{port}{query}"
 
     def refusal(self, asked: Asked, *, apps: Iterable[str] = (), cookie: str) -> Refusal | None:
-        """Why a request is refused; None where it is let through.
+        """Why a request is refused; None if it is allowed.
 
         Args:
             asked: The request.
-            apps: Origins of programs that may use this server beside its own pages.
-            cookie: Name of the cookie that holds the token.
+            apps: Origins of programs that may use this server, in addition to its own pages.
+            cookie: Name of the cookie that contains the token.
         """
         host = asked.host.lower()
         if not self._knows(host):
@@ -137,13 +137,13 @@ class Access:
         return None
 
     def has_token_in_query(self, target: str) -> bool:
-        """Whether a request brings the token in its address."""
+        """Whether the query of a request contains the token."""
         if self.token is None:
             return False
         return any(_equal(value, self.token) for value in _tokens(target))
 
     def _knows(self, host: str) -> bool:
-        """Against DNS rebinding: a foreign name that is made to stand for our address."""
+        """Whether the host name belongs to this server. Prevents DNS rebinding."""
         match = _AUTHORITY.fullmatch(host)
         if match is None:
             return False
@@ -154,13 +154,13 @@ class Access:
             origin.partition("://")[2] for origin in self.origins
         ):
             return True
-        # No name server can make an address stand for another one, so any will do there.
+        # DNS cannot redirect a numeric address, so any numeric address is safe here.
         return self.is_open and (_is_address(name.strip("[]")) or name in _own_names())
 
     def _admits(self, origin: str, host: str, apps: Iterable[str]) -> bool:
         if origin in self.origins or origin in apps:
             return True
-        # The page is the server's own where it came from the very address that is asked now.
+        # A page belongs to this server if its origin is the address in the request.
         return origin in (f"{scheme}://{host}" for scheme in _PORTS)
 
     def _has_token(self, asked: Asked, cookie: str) -> bool:
@@ -171,11 +171,11 @@ class Access:
 
 
 def refused_page(title: str, origin: str) -> Diagnostic:
-    """What the user should know of a web page that was refused.
+    """Diagnostic for a web page that was refused.
 
     Args:
-        title: Of the server.
-        origin: The page's, safe to print.
+        title: Name of the server.
+        origin: Origin of the page, safe to print.
     """
     hint = "" if origin in _NOBODY else f"To allow it: --allow-origin {origin}"
     message = f"{title} rejected a web page from the origin {origin or '(empty)'}"
@@ -183,7 +183,7 @@ def refused_page(title: str, origin: str) -> Diagnostic:
 
 
 def without_token(target: str) -> str:
-    """A request's path and query as the server behind sees it."""
+    """Path and query of a request without the token, for the server behind."""
     path, _, query = target.partition("?")
     kept = [(name, value) for name, value in _pairs(query) if name != PARAMETER]
     return f"{path}?{urlencode(kept)}" if kept else path
@@ -199,7 +199,7 @@ def _pairs(query: str) -> list[tuple[str, str]]:
 
 
 def _new_token() -> str:
-    # Some ms that a run on loopback does not spend; so is the next.
+    # This import takes some ms, which a run on loopback saves. The same holds for hmac.
     import secrets
 
     return secrets.token_urlsafe(_TOKEN_BYTES)
@@ -226,10 +226,10 @@ def _own_names() -> set[str]:
 
 
 def _normal_origin(text: str) -> str:
-    """An origin as browsers write it.
+    """Origin in the form that browsers send.
 
     Raises:
-        ControlError: It is not one.
+        ControlError: The text is not an origin.
     """
     match = _ORIGIN.fullmatch(text.strip().lower())
     if match is None or bool(match["authority"]) == (match["scheme"] == "file"):

@@ -1,4 +1,4 @@
-"""What a client sends through a websocket, seen on its way to the server."""
+"""Filter for the websocket messages of a client on their way to the server."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ from collections.abc import Callable
 
 _LARGEST_TEXT = 1 << 20
 _LARGEST = 16 << 20
-"""Bytes of a message that is not text: a request with a whole description."""
+"""Maximum size in bytes of a binary message: a request with a complete robot description."""
 _ALL = 64 << 20
-"""Bytes of incomplete messages of all clients: the server behind holds them."""
+"""Maximum bytes of incomplete messages of all clients, which the server behind buffers."""
 _FULL = f"incomplete messages of all clients exceed {_ALL >> 20} MiB, and this one is the oldest"
 _TEXT, _CONTROL = 1, 8
 _LARGEST_CONTROL = 125
@@ -18,10 +18,10 @@ Passes = Callable[[bytes], bool]
 
 
 class Room:
-    """Bytes of incomplete messages, of all clients of a server together.
+    """Byte budget for incomplete messages, shared by all clients of a server.
 
-    If they are full, the client whose message began first is disconnected: otherwise a few idle
-    clients with incomplete messages would keep all others from sending.
+    When the budget is used up, the client whose message began first is disconnected.
+    Otherwise a few idle clients with incomplete messages would block all others.
     """
 
     def __init__(self, most: int = _ALL) -> None:
@@ -30,8 +30,10 @@ class Room:
         """Bytes of each incomplete message, in the order in which the messages began."""
 
     def take(self, holder: Frames, size: int) -> None:
-        """Raises:
-        FrameError: The holder's own message is the first that has to go.
+        """Reserves bytes for a holder's incomplete message.
+
+        Raises:
+            FrameError: The budget is used up, and the holder's own message is the oldest.
         """
         while size > self._left:
             oldest = next(iter(self._held), holder)
@@ -43,26 +45,26 @@ class Room:
         self._held[holder] = self._held.get(holder, 0) + size
 
     def give_back(self, holder: Frames) -> None:
-        """The message of a holder is complete, or its client is disconnected."""
+        """Releases the bytes of a holder whose message is complete, or whose client is gone."""
         self._left += self._held.pop(holder, 0)
 
 
 class FrameError(Exception):
-    """What a client sent is no frame, or part of a message that is too large."""
+    """A client sent a malformed frame, or a message that is too large."""
 
 
 class Frames:
-    """Holds each text of a client until it is complete and judged; the rest passes at once.
+    """Holds each text message until it is complete and checked. All else passes at once.
 
-    The server behind checks the frames themselves; what counts here is only where they end.
+    The server behind validates the frames. This class only finds where frames end.
 
     Args:
-        passes: Whether the server behind gets a text.
-        room: For incomplete messages.
-        disconnect: Called if the room is needed for the messages of other clients.
+        passes: Whether to forward a text message to the server behind.
+        room: Byte budget for incomplete messages.
+        disconnect: Called if other clients need the budget.
 
     Attributes:
-        fault: Why the client has to be disconnected; empty as long as it may stay.
+        fault: Why the client must be disconnected; empty if there is no reason.
     """
 
     def __init__(self, passes: Passes, room: Room, disconnect: Callable[[], object]) -> None:
@@ -72,35 +74,35 @@ class Frames:
         self._disconnect = disconnect
         self._head = bytearray()
         self._left = 0
-        """Bytes of the current frame that are still to come."""
+        """Remaining bytes of the current frame."""
         self._is_open = False
-        """Whether a message has begun and not ended."""
+        """Whether a message has begun but not ended."""
         self._is_text = False
         """Whether the current message is text."""
         self._is_held = False
-        """Whether the current frame is part of a text."""
+        """Whether the current frame belongs to a text message."""
         self._is_last = False
         self._is_control = False
         self._mask = b""
         self._turn = 0
-        """Place in the mask."""
+        """Offset into the mask."""
         self._held = bytearray()
-        """Frames of the current text as they came."""
+        """Received frames of the current text message."""
         self._text = bytearray()
         self._size = 0
-        """Bytes of the current message."""
+        """Size of the current message in bytes."""
 
     def close(self) -> None:
-        """The client has gone."""
+        """Releases the byte budget of the client."""
         self._room.give_back(self)
 
     def evict(self) -> None:
-        """Disconnects the client: others need the room of its incomplete message."""
+        """Disconnects the client, because other clients need its share of the budget."""
         self.fault = _FULL
         self._disconnect()
 
     def feed(self, data: memoryview) -> bytes:
-        """What the server behind gets now.
+        """Processes received bytes, and returns the bytes to forward to the server.
 
         Raises:
             FrameError: A message is too large, or its frames are malformed.
@@ -130,7 +132,7 @@ class Frames:
         return bytes(out)
 
     def _begin(self, data: memoryview, out: bytearray) -> memoryview:
-        """Takes the head of a frame, once all of it is there."""
+        """Reads the header of a frame once it is complete. Returns the remaining data."""
         head = self._head
         missing = _head_size(head) - len(head)
         head += data[:missing]
@@ -152,7 +154,7 @@ class Frames:
             raise FrameError("a frame starts or continues a message out of sequence")
         elif kind:
             self._is_open, self._is_text, self._size = True, kind == _TEXT, 0
-        # The heads count as well: there may be any number of frames without content.
+        # Headers count as well, because a message may consist of any number of empty frames.
         self._size += length + len(head)
         most = _LARGEST_TEXT if self._is_text else _LARGEST
         if self._size > most:
@@ -169,7 +171,7 @@ class Frames:
         return data
 
     def _end(self, out: bytearray) -> None:
-        """The current frame is complete."""
+        """Handles the end of the current frame."""
         if self._is_control or not self._is_last:
             return
         self.close()
@@ -193,7 +195,7 @@ class Frames:
 
 
 def _head_size(head: bytearray) -> int:
-    """Bytes of a frame's head, as far as is known."""
+    """Size of a frame's header in bytes, as far as it is known."""
     if len(head) < 2:
         return 2
     return 2 + {126: 2, 127: 8}.get(head[1] & 127, 0) + (4 if head[1] & 128 else 0)

@@ -1,4 +1,4 @@
-"""A door in front of a server: it reads a request, judges it, and only then lets bytes through."""
+"""A reverse proxy that checks each request before it forwards bytes to the server."""
 
 from __future__ import annotations
 
@@ -20,65 +20,68 @@ from cartwheel.gate.relay import relay
 from cartwheel.gate.request import HEAD_SIZE, Request, RequestError, next_event, read_request
 
 MOST_WAITING = 128
-"""Connections whose request is not read yet; the oldest goes when another one comes."""
+"""Maximum number of connections whose request is incomplete. A new one replaces the oldest."""
 MOST_ADMITTED = 64
-"""Connections to the server behind."""
+"""Maximum number of connections to the server behind."""
 _HEAD_SECONDS = 10.0
-"""For a request's head, for the connection to the server behind, and for its answer's head."""
+"""Timeout for the request's header, for connecting to the server, and for the response's
+header."""
 _STALL_SECONDS = 60.0
-"""For a client to take a piece of an answer."""
+"""Timeout for a client to receive a piece of a response."""
 _FAREWELL_SECONDS = 1.0
-"""In which a client whose request is refused may still send; else it never sees the answer."""
+"""Time for which a refused client may still send. Without it, it may never see the response."""
 _END_SECONDS = 2.0
-"""For all connections to end."""
+"""Timeout for closing all connections."""
 _ACCEPT_PAUSE = 0.1
-"""s until the next try where no connection could be accepted."""
+"""Pause in s after a connection could not be accepted."""
 _INNER_BUFFER = 1 << 18
-"""Bytes of the system's for what the server behind sends: what its client does not take must
-wait with the server, which drops what is old."""
+"""Receive buffer in bytes for the server's messages. Messages that the client does not
+receive must wait in the server, which drops old messages."""
 _SHOWN = 20
 _SHOWN_LENGTH = 100
 _WEBSOCKET = (b"upgrade", b"connection", b"sec-websocket")
 _CONTENT = (b"content-type", b"content-length", b"content-encoding")
-"""Headers of answers that clients get."""
+"""Response headers that are passed to clients."""
 _ENTRANCE = (
     b'<!doctype html><meta charset="utf-8"><meta http-equiv="refresh" content="0;url=/">'
     b'<title>Cartwheel</title><a href="/">Continue</a>'
 )
-"""Leads to the address without the token. A redirection would not do: a browser that was led
-here by another site would not send the cookie along with it."""
+"""Leads to the address without the token. A redirect does not work: a browser that followed a
+link from a different site would not send the cookie with the redirected request."""
 _KEEP_ALIVE = {"TCP_KEEPIDLE": 60, "TCP_KEEPINTVL": 20, "TCP_KEEPCNT": 3}
-"""s, s and probes until a peer that vanished is given up."""
+"""Idle time in s, interval in s, and number of probes until a vanished peer is disconnected."""
 
 Refused = Callable[[str], None]
 
 
 class Client(Protocol):
-    """One client of a server, for as long as it is connected."""
+    """A connected client of a server."""
 
     def passes(self, text: bytes) -> bool:
-        """Whether the server gets a text that it sent; on the gate's thread."""
+        """Whether to forward a text message of the client. Called on the gate's thread."""
 
     def broke(self, fault: str) -> None:
-        """It is disconnected because of what it sent; on the gate's thread."""
+        """Called on the gate's thread when the client is disconnected because of its messages."""
 
     def end(self) -> None:
-        """It has gone; on the gate's thread."""
+        """Called on the gate's thread when the client has disconnected."""
 
 
 class Gate:
-    """Hands on what `access` lets through to the server behind.
+    """Forwards requests that `access` allows to the server behind.
 
-    A connection carries one request. It is read whole before the server behind hears of it, and
-    is written anew for it. Behind a websocket's handshake bytes pass as they are.
+    A connection carries one request. The gate reads it completely, and writes a new request for
+    the server. After a websocket handshake, bytes are forwarded unchanged, except for text
+    messages
+    that `client` rejects.
 
     Args:
-        listener: Where clients come; it is the gate's from now on.
-        access: The rules.
+        listener: Listening socket, which the gate owns from now on.
+        access: Access rules.
         server: Address of the server behind.
-        apps: Origins of programs that may connect beside the server's own pages.
-        refused: Takes a line about each origin that is refused; on the gate's thread.
-        client: Makes what judges the texts of a new client; None lets all texts pass.
+        apps: Origins of programs that may connect, in addition to the server's own pages.
+        refused: Called on the gate's thread with each refused origin.
+        client: Creates the object that checks a new client's text messages. None allows all.
     """
 
     def __init__(
@@ -108,20 +111,20 @@ class Gate:
         self._ended = threading.Event()
 
     def peer(self, port: int) -> str | None:
-        """The client behind a connection that reaches the server from a port."""
+        """Address of the client whose connection reaches the server from this port."""
         return self._peers[port][0] if port in self._peers else None
 
     def cookie(self, port: int, name: str) -> str:
-        """A cookie of that client, empty if it has none; its text is not checked."""
+        """Cookie of the client on this port; empty if absent. The content is not validated."""
         _, cookies = self._peers.get(port, ("", ""))
         pairs = (pair.strip().partition("=") for pair in cookies.split(";"))
         return next((value for found, _, value in pairs if found == name), "")
 
     def start(self, loop: asyncio.AbstractEventLoop | None = None) -> None:
-        """Begins to accept connections.
+        """Starts to accept connections.
 
         Args:
-            loop: That runs, to work on; None makes one on a thread of its own.
+            loop: Running event loop to use. None creates a loop in a separate thread.
         """
         if loop is None:
             loop = self._own_loop = asyncio.new_event_loop()
@@ -129,7 +132,7 @@ class Gate:
         self._serving = asyncio.run_coroutine_threadsafe(self._serve(), loop)
 
     def close(self) -> None:
-        """Ends all connections; from any thread but the loop's."""
+        """Closes all connections. Callable on any thread except the event loop's."""
         if self._serving is None:
             self._listener.close()
             return
@@ -138,7 +141,7 @@ class Gate:
         if self._own_loop is not None:
             self._own_loop.call_soon_threadsafe(self._own_loop.stop)
 
-    # -- on the loop
+    # -- on the event loop's thread
 
     async def _serve(self) -> None:
         loop = asyncio.get_running_loop()
@@ -148,7 +151,7 @@ class Gate:
                 try:
                     sock, address = await loop.sock_accept(self._listener)
                 except OSError:
-                    # No file is free, or the client is gone already.
+                    # No file descriptor is free, or the client has already disconnected.
                     await asyncio.sleep(_ACCEPT_PAUSE)
                     continue
                 task = loop.create_task(self._handle(sock, address))
@@ -167,7 +170,7 @@ class Gate:
     def _forget(
         self, task: asyncio.Task[None], sock: socket.socket, tasks: set[asyncio.Task[None]]
     ) -> None:
-        """Also of one that was cancelled before it began."""
+        """Closes the socket, even if the task was cancelled before it started."""
         sock.close()
         tasks.discard(task)
         self._waiting.pop(task, None)
@@ -198,7 +201,8 @@ class Gate:
             text = f"{MOST_ADMITTED} connections are already open"
             return Refusal(status=503, text=text)
         if found is not None and found.origin is not None:
-            # A stranger's text: it may hold anything, and be as long as a head.
+            # The origin comes from the client: it may contain anything, and be as long as the
+            # header.
             origin = ascii(found.origin)[1:-1][:_SHOWN_LENGTH]
             if self._once.allows(origin):
                 self._refused(origin)
@@ -246,15 +250,15 @@ class Gate:
 
 
 def _canceller() -> Callable[[], object]:
-    """Ends the task that calls this, and with it a connection."""
+    """Returns a function that cancels the calling task, which closes its connection."""
     return asyncio.current_task().cancel  # type: ignore[union-attr]
 
 
 async def _begin(sock: socket.socket, server: socket.socket, request: Request) -> bytes | None:
-    """Hands on a request and its answer.
+    """Forwards a request and its response.
 
     Returns:
-        What the client sent behind a websocket's handshake; None after any other answer.
+        Bytes that the client sent after a websocket handshake; None after any other response.
     """
     loop = asyncio.get_running_loop()
     inner = h11.Connection(h11.CLIENT, max_incomplete_event_size=HEAD_SIZE)
@@ -287,12 +291,12 @@ async def _send(request: Request, sock: socket.socket, event: h11.Event, more: b
 
 
 def _protected(host: str) -> list[tuple[bytes, bytes]]:
-    """Headers with which a browser holds foreign pages off, and the page to its own server.
+    """Headers that keep out foreign web pages, and restrict the page to its own server.
 
-    viser's client connects to any server that a link to the page names, and runs its scripts.
+    Otherwise viser's client connects to any server in the page's URL, and runs its scripts.
 
     Args:
-        host: This server, as the browser knows it.
+        host: This server's host name in the browser.
     """
     policy = f"connect-src 'self' ws://{host} wss://{host} data: blob:; frame-ancestors 'self'"
     return [
@@ -304,7 +308,7 @@ def _protected(host: str) -> list[tuple[bytes, bytes]]:
 
 
 async def _let_in(request: Request, sock: socket.socket, cookie: str) -> None:
-    """Answers the address with the token: the browser keeps it, and goes on without."""
+    """Responds to a URL with the token: the browser stores the token and opens the bare URL."""
     headers = [
         (b"Content-Type", b"text/html; charset=utf-8"),
         (b"Content-Length", str(len(_ENTRANCE)).encode()),
@@ -317,7 +321,7 @@ async def _let_in(request: Request, sock: socket.socket, cookie: str) -> None:
 
 
 async def _refuse(sock: socket.socket, refusal: Refusal) -> None:
-    """Answers whatever was asked."""
+    """Responds with a refusal, whatever the request was."""
     loop = asyncio.get_running_loop()
     text = f"{refusal.text}\n".encode(errors="replace")
     head = (
@@ -334,10 +338,10 @@ async def _refuse(sock: socket.socket, refusal: Refusal) -> None:
 
 
 def _prepare(sock: socket.socket) -> None:
-    """A client that vanishes without a word is given up; small messages go at once."""
+    """Sets socket options: detect vanished peers, and send small messages at once."""
     sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
     sock.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)
     for name, value in _KEEP_ALIVE.items():
-        # Not every system has each of them.
+        # Some systems lack some of these options.
         if hasattr(socket, name):
             sock.setsockopt(socket.IPPROTO_TCP, getattr(socket, name), value)

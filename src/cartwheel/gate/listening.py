@@ -1,4 +1,4 @@
-"""Sockets to listen on, and addresses that nobody can guess."""
+"""Listening sockets, and addresses that cannot be guessed."""
 
 from __future__ import annotations
 
@@ -9,24 +9,24 @@ from cartwheel.codes.wires import ADDRESS_UNAVAILABLE
 from cartwheel.errors import ControlError
 
 BACKLOG = 128
-"""Connections that the system holds until they are accepted."""
+"""Maximum number of connections that wait to be accepted."""
 
 
 def resolve(host: str, port: int) -> tuple[socket.AddressFamily, tuple[str, int]]:
-    """The address that a name stands for; IPv4 first, as ``localhost`` is both.
+    """Address of a host name. IPv4 takes precedence, because ``localhost`` has both.
 
     Args:
-        host: Name or address; empty for all of this computer's.
+        host: Name or address; empty for all addresses of this computer.
         port: 0 to 65535.
 
     Raises:
-        OSError: The name is unknown, or the port out of range.
+        OSError: The name is unknown, or the port is out of range.
     """
     if not 0 <= port <= 65535:
         raise OSError(f"port {port} is not between 0 and 65535")
-    name = host or "0.0.0.0"  # noqa: S104 - the user's own words
+    name = host or "0.0.0.0"  # noqa: S104 - the user chose this address
     found = socket.getaddrinfo(
-        # As bytes: for a text Python loads its tables of other alphabets, which takes ms.
+        # As bytes: for a str, Python loads its IDNA tables, which takes several ms.
         name.encode() if name.isascii() else name,
         port,
         type=socket.SOCK_STREAM,
@@ -37,16 +37,16 @@ def resolve(host: str, port: int) -> tuple[socket.AddressFamily, tuple[str, int]
 
 
 def listen(host: str, port: int, *, title: str, option: str) -> socket.socket:
-    """A socket that listens, and does not block.
+    """Creates a non-blocking listening socket.
 
     Args:
-        host: Name or address; empty for all of this computer's.
-        port: 0 takes any that is free.
-        title: Of the server, for the error.
-        option: Of the command line that chooses the port.
+        host: Name or address; empty for all addresses of this computer.
+        port: 0 chooses a free port.
+        title: Name of the server, for errors.
+        option: Command-line option that sets the port, for errors.
 
     Raises:
-        ControlError: The address cannot be had.
+        ControlError: The address is not available.
     """
     try:
         made = bound(host, port)
@@ -62,10 +62,10 @@ def listen(host: str, port: int, *, title: str, option: str) -> socket.socket:
 
 
 def bound(host: str, port: int) -> socket.socket:
-    """A socket that listens.
+    """Creates a listening socket.
 
     Raises:
-        OSError: The address cannot be had.
+        OSError: The address is not available.
     """
     family, address = resolve(host, port)
     return socket.create_server(
@@ -77,7 +77,7 @@ def bound(host: str, port: int) -> socket.socket:
 
 
 def is_loopback(address: str) -> bool:
-    """Whether an address, without brackets or port, is one that only this computer reaches."""
+    """Whether an address without brackets or port is reachable only from this computer."""
     try:
         return ipaddress.ip_address(address).is_loopback
     except ValueError:
@@ -87,8 +87,8 @@ def is_loopback(address: str) -> bool:
 def hidden_host() -> str:
     """A loopback address for a server behind a gate.
 
-    A web page can try any port of 127.0.0.1, but not 16 million addresses with 28,000 ports each:
-    the system chooses the port. Where a system has no other loopback address (macOS), this is
+    A web page can try all ports of 127.0.0.1, but not 16 million addresses with 28,000 ports
+    each. The system chooses the port. On systems with a single loopback address (macOS), this is
     127.0.0.1.
     """
     import secrets

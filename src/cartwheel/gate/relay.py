@@ -1,4 +1,4 @@
-"""Bytes between two connections, in both directions, until both have ended."""
+"""Forwards bytes between two connections in both directions until both directions end."""
 
 from __future__ import annotations
 
@@ -9,18 +9,18 @@ import socket
 from cartwheel.gate.frames import FrameError, Frames
 
 CHUNK = 1 << 18
-"""Bytes that are held for each direction, and no more: a slow reader holds up the sender."""
+"""Buffer size in bytes per direction. A slow receiver therefore slows down the sender."""
 _LINGER = 10.0
-"""s that one direction may go on once the other has ended."""
+"""Time in s for which one direction may continue after the other direction has ended."""
 
 
 async def relay(one: socket.socket, other: socket.socket, frames: Frames | None = None) -> None:
-    """Copies until both directions have ended, or one breaks.
+    """Copies until both directions have ended, or one fails.
 
     Args:
         one: Connection to a client.
         other: Connection to a server.
-        frames: Looks at what the client sends; an error of it ends both directions.
+        frames: Filters the client's messages. Its errors end both directions.
     """
     pipes = [_Pipe(one, other, frames), _Pipe(other, one)]
     ends = [pipe.ended for pipe in pipes]
@@ -34,12 +34,12 @@ async def relay(one: socket.socket, other: socket.socket, frames: Frames | None 
 
 
 class _Pipe:
-    """One direction. It works in the loop's callbacks: a task for each piece takes twice the time.
+    """One direction. It uses event loop callbacks, because a task per piece takes twice as long.
 
     Args:
-        source: Read from; neither blocks.
-        target: Written to.
-        frames: Chooses what is written.
+        source: Non-blocking socket to read from.
+        target: Non-blocking socket to write to.
+        frames: Filters the bytes.
     """
 
     def __init__(
@@ -52,11 +52,11 @@ class _Pipe:
         self._rest = memoryview(b"")
         self._frames = frames
         self.ended: asyncio.Future[Exception | None] = self._loop.create_future()
-        """The error with which it broke, where it did."""
+        """The error that ended this direction, or None."""
         self._loop.add_reader(source, self._read)
 
     def close(self) -> None:
-        """Copies nothing from now on."""
+        """Stops copying."""
         self._loop.remove_reader(self._source)
         self._loop.remove_writer(self._target)
         self.ended.cancel()
@@ -85,7 +85,7 @@ class _Pipe:
             self._loop.add_writer(self._target, self._go_on)
 
     def _go_on(self) -> None:
-        """The target takes more."""
+        """Called when the target accepts more bytes."""
         self._write()
         if not self._rest and not self.ended.done():
             self._loop.remove_writer(self._target)

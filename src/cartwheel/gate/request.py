@@ -1,4 +1,4 @@
-"""One request: its head is read and checked as HTTP demands, and written anew for the server."""
+"""A single HTTP request: the header is read, validated, and rewritten for the server."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import h11
 from cartwheel.gate.access import Asked, without_token
 
 HEAD_SIZE = 16_384
-"""Bytes of a head, of a request or of an answer."""
+"""Maximum size in bytes of a request or response header."""
 CHUNK = 1 << 16
 _PASSED = (
     b"accept-encoding",
@@ -22,15 +22,15 @@ _PASSED = (
     b"sec-websocket-extensions",
     b"user-agent",
 )
-"""What the servers behind may read; all else, whatever it means to them, stays here."""
+"""Headers that are forwarded to the server behind. All others are removed."""
 
 
 class RequestError(Exception):
-    """A request that nobody needs to send.
+    """A request that legitimate clients do not send.
 
     Args:
-        status: Of the answer.
-        text: What is wrong.
+        status: HTTP status of the response.
+        text: Problem description.
     """
 
     def __init__(self, status: HTTPStatus, text: str) -> None:
@@ -40,21 +40,21 @@ class RequestError(Exception):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Request:
-    """A request that is well formed."""
+    """A valid request."""
 
     asked: Asked
     upgrades: bool
-    """Whether it asks for a websocket."""
+    """Whether the request is a websocket handshake."""
     headers: list[tuple[bytes, bytes]]
-    """Those that are passed on."""
+    """Headers to forward."""
     connection: h11.Connection
-    """The server's side of it, to answer with."""
+    """Server side of the connection, which writes the response."""
 
     def forwarded(self, host: str) -> h11.Request:
-        """What the server behind gets.
+        """The request for the server behind.
 
         Args:
-            host: The server's name.
+            host: Host name of the server behind.
         """
         headers = [(b"host", host.encode()), *self.headers]
         if self.upgrades:
@@ -65,12 +65,12 @@ class Request:
 
 
 async def read_request(sock: socket.socket) -> Request:
-    """Reads the head of a connection's only request.
+    """Reads the header of a connection's only request.
 
     Raises:
-        RequestError: It is malformed, too large, or of a kind that no server behind answers.
-        EOFError: The connection ended before.
-        OSError: The connection broke.
+        RequestError: The request is malformed, too large, or of a kind that no server supports.
+        EOFError: The connection closed before the end of the header.
+        OSError: The connection failed.
     """
     connection = h11.Connection(h11.SERVER, max_incomplete_event_size=HEAD_SIZE)
     try:
@@ -83,12 +83,12 @@ async def read_request(sock: socket.socket) -> Request:
 
 
 async def next_event(connection: h11.Connection, sock: socket.socket) -> h11.Event:
-    """What comes next on a connection.
+    """Returns the next event of a connection.
 
     Raises:
-        EOFError: It ended amid something.
-        OSError: It broke.
-        h11.RemoteProtocolError: It is not HTTP.
+        EOFError: The connection closed in the middle of an event.
+        OSError: The connection failed.
+        h11.RemoteProtocolError: The data is not valid HTTP.
     """
     loop = asyncio.get_running_loop()
     while (event := connection.next_event()) is h11.NEED_DATA:
@@ -102,7 +102,7 @@ async def next_event(connection: h11.Connection, sock: socket.socket) -> h11.Eve
 
 
 def _checked(event: h11.Request, connection: h11.Connection) -> Request:
-    # h11 bounds only a head that is not complete yet.
+    # h11 limits only headers that are still incomplete.
     size = len(event.target) + sum(len(name) + len(value) + 4 for name, value in event.headers)
     if size > HEAD_SIZE:
         status = HTTPStatus.REQUEST_HEADER_FIELDS_TOO_LARGE
@@ -111,7 +111,7 @@ def _checked(event: h11.Request, connection: h11.Connection) -> Request:
         raise RequestError(HTTPStatus.HTTP_VERSION_NOT_SUPPORTED, "only HTTP/1 is supported")
     if event.method != b"GET":
         raise RequestError(HTTPStatus.METHOD_NOT_ALLOWED, "only GET is supported")
-    # Not an address in full: then two would say which server is meant.
+    # An absolute URL is not accepted, because it and the Host header may name different servers.
     if not event.target.startswith(b"/"):
         raise RequestError(HTTPStatus.BAD_REQUEST, "the target must be a path")
     names = [name for name, _ in event.headers]
@@ -123,7 +123,7 @@ def _checked(event: h11.Request, connection: h11.Connection) -> Request:
     found = {name: value.decode("latin-1") for name, value in event.headers}
     if b"host" not in found:
         raise RequestError(HTTPStatus.BAD_REQUEST, "the host header is missing")
-    # The end of the request: from then on a websocket may begin.
+    # Consume the end of the request. A websocket may begin after it.
     connection.next_event()
     return Request(
         asked=Asked(

@@ -1,4 +1,4 @@
-"""Topics, services and actions in process."""
+"""Topics, services, actions and parameters within the process."""
 
 from cartwheel.graph.action import Action, ActionListener, Goal, GoalState
 from cartwheel.graph.actionlib import ActionTopics

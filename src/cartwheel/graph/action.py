@@ -1,7 +1,7 @@
-"""Actions in one process: goals that take time, can be called off, and end in a result.
+"""Actions within the process: long-running goals that can be cancelled and end with a result.
 
-Whoever works at the goals makes an `Action`; the forms that actions have on a wire (ROS 1's
-topics, ROS 2's services) are `ActionListener`s of it. All of it is for the owner's thread.
+A server creates an `Action` and works on its goals. Each wire format (the topics of ROS 1, the
+services of ROS 2) is an `ActionListener` of this action. Call everything on the owner's thread.
 """
 
 from __future__ import annotations
@@ -15,35 +15,35 @@ from cartwheel.graph.names import resolve_name
 from cartwheel.messages import message_class, zero
 
 _KEPT_NS = 10_000_000_000
-"""How long a goal that is done is known at least, for those who ask for its result."""
+"""Minimum time in ns for which a completed goal, and so its result, is kept."""
 _KEPT = 20
-"""So many of them are known however long ago they ended."""
+"""Number of completed goals that are kept regardless of their age."""
 _MOST = 100
-"""Goals that are known at a time: each change of one publishes the states of all."""
+"""Maximum number of goals, because each change publishes the states of all goals."""
 
 
 class GoalState(enum.Enum):
-    """What a goal has come to."""
+    """State of a goal."""
 
     PENDING = enum.auto()
-    """Nobody has looked at it."""
+    """The server has not accepted or rejected the goal yet."""
     ACTIVE = enum.auto()
     SUCCEEDED = enum.auto()
     CANCELLED = enum.auto()
-    """It was called off, or another one took its place."""
+    """The client cancelled the goal, or a newer goal preempted it."""
     ABORTED = enum.auto()
     REJECTED = enum.auto()
-    """It was not taken on."""
+    """The server did not accept the goal."""
 
 
 class Goal:
-    """A goal and what became of it.
+    """A goal and its state.
 
     Attributes:
-        id: Its name among all goals of the action.
-        stamp_ns: When it was made, simulation time.
-        goal: The message, ``…_Goal``.
-        result: The message, ``…_Result``, once it is done.
+        id: Identifier, unique within the action.
+        stamp_ns: Simulation time at which the goal was created.
+        goal: Goal message, ``…_Goal``.
+        result: Result message, ``…_Result``, once the goal is done.
     """
 
     def __init__(self, action: Action, identity: str, stamp_ns: int, goal: Any) -> None:
@@ -58,32 +58,32 @@ class Goal:
 
     @property
     def done(self) -> bool:
-        """Whether it has ended in any way."""
+        """Whether the goal has ended in any state."""
         return self.state not in (GoalState.PENDING, GoalState.ACTIVE)
 
     def accept(self) -> None:
-        """It is worked at from now on."""
+        """Accepts the goal."""
         self.state = GoalState.ACTIVE
         self._action._tell(self)
 
     def reject(self, result: Any, text: str) -> None:
-        """It is not taken on."""
+        """Rejects the goal."""
         self._end(GoalState.REJECTED, result, text)
 
     def succeed(self, result: Any, text: str = "") -> None:
-        """It is reached."""
+        """Ends the goal as succeeded."""
         self._end(GoalState.SUCCEEDED, result, text)
 
     def abort(self, result: Any, text: str = "") -> None:
-        """It cannot be reached."""
+        """Ends the goal as aborted."""
         self._end(GoalState.ABORTED, result, text)
 
     def cancel(self, result: Any, text: str = "") -> None:
-        """It was called off, or another one took its place."""
+        """Ends the goal as cancelled or preempted."""
         self._end(GoalState.CANCELLED, result, text)
 
     def feedback(self, feedback: Any) -> None:
-        """How it goes: ``…_Feedback``."""
+        """Passes feedback (``…_Feedback``) to all listeners."""
         for listener in self._action.listeners:
             listener.goal_goes_on(self, feedback)
 
@@ -94,47 +94,47 @@ class Goal:
 
 
 class ActionListener(Protocol):
-    """A form of an action on a wire."""
+    """An action's representation on a wire."""
 
     @property
     def wants_feedback(self) -> bool:
-        """Whether anybody reads how goals go."""
+        """Whether any client receives feedback."""
 
     def goal_changed(self, goal: Goal) -> None:
-        """A goal has another state."""
+        """Called when the state of a goal changes."""
 
     def goal_goes_on(self, goal: Goal, feedback: Any) -> None:
-        """How a goal goes."""
+        """Called with feedback on a goal."""
 
 
 class Offers(Protocol):
-    """Where actions are known by their names."""
+    """Registry of actions by name."""
 
     def offer(self, action: Action) -> None:
-        """Makes an action known.
+        """Registers an action.
 
         Raises:
-            GraphError: The name is taken.
+            GraphError: The name is already in use.
         """
 
     def take_back(self, action: Action) -> None:
-        """It is known no longer."""
+        """Unregisters an action."""
 
 
 class Action:
-    """An action of a graph, offered until it is closed.
+    """An action on a graph. It exists until it is closed.
 
     Args:
-        graph: Where it is offered.
-        name: As topics are called.
+        graph: Graph that registers the action.
+        name: Action name, under the same rules as topic names.
         type_name: ``pkg/action/Name``.
-        node: Who offers it, for listings.
-        time_ns: Tells simulation time.
-        on_goal: Takes a new goal: accepts, rejects or ends it.
-        on_cancel: Ends a goal that is to be called off.
+        node: Node that offers the action, for listings.
+        time_ns: Returns the simulation time.
+        on_goal: Accepts, rejects or ends a new goal.
+        on_cancel: Ends a goal whose cancellation was requested.
 
     Raises:
-        GraphError: The name is taken, or is none.
+        GraphError: The name is invalid or already in use.
     """
 
     def __init__(
@@ -160,42 +160,42 @@ class Action:
         graph.offer(self)
 
     def close(self) -> None:
-        """Takes it off the graph."""
+        """Removes the action from the graph."""
         self._graph.take_back(self)
 
     def message(self, part: str, **fields: Any) -> Any:
-        """A ``Result`` or ``Feedback``."""
+        """Creates a ``Result`` or ``Feedback`` message of this action."""
         return message_class(f"{self.type}_{part}")(**fields)
 
     @property
     def wants_feedback(self) -> bool:
-        """Whether anybody reads how goals go."""
+        """Whether any client receives feedback."""
         return any(listener.wants_feedback for listener in self.listeners)
 
     @property
     def goals(self) -> list[Goal]:
-        """Those that are worked at and those that ended lately, in order."""
+        """Active and recently completed goals, in the order of submission."""
         return list(self._goals.values())
 
     def goal(self, identity: str) -> Goal | None:
-        """One of `goals`."""
+        """The known goal with this identifier, or None."""
         return self._goals.get(identity)
 
     def listen(self, listener: ActionListener) -> None:
-        """Tells it of all goals from now on."""
+        """Adds a listener, which is notified of all goals from now on."""
         self.listeners += (listener,)
 
     def leave(self, listener: ActionListener) -> None:
-        """Tells it of goals no longer."""
+        """Removes a listener."""
         self.listeners = tuple(each for each in self.listeners if each is not listener)
 
     def submit(self, goal: Any, *, identity: str = "", stamp_ns: int | None = None) -> Goal | None:
-        """Hands a goal in; None where one of that name is known.
+        """Submits a goal. Returns None if a goal with this identifier already exists.
 
         Args:
-            goal: The message, ``…_Goal``.
-            identity: Its name; one is made where it has none.
-            stamp_ns: When it was made, simulation time; now where it is not said.
+            goal: Goal message, ``…_Goal``.
+            identity: Goal identifier. If empty, one is generated.
+            stamp_ns: Simulation time at which the goal was created. None means now.
         """
         now = self.time_ns()
         self._forget(now)
@@ -212,10 +212,13 @@ class Action:
         return made
 
     def cancel(self, *, identity: str = "", before_ns: int = 0) -> list[Goal]:
-        """Calls goals off: that of a name and all made until a time; all where neither is said.
+        """Cancels goals by identifier or creation time, or all goals if neither is given.
+
+        A goal is cancelled if its identifier matches, or if it was created at or before
+        `before_ns`.
 
         Returns:
-            Those that were under way.
+            The goals that were active.
         """
         meant = [
             goal
@@ -233,7 +236,7 @@ class Action:
         return meant
 
     def restart(self) -> None:
-        """Time began anew: goals that are done were never there."""
+        """Forgets completed goals, because simulation time restarts."""
         self._goals = {key: goal for key, goal in self._goals.items() if not goal.done}
 
     def _tell(self, goal: Goal) -> None:
@@ -244,7 +247,7 @@ class Action:
         done = [goal for goal in self._goals.values() if goal.done]
         for goal in self._late(done, now):
             del self._goals[goal.id]
-        # Clients may send any number of goals within the time for which one is kept.
+        # Clients may send any number of goals within the retention time of one goal.
         kept = [goal for goal in done if goal.id in self._goals]
         for goal in kept[: max(0, len(self._goals) - _MOST + 1)]:
             del self._goals[goal.id]

@@ -1,4 +1,4 @@
-"""Actions as ROS 1 has them: five topics."""
+"""Actions in ROS 1, as five topics."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from cartwheel.messages import header, message_class, recast, stamp
 from cartwheel.messages.ros2_types import ros2_name
 
 STATUS_RATE = 5.0
-"""Hz at which states are told at least."""
+"""Minimum publish rate of goal states in Hz."""
 _AT_ONCE, _AT_ONCE_RATE = 10, 20
-"""Changes of goals whose states are published at once, and further ones per s of simulation time.
-Later changes are published with the next regular states. A message has the states of up to 100
-goals, and takes several times as long as a goal."""
+"""Number of goal changes that are published at once, and the number that is added per s of
+simulation time. Later changes are published with the next regular states. A message contains the
+states of up to 100 goals, and takes several times as long as a goal."""
 _TOLD_NS = 5_000_000_000
-"""How long a goal that is done is told of."""
+"""Time in ns for which a completed goal stays in the published states."""
 _STATES = {
     GoalState.PENDING: 0,
     GoalState.ACTIVE: 1,
@@ -30,14 +30,15 @@ _STATES = {
 class ActionTopics:
     """The topics ``goal``, ``cancel``, ``status``, ``feedback`` and ``result`` of an action.
 
-    They are topics of the graph, so that a shell and a recording have them too. Source: actionlib.
+    They are topics on the graph, so shell commands and recordings see them as well.
+    Source: actionlib.
 
     Args:
-        graph: Where the action is.
-        action: What they stand for.
+        graph: Graph on which the topics are created.
+        action: Action that the topics represent.
 
     Raises:
-        GraphError: A topic exists with another type.
+        GraphError: One of the topics exists with a different type.
     """
 
     def __init__(self, graph: Graph, action: Action) -> None:
@@ -47,7 +48,7 @@ class ActionTopics:
         self._goal = f"{action.type}_Goal"
         self._open: list[Publisher | Subscription] = []
         self._credit, self._credit_ns = float(_AT_ONCE), 0
-        """Changes that may be published at once, as of a time."""
+        """Changes that may be published at once, as of `_credit_ns`."""
 
         def advertise(topic: str, kind: str, rate: float | None = None) -> Publisher:
             made = graph.advertise(f"{action.name}/{topic}", kind, node=action.node, rate=rate)
@@ -69,7 +70,7 @@ class ActionTopics:
         action.listen(self)
 
     def close(self) -> None:
-        """Takes the topics off the graph."""
+        """Removes the topics from the graph."""
         self._action.leave(self)
         for each in self._open:
             each.close()
@@ -81,7 +82,7 @@ class ActionTopics:
         return self._feedback.wanted
 
     def tell(self) -> None:
-        """Tells the states of all goals, for others to see that it is there."""
+        """Publishes the states of all goals, also as a sign that the action server exists."""
         if not self._status.wanted:
             return
         now = self._action.time_ns()
@@ -105,7 +106,7 @@ class ActionTopics:
 
     def _is_at_once(self) -> bool:
         now = self._action.time_ns()
-        # Time may begin anew.
+        # Simulation time may have restarted.
         passed = max(0, now - self._credit_ns) / 1e9
         self._credit = min(_AT_ONCE, self._credit + passed * _AT_ONCE_RATE)
         self._credit_ns = now

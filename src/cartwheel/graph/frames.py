@@ -1,4 +1,4 @@
-"""Where frames are, as the transforms on ``/tf`` and ``/tf_static`` say."""
+"""Poses of frames, from the transforms on ``/tf`` and ``/tf_static``."""
 
 from __future__ import annotations
 
@@ -9,15 +9,15 @@ from cartwheel.graph.graph import Graph
 
 _KIND = "tf2_msgs/msg/TFMessage"
 _DEEPEST = 100
-"""Transforms from a frame to the root; what is deeper goes round in a circle."""
+"""Maximum number of transforms from a frame to the root. A deeper tree is treated as a cycle."""
 
 
 class Frames:
-    """Keeps the last transform to each frame; for the owner's thread.
+    """Stores the last transform of each frame. Call it on the owner's thread.
 
     Args:
-        graph: Whose transforms are heard.
-        node: Who hears them, for listings.
+        graph: Graph on which the transforms are published.
+        node: Subscriber's name, for listings.
     """
 
     def __init__(self, graph: Graph, node: str) -> None:
@@ -28,16 +28,16 @@ class Frames:
         ]
 
     def close(self) -> None:
-        """Hears no more."""
+        """Unsubscribes."""
         for subscription in self._heard:
             subscription.close()
 
     def forget(self) -> None:
-        """After a reset: nothing is known yet."""
+        """Deletes all transforms, after a reset."""
         self._parents.clear()
 
     def pose(self, frame: str, reference: str) -> Pose | None:
-        """A frame in another one that it hangs on; None where no transforms lead there."""
+        """Pose of a frame relative to its ancestor `reference`, or None without a connection."""
         pose = Pose()
         for _ in range(_DEEPEST):
             if frame == reference:

@@ -1,7 +1,7 @@
-"""Topics, services and actions in one process: typed, lazy, as a ROS graph names them.
+"""Topics, services and actions within the process, under the naming rules of ROS.
 
-One thread, the owner (the simulation's), publishes and delivers. Other threads subscribe
-with a `Mailbox`, and hand messages in through `Graph.post`.
+The owner's thread (that of the simulation) publishes and delivers. Other threads subscribe
+with a `Mailbox`, and pass messages to the owner with `Graph.post`.
 """
 
 from __future__ import annotations
@@ -39,26 +39,26 @@ TWIST_STAMPED = "geometry_msgs/msg/TwistStamped"
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class TopicInfo:
-    """A topic as a listing shows it."""
+    """A topic's entry in a listing."""
 
     name: str
     type: str
     publishers: tuple[str, ...]
     subscribers: tuple[str, ...]
     rate: float | None
-    """Hz as stated by its publisher; None where it has none."""
+    """Publish rate in Hz that the publisher declares. None if it declares none."""
     qos: Qos
     dropped: tuple[int, ...] = ()
-    """How many messages each of the subscribers has missed, as far as it counts them."""
+    """Number of messages that each subscriber dropped, if the subscriber counts them."""
 
     @property
     def drives(self) -> bool:
-        """Whether somebody takes velocities there, stamped or not."""
+        """Whether the topic has subscribers for velocity commands (`Twist` or `TwistStamped`)."""
         return self.type in (TWIST, TWIST_STAMPED) and bool(self.subscribers)
 
     @property
     def readers(self) -> tuple[str, ...]:
-        """The subscribers, with what they have missed."""
+        """Subscribers, with the number of messages that each dropped."""
         dropped = self.dropped or (0,) * len(self.subscribers)
         return tuple(
             f"{name} ({count} dropped)" if count else name
@@ -75,32 +75,32 @@ class Topic:
         self.name = name
         self.type = type_name
         self.failed = failed
-        """Called with the callback that raised an error."""
+        """Called with the callback that raised an error, and the error."""
         self.publishers: tuple[Publisher, ...] = ()
         self.subscriptions: tuple[Subscription, ...] = ()
         self.callbacks: tuple[Callback, ...] = ()
-        """Those of the subscriptions."""
+        """Callbacks of all subscriptions."""
         self.latched: Any = None
 
     def deliver(self, message: Any) -> None:
-        """Hands a message to every subscriber; on the owner's thread."""
+        """Delivers a message to every subscriber. Call it on the owner's thread."""
         for callback in self.callbacks:
             self.hand(callback, message)
 
     def hand(self, callback: Callback, message: Any) -> None:
-        """Calls one of them; its error is not that of who published."""
+        """Calls one callback. Its errors do not reach the publisher."""
         try:
             callback(message)
-        except Exception as error:  # noqa: BLE001 - another's code
+        except Exception as error:  # noqa: BLE001 - the callback is foreign code
             self.failed(self, callback, error)
 
 
 class Publisher:
-    """The right to publish on a topic. Make a message only when `wanted`.
+    """Publishes on one topic. Create messages only while `wanted` is true.
 
     Attributes:
-        wanted: Whether anybody would read a message published now.
-        sent: How many messages were published.
+        wanted: Whether the topic has subscribers.
+        sent: Number of published messages.
     """
 
     def __init__(
@@ -123,20 +123,20 @@ class Publisher:
         return self._topic.type
 
     def publish(self, message: Any) -> None:
-        """Delivers to all subscribers at once; on the owner's thread."""
+        """Delivers a message to all subscribers at once. Call it on the owner's thread."""
         self.sent += 1
         topic = self._topic
         if self.qos == "latched":
             topic.latched = message
-        # `deliver`, a call less for each message.
+        # This is `deliver` inlined, which saves one call per message.
         for callback in topic.callbacks:
             try:
                 callback(message)
-            except Exception as error:  # noqa: BLE001 - another's code
+            except Exception as error:  # noqa: BLE001 - the callback is foreign code
                 topic.failed(topic, callback, error)
 
     def close(self) -> None:
-        """Takes the publisher off the graph."""
+        """Removes the publisher from the graph."""
         self._graph._remove_publisher(self._topic, self)
 
 
@@ -149,16 +149,17 @@ class Subscription:
         self.callback = callback
         self.node = node
         self.on_error: OnError | None = None
-        """Called with what the callback raised; `Graph.on_error` where it is None."""
+        """Called with the exception of the callback. None means `Graph.on_error`."""
         self.dropped: Callable[[], int] = lambda: 0
-        """Tells, on any thread, how many messages its reader has missed because it was slow."""
+        """Returns the number of messages that a slow subscriber dropped. Callable on any
+        thread."""
 
     @property
     def topic(self) -> str:
         return self._topic.name
 
     def close(self) -> None:
-        """Takes the subscription off the graph."""
+        """Removes the subscription from the graph."""
         self._graph._remove_subscription(self._topic, self)
 
 
@@ -167,10 +168,11 @@ OnError = Callable[[Subscription, Exception], None]
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Service:
-    """A service: `handler` takes a request and returns the response.
+    """A service whose `handler` takes a request and returns the response.
 
-    It runs on the owner's thread; one that is `threaded`, on its caller's: it does what takes
-    long, such as reading files, and leaves the rest to the owner. Use `Graph.call`.
+    The handler runs on the owner's thread. The handler of a `threaded` service runs on the
+    caller's thread: it does slow work, such as reading files, and passes the rest to the owner.
+    Use `Graph.call` to call a service.
     """
 
     name: str
@@ -184,8 +186,8 @@ class Graph:
     """All topics, services and actions of a simulation.
 
     Args:
-        post: Runs a function on the owner's thread, soon; the simulation gives its own.
-            Without one, functions run at once, for use on a single thread.
+        post: Runs a function on the owner's thread soon. The simulation passes its own.
+            Without it, functions run at once, for single-threaded use.
     """
 
     def __init__(self, post: Post | None = None) -> None:
@@ -198,23 +200,26 @@ class Graph:
         self.parameters = Parameters()
         self.joint_inputs = JointInputs(self._inputs_changed)
         self.cdr = CdrCache()
-        """Packs messages for all wires, each once."""
+        """Serialises each message once for all wires."""
         self.nodes: dict[str, str] = {}
-        """ROS 2's names of those nodes of ours that are nodes of their own there."""
+        """ROS 2 names of those nodes that appear as separate ROS 2 nodes."""
         self.static_transforms: Any = None
-        """See `StaticTransforms`, which puts itself here."""
+        """Set by `StaticTransforms`."""
         self.changed: int = 0
-        """Counts every change of who publishes, subscribes or takes positions, for those who
-        mirror the graph."""
+        """Incremented on every change of publishers, subscribers or joint inputs, for mirrors of
+        the
+        graph."""
         self.on_error: OnError = _raise
-        """Called, on the owner's thread, with what a subscription's callback raised."""
+        """Called on the owner's thread with the exception of a subscription's callback."""
         self.on_change: list[Callable[[], None]] = []
-        """Called after each such change, on any thread, the graph locked: must return at once."""
+        """Called after each change that `changed` counts, on any thread, with the graph locked.
+        The
+        functions must return at once."""
 
     def close(self) -> None:
-        """Ends all topics, services and actions; wakes those who wait at a mailbox.
+        """Closes all topics, services and actions, and wakes threads that wait for a mailbox.
 
-        Nothing of the graph refers to itself afterwards, so its memory is freed with the last
+        Afterwards the graph contains no reference cycles, so its memory is freed with the last
         reference to it.
         """
         with self._lock:
@@ -245,10 +250,10 @@ class Graph:
         rate: float | None = None,
         qos: Qos = "default",
     ) -> Publisher:
-        """A publisher on a topic of the ROS 2 type ``pkg/msg/Name``.
+        """Creates a publisher for a topic of the ROS 2 type ``pkg/msg/Name``.
 
         Raises:
-            GraphError: The topic exists with another type, or the name is none.
+            GraphError: The topic exists with a different type, or the name is invalid.
         """
         with self._lock:
             topic = self._topic(name, type_name)
@@ -265,17 +270,17 @@ class Graph:
         type_name: str | None = None,
         node: str = "cartwheel",
     ) -> Subscription:
-        """A callback for each message, on the owner's thread, in order of publication.
+        """Calls `callback` with each message on the owner's thread, in the order of publication.
 
         Args:
             name: Topic.
-            callback: Takes the message, which must not be changed.
-            type_name: ``pkg/msg/Name``; needed where the topic does not exist yet.
-            node: Who subscribes, for listings.
+            callback: Receives each message. It must not change the message.
+            type_name: ``pkg/msg/Name``. Required if the topic does not exist yet.
+            node: Subscriber's name, for listings.
 
         Raises:
-            UnknownNameError: No such topic, and no type given.
-            GraphError: The topic has another type.
+            UnknownNameError: The topic does not exist, and no type is given.
+            GraphError: The topic has a different type.
         """
         with self._lock:
             if type_name is None:
@@ -299,7 +304,7 @@ class Graph:
         node: str = "cartwheel",
         can_come: Callable[[], bool] | None = None,
     ) -> Mailbox:
-        """A bounded queue of the topic's messages for another thread to read; see `Mailbox`."""
+        """Creates a bounded queue of messages for a different thread; see `Mailbox`."""
         box = Mailbox(size, can_come=can_come)
         subscription = self.subscribe(name, box.put, type_name=type_name, node=node)
         box.on_close = subscription.close
@@ -308,7 +313,7 @@ class Graph:
         return box
 
     def publish(self, name: str, type_name: str, message: Any) -> None:
-        """Delivers one message from any thread: it is handed to the owner."""
+        """Publishes one message from any thread, by passing it to the owner's thread."""
         with self._lock:
             topic = self._topic(name, type_name)
         self.post(lambda: topic.deliver(message))
@@ -322,10 +327,10 @@ class Graph:
         node: str = "cartwheel",
         threaded: bool = False,
     ) -> Service:
-        """Offers a service of type ``pkg/srv/Name``; see `Service` for the thread it runs on.
+        """Offers a service of type ``pkg/srv/Name``. `Service` describes on which thread it runs.
 
         Raises:
-            GraphError: The name is taken.
+            GraphError: The name is already in use.
         """
         name = resolve_name(name)
         with self._lock:
@@ -343,16 +348,16 @@ class Graph:
             return service
 
     def withdraw(self, service: Service) -> None:
-        """Takes a service off the graph."""
+        """Removes a service from the graph."""
         with self._lock:
             self._services.pop(service.name, None)
             self._tell_change()
 
     def offer(self, action: Action) -> None:
-        """Puts an action on the graph; see there.
+        """Registers an action; see `Action`.
 
         Raises:
-            GraphError: The name is taken.
+            GraphError: The name is already in use.
         """
         with self._lock:
             if action.name in self._actions:
@@ -366,22 +371,22 @@ class Graph:
             self._tell_change()
 
     def take_back(self, action: Action) -> None:
-        """Takes an action off the graph."""
+        """Removes an action from the graph."""
         with self._lock:
             if self._actions.get(action.name) is action:
                 del self._actions[action.name]
             self._tell_change()
 
     def actions(self) -> list[Action]:
-        """All actions, by name."""
+        """All actions, sorted by name."""
         with self._lock:
             return [self._actions[name] for name in sorted(self._actions)]
 
     def service(self, name: str) -> Service:
-        """The service of that name.
+        """Service with this name.
 
         Raises:
-            UnknownNameError: There is none.
+            UnknownNameError: The service does not exist.
         """
         with self._lock:
             if name not in self._services:
@@ -389,13 +394,13 @@ class Graph:
             return self._services[name]
 
     def call(self, name: str, request: Any) -> Future[Any]:
-        """Calls a service, from any thread but the owner's, which would wait for itself.
+        """Calls a service. Callable on any thread except the owner's, which would deadlock.
 
         Returns:
-            The response, or the error that the handler raised, as soon as it is there.
+            Future of the response, or of the error that the handler raises.
 
         Raises:
-            UnknownNameError: There is no such service.
+            UnknownNameError: The service does not exist.
         """
         service = self.service(name)
 
@@ -412,25 +417,25 @@ class Graph:
         return answered(_at_once if service.threaded else self.post, run)
 
     def publishers(self) -> list[Publisher]:
-        """All publishers, by topic."""
+        """All publishers, sorted by topic."""
         with self._lock:
             return [p for topic in self._live() for p in topic.publishers]
 
     def services(self) -> list[Service]:
-        """All services, by name."""
+        """All services, sorted by name."""
         with self._lock:
             return [self._services[name] for name in sorted(self._services)]
 
     def topics(self) -> list[TopicInfo]:
-        """All topics that somebody publishes or reads, by name."""
+        """All topics with a publisher or a subscriber, sorted by name."""
         with self._lock:
             return [self._info(topic) for topic in self._live()]
 
     def topic(self, name: str) -> TopicInfo:
-        """One topic that somebody publishes or reads.
+        """Topic with this name, if it has a publisher or a subscriber.
 
         Raises:
-            UnknownNameError: There is none of that name.
+            UnknownNameError: No such topic exists.
         """
         with self._lock:
             live = {topic.name: topic for topic in self._live()}
@@ -488,7 +493,7 @@ class Graph:
             if subscription.callback is callback:
                 (subscription.on_error or self.on_error)(subscription, error)
                 return
-        # It unsubscribed before it failed.
+        # The callback unsubscribed before it failed.
         raise error
 
     def _inputs_changed(self) -> None:
@@ -502,7 +507,7 @@ class Graph:
 
     def _changed(self, topic: Topic) -> None:
         topic.callbacks = tuple(subscription.callback for subscription in topic.subscriptions)
-        # Told to the publishers, who look several times for each message.
+        # The publishers cache the value, because they check it several times per message.
         for publisher in topic.publishers:
             publisher.wanted = bool(topic.subscriptions) or publisher.qos == "latched"
         self._tell_change()

@@ -1,4 +1,4 @@
-"""Who takes positions for which joints, for those who would move them by hand."""
+"""Controllers and plugins that accept joint positions, for sliders and other manual control."""
 
 from __future__ import annotations
 
@@ -9,19 +9,21 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class JointInput:
-    """Something that takes positions for some joints of a model, a controller say."""
+    """A controller or plugin that accepts positions for some joints of a model."""
 
     model: str
     owner: str
-    """Its name."""
+    """Name of the controller or plugin."""
     joints: tuple[str, ...]
     put: Callable[[Mapping[str, float], float], None]
-    """Sends all of its joints to positions, rad or m by name, in s if it is told a time; on the
-    graph owner's thread. What it says goes the way of a message on its topic where it has one."""
+    """Commands positions (rad or m) by joint name, to be reached within a time in s if it is
+    positive. Runs on the graph owner's thread. If the input has a topic, the command takes the
+    same
+    path as a message on the topic."""
 
 
 class JointInputs:
-    """All of a graph; from any thread.
+    """All joint inputs of a graph. Callable on any thread.
 
     Args:
         changed: Called after each change.
@@ -33,7 +35,7 @@ class JointInputs:
         self._all: tuple[JointInput, ...] = ()
 
     def add(self, made: JointInput) -> None:
-        """Offers it; nothing happens where it is offered already."""
+        """Adds an input, unless it was already added."""
         with self._lock:
             new = made not in self._all
             if new:
@@ -42,7 +44,7 @@ class JointInputs:
             self._changed()
 
     def remove(self, gone: JointInput) -> None:
-        """Takes it back; nothing happens where it was not offered."""
+        """Removes an input if it was added."""
         with self._lock:
             left = tuple(each for each in self._all if each is not gone)
             same, self._all = len(left) == len(self._all), left
@@ -50,11 +52,11 @@ class JointInputs:
             self._changed()
 
     def close(self) -> None:
-        """Forgets all, and tells nobody any more."""
+        """Removes all inputs, without calling `changed`."""
         with self._lock:
             self._all = ()
             self._changed = lambda: None
 
     def all(self) -> tuple[JointInput, ...]:
-        """Them, the oldest first."""
+        """All inputs, oldest first."""
         return self._all

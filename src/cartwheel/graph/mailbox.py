@@ -9,15 +9,15 @@ from collections.abc import Callable
 from typing import Any
 
 _LOOK = 1.0
-"""s between two looks at whether a message can still come."""
+"""Interval in s at which `can_come` is checked."""
 
 
 class Mailbox:
-    """Holds the newest messages for one reader; a full one drops its oldest and counts it.
+    """Stores the newest messages for one reader. When full, it drops and counts the oldest.
 
     Args:
-        size: How many messages to hold; 1 keeps the latest alone.
-        can_come: Whether a message may come while the calling thread waits.
+        size: Capacity in messages; 1 stores only the latest.
+        can_come: Whether a message may still arrive while the calling thread waits.
     """
 
     def __init__(self, size: int, *, can_come: Callable[[], bool] | None = None) -> None:
@@ -26,11 +26,11 @@ class Mailbox:
         self._condition = threading.Condition()
         self._closed = False
         self.dropped = 0
-        """Messages that went unread because the reader was too slow."""
+        """Number of messages dropped because the reader was too slow."""
         self.on_close: Callable[[], None] = lambda: None
 
     def put(self, message: Any) -> None:
-        """Adds a message; never waits."""
+        """Adds a message without waiting."""
         with self._condition:
             if len(self._messages) == self._messages.maxlen:
                 self.dropped += 1
@@ -38,13 +38,13 @@ class Mailbox:
             self._condition.notify()
 
     def get(self, timeout: float | None = None) -> Any | None:
-        """The oldest unread message, as soon as there is one.
+        """Returns the oldest unread message as soon as one is available.
 
         Args:
-            timeout: s to wait at most; None without a limit.
+            timeout: Maximum time to wait in s. None means no limit.
 
         Returns:
-            None when the time has passed, the mailbox is closed, or no message can come.
+            None after the timeout, when the mailbox is closed, or when no message can arrive.
         """
         end = None if timeout is None else time.monotonic() + timeout
         with self._condition:
@@ -60,7 +60,7 @@ class Mailbox:
             return self._messages.popleft() if self._messages else None
 
     def drain(self) -> list[Any]:
-        """All unread messages, oldest first, without waiting."""
+        """Returns all unread messages, oldest first, without waiting."""
         with self._condition:
             messages = list(self._messages)
             self._messages.clear()

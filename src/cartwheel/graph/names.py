@@ -11,10 +11,10 @@ _NAME = re.compile(r"/[A-Za-z_~][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*\Z")
 
 
 def resolve_name(name: str, namespace: str = "") -> str:
-    """A global topic or service name: ``/…`` stays, anything else goes under the namespace.
+    """Global name of a topic or service. ``/…`` is unchanged; any other name joins the namespace.
 
     Raises:
-        GraphError: The result is not a name that ROS accepts.
+        GraphError: The result is not a valid ROS name.
     """
     full = name if name.startswith("/") else f"/{namespace.strip('/')}/{name}"
     full = "/" + "/".join(part for part in full.split("/") if part)
@@ -29,7 +29,7 @@ def resolve_name(name: str, namespace: str = "") -> str:
 
 
 def resolve_frame(frame: str, prefix: str = "") -> str:
-    """A frame's name under a robot's tf_prefix: ``/…`` is global and loses its slash.
+    """Frame name with a robot's tf_prefix. A leading ``/`` marks a global name and is removed.
 
     Source: tf, ``tf::resolve``.
     """

@@ -10,20 +10,20 @@ from cartwheel.graph.names import resolve_name
 
 
 class ParameterServer(Protocol):
-    """Where parameters are kept when it is not this process: a ROS master."""
+    """External storage of parameters: a ROS master."""
 
     def get(self, name: str) -> Any:
-        """The value, a mapping for a namespace, or None; from any thread."""
+        """Value, mapping for a namespace, or None. Callable on any thread."""
 
     def set(self, name: str, value: Any) -> None:
-        """Stores a value; from any thread."""
+        """Sets a value. Callable on any thread."""
 
 
 class Parameters:
-    """A tree of values; a name stands for a value or for the mapping of all names below it.
+    """A tree of values. A name refers to a value, or to the mapping of all names below it.
 
     Args:
-        server: Where they really are; a tree of this process while it is None.
+        server: External storage. None stores the tree in this process.
     """
 
     def __init__(self, server: ParameterServer | None = None) -> None:
@@ -32,9 +32,10 @@ class Parameters:
         self._tree: dict[str, Any] = {}
 
     def get(self, name: str, default: Any = None) -> Any:
-        """The value of a global name, a mapping for a namespace; `default` where there is none.
+        """Value of a global name, mapping for a namespace, or `default` if the name does not
+        exist.
 
-        ``/`` is the mapping of all.
+        ``/`` returns the mapping of all parameters.
         """
         path = resolve_name(name) if name.strip("/") else "/"
         if self.server is not None:
@@ -49,7 +50,7 @@ class Parameters:
             return copy.deepcopy(node)
 
     def search(self, name: str, namespace: str = "") -> Any:
-        """The value in the innermost namespace that has one, from `namespace` outwards; or None."""
+        """Value in the innermost namespace with the name, from `namespace` outwards, or None."""
         parts = [part for part in namespace.split("/") if part]
         for count in range(len(parts), -1, -1):
             value = self.get("/" + "/".join([*parts[:count], name]))
@@ -58,7 +59,7 @@ class Parameters:
         return None
 
     def set(self, name: str, value: Any) -> None:
-        """Stores a value, or a mapping as a whole namespace."""
+        """Sets a value, or replaces a whole namespace by a mapping."""
         path = resolve_name(name)
         if self.server is not None:
             self.server.set(path, value)

@@ -1,4 +1,4 @@
-"""Parameters that are changed while a node runs, as ROS 1's dynamic_reconfigure offers them."""
+"""Parameters that change while a node runs, as in ROS 1's dynamic_reconfigure."""
 
 from __future__ import annotations
 
@@ -23,29 +23,29 @@ _LISTS: dict[str, tuple[str, type[Value]]] = {
     "str": ("strs", str),
     "double": ("doubles", float),
 }
-"""Of each type: the field of a ``Config`` that holds it, and its class here."""
+"""For each type: the field of a ``Config`` that contains it, and its Python class."""
 _INT32 = 1 << 31
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ReconfigureParameter:
-    """One value that may be changed."""
+    """A parameter that clients can change."""
 
     name: str
     type: Literal["bool", "int", "double", "str"]
     default: Value
     minimum: Value | None = None
     maximum: Value | None = None
-    """Values beyond are moved to the bound; None where there is none."""
+    """Larger values are reduced to this maximum. None means no limit."""
     description: str = ""
     level: int = 0
-    """A bit mask for clients: what a change touches."""
+    """Bit mask of what a change affects, for clients."""
     edit_method: str = ""
-    """How a client shows it; see `choices`."""
+    """How clients edit the value; see `choices`."""
 
 
 def choices(*values: str, description: str = "") -> str:
-    """The `edit_method` of a text that is one of a few: clients show a list to choose from."""
+    """The `edit_method` for a string with a fixed set of values, which clients show as a list."""
     listed = [
         {"name": value, "type": "str", "value": value, "description": value} for value in values
     ]
@@ -53,25 +53,25 @@ def choices(*values: str, description: str = "") -> str:
 
 
 class ReconfigureServer:
-    """Serves ``<name>/set_parameters`` and tells what there is to set and how it is set.
+    """Serves ``<name>/set_parameters``, and publishes parameter descriptions and values.
 
-    ``<name>/parameter_descriptions`` and ``<name>/parameter_updates`` are latched; the values
-    are also kept as parameters of the graph, ``<name>/<parameter>``. Source:
-    dynamic_reconfigure. For the owner's thread.
+    ``<name>/parameter_descriptions`` and ``<name>/parameter_updates`` are latched. The values
+    are also set as parameters of the graph, ``<name>/<parameter>``. Call it on the owner's thread.
+    Source: dynamic_reconfigure.
 
     Args:
-        graph: Where it is offered.
-        name: Its namespace, global: ``/camera1``.
-        parameters: What may be set, in the order of listings.
-        on_change: Is given all values at each request, makes them count, and may return those
-            that it corrects. It refuses a request by raising a `CartwheelError`.
-        node: Who offers it, for listings.
-        initial: The values now, where they are not the defaults; bounds do not hold for them.
-        preset: Whether the graph's parameters of these names count before all else, as what
-            a launch file sets. `on_change` is not called for them: read `values`.
+        graph: Graph that offers the service and the topics.
+        name: Global namespace: ``/camera1``.
+        parameters: Parameters in listing order.
+        on_change: Receives all values at each request, applies them, and may return corrected
+            values. It rejects a request by raising a `CartwheelError`.
+        node: Node that offers the service, for listings.
+        initial: Initial values that differ from the defaults. They may exceed the bounds.
+        preset: Whether values of the graph's parameters with these names take precedence, such as
+            values from a launch file. `on_change` is not called for them; read `values`.
 
     Raises:
-        GraphError: The service is offered already.
+        GraphError: The service already exists.
     """
 
     def __init__(
@@ -114,21 +114,21 @@ class ReconfigureServer:
 
     @property
     def values(self) -> dict[str, Value]:
-        """The present values, by name."""
+        """Current values by name."""
         return dict(self._values)
 
     def update(self, values: Mapping[str, Value]) -> None:
-        """Tells readers of values that changed in another way; `on_change` is not called.
+        """Publishes values that changed by other means, without calling `on_change`.
 
         Raises:
-            UnknownNameError: There is no parameter of such a name.
-            GraphError: A value is of another type.
+            UnknownNameError: No parameter has this name.
+            GraphError: A value has the wrong type.
         """
         self._values |= {key: _typed(self._known(key), value) for key, value in values.items()}
         self._tell()
 
     def close(self) -> None:
-        """Takes the service and the topics off the graph."""
+        """Removes the service and the topics from the graph."""
         self._opened.close()
 
     def _advertise(self, topic: str, kind: str) -> Publisher:
@@ -202,7 +202,7 @@ class ReconfigureServer:
 
 
 def _bound(parameter: ReconfigureParameter, *, upper: bool) -> Value:
-    """A bound as a description tells it, where there is none the widest of the type."""
+    """Bound in a parameter's description: the range of its type if no bound is specified."""
     stated = parameter.maximum if upper else parameter.minimum
     if parameter.type == "bool":
         return upper
@@ -216,7 +216,7 @@ def _bound(parameter: ReconfigureParameter, *, upper: bool) -> Value:
 
 
 def _typed(parameter: ReconfigureParameter, value: Any) -> Value:
-    """The value as its parameter's type; whole numbers may stand for others, and 0, 1 for bools."""
+    """Value in its parameter's type. Whole numbers convert between types, 0 and 1 also to bool."""
     kind = parameter.type
     plain = isinstance(value, int | float) and not isinstance(value, bool)
     if kind == "str" and isinstance(value, str):

@@ -1,4 +1,4 @@
-"""Transforms that never change, together on ``/tf_static``."""
+"""Static transforms, published together on ``/tf_static``."""
 
 from __future__ import annotations
 
@@ -12,38 +12,38 @@ TOPIC = "/tf_static"
 
 
 class StaticTransforms:
-    """Keeps those of all robots and publishes them as one latched message.
+    """Publishes the static transforms of all robots as one latched message.
 
-    A topic's latched message is its last one, so nobody may publish there alone. Source:
-    tf2_ros, ``StaticTransformBroadcaster``. For the owner's thread.
+    A latched topic keeps only its last message, so nothing else may publish on the topic.
+    Call it on the owner's thread. Source: tf2_ros, ``StaticTransformBroadcaster``.
     """
 
     def __init__(self, graph: Graph) -> None:
         self._graph = graph
         self._publisher: Publisher | None = None
-        """None while no robot has any."""
+        """None while no robot has static transforms."""
         self._by_owner: dict[object, Sequence[Any]] = {}
 
     @classmethod
     def of(cls, graph: Graph) -> StaticTransforms:
-        """The one of a graph, made when first asked for."""
+        """The instance of a graph, created at first use."""
         if graph.static_transforms is None:
             graph.static_transforms = cls(graph)
         found: StaticTransforms = graph.static_transforms
         return found
 
     def put(self, owner: object, transforms: Sequence[Any]) -> None:
-        """Publishes ``TransformStamped`` of an owner, in place of those it had."""
+        """Publishes an owner's ``TransformStamped`` messages, and removes its previous ones."""
         self._by_owner[owner] = transforms
         self._publish()
 
     def remove(self, owner: object) -> None:
-        """The owner's transforms hold no longer."""
+        """Removes an owner's transforms."""
         if self._by_owner.pop(owner, None) is not None:
             self._publish()
 
     def _publish(self) -> None:
-        # A frame has one parent, told once, even where two know of it.
+        # Each frame has one parent, so it is published once even if two owners contain it.
         by_child: dict[str, Any] = {}
         for sent in self._by_owner.values():
             for transform in sent:

@@ -1,4 +1,4 @@
-"""ROS messages in process: classes, names, parts, and their forms outside."""
+"""ROS messages in memory: classes, names, fields, and their external formats."""
 
 from cartwheel.messages.cdr_writing import encode_cdr
 from cartwheel.messages.common import header, stamp

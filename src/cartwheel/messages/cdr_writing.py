@@ -1,7 +1,7 @@
-"""Messages as CDR bytes: a plan for each type, made once, then packed in a few calls.
+"""Messages as CDR bytes. Each type is compiled once into a plan that packs it in a few calls.
 
-Numbers lie at multiples of their size, counted from behind the encapsulation. So there are
-eight ways to pack the same row of numbers, by where it begins.
+CDR aligns numbers to multiples of their size, counted from the end of the encapsulation. The
+same sequence of numbers therefore has eight layouts, depending on its offset.
 
 Source: DDS-XTypes, plain CDR of version 1, little endian.
 """
@@ -22,20 +22,20 @@ from cartwheel.messages.fields import CODES, FILLER, Field, field_of
 from cartwheel.messages.store import loaded, message_class
 
 _HEAD = b"\0\1\0\0"
-"""The encapsulation."""
+"""Encapsulation header."""
 _SHARED = 4096
-"""Bytes from which an array is handed on instead of copied."""
+"""Minimum size in bytes of an array that is passed on without a copy."""
 _SHORT = 64
-"""Characters of a text that is likely to come again, as names of frames do."""
+"""Maximum length in characters of a string whose encoding is cached, such as a frame name."""
 
 _Parts = list[Any]
 """Bytes and views of arrays, to be joined."""
 _Writer = Callable[[Any, _Parts, int], int]
-"""Writes a part of a message from a place on; returns the place behind it."""
+"""Writes a part of a message at an offset. Returns the offset after it."""
 
 
 def encode_cdr(message: Any) -> bytes:
-    """A message as CDR with its four bytes of encapsulation, as ROS 2 and MCAP carry it.
+    """Encodes a message as CDR with four bytes of encapsulation, as in ROS 2 and MCAP.
 
     Raises:
         GraphError: A value does not fit its field.
@@ -53,7 +53,7 @@ def encode_cdr(message: Any) -> bytes:
 
 
 class _Plan:
-    """How messages of one type are written."""
+    """Writes messages of one type."""
 
     def __init__(self, name: str) -> None:
         writers: list[_Writer] = []
@@ -82,10 +82,10 @@ def _plan(name: str) -> _Plan:
 
 
 def _flat(name: str, prefix: str) -> Iterator[tuple[str, Field, str]]:
-    """The fields of a type at any depth, in the order of their bytes.
+    """The fields of a type and its nested types, in byte order.
 
     Yields:
-        A field's path, the field, and of a number `struct`'s letter.
+        The path of a field, the field, and the `struct` code if it is a number.
     """
     full = message_class(name).__msgtype__
     for own, description in loaded().fielddefs[full][1]:
@@ -97,12 +97,12 @@ def _flat(name: str, prefix: str) -> Iterator[tuple[str, Field, str]]:
         elif own == FILLER:
             yield prefix + own, field, "x"
         else:
-            # A lone byte has a sign where messages are read, as rosbags has it.
+            # rosbags reads a single byte as signed.
             yield prefix + own, field, "b" if description[1][0] == "byte" else CODES[field.type]
 
 
 class _Row:
-    """Numbers in a row, packed in one call."""
+    """A sequence of numbers, packed in one call."""
 
     def __init__(self, numbers: list[tuple[str, str]]) -> None:
         codes = [code for code, _ in numbers]
@@ -123,7 +123,7 @@ class _Row:
 
 
 def _aligned(codes: list[str], start: int) -> struct.Struct:
-    """Numbers from a place on, with what is between them."""
+    """Layout of numbers from an offset on, with padding."""
     form, at = "<", start
     for code in codes:
         size = struct.calcsize(f"<{code}")

@@ -1,4 +1,4 @@
-"""Parts that most messages share."""
+"""Fields that most messages share."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ def _header_class() -> Any:
 
 
 _Moment = tuple[int, Any, dict[str, Any]]
-"""What all messages of one time share: the time in ns, its stamp, its headers by frame."""
+"""What messages with the same timestamp share: time in ns, stamp, and headers by frame."""
 _recent: tuple[_Moment, _Moment] = ((-1, None, {}), (-1, None, {}))
-"""The last two: wheels' transforms are stamped a nanosecond after all else of their time.
+"""The last two timestamps: wheel transforms have a timestamp 1 ns after all other messages.
 
-One name, always set as a whole: simulations in several threads may take turns with it.
+The tuple is always replaced as a whole, because simulations in several threads may share it.
 """
 
 
@@ -42,12 +42,12 @@ def _moment(time_ns: int) -> _Moment:
 
 
 def stamp(time_ns: int) -> Any:
-    """``builtin_interfaces/Time`` of a simulation time; messages of one time share it."""
+    """``builtin_interfaces/Time`` of a simulation time. Messages with the same time share it."""
     return _moment(time_ns)[1]
 
 
 def header(time_ns: int, frame: str) -> Any:
-    """``std_msgs/Header``; messages of one time and frame share it, as none may be changed."""
+    """``std_msgs/Header``, shared by messages with the same time and frame. It must not change."""
     _, shared, headers = _moment(time_ns)
     made = headers.get(frame)
     if made is None:

@@ -1,4 +1,4 @@
-"""Messages from and to plain mappings, as YAML and JSON hold them."""
+"""Conversion between messages and plain mappings, as in YAML and JSON."""
 
 from __future__ import annotations
 
@@ -19,45 +19,45 @@ _ROS1_NAMES: dict[str, dict[str, str | None]] = {
     "std_msgs/msg/Header": {"seq": None},
     "sensor_msgs/msg/CameraInfo": {"D": "d", "K": "k", "R": "r", "P": "p"},
 }
-"""ROS 1's spelling of fields, for what people paste from there; None is left out."""
+"""ROS 1 names of fields, for values pasted from ROS 1. None means that the field is ignored."""
 
 
 def to_dict(message: Any) -> dict[str, Any]:
-    """A message as mappings, lists, numbers and texts.
+    """Converts a message to mappings, lists, numbers and strings.
 
     Args:
-        message: Of a message class of `message_class`.
+        message: Instance of a class from `message_class`.
     """
     return {field.name: _plain(field, getattr(message, field.name)) for field in _of(message)}
 
 
 def from_dict(type_name: str, mapping: Mapping[str, Any] | Sequence[Any]) -> Any:
-    """A message from what YAML or JSON gives; fields that are not given are zero or empty.
+    """Creates a message from YAML or JSON values. Omitted fields are zero or empty.
 
-    ROS 1's names (``secs``, ``seq``, ``K``) are understood, and a list stands for the
-    fields of a message in their order, as in ``rostopic pub``.
+    ROS 1 field names (``secs``, ``seq``, ``K``) are accepted. A list contains the fields of a
+    message in order, as in ``rostopic pub``.
 
     Args:
         type_name: ``geometry_msgs/msg/Twist`` or ``geometry_msgs/Twist``.
-        mapping: Values by field; numpy arrays and messages may be among them.
+        mapping: Values by field, which may contain numpy arrays and messages.
 
     Raises:
-        UnknownNameError: There is no such type.
-        GraphError: A field does not exist, or a value does not fit; names the field.
+        UnknownNameError: The type does not exist.
+        GraphError: A field does not exist, or a value does not fit. The error names the field.
     """
     return _message(message_class(type_name), mapping, "")
 
 
 def from_flat(type_name: str, values: Mapping[str, Any]) -> Any:
-    """A message from the values of fields at any depth, their names joined by ``_``.
+    """Creates a message from nested fields, whose names are joined by ``_``.
 
     Args:
         type_name: ``geometry_msgs/msg/Twist`` or ``geometry_msgs/Twist``.
-        values: As keyword arguments give them: ``{"linear_x": 0.5}``.
+        values: Values as keyword arguments provide them: ``{"linear_x": 0.5}``.
 
     Raises:
-        UnknownNameError: There is no such type.
-        GraphError: A field does not exist, or a value does not fit; names the field.
+        UnknownNameError: The type does not exist.
+        GraphError: A field does not exist, or a value does not fit. The error names the field.
     """
     mapping: dict[str, Any] = {}
     full = message_class(type_name).__msgtype__
@@ -71,7 +71,7 @@ def from_flat(type_name: str, values: Mapping[str, Any]) -> Any:
 
 
 def _split(type_name: str, name: str, outer: tuple[str, ...] = ()) -> tuple[str, ...]:
-    """The fields that a joined name leads through, of which each may hold ``_`` itself."""
+    """The field path of a joined name. Field names may contain ``_`` themselves."""
     known = fields(type_name)
     inner = [
         field
@@ -94,22 +94,22 @@ def _split(type_name: str, name: str, outer: tuple[str, ...] = ()) -> tuple[str,
 
 
 def zero(type_name: str) -> Any:
-    """A message of zeros and empty texts and arrays.
+    """Creates a message with all numbers zero, and strings and arrays empty.
 
     Raises:
-        UnknownNameError: There is no such type.
+        UnknownNameError: The type does not exist.
     """
     return _message(message_class(type_name), {}, "")
 
 
 def recast(message: Any, type_name: str) -> Any:
-    """A message of another type, with the fields that both have; the others are zero or empty.
+    """Converts a message to a different type. Fields that only that type has are zero or empty.
 
-    What is within a field stays what it is: for types that differ by package or by fields that
-    one of them lacks.
+    Nested values are not converted. Use it for types that differ in their package or in
+    missing fields.
 
     Raises:
-        UnknownNameError: There is no such type.
+        UnknownNameError: The type does not exist.
     """
     made = zero(type_name)
     for field in fields(type_name):
@@ -160,7 +160,7 @@ def _message(cls: Any, given: Any, path: str) -> Any:
 
 
 def _by_name(type_name: str, given: Any, path: str) -> dict[str, Any]:
-    """The given values by the names that our classes have."""
+    """The given values, by the field names of the message classes."""
     names = [field.name for field in fields(type_name)]
     if isinstance(given, Mapping):
         aliases = _ROS1_NAMES.get(type_name, {})
@@ -228,12 +228,12 @@ def _numbers(field: Field, value: Any, path: str) -> Any:
     try:
         array = np.asarray(value)
     except ValueError:
-        # Lists of different lengths in one another.
+        # Nested lists with different lengths.
         array = np.array([], dtype=object)
     alike = array.dtype == dtype or (field.kind == "float" and array.dtype.kind in "iuf")
     if array.ndim == 1 and alike:
         return array.astype(dtype, copy=False)
-    # Whatever needs a look at each value has its index in the error.
+    # Values that are checked one by one have their index in the error.
     items = [_one(field, item, f"{path}[{index}]") for index, item in enumerate(value)]
     return np.array(items, dtype=dtype)
 
@@ -276,7 +276,7 @@ def _float(value: Any, path: str) -> float:
                 values={"field": path.rstrip("."), "value": _shown(value)},
             ) from None
     if isinstance(value, str):
-        # YAML 1.1 takes 1e-3 and nan for texts.
+        # YAML 1.1 reads 1e-3 and nan as strings.
         try:
             return float(value.strip().replace(".inf", "inf").replace(".nan", "nan"))
         except ValueError:

@@ -1,4 +1,4 @@
-"""Messages as text, the way ``rostopic echo`` prints them."""
+"""Messages as text, in the format of ``rostopic echo``."""
 
 from __future__ import annotations
 
@@ -10,19 +10,19 @@ from typing import Any
 from cartwheel.messages.fields import Field, fields
 
 SHOWN = 64
-"""Numbers of an array that are printed: a covariance in full, an image not."""
+"""Maximum number of array elements to print: enough for a covariance, but not for an image."""
 
 _PLAIN = re.compile(r"[A-Za-z_/][\w/.-]*(::[\w/.-]+)*\Z")
 _WORDS = {"true", "false", "yes", "no", "on", "off", "null", "y", "n", "nan", "inf"}
 
 
 def to_yaml(message: Any, *, full: bool = False, arrays: bool = True) -> str:
-    """A message as YAML, in the layout of ``rostopic echo``; ends in a line break.
+    """A message as YAML in the layout of ``rostopic echo``, with a final line break.
 
-    Args:
+    message: A message, or a field of a message.
         message: Any message, or a field of one.
-        full: Print long arrays in full; else their first `SHOWN` values and ``...``.
-        arrays: Print arrays at all; else what they hold and how many.
+        full: Whether to print long arrays completely instead of `SHOWN` elements and ``...``.
+        arrays: Whether to print arrays; otherwise only their type and length.
     """
     if not hasattr(message, "__msgtype__"):
         return _bare(message, full=full)
@@ -30,7 +30,7 @@ def to_yaml(message: Any, *, full: bool = False, arrays: bool = True) -> str:
 
 
 def _bare(value: Any, *, full: bool) -> str:
-    """A field on its own, as ``--field`` asks for it."""
+    """A single field, for ``--field``."""
     if isinstance(value, str):
         return f"{_text(value)}\n"
     if isinstance(value, list) and value and hasattr(value[0], "__msgtype__"):
@@ -48,7 +48,7 @@ def _lines(message: Any, indent: str, *, full: bool, arrays: bool) -> Iterator[s
         if field.array:
             yield from _array(field, value, indent, full=full, arrays=arrays)
         elif field.kind == "message":
-            # The blank after the colon is rostopic's; tools compare its output by line.
+            # rostopic prints the space after the colon. Tools compare its output line by line.
             inner = list(_lines(value, indent + "  ", full=full, arrays=arrays))
             yield f"{start} " if inner else f"{start} {{}}"
             yield from inner
@@ -95,7 +95,7 @@ def _text(value: str) -> str:
 
 
 def _quoted(value: str) -> str:
-    # JSON's strings are YAML's double-quoted ones, but for what YAML calls not printable.
+    # JSON strings are valid double-quoted YAML strings, except for unprintable characters.
     text = json.dumps(value, ensure_ascii=False)
     return re.sub(
         "[\x7f-\x9f\u2028\u2029\ud800-\udfff\ufeff\ufffe\uffff]",

@@ -1,4 +1,4 @@
-"""Messages as CDR bytes, each serialised once however many want it."""
+"""Messages as CDR bytes. Each message is serialised once for all wires."""
 
 from __future__ import annotations
 
@@ -12,23 +12,23 @@ from cartwheel.messages.store import loaded, message_class
 
 
 def decode_cdr(data: bytes | memoryview, type_name: str, *, padded: bool = False) -> Any:
-    """The message of CDR bytes; its arrays are views of them.
+    """Decodes CDR bytes. The message's arrays are views of the bytes.
 
     Args:
-        data: The bytes.
-        type_name: Of the message.
-        padded: Whether any number of zero bytes may follow it.
+        data: Encoded message.
+        type_name: Type of the message.
+        padded: Whether any number of zero bytes may follow the message.
 
     Raises:
-        UnknownNameError: There is no such type.
-        GraphError: The bytes are none of that type.
+        UnknownNameError: The type does not exist.
+        GraphError: The bytes are not a message of that type.
     """
     full = message_class(type_name).__msgtype__
     try:
         if padded:
             data = memoryview(data)[: _size(data, full)]
         return loaded().deserialize_cdr(data, full)
-    except Exception as error:  # rosbags lets whatever its generated code meets through
+    except Exception as error:  # rosbags does not catch the errors of its generated code
         raise GraphError(
             f"{len(data)} bytes cannot be decoded as {full}: {error}",
             code=MESSAGE_NOT_DECODABLE,
@@ -37,7 +37,7 @@ def decode_cdr(data: bytes | memoryview, type_name: str, *, padded: bool = False
 
 
 def _size(data: bytes | memoryview, full: str) -> int:
-    """Of a message that zero bytes follow; of all bytes where others do."""
+    """Size of a message if only zero bytes follow it; otherwise the size of all bytes."""
     definition = loaded().get_msgdef(full)
     little = bool(data[1])
     read = definition.deserialize_cdr_le if little else definition.deserialize_cdr_be
@@ -46,14 +46,14 @@ def _size(data: bytes | memoryview, full: str) -> int:
 
 
 class CdrCache:
-    """The bytes of the last messages; for any thread.
+    """Cache of the bytes of recent messages. Thread-safe.
 
-    A message goes to all readers as the same object: its identity tells that it is the one whose
-    bytes are there already, on whichever wire they go out.
+    All subscribers receive the same message object. Its identity is the key of its bytes, on all
+    wires.
 
     Args:
-        count: How many messages to keep: more than 1, as readers lag behind each other.
-        room: Bytes to keep at most.
+        count: Maximum number of messages; more than 1, because subscribers lag behind each other.
+        room: Maximum size in bytes.
     """
 
     def __init__(self, *, count: int = 64, room: int = 32 << 20) -> None:
@@ -64,13 +64,13 @@ class CdrCache:
         self._size = 0
 
     def encode(self, message: Any) -> bytes:
-        """The message's CDR bytes, as of `encode_cdr`."""
+        """CDR bytes of a message; see `encode_cdr`."""
         with self._lock:
             known = self._kept.get(id(message))
             if known is not None:
                 return known[1]
             data = encode_cdr(message)
-            # Holding the message keeps its identity from being given to another.
+            # A reference to the message prevents reuse of its identity.
             self._kept[id(message)] = (message, data)
             self._size += len(data)
             while len(self._kept) > self._count or (self._size > self._room and self._kept):

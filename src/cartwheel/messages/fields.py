@@ -1,4 +1,4 @@
-"""What a message type consists of, read once for each type."""
+"""Fields of message types, read once per type."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any, Literal
 from cartwheel.messages.store import loaded, message_class
 
 FILLER = "structure_needs_at_least_one_member"
-"""The byte that ROS 2 puts into a message without fields; nobody writes or reads it."""
+"""Byte that ROS 2 adds to a message without fields. Its value has no meaning."""
 
 CODES = {
     "bool": "?",
@@ -24,7 +24,7 @@ CODES = {
     "float32": "f",
     "float64": "d",
 }
-"""`struct`'s letters."""
+"""`struct` codes by numpy type."""
 
 _DTYPES = {"octet": "uint8", "byte": "uint8", "char": "uint8", "float128": "longdouble"}
 
@@ -33,19 +33,19 @@ Kind = Literal["bool", "int", "float", "string", "message"]
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Field:
-    """One field of a message."""
+    """A field of a message."""
 
     name: str
     kind: Kind
     type: str
-    """numpy's name of a number's type, ``string``, or the message's type."""
+    """numpy name of a number's type, ``string``, or the type of a nested message."""
     array: bool = False
     length: int | None = None
-    """Of an array of fixed length."""
+    """Length of an array with fixed length."""
 
     @property
     def described(self) -> str:
-        """The type as a definition writes it."""
+        """The type as in a message definition."""
         if not self.array:
             return self.type
         return f"{self.type}[{'' if self.length is None else self.length}]"
@@ -53,10 +53,10 @@ class Field:
 
 @functools.cache
 def fields(name: str) -> tuple[Field, ...]:
-    """The fields of a message type, in order, the filler of an empty one left out.
+    """Fields of a message type in order, without the filler of an empty message.
 
     Raises:
-        UnknownNameError: There is no such type.
+        UnknownNameError: The type does not exist.
     """
     full = message_class(name).__msgtype__
     return tuple(
@@ -67,7 +67,7 @@ def fields(name: str) -> tuple[Field, ...]:
 
 
 def field_of(name: str, description: Any) -> Field:
-    """A field as rosbags describes it."""
+    """Converts a field description of rosbags."""
     from rosbags.interfaces import Nodetype
 
     node, value = description

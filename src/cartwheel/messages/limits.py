@@ -1,4 +1,4 @@
-"""Numbers of messages that nobody can obey."""
+"""Limits for numbers in commands."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ from cartwheel.messages.fields import Field, fields
 
 
 def unfit(message: Any, *, most: float, unset: bool = False) -> str:
-    """The first number of a message that is not finite or too large; empty where there is none.
+    """Describes the first number that is not finite or too large. Empty if all numbers are valid.
 
     Args:
-        message: Of a class of `message_class`.
-        most: What a number may be at most, positive or negative.
-        unset: Let NaN and infinities pass, by which ros2_control says that nothing is set.
+        message: Instance of a class from `message_class`.
+        most: Maximum absolute value.
+        unset: Whether to allow NaN and infinity, which mean "not set" in ros2_control.
     """
     return _unfit(message, most, unset, "")
 
 
 @functools.cache
 def _with_numbers(type_name: str) -> tuple[Field, ...]:
-    """The fields of a type that hold numbers with fractions, themselves or within."""
+    """Fields of a type that are floating-point numbers or contain some."""
     return tuple(
         field
         for field in fields(type_name)

@@ -1,4 +1,4 @@
-"""Parameters of ROS 2's nodes as messages."""
+"""Parameters of ROS 2 nodes as messages."""
 
 from __future__ import annotations
 
@@ -23,17 +23,17 @@ FIELDS = {
     8: "double_array_value",
     9: "string_array_value",
 }
-"""Where a value of each type stands. Source: rcl_interfaces, ParameterType."""
+"""Field that contains the value of each type. Source: rcl_interfaces, ParameterType."""
 _TYPES: dict[type, int] = {bool: 1, int: 2, float: 3, str: 4}
 _OF_ARRAYS = 5
-"""What the type of an array is above that of its elements."""
+"""Difference between the type number of an array and that of its elements."""
 
 
 def parameter_type(value: Any) -> int:
-    """The number of a value's type; that of no value where ROS 2 has none such.
+    """The type number of a value, or "not set" if ROS 2 has no such type.
 
     Args:
-        value: A bool, int, float, str, or a list of one of them.
+        value: bool, int, float, str, or a list of one of these types.
     """
     if not isinstance(value, list | tuple):
         return _TYPES.get(type(value), NOT_SET)
@@ -45,7 +45,7 @@ def parameter_type(value: Any) -> int:
 
 
 def parameter_value(value: Any) -> Any:
-    """``ParameterValue`` of what `parameter_type` knows; one that is not set for anything else."""
+    """Converts a value to ``ParameterValue``. Unsupported values become "not set"."""
     made = zero(f"{_PACKAGE}/ParameterValue")
     made.type = parameter_type(value)
     if made.type:
@@ -58,12 +58,12 @@ def parameter_value(value: Any) -> Any:
 
 
 def listed(names: Iterable[str], prefixes: Sequence[str], depth: int) -> Any:
-    """``ListParametersResult``: the names below some prefixes, or below nothing.
+    """``ListParametersResult``: the names below some prefixes, or all names.
 
     Args:
-        names: Of all parameters, with dots.
-        prefixes: Those that are asked for; all names where there are none.
-        depth: How many parts a name may have below its prefix; 0 for any number.
+        names: Names of all parameters, separated by dots.
+        prefixes: Requested prefixes; empty for all names.
+        depth: Maximum number of name parts below a prefix; 0 means no limit.
     """
     found, folders = [], set()
     for name in sorted(names):
@@ -77,7 +77,7 @@ def listed(names: Iterable[str], prefixes: Sequence[str], depth: int) -> Any:
 
 
 def _below(name: str, prefixes: Sequence[str]) -> str | None:
-    """What of a name comes below one of the prefixes; all of it where there are none."""
+    """The part of a name below one of the prefixes, or the whole name if there are no prefixes."""
     if not prefixes:
         return name
     for prefix in prefixes:

@@ -1,4 +1,4 @@
-"""The graph's messages in ROS 1: names, md5 sums, definitions, bytes."""
+"""ROS 1 format of the graph's messages: names, md5 sums, definitions, bytes."""
 
 from cartwheel.messages.ros1_reading import decode_ros1
 from cartwheel.messages.ros1_types import (

@@ -1,7 +1,7 @@
-"""Which field of a graph's message each field of ROS 1's is.
+"""Mapping of ROS 1 fields to the graph's fields.
 
-The graph holds ROS 2's classes. Most types agree; where they do not, ``K`` is ``k``, what
-ROS 1 lacks is left out, and what ROS 2 lacks is zero.
+The graph uses ROS 2 classes. Most types are identical. In the others, ``K`` becomes ``k``,
+fields that ROS 1 lacks are omitted, and fields that ROS 2 lacks are zero.
 """
 
 from __future__ import annotations
@@ -21,16 +21,16 @@ HEADER = "std_msgs/msg/Header"
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Pair:
-    """A field of ROS 1's message and its like in the graph's."""
+    """A ROS 1 field and the corresponding field of the graph's message."""
 
     field: Field
-    """ROS 1's; numbers are read and written as it says."""
+    """The ROS 1 field. Its type determines how numbers are read and written."""
     name: str | None
-    """The graph's; None where the graph's message has nothing of the kind."""
+    """The graph's field name; None if the graph's message has no such field."""
 
     @property
     def form(self) -> Literal["number", "string", "numbers", "list"]:
-        """How it is written: fixed size, counted text, array of numbers, or one by one."""
+        """Encoding: fixed size, string with length, array of numbers, or element by element."""
         if self.field.array:
             return "list" if self.field.kind in ("string", "message") else "numbers"
         return "string" if self.field.kind == "string" else "number"
@@ -38,10 +38,10 @@ class Pair:
 
 @functools.cache
 def pairs(name: str) -> tuple[Pair, ...]:
-    """The fields of a ROS 1 message type, in order.
+    """Fields of a ROS 1 message type in order.
 
     Raises:
-        UnknownNameError: ROS 1 has no such type.
+        UnknownNameError: ROS 1 does not have this type.
     """
     full = type_name(name)
     known = ros1_store().fielddefs

@@ -1,4 +1,4 @@
-"""Messages from ROS 1 bytes, which may come from anyone and hold anything."""
+"""Decoding of ROS 1 bytes, which may be malformed or malicious."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ from cartwheel.messages.store import loaded, message_class, type_name
 
 _COUNT = struct.Struct("<I")
 _EMPTIES = 1 << 16
-"""Messages without any bytes that the lists of a message may hold."""
+"""Additional list elements that a message may contain, for elements without any bytes."""
 _NESTED = 8
-"""Lists within each other at most, each element of which has a byte."""
+"""List elements that a message may contain per byte, which allows eight nested lists."""
 
 _Reader = Callable[["_Source"], Any]
 
 
 class _Source:
-    """Bytes and how far they are read."""
+    """Bytes and a read position."""
 
     __slots__ = ("data", "elements", "offset")
 
@@ -35,7 +35,7 @@ class _Source:
         self.offset = 0
         most = _NESTED * len(self.data) + _EMPTIES
         self.elements = most if elements is None else min(elements, most)
-        """That lists may still have."""
+        """Remaining number of list elements."""
 
     def take(self, size: int) -> memoryview:
         end = self.offset + size
@@ -53,17 +53,18 @@ class _Source:
 
 
 def decode_ros1(data: bytes | memoryview, type_name: str, *, elements: int | None = None) -> Any:
-    """The graph's message of ROS 1 bytes; its arrays are views of them.
+    """Decodes ROS 1 bytes into the graph's message. Its arrays are views of the bytes.
 
     Args:
-        data: The bytes.
-        type_name: The graph's name of the type.
-        elements: That the lists of messages and strings may have together, which take time;
-            arrays of numbers do not. None is as many as there are bytes for.
+        data: Encoded message.
+        type_name: Type name in the graph.
+        elements: Maximum number of elements in all lists of messages and strings, which are slow
+            to decode. Arrays of numbers do not count. None derives the limit from the number of
+            bytes.
 
     Raises:
-        UnknownNameError: There is no such type.
-        GraphError: The bytes are none of that type.
+        UnknownNameError: The type does not exist.
+        GraphError: The bytes are not a message of that type.
     """
     read = _reader(message_class(type_name).__msgtype__)
     source = _Source(data, elements)

@@ -1,4 +1,4 @@
-"""What ROS 1 calls the message types, and how it tells them apart."""
+"""ROS 1 names of message types, with md5 sums and definitions."""
 
 from __future__ import annotations
 
@@ -21,43 +21,43 @@ _PRIMITIVES = {
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Ros1Type:
-    """A message type as a ROS 1 connection states it."""
+    """A message type as sent in a ROS 1 connection header."""
 
     name: str
     """``pkg/Name``."""
     md5: str
     definition: str
-    """With the definitions of all types within it."""
+    """Definition, including all nested types."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Ros1Service:
-    """A service type as a ROS 1 connection states it."""
+    """A service type as sent in a ROS 1 connection header."""
 
     name: str
     """``pkg/Name``."""
     md5: str
     request: str
-    """The graph's name of the request's type."""
+    """Type of the request in the graph."""
     response: str
 
 
 @functools.cache
 def ros1_store() -> Any:
-    """The typestore of ROS 1: Noetic's types and the fields of our definitions.
+    """Typestore for ROS 1: Noetic's types and the fields of Cartwheel's definitions.
 
-    It has no classes for ours, since messages are written and read without.
+    Cartwheel's own types have no classes here, because encoding and decoding do not need any.
     """
     from rosbags.typesys import Stores, get_typestore
 
     made = get_typestore(Stores.ROS1_NOETIC)
-    # It shares the table with all stores of its kind.
+    # rosbags shares this table between all stores of the same kind.
     made.fielddefs = {**parsed_definitions(), **made.fielddefs}
     return made
 
 
 def ros1_name(name: str) -> str:
-    """ROS 1's name of a message or service type: ``pkg/msg/Name`` is ``pkg/Name``."""
+    """ROS 1 name of a message or service type: ``pkg/msg/Name`` becomes ``pkg/Name``."""
     package, _, rest = name.partition("/")
     return f"{package}/{rest.rpartition('/')[2]}"
 
@@ -67,7 +67,7 @@ def ros1_type(name: str) -> Ros1Type:
     """Name, md5 sum and definition of a message type.
 
     Raises:
-        UnknownNameError: ROS 1 has no such type.
+        UnknownNameError: ROS 1 does not have this type.
     """
     full = _known(type_name(name))
     text, md5 = ros1_store().generate_msgdef(full)
@@ -79,7 +79,7 @@ def ros1_service(name: str) -> Ros1Service:
     """Name and md5 sum of a service type ``pkg/srv/Name`` or ``pkg/Name``.
 
     Raises:
-        UnknownNameError: There is no such type.
+        UnknownNameError: The type does not exist.
     """
     full = service_name(name)
     request, response = f"{full}_Request", f"{full}_Response"
@@ -108,7 +108,7 @@ def _md5(text: str) -> str:
 
 
 def _hashed_text(full: str) -> str:
-    """A definition without comments, its inner types replaced by their own md5 sums.
+    """Definition without comments, in which the md5 sums of nested types replace their names.
 
     Source: genmsg, ``compute_md5_text``.
     """
@@ -135,5 +135,5 @@ def _hashed_lines(full: str) -> Iterator[str]:
         elif inner in _PRIMITIVES:
             yield f"{_PRIMITIVES[inner]}{array} {name}"
         else:
-            # An array of messages hashes as one of them does.
+            # The hash of an array of messages contains the md5 sum of one message.
             yield f"{_md5(_hashed_text(inner))} {name}"

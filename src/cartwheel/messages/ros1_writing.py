@@ -1,4 +1,4 @@
-"""Messages as ROS 1 bytes: a plan for each type, made once, then packed in a few calls."""
+"""Messages as ROS 1 bytes. Each type is compiled once into a plan that packs it in few calls."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from cartwheel.messages.ros1_fields import HEADER, pairs
 
 _COUNT = struct.Struct("<I")
 _SHARED = 4096
-"""Bytes from which an array is handed on instead of copied."""
+"""Minimum size in bytes of an array that is passed on without a copy."""
 
 Parts = list[Any]
 """Bytes and views of arrays, to be joined."""
@@ -26,14 +26,14 @@ _Writer = Callable[[Any, Parts], None]
 
 
 def write_ros1(message: Any, *, seq: int = 0) -> Parts:
-    """A message's ROS 1 encoding in parts, so that large arrays are copied once by whoever joins.
+    """Encodes a message in parts, so that large arrays are copied only once, when joined.
 
     Args:
-        message: Of the graph.
-        seq: The header's, if the message begins with one.
+        message: Message of the graph.
+        seq: Sequence number of the header, if the message begins with a header.
 
     Raises:
-        UnknownNameError: ROS 1 has no such type.
+        UnknownNameError: ROS 1 does not have this type.
         GraphError: A value does not fit its field.
     """
     parts: Parts = []
@@ -49,13 +49,13 @@ def write_ros1(message: Any, *, seq: int = 0) -> Parts:
 
 
 def encode_ros1(message: Any, *, seq: int = 0) -> bytes:
-    """A message's ROS 1 encoding; see `write_ros1`."""
+    """Encodes a message; see `write_ros1`."""
     return b"".join(write_ros1(message, seq=seq))
 
 
 @dataclass(frozen=True, slots=True)
 class _Fixed:
-    """A part of fixed size: a number's letter, or so many zero bytes."""
+    """A part of fixed size: a number's `struct` code, or a number of zero bytes."""
 
     code: str
     path: str | None
@@ -70,7 +70,7 @@ class _Counted:
 
 
 class _Plan:
-    """How messages of one type are written."""
+    """Writes messages of one type."""
 
     def __init__(self, name: str) -> None:
         self._seq = False
@@ -79,7 +79,7 @@ class _Plan:
         writers: list[_Writer] = []
         header = pairs(name)[:1]
         if header and header[0].field.type == HEADER and not header[0].field.array:
-            # Its first field is seq, which no message of the graph has.
+            # The first field is seq, which the graph's messages do not have.
             self._seq = True
             found = found[1:]
         for step in found:
@@ -107,7 +107,7 @@ def _plan(name: str) -> _Plan:
 
 
 def _flat(name: str, prefix: str) -> Iterator[_Fixed | _Counted]:
-    """The fields of a type at any depth, in the order of their bytes."""
+    """The fields of a type and its nested types, in byte order."""
     for pair in pairs(name):
         if pair.name is None:
             yield _Fixed(f"{_zero_size(pair.field)}x", None)
@@ -122,7 +122,7 @@ def _flat(name: str, prefix: str) -> Iterator[_Fixed | _Counted]:
 
 
 def _zero_size(field: Field) -> int:
-    """Bytes of a field that is zero or empty; they are all zero."""
+    """Size in bytes of a zero or empty field, whose bytes are all zero."""
     if field.array and field.length is None:
         return 4
     if field.kind == "message":
@@ -135,7 +135,7 @@ def _zero_size(field: Field) -> int:
 
 
 class _Run:
-    """Numbers in a row, packed in one call."""
+    """A sequence of numbers, packed in one call."""
 
     def __init__(self, fixed: list[_Fixed]) -> None:
         self._pack = struct.Struct("<" + "".join(step.code for step in fixed)).pack

@@ -1,4 +1,4 @@
-"""What ROS 2 calls the message types, beyond their names."""
+"""Definitions and hashes of message types in ROS 2."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from cartwheel.messages.store import TWIN, loaded, message_class
 
 @functools.cache
 def ros2_definition(name: str) -> str:
-    """The text of a message type with those of all types within it, as recordings carry it.
+    """Definition of a message type with all nested types, as in recordings.
 
     Raises:
-        UnknownNameError: There is no such type.
+        UnknownNameError: The type does not exist.
     """
     text, _ = loaded().generate_msgdef(message_class(name).__msgtype__, ros_version=2)
     return str(text).replace(f"{TWIN}/", "/")
@@ -21,10 +21,10 @@ def ros2_definition(name: str) -> str:
 
 @functools.cache
 def ros2_hash(name: str) -> str:
-    """ROS 2's hash of a type, ``RIHS01_…``; empty where it has none. Source: REP 2011.
+    """ROS 2 hash of a type, ``RIHS01_…``; empty if it has none. Source: REP 2011.
 
     Raises:
-        UnknownNameError: There is no such type.
+        UnknownNameError: The type does not exist.
     """
     full = message_class(name).__msgtype__
     return "" if is_ros1_only(full) else ros2_type(full).hash

@@ -1,4 +1,4 @@
-"""What ROS 2's middlewares call the types, and the hashes by which they tell them apart."""
+"""Names and hashes of types in ROS 2 middlewares."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _ROS1_ONLY = frozenset(
         "roscpp",
     }
 )
-"""Packages that ROS 2 does not have, or whose texts here are ROS 1's alone."""
+"""Packages that do not exist in ROS 2, or whose definitions here exist only in ROS 1."""
 _ROS1_TYPES = frozenset(
     {
         "rosgraph_msgs/msg/Log",
@@ -34,7 +34,7 @@ _PART = re.compile(r"_(Request|Response|Event)\Z")
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Ros2Type:
-    """A message type as ROS 2 states it."""
+    """A message type in ROS 2."""
 
     name: str
     """``pkg/msg/Name``."""
@@ -46,7 +46,7 @@ class Ros2Type:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Ros2Service:
-    """A service type as ROS 2 states it."""
+    """A service type in ROS 2."""
 
     name: str
     """``pkg/srv/Name``."""
@@ -54,28 +54,28 @@ class Ros2Service:
     """``pkg::srv::dds_::Name_``."""
     hash: str
     request: str
-    """The graph's name of the request's type."""
+    """Type of the request in the graph."""
     response: str
     request_hash: str
     response_hash: str
 
     @property
     def dds_request(self) -> str:
-        """The type of requests."""
+        """DDS type of requests."""
         return f"{self.dds}Request_"
 
     @property
     def dds_response(self) -> str:
-        """The type of responses."""
+        """DDS type of responses."""
         return f"{self.dds}Response_"
 
 
 @functools.cache
 def ros2_type(name: str) -> Ros2Type:
-    """Names and hash of a message type.
+    """ROS 2 names and hash of a message type.
 
     Raises:
-        UnknownNameError: ROS 2 has no such type.
+        UnknownNameError: ROS 2 does not have this type.
     """
     full = type_name(name)
     known = store().fielddefs
@@ -87,12 +87,12 @@ def ros2_type(name: str) -> Ros2Type:
 
 @functools.cache
 def ros2_service(name: str) -> Ros2Service:
-    """Names and hashes of a service type ``pkg/srv/Name`` or ``pkg/Name``.
+    """ROS 2 names and hashes of a service type ``pkg/srv/Name`` or ``pkg/Name``.
 
-    The services of an action are such as well: ``pkg/action/Name_SendGoal``.
+    The services of an action are service types as well: ``pkg/action/Name_SendGoal``.
 
     Raises:
-        UnknownNameError: ROS 2 has no such type.
+        UnknownNameError: ROS 2 does not have this type.
     """
     full = service_name(name)
     if is_ros1_only(full):
@@ -114,20 +114,20 @@ def ros2_service(name: str) -> Ros2Service:
 
 
 def ros2_hash_of(name: str) -> str:
-    """The hash of a message or service type by ROS 2's name.
+    """Hash of a message or service type with this ROS 2 name.
 
     Raises:
-        UnknownNameError: ROS 2 has no such type.
+        UnknownNameError: ROS 2 does not have this type.
     """
     fields_of(name)
     return str(_hash_store().hash_rihs01(name))
 
 
 def fields_of(name: str) -> list[tuple[str, Any]]:
-    """The fields of a message or service type by ROS 2's name, as ROS 2 hashes them.
+    """Fields of a message or service type with this ROS 2 name, as ROS 2 hashes them.
 
     Raises:
-        UnknownNameError: ROS 2 has no such type.
+        UnknownNameError: ROS 2 does not have this type.
     """
     known = _hash_store().fielddefs
     if name not in known and "/msg/" not in name:
@@ -138,25 +138,25 @@ def fields_of(name: str) -> list[tuple[str, Any]]:
         raise UnknownNameError("ROS 2 type", name, known, code=MESSAGE_TYPE_UNKNOWN)
     from rosbags.interfaces import Nodetype
 
-    # What rosidl puts into a type without fields.
+    # rosidl adds this field to a type without fields.
     nothing = ("structure_needs_at_least_one_member", (Nodetype.BASE, ("uint8", 0)))
     return list(known[name][1]) or [nothing]
 
 
 def ros2_name(name: str) -> str:
-    """ROS 2's name of a type of the graph: that of a package with a twin is its own again."""
+    """ROS 2 name of a type in the graph: the suffix of the package name is removed."""
     package, slash, rest = name.partition("/")
     return f"{package.removesuffix(TWIN).removesuffix(FIRST)}{slash}{rest}"
 
 
 def twin_name(name: str) -> str:
-    """The graph's name of a type of ROS 2 whose package is another in ROS 1, if it is such."""
+    """The graph's name of a ROS 2 type whose package contains different types in ROS 1."""
     package, slash, rest = name.partition("/")
     return f"{package}{TWIN}{slash}{rest}"
 
 
 def is_ros1_only(name: str) -> bool:
-    """Whether a type is none that a ROS 2 program could know."""
+    """Whether a type does not exist in ROS 2."""
     return name.partition("/")[0] in _ROS1_ONLY or _PART.sub("", name) in _ROS1_TYPES
 
 
@@ -167,7 +167,7 @@ def dds_name(name: str) -> str:
 
 
 def _is_first(name: str) -> bool:
-    """Whether a type of the graph is the first version of one that has two."""
+    """Whether a type in the graph is the first of two versions."""
     return name.partition("/")[0].endswith(FIRST)
 
 
@@ -177,22 +177,24 @@ def _hash_store(*, first: bool = False) -> Any:
 
 @functools.cache
 def _hash_stores() -> tuple[Any, Any]:
-    """Without first versions of types, and with them."""
+    """Stores without and with the first versions of types."""
     return _made_hash_store(first=False), _made_hash_store(first=True)
 
 
 def _made_hash_store(*, first: bool) -> Any:
-    """ROS 2's types alone, by ROS 2's names, as it hashes them: with ``uint8`` for ``char``.
+    """Typestore with only ROS 2 types, under their ROS 2 names and with ``uint8`` for ``char``.
+
+    ROS 2 computes its hashes from these types.
 
     Args:
-        first: Whether types that have two versions are there in the first one.
+        first: Whether types with two versions are stored in their first version.
     """
     from rosbags.typesys import Stores, get_typestore
 
     made = get_typestore(Stores.ROS2_JAZZY)
     made.fielddefs = {
         ros2_name(name): (constants, [(field, _hashed(kind)) for field, kind in fields])
-        # The first versions come last, in the others' place.
+        # First versions come last, and so replace the newer versions.
         for name, (constants, fields) in sorted(
             store().fielddefs.items(), key=lambda item: _is_first(item[0])
         )
@@ -213,7 +215,7 @@ def _hashed(kind: Any) -> Any:
 
 
 def _whole(full: str) -> dict[str, Any]:
-    """A service as one type, which is what is hashed of it. Source: rosidl, REP 2016."""
+    """A service as a single type, which ROS 2 hashes. Source: rosidl, REP 2016."""
     from rosbags.interfaces import Nodetype
 
     def one(name: str) -> Any:

@@ -1,10 +1,10 @@
-"""ROS 2 message classes, rosbags' own and those made from our definitions.
+"""ROS 2 message classes: those of rosbags, and those from Cartwheel's definitions.
 
-A definition is the text of ROS 1 and ROS 2 alike: the ROS 1 bridge reads the same files
-into its own store, where they have the md5 sums that ROS 1 nodes expect. Types that only
-ROS 2 has are in a folder of their own, which ROS 1's store does not see. Some packages have
-different types of the same names in ROS 1 and ROS 2: here ROS 2's have a package of their own, and
-so have types of older releases of ROS 2.
+Most definitions are identical in ROS 1 and ROS 2. The ROS 1 bridge reads the same files into a
+separate store, where the types have the md5 sums that ROS 1 nodes expect. Types that exist only
+in ROS 2 are in a separate folder, which the ROS 1 store does not read. Some packages contain
+different types of the same names in ROS 1 and ROS 2. Here, the ROS 2 types are in a separate
+package, and so are types from older ROS 2 releases.
 """
 
 from __future__ import annotations
@@ -19,17 +19,17 @@ from cartwheel.codes.graph import MESSAGE_TYPE_UNKNOWN
 from cartwheel.errors import UnknownNameError
 
 DEFINITIONS = Path(__file__).parent / "definitions"
-"""Holds ``<package>/msg/<Name>.msg`` and ``<package>/srv/<Name>.srv``."""
+"""Contains ``<package>/msg/<Name>.msg`` and ``<package>/srv/<Name>.srv``."""
 ROS2_DEFINITIONS = Path(__file__).parent / "definitions_ros2"
-"""The same, of types that ROS 1 does not have."""
+"""Definitions of types that ROS 1 does not have, in the same layout."""
 
 SEPARATOR = "---\n"
-"""Between the parts of a service and of an action."""
+"""Separates the parts of a service or action definition."""
 
 TWIN = "_ros2"
-"""Ends the name that a package has here where ROS 1 has another of that name."""
+"""Suffix of a ROS 2 package whose name ROS 1 uses for different types."""
 FIRST = "_v1"
-"""Ends the name of a package that holds the first version of types that have two in ROS 2."""
+"""Suffix of a package with the first version of ROS 2 types that have two versions."""
 
 _GOAL_ID = "unique_identifier_msgs/UUID goal_id\n"
 
@@ -39,9 +39,9 @@ _learning = threading.RLock()
 
 @functools.cache
 def loaded() -> Any:
-    """The typestore as far as it was asked for: it has the type of every message there is."""
-    # rosbags takes as long to import as the rest of a command does to run, and many
-    # commands see no message.
+    """The typestore, which contains at least the types that have been used so far."""
+    # Importing rosbags takes as long as running a typical command, and many commands use no
+    # messages.
     from rosbags.typesys import Stores, get_typestore
 
     return get_typestore(Stores.ROS2_JAZZY)
@@ -49,9 +49,7 @@ def loaded() -> Any:
 
 @functools.cache
 def store() -> Any:
-    """The typestore, complete: Jazzy's types and all of ours. What needs no others is quicker
-    with `loaded`.
-    """
+    """The complete typestore: Jazzy's types and all of Cartwheel's. `loaded` is faster."""
     made = loaded()
     with _learning:
         ours = parsed_definitions() | parsed_definitions(ROS2_DEFINITIONS)
@@ -60,7 +58,7 @@ def store() -> Any:
 
 
 def _learn(name: str) -> bool:
-    """Loads one of our types, with those within it; False where there is none of that name."""
+    """Loads one of Cartwheel's types and its nested types. Returns False if it does not exist."""
     made = loaded()
     with _learning:
         if name in made.types:
@@ -87,29 +85,29 @@ def _learn_within(kind: Any) -> None:
 
 @functools.cache
 def _texts() -> dict[str, str]:
-    """All of our types, of both kinds."""
+    """Definitions of all of Cartwheel's types, including those that exist only in ROS 2."""
     return {**dict(definitions()), **dict(definitions(ROS2_DEFINITIONS))}
 
 
 def _parsed(name: str, text: str) -> Any:
     from rosbags.typesys import get_types_from_msg
 
-    # The parser has names of its own for a service's parts: ours count.
+    # The parser renames the parts of a service, so keep the original name.
     (fields,) = get_types_from_msg(text, name).values()
     return fields
 
 
 @functools.cache
 def parsed_definitions(folder: Path = DEFINITIONS) -> dict[str, Any]:
-    """Our types and their fields, as rosbags describes them."""
+    """Cartwheel's types and their fields, in the form of rosbags."""
     return {name: _parsed(name, text) for name, text in definitions(folder)}
 
 
 def definitions(folder: Path = DEFINITIONS) -> Iterator[tuple[str, str]]:
-    """Our types with their texts: messages, and the parts of services and actions.
+    """Cartwheel's types with their definitions: messages, and the parts of services and actions.
 
-    A service ``pkg/srv/Name`` has the parts ``pkg/srv/Name_Request`` and ``…_Response``, an
-    action ``pkg/action/Name`` those that ROS 2 makes of it.
+    A service ``pkg/srv/Name`` consists of ``pkg/srv/Name_Request`` and ``…_Response``. An
+    action ``pkg/action/Name`` consists of the parts that ROS 2 generates from it.
     """
     for path in sorted(folder.glob("*/msg/*.msg")):
         yield f"{path.parent.parent.name}/msg/{path.stem}", path.read_text()
@@ -123,7 +121,7 @@ def definitions(folder: Path = DEFINITIONS) -> Iterator[tuple[str, str]]:
 
 
 def _action(name: str, text: str) -> Iterator[tuple[str, str]]:
-    """Source: rosidl's design of actions."""
+    """The parts of an action. Source: rosidl's design article on actions."""
     goal, result, feedback = text.split(SEPARATOR)
     yield f"{name}_Goal", goal
     yield f"{name}_Result", result
@@ -136,7 +134,7 @@ def _action(name: str, text: str) -> Iterator[tuple[str, str]]:
 
 
 def is_ros2_only(name: str) -> bool:
-    """Whether a message or service type is one of those that ROS 1 cannot know."""
+    """Whether a message or service type exists only in ROS 2."""
     ours = _ros2_names()
     return name in ours or f"{name}_Request" in ours
 
@@ -147,22 +145,22 @@ def _ros2_names() -> frozenset[str]:
 
 
 def type_name(name: str) -> str:
-    """The ROS 2 name of a message type: ``geometry_msgs/Twist`` is ``geometry_msgs/msg/Twist``."""
+    """ROS 2 name of a message type: ``geometry_msgs/Twist`` is ``geometry_msgs/msg/Twist``."""
     package, _, rest = name.partition("/")
     return name if "/" in rest else f"{package}/msg/{rest}"
 
 
 def service_name(name: str) -> str:
-    """The ROS 2 name of a service type: ``std_srvs/Empty`` is ``std_srvs/srv/Empty``."""
+    """ROS 2 name of a service type: ``std_srvs/Empty`` is ``std_srvs/srv/Empty``."""
     package, _, rest = name.partition("/")
     return name if "/" in rest else f"{package}/srv/{rest}"
 
 
 def message_class(name: str) -> Any:
-    """The class of a message type; a dataclass with one field for each of the message's.
+    """Class of a message type: a dataclass with the message's fields.
 
     Raises:
-        UnknownNameError: There is no such type.
+        UnknownNameError: The type does not exist.
     """
     full = type_name(name)
     types = loaded().types
@@ -172,10 +170,10 @@ def message_class(name: str) -> Any:
 
 
 def service_classes(name: str) -> tuple[Any, Any]:
-    """The request's and the response's class of a service type ``pkg/srv/Name`` or ``pkg/Name``.
+    """Request and response classes of a service type ``pkg/srv/Name`` or ``pkg/Name``.
 
     Raises:
-        UnknownNameError: There is no such type.
+        UnknownNameError: The type does not exist.
     """
     full = service_name(name)
     if not _learn(f"{full}_Request"):

@@ -1,4 +1,4 @@
-"""Moments and spans as messages tell them."""
+"""Times and durations in messages."""
 
 from __future__ import annotations
 
@@ -8,5 +8,5 @@ _SECOND = 1_000_000_000
 
 
 def nanoseconds(value: Any) -> int:
-    """Of a ``builtin_interfaces/Time`` or ``Duration``."""
+    """Converts a ``builtin_interfaces/Time`` or ``Duration`` to ns."""
     return int(value.sec) * _SECOND + int(value.nanosec)

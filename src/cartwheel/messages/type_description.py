@@ -1,4 +1,4 @@
-"""What a type of ROS 2 is made of, told in ROS 2's own messages."""
+"""Structure of a ROS 2 type, as the ROS 2 message ``TypeDescription``."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ from cartwheel.messages.store import message_class
 
 _PACKAGE = "type_description_interfaces/msg"
 _ARRAY, _BOUNDED, _UNBOUNDED = 48, 96, 144
-"""What a field's kind adds to its type's number. Source: FieldType.msg."""
+"""Offsets of array kinds, which are added to the type's number. Source: FieldType.msg."""
 _NAMES = {"bool": "BOOLEAN", "float32": "FLOAT", "float64": "DOUBLE", "octet": "BYTE"}
-"""Those that FieldType.msg calls something else."""
+"""Types that have a different name in FieldType.msg."""
 
 
 def type_description(name: str) -> Any:
-    """``TypeDescription`` of a message or service by ROS 2's name, with all types within it.
+    """``TypeDescription`` of a message or service with this ROS 2 name, with all nested types.
 
     Raises:
-        UnknownNameError: ROS 2 has no such type.
+        UnknownNameError: ROS 2 does not have this type.
     """
     described: dict[str, Any] = {}
     _describe(name, described)

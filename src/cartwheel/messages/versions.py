@@ -1,8 +1,8 @@
-"""Service types of which ROS 2's releases have different versions under one name.
+"""Service types that have different versions under the same name in different ROS 2 releases.
 
-The graph has the newest. Jazzy and Kilted have version 1 of simulation_interfaces, which lacks
-what is nested or chosen by flags in version 2; its types are in a package here whose name ends
-in ``_v1``.
+The graph uses the newest version. Jazzy and Kilted have version 1 of simulation_interfaces,
+which lacks the nested fields and the flags of version 2. Its types are in a package whose name
+ends in ``_v1`` here.
 """
 
 from __future__ import annotations
@@ -23,26 +23,26 @@ _TWO_VERSIONS = frozenset(
 
 @dataclass(frozen=True, slots=True)
 class OlderService:
-    """A version of a service type that others may still have."""
+    """An older version of a service type, which clients may still use."""
 
     type: Ros2Service
     newest: str
-    """Name of the graph's type."""
+    """Name of the service type in the graph."""
 
     def request(self, older: Any) -> Any:
-        """A request as the graph has it."""
+        """Converts a request to the newest version."""
         made = recast(older, f"{self.newest}_Request")
         for field in ("entity_resource", "world_resource"):
             if hasattr(made, field):
                 setattr(made, field, recast(older, f"{_SIMULATION}/msg/Resource"))
         for flag in ("set_pose", "set_twist"):
-            # There were none, nor one for accelerations, which were free to be ignored.
+            # Version 1 has no such flags, and always sets the pose and the velocity.
             if hasattr(made, flag):
                 setattr(made, flag, True)
         return made
 
     def response(self, newer: Any) -> Any:
-        """A response as they have it."""
+        """Converts a response to this older version."""
         made = recast(newer, self.type.response)
         if hasattr(made, "spawnables"):
             made.spawnables = [_spawnable(each) for each in newer.spawnables]
@@ -50,7 +50,7 @@ class OlderService:
 
 
 def older_versions(name: str) -> tuple[OlderService, ...]:
-    """The older versions of a service type ``pkg/srv/Name`` or ``pkg/Name``; mostly none."""
+    """Older versions of a service type ``pkg/srv/Name`` or ``pkg/Name``; usually empty."""
     full = service_name(name)
     if full not in _TWO_VERSIONS:
         return ()

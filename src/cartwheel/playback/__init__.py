@@ -1,4 +1,4 @@
-"""A recording in a simulation's place: the same topics, at the times that they had."""
+"""Playback of recordings: the same topics and times as in the recorded simulation."""
 
 from cartwheel.playback.player import Player
 from cartwheel.playback.session import PlaybackSession

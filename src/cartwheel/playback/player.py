@@ -1,4 +1,4 @@
-"""Time of a recording: it runs, holds, jumps, and messages come as it passes them."""
+"""Playback clock of a recording: runs, pauses, jumps, and publishes messages as they are due."""
 
 from __future__ import annotations
 
@@ -19,28 +19,28 @@ from cartwheel.simulation.running import Run
 from cartwheel.simulation.snapshot import RunState, Scene, Snapshot
 
 _LOOK_BACK_NS = 2_000_000_000
-"""Before the place of a jump: what was said last is said again."""
+"""ns before the target of a jump from which the last messages are published again."""
 _STEP_NS = 33_333_333
 _LONGEST = 0.02
-"""s of wall time of one turn."""
+"""Maximum wall time in s per iteration of the playback loop."""
 
 
 class Player(Run):
-    """Publishes a recording's messages; to clients it is what a `Simulation` is.
+    """Publishes a recording's messages. Clients use it like a `Simulation`.
 
-    One thread, that which calls `run`, owns it. A message is decoded only where somebody
-    reads its topic, or where it moves what is shown.
+    The thread that calls `run` owns it. A message is decoded only if its topic has subscribers
+    or if it changes the displayed scene.
 
     Args:
-        recording: To play.
-        graph: To publish on.
-        world: Things to show around the robots.
-        package_path: Where meshes are looked for first.
-        loop: Begin again at the end.
-        hold: At the end hold time, instead of ending.
+        recording: Recording to play.
+        graph: Graph to publish on.
+        world: World file whose objects are shown around the robots.
+        package_path: Directories that are searched first for meshes.
+        loop: Whether to restart at the end.
+        hold: Whether to pause at the end instead of stopping.
 
     Raises:
-        RecordingError: There is nothing to play.
+        RecordingError: The recording contains nothing to play.
     """
 
     def __init__(
@@ -77,7 +77,7 @@ class Player(Run):
         graph.post = self.post
         self.seek(self.start_ns)
 
-    # -- what a simulation has
+    # -- interface of a simulation
 
     @property
     def diagnostics(self) -> list[Diagnostic]:
@@ -92,32 +92,32 @@ class Player(Run):
         return tuple(model.name for model in self.scene.models)
 
     def pose(self, name: str) -> Pose:
-        """Where a model is."""
+        """Pose of a model."""
         return self._played.pose(name)
 
     def in_sight(self, _name: str, eyes: Sequence[Vec3], _target: Vec3) -> list[bool]:
-        """From where a model is seen: from everywhere, as far as a recording knows."""
+        """Whether a model is visible from each point. Always true, as a recording cannot tell."""
         return [True] * len(eyes)
 
     def resume(self) -> None:
-        """Lets time go on; from the start where it had come to the end."""
+        """Continues playback, from the start if it had reached the end."""
         if self.run_state is RunState.PAUSED and self._next is None:
             self.seek(self.start_ns)
         super().resume()
 
     def step(self, count: int = 1) -> None:
-        """Goes on by thirtieths of a second, and holds time."""
+        """Advances by `count` thirtieths of a second, and pauses."""
         self.pause()
         self._play_until(min(self.time_ns + count * _STEP_NS, self.end_ns))
 
     def reset(self) -> None:
-        """Back to the start."""
+        """Jumps to the start."""
         self.seek(self.start_ns)
         for callback in self.on_reset:
             callback()
 
     def delete(self, name: str) -> None:
-        """Refuses.
+        """Raises an error, because a recording cannot change.
 
         Raises:
             RecordingError: Always.
@@ -129,7 +129,7 @@ class Player(Run):
         )
 
     def snapshot(self) -> Snapshot:
-        """What is shown now."""
+        """Current state of the displayed scene."""
         return self._played.snapshot(
             self.time_ns, self.run_state, self.speed, self.real_time_factor
         )
@@ -142,7 +142,7 @@ class Player(Run):
     # -- time
 
     def seek(self, time_ns: int) -> None:
-        """Jumps: what was last said before is said again, and from there it goes on."""
+        """Jumps to a time, and publishes the last messages before it again."""
         time_ns = min(max(time_ns, self.start_ns), self.end_ns)
         if time_ns < self.time_ns:
             self._played.forget()
@@ -167,7 +167,7 @@ class Player(Run):
         self._next = next(self._upcoming, None)
 
     def run(self) -> None:
-        """Plays until it is stopped, or the end."""
+        """Plays until playback is stopped or reaches the end."""
         last = time.perf_counter()
         while True:
             self.drain()
@@ -207,7 +207,7 @@ class Player(Run):
         self.time_ns = max(self.time_ns, time_ns)
 
     def _end(self) -> bool:
-        """What happens at the end; returns whether it goes on."""
+        """Handles the end of the recording. Returns whether playback continues."""
         if self._loop:
             self.reset()
             return True
@@ -218,7 +218,7 @@ class Player(Run):
         return False
 
     def _time_left(self) -> float:
-        """s of wall time until there is something to do."""
+        """Wall time in s until the next message or redraw is due."""
         if self.run_state is not RunState.RUNNING:
             return _LONGEST
         if self.speed is None:
@@ -256,7 +256,7 @@ class Player(Run):
                     RECORDED_TOPIC_LEFT_OUT.because(f"{topic.name} is not played", error)
                 )
         for number, messages in self._latched.items():
-            # Robots first: the other topics belong to them.
+            # Robot descriptions come first, because other topics are assigned to robots.
             self._describe(topics[number], number, messages[-1])
         publishers = {}
         for number in self._decoders:
@@ -321,6 +321,6 @@ class Player(Run):
 
 
 def _is_kept(topic: RecordedTopic) -> bool:
-    """Whether a topic's last message holds until the next one, whatever its recorder said."""
+    """Whether a topic's last message stays valid, as in a latched topic."""
     described = topic.type == STRING and topic.name.endswith("robot_description")
     return topic.latched or described or topic.name == "/tf_static"

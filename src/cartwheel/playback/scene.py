@@ -1,4 +1,4 @@
-"""Where the links of recorded robots were: from transforms and joint states."""
+"""Poses of the links of recorded robots, from transforms and joint states."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ TRANSFORMS = "tf2_msgs/msg/TFMessage"
 JOINTS = "sensor_msgs/msg/JointState"
 STRING = "std_msgs/msg/String"
 STATE = frozenset({TRANSFORMS, JOINTS})
-"""Types that move what is shown."""
+"""Message types that change the displayed scene."""
 _FIX = "Add its folder: --package-path FOLDER."
 
 
@@ -34,13 +34,13 @@ class _Robot:
 
 
 class PlayedScene:
-    """What stands in the scene, and where.
+    """The displayed scene and its poses.
 
-    The frame at the root of the transforms is the world.
+    The frame at the root of the transforms is the world frame.
 
     Args:
-        world: Things that stand where its file puts them.
-        package_path: Where meshes are looked for first.
+        world: World file whose objects are shown at the poses in that file.
+        package_path: Directories that are searched first for meshes.
     """
 
     def __init__(self, world: WorldDescription, package_path: Sequence[Path] = ()) -> None:
@@ -48,21 +48,21 @@ class PlayedScene:
         self.diagnostics: list[Diagnostic] = []
         self._package_path = package_path
         self._robots: dict[str, _Robot] = {}
-        """By topic."""
+        """Robots by topic."""
         self._texts: dict[str, str] = {}
         self._parents: dict[str, tuple[str, Pose]] = {}
         self._joints: dict[str, dict[str, float]] = {}
-        """Positions by namespace and joint."""
+        """Joint positions by namespace and joint."""
         self._version = 0
         self._scene = self._made()
 
     @property
     def scene(self) -> Scene:
-        """What stands there now."""
+        """The objects that are currently shown."""
         return self._scene
 
     def robot_near(self, topic: str) -> str | None:
-        """The name of the robot whose namespace a topic is in, or of the first."""
+        """Name of the robot whose namespace contains a topic, or of the first robot."""
         robots = sorted(self._robots.values(), key=lambda r: (-len(r.namespace), r.name))
         for robot in robots:
             if topic.startswith(f"{robot.namespace}/"):
@@ -70,7 +70,7 @@ class PlayedScene:
         return robots[0].name if robots else None
 
     def describe(self, topic: str, text: str) -> None:
-        """Takes a robot's description."""
+        """Adds or replaces a robot from its description."""
         if self._texts.get(topic) == text:
             return
         self._texts[topic] = text
@@ -107,7 +107,7 @@ class PlayedScene:
         self._scene = self._made()
 
     def take(self, topic: str, message: Any) -> None:
-        """Takes transforms or joint states."""
+        """Applies a message with transforms or joint states."""
         if message.__msgtype__ == TRANSFORMS:
             for each in message.transforms:
                 where, turn = each.transform.translation, each.transform.rotation
@@ -119,12 +119,12 @@ class PlayedScene:
             known.update(zip(message.name, map(float, message.position), strict=False))
 
     def forget(self) -> None:
-        """Time went back: what was said later does not hold."""
+        """Deletes all later transforms and joint states, because playback jumped back in time."""
         self._parents.clear()
         self._joints.clear()
 
     def pose(self, name: str) -> Pose:
-        """Where a model is."""
+        """Pose of a model."""
         for placed in self._scene.models:
             if placed.name == name:
                 robot = next((r for r in self._robots.values() if r.name == name), None)
@@ -134,7 +134,7 @@ class PlayedScene:
     def snapshot(
         self, time_ns: int, run_state: RunState, speed: float | None, factor: float
     ) -> Snapshot:
-        """The state at a time."""
+        """Snapshot of the scene at a time."""
         poses: list[Pose] = []
         positions: list[float] = []
         for placed in self._scene.models:
@@ -164,7 +164,7 @@ class PlayedScene:
         )
 
     def _links(self, robot: _Robot) -> tuple[Pose, list[Pose]]:
-        """Where a robot's frame and its links are."""
+        """Poses of a robot's base frame and of its links."""
         local = link_poses(robot.description, self._positions(robot))
         known: dict[str, Pose] = {}
         for name in local:

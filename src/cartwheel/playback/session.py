@@ -1,4 +1,4 @@
-"""What clients see of a recording that is played: the same as of a simulation."""
+"""What clients see of a recording during playback: the same as of a simulation."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ from cartwheel.playback.player import Player
 
 
 class PlaybackSession:
-    """A recording with its graph.
+    """A recording and its graph.
 
     Args:
-        recording: To play.
-        world: Things to show around the robots.
-        package_path: Where meshes are looked for first.
-        loop: Begin again at the end.
-        hold: At the end hold time, instead of ending.
+        recording: Recording to play.
+        world: World file whose objects are shown around the robots.
+        package_path: Directories that are searched first for meshes.
+        loop: Whether to restart at the end.
+        hold: Whether to pause at the end instead of stopping.
 
     Raises:
-        RecordingError: There is nothing to play.
+        RecordingError: The recording contains nothing to play.
     """
 
     def __init__(
@@ -49,11 +49,11 @@ class PlaybackSession:
 
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
-        """What the user should know."""
+        """Diagnostics for the user."""
         return tuple(self.simulation.diagnostics)
 
     def spawn(self, *_: Any, **__: Any) -> str:
-        """Refuses.
+        """Raises an error, because a recording cannot change.
 
         Raises:
             RecordingError: Always.
