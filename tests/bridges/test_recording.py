@@ -37,12 +37,14 @@ from cartwheel.codes.recording import (
     DISK_SLOW,
     ENCODING_UNFIT,
     MESSAGE_NOT_RECORDED,
+    RECORDING_BROKE_OFF,
     RECORDING_EXISTS,
     RECORDING_NAME_INVALID,
     RECORDING_NOT_WRITABLE,
     TOPIC_PATTERN_INVALID,
     TOPIC_PATTERN_UNMATCHED,
 )
+from cartwheel.codes.wires import BRIDGE_ENDED
 from cartwheel.errors import Code, Diagnostic, RecordingError
 from cartwheel.graph import Graph
 from cartwheel.messages import encode_cdr, from_dict, message_class, ros1_writing, ros2
@@ -518,7 +520,7 @@ def test_a_recorder_that_is_killed_early_has_the_beginning(name: str, tmp_path: 
         process.kill()
         process.wait()
     assert process.returncode == 2
-    assert "its process was ended" in said
+    assert f"[{BRIDGE_ENDED}]" in said and f"[{RECORDING_BROKE_OFF}]" in said
     kept = [t for t, _ in _read_broken(name, path)["/clock"]]
     assert len(kept) >= len(times)
     assert kept == [max(i * 10_000_000, int(name == "drive.bag")) for i in range(len(kept))]

@@ -5,6 +5,7 @@ import math
 import pytest
 
 from cartwheel.api import World
+from cartwheel.codes.robot import WHEEL_DIAMETER_MISMATCH
 from cartwheel.corpus import try_robot
 from cartwheel.corpus.trial import _listened
 
@@ -86,7 +87,7 @@ def test_a_wheel_of_half_the_stated_diameter_drives_half_as_fast(tried):
     assert not drive.follows
     assert not verdict.good
     (reason,) = verdict.reasons
-    assert "robot.urdf:1: warning: <wheelDiameter> is 0.2 m" in reason
+    assert "robot.urdf:1: warning: " in reason and f"[{WHEEL_DIAMETER_MISMATCH}]" in reason
     assert "50% too slowly" in reason
 
 
