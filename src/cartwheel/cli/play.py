@@ -55,7 +55,7 @@ def play(
     open_browser: arguments.OpenBrowser = None,
     package_path: arguments.PackagePath = None,
 ) -> None:
-    """Play a recording in the browser and on topics."""
+    """Play a recording in the browser and publish its topics."""
     from cartwheel.cli.commands import play as work
 
     work.play(

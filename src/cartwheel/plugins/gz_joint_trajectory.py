@@ -42,7 +42,7 @@ class JointTrajectoryParameters:
     joints: tuple[str, ...] = tag(
         "joint_name",
         default=(),
-        doc="Joint to control. Repeat the tag for each joint. Default: all joints with one axis.",
+        doc="Joint to control. Repeat the tag for each joint. Default: all single-axis joints.",
     )
     initial: tuple[float, ...] = tag(
         "initial_position",
@@ -126,7 +126,7 @@ class GzJointTrajectory(Plugin[JointTrajectoryParameters]):
         ]
         if not names:
             raise PluginError(
-                "the model has no joint with one axis, so it cannot follow a trajectory",
+                "the model has no single-axis joint, so it cannot follow a trajectory",
                 code=devices.PLUGIN_IDLE,
                 origin=origin,
             )

@@ -327,7 +327,7 @@ def read_parameters(order: str, body: memoryview, at: int) -> tuple[dict[int, by
         if name == 1:
             return found, at
         if at + length > len(body):
-            raise MalformedError("a parameter is the message is truncated")
+            raise MalformedError("the message is truncated in a parameter")
         found.setdefault(name & 0xBFFF, bytes(body[at : at + length]))
         at += length
 
