@@ -1,1 +1,1 @@
-"""The graph on the wires of others."""
+"""Bridges that connect the graph to ROS 1, ROS 2, Foxglove and recordings."""

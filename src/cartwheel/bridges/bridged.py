@@ -1,4 +1,4 @@
-"""What a bridge needs of a graph, wherever that is."""
+"""The part of a graph that a bridge uses, in the same or in a different process."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ class BridgedSubscription(Protocol):
     dropped: Callable[[], int]
 
     def close(self) -> None:
-        """Takes it off the graph."""
+        """Unsubscribes."""
 
 
 class BridgedParameters(Protocol):
@@ -27,15 +27,15 @@ class BridgedParameters(Protocol):
         """A value, or the mapping of a namespace."""
 
     def set(self, name: str, value: Any) -> None:
-        """Stores a value."""
+        """Sets a value."""
 
 
 class BridgedAction(Protocol):
-    """See `Action`; for the thread on which `BridgedGraph.post` runs functions."""
+    """See `Action`. Call it on the thread on which `BridgedGraph.post` runs functions."""
 
     @property
     def name(self) -> str:
-        """Its name in the graph."""
+        """Name in the graph."""
 
     @property
     def type(self) -> str:
@@ -43,41 +43,41 @@ class BridgedAction(Protocol):
 
     @property
     def node(self) -> str:
-        """Who offers it."""
+        """Node that offers the action."""
 
     @property
     def time_ns(self) -> Callable[[], int]:
-        """Tells simulation time."""
+        """Returns the simulation time."""
 
     @property
     def goals(self) -> list[Goal]:
-        """Those that are worked at and those that ended lately, in order."""
+        """Active and recently completed goals, in the order of submission."""
 
     def goal(self, identity: str) -> Goal | None:
-        """One of `goals`."""
+        """The known goal with this identifier, or None."""
 
     def listen(self, listener: ActionListener) -> None:
-        """Tells it of all goals from now on."""
+        """Adds a listener, which is notified of all goals from now on."""
 
     def leave(self, listener: ActionListener) -> None:
-        """Tells it of goals no longer."""
+        """Removes a listener."""
 
     def submit(self, goal: Any, *, identity: str = "") -> Goal | None:
-        """Hands a goal in; None where one of that name is known."""
+        """Submits a goal. Returns None if a goal with this identifier already exists."""
 
     def cancel(self, *, identity: str = "", before_ns: int = 0) -> list[Goal]:
-        """Calls goals off; returns those that were under way."""
+        """Cancels goals. Returns the goals that were active."""
 
 
 class Packer(Protocol):
     """See `CdrCache`."""
 
     def encode(self, message: Any) -> bytes:
-        """The message's CDR bytes."""
+        """CDR bytes of a message."""
 
 
 class BridgedGraph(Protocol):
-    """A `Graph` in this process, or one in another."""
+    """A `Graph` in this process, or a graph in a different process."""
 
     @property
     def nodes(self) -> Mapping[str, str]:
@@ -85,18 +85,18 @@ class BridgedGraph(Protocol):
 
     @property
     def parameters(self) -> BridgedParameters:
-        """All of them."""
+        """All parameters."""
 
     @property
     def cdr(self) -> Packer:
-        """Packs messages that the graph has delivered."""
+        """Serialises messages that the graph has delivered."""
 
     @property
     def on_change(self) -> list[Callable[[], None]]:
-        """Called after each change, on any thread: must return at once."""
+        """Called after each change, on any thread. The functions must return at once."""
 
     def post(self, function: Callable[[], None]) -> None:
-        """Runs a function after all that was handed to the simulation before was taken."""
+        """Runs a function after the simulation has processed all previous messages and calls."""
 
     def subscribe(
         self,
@@ -106,19 +106,19 @@ class BridgedGraph(Protocol):
         type_name: str | None = None,
         node: str = "cartwheel",
     ) -> BridgedSubscription:
-        """A callback for each message, in order of publication."""
+        """Calls `callback` with each message, in the order of publication."""
 
     def publish(self, name: str, type_name: str, message: Any) -> None:
-        """Delivers one message."""
+        """Publishes one message."""
 
     def call(self, name: str, request: Any) -> Future[Any]:
         """Calls a service."""
 
     def topics(self) -> list[TopicInfo]:
-        """All topics, by name."""
+        """All topics, sorted by name."""
 
     def services(self) -> list[Service]:
-        """All services, by name."""
+        """All services, sorted by name."""
 
     def actions(self) -> Sequence[BridgedAction]:
-        """All actions, by name."""
+        """All actions, sorted by name."""

@@ -1,4 +1,4 @@
-"""The one thread on which all connections of a bridge live."""
+"""Event loop thread for all connections of a bridge."""
 
 from __future__ import annotations
 
@@ -20,8 +20,9 @@ from cartwheel.calls import answered
 READ, WRITE = selectors.EVENT_READ, selectors.EVENT_WRITE
 _CHUNK = 1 << 18
 
-# As `os.write`, but it keeps Python's lock. Let go of, the lock would be taken by the loop that was
-# woken, and who posts would wait until that has done its work: 0.5 ms for a message on three wires.
+# Like `os.write`, but without releasing Python's lock. If the lock were released, the woken
+# loop would take it, and the posting thread would wait for the loop's work: 0.5 ms for a message
+# on three wires.
 _write = ctypes.PyDLL(None).write
 _write.argtypes = (ctypes.c_int, ctypes.c_char_p, ctypes.c_size_t)
 _write.restype = ctypes.c_ssize_t
@@ -31,21 +32,21 @@ Ready = Callable[[int], None]
 
 
 class Watchable(Protocol):
-    """A socket, or another file that can be waited for."""
+    """A socket, or a different file that can be polled."""
 
     def fileno(self) -> int:
-        """Its number."""
+        """File descriptor."""
 
     def close(self) -> None:
-        """Ends it."""
+        """Closes the file."""
 
 
 class Loop:
-    """Waits for sockets, functions from other threads, and times.
+    """Waits for sockets, functions from other threads, and timers.
 
     Args:
-        on_fault: Told of what a function raised; the loop goes on.
-        name: Of the thread.
+        on_fault: Called with the exceptions of functions. The loop continues.
+        name: Name of the thread.
     """
 
     def __init__(self, on_fault: Callable[[Exception], None], *, name: str) -> None:
@@ -59,20 +60,22 @@ class Loop:
         self._outer.setblocking(False)
         self._woken = False
         self._waking = threading.RLock()
-        """Held while `_outer` is written to or closed: its number may be another file's then.
+        """Held while `_outer` is written to or closed, because its file descriptor may be reused
+        after
+        closing.
 
-        A signal's handler may post while its thread does, so it can be taken twice.
+        It is reentrant, because a signal handler may post while its thread does.
         """
         self._running = True
         self._selector.register(self._inner, READ, self._rouse)
         self._thread = threading.Thread(target=self._run, name=name, daemon=True)
 
     def start(self) -> None:
-        """Begins to work."""
+        """Starts the thread."""
         self._thread.start()
 
     def stop(self) -> None:
-        """Ends the thread, soon; from any thread."""
+        """Stops the thread soon. Callable on any thread."""
 
         def end() -> None:
             self._running = False
@@ -84,33 +87,33 @@ class Loop:
     # -- from any thread
 
     def post(self, function: Callable[[], None]) -> None:
-        """Runs a function on the loop's thread; never waits."""
+        """Runs a function on the loop's thread, without waiting."""
         self._functions.append(function)
         if not self._woken:
             self._woken = True
             with self._waking:
-                # In vain where it is full of such bytes, or the loop has ended.
+                # This has no effect if the buffer is full of such bytes, or the loop has ended.
                 _write(self._outer.fileno(), b"\0", 1)
 
     def call(self, function: Callable[[], T]) -> Future[T]:
-        """Like `post`, with the result or the error."""
+        """Like `post`, with a future of the result or error."""
         return answered(self.post, function)
 
     # -- on the loop's thread
 
     def after(self, seconds: float, function: Callable[[], None]) -> None:
-        """Runs a function later."""
+        """Runs a function after a delay."""
         heapq.heappush(self._timers, (time.monotonic() + seconds, next(self._order), function))
 
     def watch(self, sock: Watchable, events: int, ready: Ready) -> None:
-        """Calls `ready` with those of `events` that a socket is ready for."""
+        """Calls `ready` with those of `events` for which a socket is ready."""
         try:
             self._selector.modify(sock, events, ready)
         except KeyError:
             self._selector.register(sock, events, ready)
 
     def forget(self, sock: Watchable) -> None:
-        """Watches a socket no longer."""
+        """Stops watching a socket."""
         with contextlib.suppress(KeyError, ValueError):
             self._selector.unregister(sock)
 
@@ -140,7 +143,7 @@ class Loop:
     def _guarded(self, function: Callable[[], None]) -> None:
         try:
             function()
-        except Exception as error:  # noqa: BLE001 - one connection must not end the others
+        except Exception as error:  # noqa: BLE001 - one error must not stop the others
             self._on_fault(error)
 
     def _rouse(self, _: int) -> None:
@@ -149,11 +152,11 @@ class Loop:
 
 
 def taken(sock: socket.socket, size: int = _CHUNK) -> bytes | None:
-    """What has come on a connection: no bytes where it is at its end, None where there is nothing.
+    """Received bytes: empty at the end of the connection, None if no data is available.
 
     Args:
-        sock: The connection, which does not block.
-        size: Bytes to take at most.
+        sock: Non-blocking socket.
+        size: Maximum number of bytes.
     """
     try:
         return sock.recv(size)

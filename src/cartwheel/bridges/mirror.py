@@ -1,4 +1,4 @@
-"""What of a graph a bridge offers to others, and what it asks them for."""
+"""Selection of the graph's topics for a bridge, and delivery of external messages."""
 
 from __future__ import annotations
 
@@ -14,25 +14,25 @@ from cartwheel.errors import CartwheelError, Diagnostic, GraphError
 from cartwheel.graph import TopicInfo
 
 BRIDGES = frozenset({"ros1", "ros2"})
-"""What bridges are called as nodes of the graph."""
+"""Names of bridges as nodes of the graph."""
 ONLOOKERS = frozenset({"viewer", "cartwheel topic", "recorder", "foxglove"})
-"""Nodes of the graph that read what it publishes, and expect nothing of other publishers."""
+"""Nodes of the graph that only observe it. They do not need messages from external publishers."""
 _BACKLOG = 1000
 _BACKLOG_BYTES = 128 << 20
-"""Messages from outside that the simulation has not taken yet."""
+"""Maximum bytes of external messages that the simulation has not processed yet."""
 
 _CALL = 120.0
-"""s that the simulation may take to answer a service."""
+"""Timeout in s for the simulation's response to a service call."""
 
 
 @dataclass(slots=True)
 class Survey:
-    """Topics by the names that others know."""
+    """Topics by their external names."""
 
     sent: dict[str, TopicInfo] = field(default_factory=dict)
-    """What somebody here publishes."""
+    """Topics with a publisher in the graph."""
     read: dict[str, TopicInfo] = field(default_factory=dict)
-    """What somebody here wants to hear from outside."""
+    """Topics with a subscriber in the graph that needs external messages."""
 
 
 def survey(
@@ -41,12 +41,12 @@ def survey(
     outer: Callable[[str], str] = lambda name: name,
     known: Callable[[TopicInfo], bool] = lambda _: True,
 ) -> Survey:
-    """Sorts topics of the graph.
+    """Sorts the topics of a graph.
 
     Args:
-        topics: All of them.
-        outer: Gives the name outside.
-        known: Whether the type exists outside.
+        topics: All topics of the graph.
+        outer: Returns the external name of a topic.
+        known: Whether the type exists externally.
     """
     found = Survey()
     for info in topics:
@@ -62,7 +62,7 @@ def survey(
 
 
 def offered_by_others(graph: BridgedGraph, reader: str) -> dict[str, TopicInfo]:
-    """Topics by name, but for those that none but `reader` still reads."""
+    """Topics by name, without topics that exist only because `reader` subscribes to them."""
     return {
         info.name: info
         for info in graph.topics()
@@ -71,10 +71,10 @@ def offered_by_others(graph: BridgedGraph, reader: str) -> dict[str, TopicInfo]:
 
 
 def asked(graph: BridgedGraph, service: str, request: Any) -> Any:
-    """The response of a service; from any thread but the simulation's, which is waited for.
+    """Calls a service and returns its response. Not allowed on the simulation's thread.
 
     Raises:
-        CartwheelError: There is no such service, it refused, or there was no answer in time.
+        CartwheelError: The service does not exist, it refused, or it timed out.
     """
     future = graph.call(service, request)
     try:
@@ -89,11 +89,11 @@ def asked(graph: BridgedGraph, service: str, request: Any) -> Any:
 
 
 class Arrivals:
-    """Messages from outside on their way into the graph; they are not sent back.
+    """External messages that are published on the graph. They are not sent back.
 
     Args:
-        graph: Where they go.
-        tell: Takes a warning.
+        graph: Graph to publish on.
+        tell: Receives warnings.
     """
 
     def __init__(self, graph: BridgedGraph, tell: Callable[[Diagnostic], None]) -> None:
@@ -107,13 +107,13 @@ class Arrivals:
         return id(message) in self._under_way
 
     def deliver(self, topic: str, type_name: str, message: Any, *, size: int = 0) -> None:
-        """Publishes a message in the graph; from any thread.
+        """Publishes a message on the graph. Callable on any thread.
 
         Args:
-            topic: Its name in the graph.
-            type_name: Of the message.
-            message: As the graph has it.
-            size: In bytes, as far as that is known.
+            topic: Topic name in the graph.
+            type_name: Message type.
+            message: Message of the graph's class.
+            size: Size in bytes, if known.
         """
         if len(self._under_way) >= _BACKLOG or self._bytes + size > _BACKLOG_BYTES:
             self._tell(

@@ -1,4 +1,4 @@
-"""A message that is still as it came from elsewhere."""
+"""A message that is still serialised."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from cartwheel.messages import decode_cdr
 
 
 class Packed:
-    """A message as bytes; its fields are there for who asks for one.
+    """A serialised message. It is decoded when one of its fields is first read.
 
     Attributes:
-        cdr: The bytes.
+        cdr: CDR bytes.
     """
 
     __slots__ = ("_made", "_type", "cdr")

@@ -1,4 +1,4 @@
-"""A topic of the graph on its way to a bridge's thread."""
+"""Transfer of a topic's messages to the thread of a bridge."""
 
 from __future__ import annotations
 
@@ -12,22 +12,23 @@ from cartwheel.errors import Diagnostic
 from cartwheel.graph import Mailbox
 
 _WAITING = 200
-"""Messages that may wait between the simulation's thread and ours."""
+"""Maximum number of queued messages between the simulation's and the bridge's threads."""
 
 
 class Tap:
-    """Subscribes to one topic of the graph while it is open, so that nothing is made for nobody.
+    """Subscribes to a topic of the graph only while it is open, so that unused messages are not
+    made.
 
     Args:
-        loop: Takes the messages on its thread.
-        graph: Where the topic is.
-        topic: Its name there.
-        type_name: Of its messages.
-        reader: By which we subscribe.
-        ignored: Whether a message came from outside in the first place.
-        take: Takes each message.
-        tell: Takes a warning.
-        beyond: How many messages were dropped after they were taken; asked on any thread.
+        loop: Event loop on whose thread messages are handled.
+        graph: Graph with the topic.
+        topic: Topic name in the graph.
+        type_name: Message type.
+        reader: Node name of the bridge.
+        ignored: Whether a message came from this bridge, and so must not be sent back.
+        take: Called with each message.
+        tell: Receives warnings.
+        beyond: Returns the number of messages dropped after `take`. Callable on any thread.
     """
 
     def __init__(
@@ -59,11 +60,11 @@ class Tap:
 
     @property
     def dropped(self) -> int:
-        """Messages that were published faster than they could be sent, or than others read."""
+        """Number of messages dropped because the bridge or its subscribers were too slow."""
         return self._box.dropped + self._beyond()
 
     def open(self) -> None:
-        """Subscribes, where that is not done yet."""
+        """Subscribes, unless already subscribed."""
         if self._subscription is None:
             self._subscription = self._graph.subscribe(
                 self._topic, self._put, type_name=self._type_name, node=self._reader
@@ -71,14 +72,14 @@ class Tap:
             self._subscription.dropped = lambda: self.dropped
 
     def close(self) -> None:
-        """Leaves the graph."""
+        """Unsubscribes."""
         if self._subscription is not None:
             self._subscription.close()
             self._subscription = None
         self._box.drain()
 
     def _put(self, message: Any) -> None:
-        """On the simulation's thread."""
+        """Called on the simulation's thread."""
         if self._ignored(message):
             return
         self._box.put(message)

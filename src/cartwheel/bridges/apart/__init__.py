@@ -1,5 +1,6 @@
-"""Bridges in processes of their own: a simulation's thread does not share Python's lock with them.
+"""Bridges in separate processes, which do not compete with the simulation for Python's lock.
 
-Each wire has one. The bridge there sees a `RemoteGraph`, which a `GraphHost` beside the simulation
-answers for: messages go through memory that both share, everything else over a socket.
+There is one process per wire. The bridge in this process uses a `RemoteGraph`, and a `GraphHost`
+in the simulation's process responds to it. Messages go through shared memory, everything else
+over a socket.
 """

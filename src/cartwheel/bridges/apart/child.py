@@ -1,4 +1,4 @@
-"""The program of a bridge's process."""
+"""Main program of a bridge process."""
 
 from __future__ import annotations
 
@@ -22,31 +22,31 @@ WIRES = {
     "foxglove": "FoxgloveWire",
     "recording": "RecordingWire",
 }
-"""The classes of `wires`, by kind."""
+"""Class names in `wires`, by kind."""
 
 
 class Wire(Protocol):
     """A bridge in this process."""
 
     def open(self, options: dict[str, Any]) -> Any:
-        """Makes it; tells what it is."""
+        """Creates the bridge, and returns its description."""
 
     def close(self) -> Any:
-        """Ends it; tells what became of it."""
+        """Closes the bridge, and returns its results."""
 
 
 def main(kind: str, patient: str, link_file: str, ring_files: str) -> None:
-    """Runs a bridge until the simulation's process says so, or has ended.
+    """Runs a bridge until the simulation's process stops it, or exits.
 
     Args:
-        kind: One of `WIRES`.
-        patient: Not empty where nothing may be lost.
-        link_file: Number of the link's socket.
-        ring_files: Of the ring's reader.
+        kind: Key of `WIRES`.
+        patient: Non-empty if no message may be dropped.
+        link_file: File descriptor of the link's socket.
+        ring_files: File descriptors of the ring's reader.
     """
-    # They may be sent to all of a service's processes. The simulation's hears of them, and its end
-    # is heard here: until then there may be something to be written.
-    # A handler, since a program that a bridge starts would inherit an ignored signal.
+    # A service manager may send these signals to all of its processes. The simulation's process
+    # handles them, and this process ends after the simulation, when all messages are written.
+    # A handler, because programs that a bridge starts would inherit ignored signals.
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, lambda *_: None)
     over = threading.Event()
@@ -84,9 +84,9 @@ def main(kind: str, patient: str, link_file: str, ring_files: str) -> None:
     link.start()
     over.wait()
     try:
-        # What the simulation had handed on before it ended, in whatever way, is still there.
+        # Messages that the simulation sent before it ended are still in the ring.
         reader.read_all()
         wire.close()
-    except Exception:  # noqa: BLE001 - nobody is left to be told
+    except Exception:  # noqa: BLE001 - nothing is left to report to
         traceback.print_exc()
     os._exit(0)

@@ -1,4 +1,4 @@
-"""A graph for a bridge in another process."""
+"""Access to a graph for a bridge in a different process."""
 
 from __future__ import annotations
 
@@ -22,27 +22,27 @@ from cartwheel.graph import Graph, Service, Subscription
 from cartwheel.messages import decode_cdr, encode_cdr, service_classes
 
 _TOLD = 500
-"""Different warnings."""
+"""Maximum number of different warnings."""
 _CLOCK = "rosgraph_msgs/msg/Clock"
 _TIMES, _TIMES_AT_ONCE = 1000.0, 100.0
-"""Times that are passed on in a second, and at once: a simulation at full speed publishes many
-more, and each is read by every node that uses simulated time."""
+"""Maximum number of clock messages that are forwarded per s, and in a burst. A simulation at
+full speed publishes many more, and every node that uses simulation time would receive them."""
 _LAST_TIME = 0.02
-"""s after which the last of them is looked at again."""
+"""Delay in s after which the newest delayed clock message is sent."""
 
 
 class GraphHost:
-    """Answers for a graph at one end of a link; a `RemoteGraph` is at the other.
+    """Makes a graph available over a link. The `RemoteGraph` is at the far end.
 
     Args:
-        graph: Of the simulation.
-        link: To the bridge's process.
-        ring: For messages.
-        time_ns: Tells simulation time; on any thread.
-        patient: Nothing may be lost: where the ring is full, the simulation waits.
-        echo: Whether the bridge hears what it has published itself.
-        title: Of the bridge, as the user knows it.
-        report: Takes what the user should know, from any thread.
+        graph: Graph of the simulation.
+        link: Link to the bridge's process.
+        ring: Transports messages.
+        time_ns: Returns the simulation time. Callable on any thread.
+        patient: Whether the simulation waits while the ring is full, instead of dropping messages.
+        echo: Whether the bridge receives the messages that it publishes.
+        title: Name of the bridge for the user.
+        report: Receives diagnostics for the user, on any thread.
     """
 
     def __init__(
@@ -73,7 +73,7 @@ class GraphHost:
         self._changing = False
         self._closed = False
         self.waited = 0.0
-        """s that the simulation has waited for the bridge."""
+        """Wall time in s for which the simulation has waited for the bridge."""
         link.handle("begin", self._begin)
         link.handle("taken", lambda: answered(graph.post, lambda: None))
         link.handle("subscribe", self._subscribe)
@@ -87,7 +87,7 @@ class GraphHost:
         link.handle("set_parameter", graph.parameters.set, threaded=True)
 
     def close(self) -> None:
-        """Takes everything of the bridge's off the graph; from any thread."""
+        """Removes the bridge's subscriptions from the graph. Callable on any thread."""
         self._closed = True
         if self._changed in self._graph.on_change:
             self._graph.on_change.remove(self._changed)
@@ -104,7 +104,7 @@ class GraphHost:
         return self._state()
 
     def _changed(self) -> None:
-        """On any thread, the graph locked."""
+        """Called on any thread, with the graph locked."""
         if not self._changing:
             self._changing = True
             self._link.loop.post(self._tell_change)
@@ -148,7 +148,7 @@ class GraphHost:
             self._arrivals.deliver(name, type_name, message)
 
     def _call(self, name: str, data: bytes) -> Future[bytes]:
-        """On a thread of its own."""
+        """Called on a worker thread."""
         request = service_classes(self._graph.service(name).type)[0]
         future = self._graph.call(name, decode_cdr(data, request.__msgtype__))
         return mapped(future, encode_cdr)
@@ -163,12 +163,12 @@ class GraphHost:
     # -- on the simulation's thread
 
     def pass_on(self, relay: _Relay, message: Any) -> None:
-        """Sends a message of the graph, unless it came from there."""
+        """Sends a message of the graph to the bridge, unless the bridge published it."""
         if message in self._arrivals:
             return
         try:
             data = self._graph.cdr.encode(message)
-        except Exception as error:  # noqa: BLE001 - rosbags lets whatever it meets through
+        except Exception as error:  # noqa: BLE001 - rosbags does not catch all errors of its code
             self._warn(
                 MESSAGE_NOT_SENT.because(
                     f"a message on {relay.topic} cannot be sent",
@@ -187,12 +187,12 @@ class GraphHost:
             self._losses.add(relay.topic, put, len(data))
 
     def later(self, seconds: float, function: Callable[[], None]) -> None:
-        """Runs a function on the link's thread."""
+        """Runs a function on the link's thread after a delay."""
         self._link.loop.post(lambda: self._link.loop.after(seconds, function))
 
 
 class _Relay:
-    """A subscription of the bridge's."""
+    """A subscription of the bridge."""
 
     def __init__(self, host: GraphHost, number: int, topic: str) -> None:
         self._host = host
@@ -201,20 +201,20 @@ class _Relay:
         self.subscription: Subscription | None = None
         self.dropped = 0
         self.beyond = 0
-        """What the bridge has dropped."""
+        """Number of messages that the bridge dropped."""
 
     def take(self, message: Any) -> None:
-        """On the simulation's thread."""
+        """Called on the simulation's thread."""
         self._host.pass_on(self, message)
 
     def close(self) -> None:
-        """Ends it."""
+        """Unsubscribes."""
         if self.subscription is not None:
             self.subscription.close()
 
 
 class _Times(_Relay):
-    """Of times that come faster than anybody can use them the newest: an old one is no loss."""
+    """Limits the rate of clock messages. The newest message replaces those not yet sent."""
 
     def __init__(self, host: GraphHost, number: int, topic: str) -> None:
         super().__init__(host, number, topic)
@@ -222,11 +222,11 @@ class _Times(_Relay):
         self._left = _TIMES_AT_ONCE
         self._since = time.monotonic()
         self._held: Any = None
-        """The newest, while it may not be sent yet."""
+        """The newest message, while the rate limit delays it."""
         self._due = False
 
     def take(self, message: Any) -> None:
-        """On the simulation's thread."""
+        """Called on the simulation's thread."""
         with self._lock:
             self._held = message
             if self._pass_held() or self._due:
@@ -246,7 +246,7 @@ class _Times(_Relay):
         return True
 
     def _pass_last(self) -> None:
-        """On the link's thread: nothing may have come since."""
+        """Sends the delayed message on the link's thread, as no later message may follow."""
         with self._lock:
             self._due = not self._pass_held()
         if self._due:
@@ -254,13 +254,13 @@ class _Times(_Relay):
 
 
 class _RemoteServer:
-    """Parameters that the bridge keeps; a `ParameterServer`."""
+    """Parameters that the bridge stores; a `ParameterServer`."""
 
     def __init__(self, link: Link) -> None:
         self._link = link
 
     def get(self, name: str) -> Any:
-        """The value; waits for it."""
+        """Returns the value, after waiting for the response."""
         return self._link.ask("server_get", name)
 
     def set(self, name: str, value: Any) -> None:

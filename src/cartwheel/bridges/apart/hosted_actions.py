@@ -1,4 +1,4 @@
-"""The actions of a graph for a bridge in another process."""
+"""Access to a graph's actions for a bridge in a different process."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from cartwheel.messages import decode_cdr, encode_cdr
 
 
 class HostedActions:
-    """Does with actions what a `RemoteAction` asks for.
+    """Performs the requests of `RemoteAction`.
 
     Args:
-        link: To the bridge's process.
-        graph: Whose actions.
-        time_ns: Tells simulation time.
+        link: Link to the bridge's process.
+        graph: Graph with the actions.
+        time_ns: Returns the simulation time.
     """
 
     def __init__(self, link: Link, graph: Graph, time_ns: Callable[[], int]) -> None:
@@ -33,7 +33,7 @@ class HostedActions:
         self._tellers: dict[int, _Teller] = {}
 
     def update(self) -> tuple[Offer, ...]:
-        """All there are, by name; on the link's thread, as `do`."""
+        """Updates and returns all actions by name. Called on the link's thread, like `do`."""
         found = self._offers.update(self._graph.actions())
         self._tellers = {
             one.number: self._tellers.get(one.number)
@@ -43,16 +43,16 @@ class HostedActions:
         return found
 
     def close(self) -> None:
-        """Tells of no goals any more; from any thread."""
+        """Stops reporting goals. Callable on any thread."""
         known = self._offers.known
         for number, teller in self._tellers.items():
-            # One that has gone since, or is about to be told of, has nobody to tell.
+            # An action that has ended, or is not registered yet, has no listener.
             if number in known:
                 action = known[number]
                 self._graph.post(lambda action=action, teller=teller: action.leave(teller))  # type: ignore[misc]
 
     def do(self, number: int, what: str, *arguments: Any) -> Future[Any] | None:
-        """Does something with an action, on the graph owner's thread."""
+        """Calls a method of an action on the graph owner's thread."""
         if number in self._tellers:
             action, teller = self._offers.known[number], self._tellers[number]
             function = getattr(self, f"_{what}")
@@ -90,7 +90,7 @@ class HostedActions:
 
 
 class _Teller:
-    """Tells the bridge of an action's goals; an `ActionListener`."""
+    """Sends the goals of an action to the bridge; an `ActionListener`."""
 
     def __init__(self, link: Link, number: int, time_ns: Callable[[], int]) -> None:
         self._link = link

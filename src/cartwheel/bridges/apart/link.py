@@ -1,4 +1,4 @@
-"""Functions of another process, called by name over a socket."""
+"""Remote function calls between two processes over a socket."""
 
 from __future__ import annotations
 
@@ -21,31 +21,31 @@ from cartwheel.errors import CartwheelError, ControlError, one_line
 _LENGTH = struct.Struct("<Q")
 _CALL, _TELL, _ANSWER = range(3)
 _PATIENCE = 30.0
-"""s that the other end may take to answer, where it is in the middle of something."""
+"""Timeout in s for a response, while the other process may be busy."""
 
 _LOOKS = 5.0
-"""s between two looks at whether the other end reads again."""
+"""Interval in s at which a slow receiver is checked again."""
 _LATE = 1 << 20
-"""Bytes that wait to be sent, beyond which what may be dropped is dropped."""
+"""Number of queued bytes from which droppable messages are dropped."""
 _MOST = 256 << 20
-"""Bytes beyond which the other end is given up."""
+"""Maximum number of queued bytes. At this limit the link is closed."""
 _OVERHEAD = 1 << 10
-"""Bytes that a frame occupies besides its content while it waits."""
+"""Memory overhead of a queued frame in bytes."""
 
 Handler = Callable[..., Any]
 
 
 class Link:
-    """One end; both are ours, so that what comes is trusted.
+    """One end of the connection. Both ends belong to Cartwheel, so the content is trusted.
 
-    What is sent arrives in order. A handler runs on the link's thread and must return at once,
-    unless it is `threaded` or gives a future, which is the answer when it is done.
+    Calls arrive in order. A handler runs on the link's thread and must return at once, unless it
+    is `threaded`. If it returns a future, the result of the future is the response.
 
     Args:
-        sock: Connected to the other end.
-        name: Of the thread.
-        on_end: Told on the link's thread when the other end has gone.
-        on_fault: Told of what a handler raised that nobody waits for.
+        sock: Connected socket.
+        name: Name of the thread.
+        on_end: Called on the link's thread when the other process has disconnected.
+        on_fault: Called with a handler's exception if the caller does not wait for a result.
     """
 
     def __init__(
@@ -67,35 +67,39 @@ class Link:
         self._queue: deque[memoryview] = deque()
         self._counting = threading.Lock()
         self._posted = self._sent = 0
-        """Bytes for the other end, and those of them that it got: it may stand still, and the
-        loop may."""
+        """Bytes queued for the other process, and bytes sent. The receiver and the event loop may
+        both
+        be stalled."""
         self._full = False
         self.dropped = 0
-        """Messages for which it was too late, so that they were not sent."""
+        """Number of messages dropped because the queue was too long."""
         self._reported = 0
-        """Of these, those that the user has heard of."""
+        """Number of dropped messages that were already reported."""
         self._ended = False
         self.loop = Loop(on_fault, name=name)
         sock.setblocking(False)
 
     def handle(self, name: str, handler: Handler, *, threaded: bool = False) -> None:
-        """Lets the other end call a function; before `start`, or before it is told of it."""
+        """Registers a function that the other process may call. Call it before `start`.
+
+        A handler may also be registered later, before the other process learns of it.
+        """
         self._handlers[name] = (handler, threaded)
 
     def start(self) -> None:
-        """Begins to listen."""
+        """Starts to receive calls."""
         self.loop.start()
         self.loop.post(lambda: self.loop.watch(self._sock, READ, self._ready))
 
     def close(self) -> None:
-        """Ends it, once what was said before is sent as far as the system takes it."""
+        """Closes the link, after sending queued calls as far as the system accepts them."""
         self.loop.post(self._end)
         self.loop.stop()
 
     # -- from any thread
 
     def call(self, name: str, *arguments: Any) -> Future[Any]:
-        """Calls a function there; its error is the future's."""
+        """Calls a remote function. The future contains its result or error."""
         future: Future[Any] = Future()
         number = next(self._numbers)
         frame = _frame(_CALL, number, name, arguments)
@@ -112,21 +116,21 @@ class Link:
         return future
 
     def ask(self, name: str, *arguments: Any) -> Any:
-        """Calls a function there, and waits for what it gives; not for the link's thread.
+        """Calls a remote function and waits for its result. Not allowed on the link's thread.
 
         Raises:
-            Exception: What it raised.
-            TimeoutError: It takes too long.
+            Exception: The remote function raised it.
+            TimeoutError: No response arrived in time.
         """
         return self.call(name, *arguments).result(_PATIENCE)
 
     def tell(self, name: str, *arguments: Any) -> None:
-        """Calls a function there and does not ask what became of it."""
+        """Calls a remote function without waiting for a result."""
         frame = _frame(_TELL, 0, name, arguments)
         self._post(frame, lambda: self._write(frame))
 
     def tell_in_time(self, name: str, *arguments: Any) -> None:
-        """As `tell`, for what is no loss where the other end is slow: it is dropped there."""
+        """Like `tell`, but drops the call if the other process is slow."""
         if self._queued > _LATE:
             with self._counting:
                 self.dropped += 1
@@ -142,7 +146,7 @@ class Link:
         return self._posted - self._sent
 
     def _post(self, frame: bytes, write: Callable[[], None]) -> bool:
-        """Leaves a frame with the loop; false if the link has ended, or too much waits."""
+        """Queues a frame. Returns False if the link is closed or the queue is full."""
         size = len(frame) + _OVERHEAD
         with self._counting:
             if self._full or self._ended:
@@ -176,7 +180,7 @@ class Link:
         self._end()
 
     def _report_late(self) -> None:
-        """Says that messages are dropped, and how many they were once others are sent again."""
+        """Reports that messages are dropped. `_count_late` reports the number later."""
         if self._ended:
             return
         if self._reported == 0:
@@ -246,7 +250,7 @@ class Link:
             if len(received) < end:
                 break
             with memoryview(received) as view:
-                found = pickle.loads(view[start + _LENGTH.size : end])  # noqa: S301 - our own
+                found = pickle.loads(view[start + _LENGTH.size : end])  # noqa: S301 - sent by Cartwheel
             start = end
             self._take(*found)
         if start:
@@ -279,7 +283,7 @@ class Link:
     def _run(self, kind: int, number: int, handler: Handler, arguments: Any) -> None:
         try:
             result = handler(*arguments)
-        except Exception as error:  # noqa: BLE001 - it is the caller's to handle
+        except Exception as error:  # noqa: BLE001 - the caller handles it
             if kind == _TELL:
                 self._on_fault(error)
             else:
@@ -301,7 +305,7 @@ class Link:
 
     def _answer(self, number: int, error: Exception | None, value: Any) -> None:
         if error is not None and not isinstance(error, CartwheelError):
-            # Others' errors may hold what cannot be sent.
+            # Foreign errors may contain objects that cannot be pickled.
             error = RuntimeError(one_line(error))
         frame = _frame(_ANSWER, number, "", (error, value))
         self._post(frame, lambda: self._write(frame))

@@ -1,4 +1,4 @@
-"""Why messages did not get into a ring."""
+"""Diagnosis of messages that were dropped because a ring was full."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ from cartwheel.codes.wires import (
 from cartwheel.errors import Diagnostic
 
 _JUDGED = 0.5
-"""s after the first loss, when it is clear whether the reader goes on reading."""
+"""Delay in s after the first dropped message, until it is clear whether the reader still reads."""
 
 Later = Callable[[float, Callable[[], None]], None]
 
 
 class Losses:
-    """Warns of messages that were dropped, with their cause.
+    """Warns of dropped messages, with their cause.
 
     Args:
-        ring: That did not take them.
-        later: Runs a function after some seconds, on a thread of its own.
-        warn: Takes a warning for the user.
+        ring: Ring that rejected the messages.
+        later: Runs a function after a number of seconds on a separate thread.
+        warn: Receives warnings for the user.
     """
 
     def __init__(self, ring: RingWriter, later: Later, warn: Callable[[Diagnostic], None]) -> None:
@@ -36,19 +36,19 @@ class Losses:
         self._warn = warn
         self._lock = threading.Lock()
         self._lost: Counter[str] = Counter()
-        """Messages by topic, of those that are not judged yet."""
+        """Dropped messages by topic, until their cause is reported."""
         self._read = 0
-        """What the ring's reader had read before them."""
+        """Bytes that the ring's reader had read before the first dropped message."""
         self._too_large: set[str] = set()
         self._still = False
 
     def add(self, topic: str, put: Put, size: int) -> None:
-        """A message was dropped; on any thread.
+        """Counts a dropped message. Callable on any thread.
 
         Args:
-            topic: Of the message.
-            put: What the ring said.
-            size: Bytes of the message.
+            topic: Topic of the message.
+            put: Result of the ring.
+            size: Size of the message in bytes.
         """
         if put is Put.TOO_LARGE:
             if topic not in self._too_large:
@@ -74,7 +74,7 @@ class Losses:
         with self._lock:
             reads = self._ring.look() > self._read
             if not reads and self._still:
-                # Until it does, there is nothing new to say.
+                # The state has not changed since the last warning.
                 self._later(_JUDGED, self._judge)
                 return
             lost = self._lost

@@ -1,4 +1,4 @@
-"""Services and actions as they are known at the other end."""
+"""Services and actions as the other process knows them."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from typing import Generic, Protocol, TypeVar
 
 
 class Named(Protocol):
-    """A service or an action."""
+    """A service or action."""
 
     @property
     def name(self) -> str:
-        """In the graph."""
+        """Name in the graph."""
 
     @property
     def type(self) -> str:
@@ -21,15 +21,15 @@ class Named(Protocol):
 
     @property
     def node(self) -> str:
-        """Who offers it."""
+        """Node that offers it."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Offer:
-    """What crosses of one."""
+    """Description of a service or action for the other process."""
 
     number: int
-    """Another one for what took the name of an older one."""
+    """Unique number. A new service or action with the same name has a different number."""
     name: str
     type: str
     node: str
@@ -39,10 +39,10 @@ T = TypeVar("T", bound=Named)
 
 
 class Offers(Generic[T]):
-    """Gives each its number, for as long as it is there.
+    """Assigns a number to each service or action while it exists.
 
     Attributes:
-        known: By number, as of the last `update`.
+        known: Services or actions by number, as of the last `update`.
     """
 
     def __init__(self) -> None:
@@ -50,7 +50,7 @@ class Offers(Generic[T]):
         self.known: dict[int, T] = {}
 
     def update(self, present: Iterable[T]) -> tuple[Offer, ...]:
-        """Those that are there now."""
+        """Updates the set, and returns the current descriptions."""
         before = {id(one): number for number, one in self.known.items()}
         self.known = {before.get(id(one)) or next(self._numbers): one for one in present}
         return tuple(

@@ -1,4 +1,4 @@
-"""A process for one bridge, seen from the simulation's."""
+"""A bridge process, seen from the simulation's process."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ from cartwheel.errors import CartwheelError, ControlError, Diagnostic, Reporter
 from cartwheel.graph import Graph
 
 _START = 60.0
-"""s that the process may take to come up, and to join others."""
+"""Timeout in s for the process to start and to connect."""
 _END = 2.0
-"""s that it may take to say farewell."""
+"""Timeout in s for the process to close its connections."""
 _PROGRAM = """
 import json, sys
 sys.path[:] = json.loads(sys.argv[1])
@@ -33,12 +33,12 @@ Report = Callable[[Diagnostic], None]
 
 
 class BridgeProcess:
-    """Comes up while the simulation still reads its files.
+    """Starts a bridge process. It starts up while the simulation reads its files.
 
     Args:
-        kind: Which bridge: one of `child.WIRES`.
-        title: As the user knows it.
-        patient: Nothing may be lost: the simulation waits where the bridge is slow.
+        kind: Kind of bridge: a key of `child.WIRES`.
+        title: Name of the bridge for the user.
+        patient: Whether the simulation waits for a slow bridge, instead of dropping messages.
     """
 
     def __init__(self, kind: str, title: str, *, patient: bool = False) -> None:
@@ -50,18 +50,18 @@ class BridgeProcess:
         self._warn = Reporter(self._pass_on, _TOLD, title=title)
         self._closing = False
         self.on_lost: Callable[[], None] = lambda: None
-        """Told when the process has ended by itself; on another thread."""
+        """Called on a separate thread when the process has exited unexpectedly."""
         self._own, theirs = socket.socketpair()
         self._files, their_files = RingFiles.pair()
         patience = "patient" if patient else ""
-        self._process = subprocess.Popen(  # noqa: S603 - this very program
+        self._process = subprocess.Popen(  # noqa: S603 - runs Python with this package
             [
                 *(sys.executable, "-c", _PROGRAM, json.dumps(sys.path)),
                 *(kind, patience, str(theirs.fileno()), str(their_files)),
             ],
             pass_fds=[theirs.fileno(), *their_files.numbers],
             stdin=subprocess.DEVNULL,
-            # Ctrl-C in a terminal is for us.
+            # Cartwheel handles Ctrl-C in a terminal.
             start_new_session=True,
         )
         theirs.close()
@@ -69,12 +69,12 @@ class BridgeProcess:
 
     @property
     def pid(self) -> int:
-        """Of the process."""
+        """Process ID."""
         return self._process.pid
 
     @property
     def written(self) -> int:
-        """Bytes of messages that were handed on so far."""
+        """Bytes of messages sent so far."""
         return self._ring.written
 
     def open(
@@ -87,21 +87,23 @@ class BridgeProcess:
         report: Report,
         handlers: Mapping[str, tuple[Handler, bool]],
     ) -> Any:
-        """Makes the bridge.
+        """Creates the bridge.
 
         Args:
-            graph: Of the simulation.
-            options: Of the bridge.
-            time_ns: Tells simulation time; on any thread.
-            echo: Whether the bridge hears what it has published itself.
-            report: Takes what the user should know, from any thread.
-            handlers: What else it may call, by name, and whether that may take long.
+            graph: Graph of the simulation.
+            options: Options of the bridge.
+            time_ns: Returns the simulation time. Callable on any thread.
+            echo: Whether the bridge receives the messages that it publishes.
+            report: Receives diagnostics for the user, on any thread.
+            handlers: Additional functions that the bridge may call, by name, and whether each may
+                be
+                slow.
 
         Returns:
-            What the bridge tells of itself.
+            Description of the bridge.
 
         Raises:
-            CartwheelError: There can be no such bridge.
+            CartwheelError: The bridge cannot be created.
         """
         self._report = report
         self._ring = RingWriter(self._files)
@@ -123,10 +125,10 @@ class BridgeProcess:
         return self.call("open", dict(options))
 
     def call(self, name: str, *arguments: Any, timeout: float | None = _START) -> Any:
-        """Has the bridge do something, and waits for what it gives.
+        """Calls a function in the bridge process, and returns its result.
 
         Raises:
-            CartwheelError: The bridge refused, or is not there.
+            CartwheelError: The bridge refused, or its process has exited.
         """
         assert self._link is not None
         try:
@@ -139,23 +141,23 @@ class BridgeProcess:
             ) from None
         except ControlError as error:
             if error.code is not BRIDGE_ENDED:
-                raise  # What the bridge says itself, such as a port that is in use.
+                raise  # Errors of the bridge itself, such as a port in use.
             raise ControlError(
                 self._death, code=BRIDGE_ENDED, values={"bridge": self.title}
             ) from None
 
     def tell(self, name: str, *arguments: Any) -> None:
-        """Has the bridge do something."""
+        """Calls a function in the bridge process without waiting for a result."""
         if self._link is not None:
             self._link.tell(name, *arguments)
 
     def leave_graph(self) -> None:
-        """Hands no messages on from now on; from any thread."""
+        """Stops sending messages. Callable on any thread."""
         if self._host is not None:
             self._host.close()
 
     def close(self) -> None:
-        """Ends it; takes no longer than an instant where the bridge has nothing left to do."""
+        """Stops the process. Returns at once if the bridge has no remaining work."""
         if self._closing:
             return
         self._closing = True
@@ -179,7 +181,7 @@ class BridgeProcess:
         return f"the process that runs {self.title} has exited"
 
     def _ended(self) -> None:
-        """On the link's thread."""
+        """Called on the link's thread."""
         if self._closing:
             return
         self.leave_graph()

@@ -1,4 +1,4 @@
-"""Actions of a graph in another process."""
+"""Actions of a graph in a different process."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from cartwheel.messages import decode_cdr, encode_cdr
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class GoalNews:
-    """What crosses of a goal."""
+    """State of a goal for the other process."""
 
     id: str
     stamp_ns: int
@@ -21,11 +21,11 @@ class GoalNews:
     text: str
     result: bytes | None
     time_ns: int
-    """When this was said."""
+    """Simulation time of this state."""
 
 
 def news_of(goal: Goal, time_ns: int) -> GoalNews:
-    """A goal as it is now."""
+    """Current state of a goal."""
     return GoalNews(
         id=goal.id,
         stamp_ns=goal.stamp_ns,
@@ -37,19 +37,19 @@ def news_of(goal: Goal, time_ns: int) -> GoalNews:
 
 
 class Clock(Protocol):
-    """Who knows what time it is in the simulation."""
+    """Source of simulation time."""
 
     time_ns: int
-    """The last that was heard of."""
+    """Latest known simulation time."""
 
 
 class RemoteAction:
-    """One action; a `BridgedAction`. Its methods wait for the simulation.
+    """An action in the simulation; a `BridgedAction`. Its methods wait for the simulation.
 
     Args:
-        link: To the simulation's process.
-        known: What is known of it.
-        clock: Of the simulation.
+        link: Link to the simulation's process.
+        known: Description of the action.
+        clock: Simulation time.
     """
 
     def __init__(self, link: Link, known: Offer, clock: Clock) -> None:
@@ -61,22 +61,22 @@ class RemoteAction:
         self._feedback = False
 
     def time_ns(self) -> int:
-        """Simulation time, as of the last that was heard."""
+        """Latest known simulation time."""
         return self._clock.time_ns
 
     def listen(self, listener: ActionListener) -> None:
-        """Tells it of all goals from now on; there is one."""
+        """Sets the only listener, which is notified of all goals from now on."""
         self._listener = listener
         self._ask("listen", True)
 
     def leave(self, listener: ActionListener) -> None:
-        """Tells it of goals no longer."""
+        """Removes the listener."""
         if self._listener is listener:
             self._listener = None
             self._link.tell("action", self._number, "listen", False)
 
     def tell_wants(self) -> None:
-        """Sees that how goals go is told while somebody reads it; on any thread."""
+        """Requests feedback while a client receives it. Callable on any thread."""
         wanted = self._listener is not None and self._listener.wants_feedback
         if wanted != self._feedback:
             self._feedback = wanted
@@ -102,7 +102,7 @@ class RemoteAction:
         return [self._goal(news) for news in self._ask("cancel", identity, before_ns)]
 
     def hear(self, news: GoalNews, feedback: bytes | None) -> None:
-        """A goal has changed or, with feedback, goes on."""
+        """Passes a changed goal, or feedback on a goal, to the listener."""
         if self._listener is None:
             return
         goal = self._goal(news)
@@ -124,4 +124,4 @@ class RemoteAction:
 
 
 _NOWHERE: Action = None  # type: ignore[assignment]
-"""Whose goals these are: they are only read."""
+"""Placeholder for the action of these goals, which are read-only."""

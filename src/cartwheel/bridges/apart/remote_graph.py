@@ -1,4 +1,4 @@
-"""The graph of a simulation in another process, as its bridge sees it."""
+"""Graph of a simulation in a different process, as its bridge sees it."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ from cartwheel.messages import decode_cdr, encode_cdr, service_classes
 
 T = TypeVar("T")
 _LOOKS = 0.25
-"""s between two looks at what readers have missed, and what they want."""
+"""Interval in s at which dropped messages and feedback requests are checked."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class GraphState:
-    """What crosses of a graph whenever it has changed."""
+    """State of a graph, sent on each change."""
 
     time_ns: int
     topics: tuple[TopicInfo, ...] = ()
@@ -37,7 +37,7 @@ class GraphState:
 
 
 class _Packer:
-    """Gives back the bytes of what was packed at the other end."""
+    """Returns the original bytes of messages that the other process packed."""
 
     def encode(self, message: Any) -> bytes:
         if isinstance(message, Packed):
@@ -46,7 +46,7 @@ class _Packer:
 
 
 class RemoteSubscription:
-    """One subscription; see `Subscription`."""
+    """A subscription; see `Subscription`."""
 
     def __init__(
         self, graph: RemoteGraph, number: int, type_name: str, callback: Callable[[Any], None]
@@ -57,10 +57,10 @@ class RemoteSubscription:
         self.callback = callback
         self.dropped: Callable[[], int] = lambda: 0
         self.told = 0
-        """What the other end was told of `dropped`."""
+        """Value of `dropped` that was last sent to the other process."""
 
     def close(self) -> None:
-        """Takes it off the graph."""
+        """Unsubscribes."""
         self._graph._remove(self)
 
 
@@ -71,13 +71,13 @@ class RemoteParameters:
         self._link = link
         self._server: ParameterServer | None = None
         self._answering: ParameterServer | None = None
-        """The last one: the other end may still ask when it is ours no longer."""
+        """The last server. The other process may still call it after it was replaced."""
         link.handle("server_get", lambda name: self._kept().get(name), threaded=True)
         link.handle("server_set", lambda name, value: self._kept().set(name, value))
 
     @property
     def server(self) -> ParameterServer | None:
-        """Where they are kept, if it is we who know."""
+        """Parameter server, if this process provides it."""
         return self._server
 
     @server.setter
@@ -85,13 +85,13 @@ class RemoteParameters:
         self._server = server
         self._answering = server or self._answering
         if server is None:
-            # Also where there is nobody left to hear it.
+            # Use `tell`, because the other process may already have exited.
             self._link.tell("serve_parameters", False)
         else:
             self._link.ask("serve_parameters", True)
 
     def get(self, name: str, default: Any = None) -> Any:
-        """A value; waits for it."""
+        """Returns a value, after waiting for the response."""
         return self._link.ask("get_parameter", name, default)
 
     def set(self, name: str, value: Any) -> None:
@@ -104,13 +104,13 @@ class RemoteParameters:
 
 
 class RemoteGraph:
-    """A `BridgedGraph`; what its methods ask for they wait for, but not for the simulation.
+    """A `BridgedGraph`. Its methods wait for responses, but not for simulation steps.
 
-    Messages are delivered on one thread, as `Packed`; functions that are posted run on another.
+    Messages are delivered as `Packed` on one thread. Posted functions run on a second thread.
 
     Args:
-        link: To the simulation's process.
-        on_fault: Told of what a callback raised.
+        link: Link to the simulation's process.
+        on_fault: Called with the exceptions of callbacks.
     """
 
     def __init__(self, link: Link, *, on_fault: Callable[[Exception], None]) -> None:
@@ -123,7 +123,7 @@ class RemoteGraph:
         self._numbers = itertools.count(1)
         self._posted: queue.SimpleQueue[Callable[[], None]] = queue.SimpleQueue()
         self.time_ns = 0
-        """The latest simulation time that is known here."""
+        """Latest known simulation time."""
         self.parameters = RemoteParameters(link)
         self.cdr = _Packer()
         self.on_change: list[Callable[[], None]] = []
@@ -132,11 +132,11 @@ class RemoteGraph:
         threading.Thread(target=self._run_posted, name="graph", daemon=True).start()
 
     def begin(self) -> None:
-        """Learns what there is."""
+        """Fetches the state of the graph."""
         self._changed(self._link.ask("begin"))
         self._link.loop.post(self._look)
 
-    # -- what a graph is
+    # -- interface of a graph
 
     @property
     def nodes(self) -> Mapping[str, str]:
@@ -144,24 +144,24 @@ class RemoteGraph:
         return self._state.nodes
 
     def topics(self) -> list[TopicInfo]:
-        """All topics, by name."""
+        """All topics, sorted by name."""
         return list(self._state.topics)
 
     def services(self) -> list[Service]:
-        """All services, by name; they are called by `call` alone."""
+        """All services, sorted by name. Only `call` can call them."""
         return list(self._services.values())
 
     def actions(self) -> list[RemoteAction]:
-        """All actions, by name."""
+        """All actions, sorted by name."""
         return list(self._actions.values())
 
     def post(self, function: Callable[[], None]) -> None:
-        """Runs a function once the simulation has taken what it was handed before."""
+        """Runs a function after the simulation has processed all previous messages and calls."""
         future = self._link.call("taken")
         future.add_done_callback(lambda _: self._posted.put(function))
 
     def run(self, function: Callable[[], T]) -> Future[T]:
-        """Runs a function on the thread of those that are posted."""
+        """Runs a function on the thread of posted functions."""
         return answered(self._posted.put, function)
 
     def subscribe(
@@ -172,10 +172,10 @@ class RemoteGraph:
         type_name: str | None = None,
         node: str = "cartwheel",
     ) -> RemoteSubscription:
-        """A callback for each message, on the thread that reads them.
+        """Calls `callback` with each message, on the thread that reads messages.
 
         Raises:
-            CartwheelError: As `Graph.subscribe`.
+            CartwheelError: See `Graph.subscribe`.
         """
         if type_name is None:
             known = {info.name: info.type for info in self._state.topics}
@@ -183,7 +183,7 @@ class RemoteGraph:
                 raise UnknownNameError("topic", name, known, code=TOPIC_UNKNOWN)
             type_name = known[name]
         made = RemoteSubscription(self, next(self._numbers), type_name, callback)
-        # Before the first message can come.
+        # This must be set before the first message arrives.
         self._subscriptions[made.number] = made
         try:
             self._link.ask("subscribe", made.number, name, type_name, node)
@@ -193,14 +193,14 @@ class RemoteGraph:
         return made
 
     def publish(self, name: str, type_name: str, message: Any) -> None:
-        """Delivers one message."""
+        """Publishes one message."""
         self._link.tell("publish", name, type_name, encode_cdr(message))
 
     def call(self, name: str, request: Any) -> Future[Any]:
         """Calls a service.
 
         Raises:
-            UnknownNameError: There is no such service.
+            UnknownNameError: The service does not exist.
         """
         types = {one.name: one.type for one in self._state.services}
         if name not in types:
@@ -209,10 +209,10 @@ class RemoteGraph:
         answer = self._link.call("call", name, encode_cdr(request))
         return mapped(answer, lambda data: decode_cdr(data, response))
 
-    # -- what comes
+    # -- incoming messages and changes
 
     def take(self, number: int, time_ns: int, data: bytes) -> None:
-        """A message; on the thread that reads them."""
+        """Handles a message on the thread that reads messages."""
         self.time_ns = time_ns
         found = self._subscriptions.get(number)
         if found is not None:
@@ -221,7 +221,7 @@ class RemoteGraph:
     def _changed(self, state: GraphState) -> None:
         self.time_ns = state.time_ns
         services, actions = self._services, self._actions
-        # Those that stay are the same objects: who mirrors the graph goes by that.
+        # Existing services stay the same objects, because mirrors of the graph compare them.
         self._services = {
             one.number: services.get(one.number)
             or Service(name=one.name, type=one.type, handler=_elsewhere, node=one.node)
@@ -245,7 +245,7 @@ class RemoteGraph:
             function = self._posted.get()
             try:
                 function()
-            except Exception as error:  # noqa: BLE001 - one must not end the others
+            except Exception as error:  # noqa: BLE001 - one error must not stop the others
                 self._on_fault(error)
 
     def _remove(self, subscription: RemoteSubscription) -> None:

@@ -1,13 +1,12 @@
-"""Messages from one process to another, through memory that both see.
+"""Messages between two processes, through shared memory.
 
-One writer and one reader. The bytes of messages lie in shared memory. How many of them may be
-read, and how many may be written over, are counts of the kernel (eventfd): what was written before
-a count was raised is seen by whoever has taken that count, on every processor, and a count that is
-not zero wakes whoever waits for it. So no wake-up can be lost, and neither end looks at a number
-that the other one writes.
+There is one writer and one reader. The bytes of messages are in shared memory. Two kernel counters
+(eventfd) contain the number of bytes that may be read, and the number that may be overwritten.
+Data written before a counter was raised is visible to the process that has read the counter, on
+every processor. A counter that is not zero wakes the process that waits for it. No wake-up can
+therefore be lost, and neither process reads a number that the other process writes.
 
-A message that is larger than a quarter of the ring has a file in memory of its own, which goes
-over a socket.
+A message larger than a quarter of the ring is sent over a socket, as a separate file in memory.
 """
 
 from __future__ import annotations
@@ -27,58 +26,59 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 SIZE = 32 << 20
-"""Bytes of a ring; only what is used of them is memory."""
+"""Size of a ring in bytes. Only the used part occupies memory."""
 LARGEST = 256 << 20
-"""Bytes of the messages with a file of their own that may be on their way at a time."""
+"""Maximum bytes of messages in separate files that the reader has not received yet."""
 LINGER = 1.0
-"""s after which a reader looks by itself."""
+"""Interval in s at which a reader checks the ring without being woken."""
 _LARGE_COUNT = 16
-"""Messages with a file of their own that may be on their way."""
+"""Maximum number of messages in separate files that the reader has not received yet."""
 _LEAST = 1 << 18
 _HEAD = struct.Struct("<IIq")
-"""Before each message: its bytes, the reader's number, the time in ns."""
+"""Header of each message: size in bytes, number of the receiver, time in ns."""
 _SKIP = 0xFFFF_FFFF
-"""In place of a size: on at the ring's beginning."""
+"""Value of the size field: continue at the start of the ring."""
 _APART = 0xFFFF_FFFE
-"""In place of a size: the message is the next file on the socket."""
+"""Value of the size field: the message is the next file on the socket."""
 _SHARE = 16
-"""A reader gives room back when it has read this part of the ring, and when it has read all."""
+"""The reader releases space after this fraction of the ring, and when the ring is empty."""
 _PATIENT = 0.02
-"""s between two looks of a patient reader, which is not woken for each message."""
+"""Polling interval in s of a patient reader, which is not woken for each message."""
 _RETRY_MS = 50
-"""ms after which a patient writer tries again, if nothing was freed before."""
+"""Interval in ms at which a patient writer retries if no space was released."""
 
 
 class Put(enum.Enum):
-    """What became of a message."""
+    """Result of adding a message."""
 
     TAKEN = enum.auto()
     FULL = enum.auto()
-    """There is no room now."""
+    """The ring currently has no space."""
     TOO_LARGE = enum.auto()
-    """There will be no room."""
+    """The message does not fit into the ring at any time."""
     CLOSED = enum.auto()
-    """The ring was closed."""
+    """The ring is closed."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class RingFiles:
-    """The file numbers of one end, which owns them."""
+    """File descriptors of one end, which owns them."""
 
     memory: int
     published: int
-    """An eventfd: bytes that may be read."""
+    """eventfd: number of bytes that may be read."""
     freed: int
-    """An eventfd: bytes that may be written over."""
+    """eventfd: number of bytes that may be overwritten."""
     sock: int
-    """This end of a pair: hangs up where the other has gone, and carries files."""
+    """One end of a socket pair. It hangs up when the other process has exited, and carries
+    files."""
 
     @classmethod
     def pair(cls, size: int = SIZE) -> tuple[RingFiles, RingFiles]:
-        """A new ring: the files of its writer and of its reader.
+        """Creates a ring. Returns the files of its writer and of its reader.
 
         Args:
-            size: Bytes; fewer where files are limited.
+            size: Size in bytes; reduced if the size of files is limited.
         """
         sockets = socket.socketpair()
         ours = cls(
@@ -94,7 +94,7 @@ class RingFiles:
 
     @classmethod
     def of(cls, text: str) -> RingFiles:
-        """From `str`."""
+        """Parses the result of `str`."""
         memory, published, freed, sock = map(int, text.split(","))
         return cls(memory=memory, published=published, freed=freed, sock=sock)
 
@@ -103,11 +103,11 @@ class RingFiles:
 
     @property
     def numbers(self) -> tuple[int, int, int, int]:
-        """All of them."""
+        """All file descriptors."""
         return self.memory, self.published, self.freed, self.sock
 
     def close(self) -> None:
-        """Closes them; for an end that nobody made a writer or a reader of."""
+        """Closes the files. Use it for an end that has no writer or reader."""
         for number in self.numbers:
             os.close(number)
 
@@ -117,13 +117,13 @@ def _count() -> int:
 
 
 def _memory(size: int) -> int:
-    """A file without a name, which is no part of /dev/shm and ends with its processes."""
+    """Creates an unnamed file in memory, outside /dev/shm. It ends with its processes."""
     file = os.memfd_create("cartwheel")
     while True:
         try:
             os.ftruncate(file, size)
         except OSError:
-            # A limit for files (ulimit -f) is one for this as well.
+            # A limit on file size (ulimit -f) applies here as well.
             if size <= _LEAST:
                 raise
             size //= 4
@@ -142,10 +142,10 @@ class _End:
 
 
 class RingWriter(_End):
-    """The end that writes; for any thread.
+    """Writing end. Thread-safe.
 
     Args:
-        files: The first of `RingFiles.pair`.
+        files: First result of `RingFiles.pair`.
     """
 
     def __init__(self, files: RingFiles) -> None:
@@ -155,20 +155,21 @@ class RingWriter(_End):
         self._room_comes.register(self._freed, select.POLLIN)
         self._read = 0
         self._large: deque[tuple[int, int]] = deque()
-        """Those on their way: `written` after each, and its bytes."""
+        """Messages in separate files that the reader has not received: `written` after each, and
+        size."""
         self._closed = False
         self.written = 0
-        """Bytes so far, as `RingReader.read_to` takes them."""
+        """Bytes written so far, for `RingReader.read_to`."""
         self.largest = LARGEST
-        """Bytes of the largest message that can be taken."""
+        """Maximum size of a message in bytes."""
 
     def put(self, number: int, time_ns: int, data: bytes) -> Put:
-        """Adds a message; waits for nothing.
+        """Adds a message without waiting.
 
         Args:
-            number: Of whom it is for.
+            number: Number of the receiver.
             time_ns: Simulation time.
-            data: Its bytes.
+            data: Message bytes.
         """
         length = len(data)
         with self._lock:
@@ -187,10 +188,10 @@ class RingWriter(_End):
             return Put.TAKEN
 
     def put_patiently(self, number: int, time_ns: int, data: bytes) -> tuple[Put, float]:
-        """Adds a message as soon as there is room.
+        """Adds a message as soon as there is space.
 
         Returns:
-            What became of it, never `FULL`, and the s that it took to wait.
+            The result, which is never `FULL`, and the waiting time in s.
         """
         waited = 0.0
         while True:
@@ -202,14 +203,14 @@ class RingWriter(_End):
             waited += time.perf_counter() - before
 
     def look(self) -> int:
-        """Bytes that the reader has given back so far."""
+        """Number of bytes that the reader has released so far."""
         with self._lock:
             if not self._closed:
                 self._look()
             return self._read
 
     def close(self) -> None:
-        """Takes no more; the reader ends when it has read all."""
+        """Closes the writer. The reader stops after it has read everything."""
         with self._lock:
             if not self._closed:
                 self._closed = True
@@ -218,7 +219,7 @@ class RingWriter(_End):
                 os.close(self._freed)
 
     def _room(self, length: int) -> tuple[int, int] | None:
-        """Where the head of a message goes, and how many bytes it takes; None without room."""
+        """Offset of a message's header, and the message's size in the ring. None without space."""
         at = self.written % self._size
         count = _HEAD.size + _padded(length)
         skipped = self._size - at if at + count > self._size else 0
@@ -232,14 +233,14 @@ class RingWriter(_End):
         return at, skipped + count
 
     def _look(self) -> None:
-        """Learns what the reader has freed."""
+        """Updates the number of bytes that the reader has released."""
         with contextlib.suppress(BlockingIOError):
             self._read += os.eventfd_read(self._freed)
         while self._large and self._large[0][0] <= self._read:
             self._large.popleft()
 
     def _publish(self, count: int) -> None:
-        # From now on the reader may read it, also where this process ends here.
+        # From here on the reader can read the message, even if this process exits now.
         os.eventfd_write(self._published, count)
         self.written += count
 
@@ -257,11 +258,11 @@ class RingWriter(_End):
         except OSError as error:
             if error.errno != errno.EFBIG:
                 return Put.FULL
-            # A limit for files (ulimit -f) is one for this as well.
+            # A limit on file size (ulimit -f) applies here as well.
             self.largest = self._size // 4
             return Put.TOO_LARGE
         try:
-            # The kernel refuses where as many files as it allows are on their way.
+            # The kernel refuses if too many files are in transit.
             socket.send_fds(self._sock, [b"\0"], [file], socket.MSG_DONTWAIT)
         except OSError:
             return Put.FULL
@@ -275,13 +276,13 @@ class RingWriter(_End):
 
 
 class RingReader(_End):
-    """The end that reads, on a thread of its own.
+    """Reading end, on a separate thread.
 
     Args:
-        files: The second of `RingFiles.pair`.
-        patient: Whether it need not hear of each message at once.
-        take: Given each message: number, time in ns and bytes.
-        on_fault: Given what `take` raised.
+        files: Second result of `RingFiles.pair`.
+        patient: Whether messages may be delayed, so that the reader is not woken for each.
+        take: Called with each message: number, time in ns, and bytes.
+        on_fault: Called with the exceptions of `take`.
     """
 
     def __init__(
@@ -302,29 +303,29 @@ class RingReader(_End):
         self._thread = threading.Thread(target=self._run, name="messages", daemon=True)
 
     def start(self) -> None:
-        """Begins to read."""
+        """Starts the thread."""
         self._thread.start()
 
     def read_to(self, written: int) -> None:
-        """Waits until all was taken that had been written, or the thread has ended."""
+        """Waits until everything up to `written` was read, or the thread has ended."""
         with self._progress:
             while self._read < written and self._thread.is_alive():
                 self._progress.wait(LINGER)
 
     def read_all(self) -> None:
-        """Takes what was written, and ends; for when the writer has gone."""
+        """Reads the remaining messages and stops, after the writer's process has exited."""
         with contextlib.suppress(OSError):
             self._sock.shutdown(socket.SHUT_RDWR)
         self.join()
 
     def join(self) -> None:
-        """Waits for the writer's end, and for what it had written to be taken."""
+        """Waits until the writer has closed and all messages were read."""
         if self._thread.is_alive():
             self._thread.join()
 
     def _run(self) -> None:
         poll = select.poll()
-        # Only whether it hangs up: a file may come on it before the message that has it.
+        # Watch only for a hang-up, because a file may arrive before its message.
         poll.register(self._sock, 0)
         if not self._patient:
             poll.register(self._published, select.POLLIN)
@@ -338,7 +339,7 @@ class RingReader(_End):
                 self._progress.notify_all()
 
     def _drain(self) -> None:
-        """Takes what there is."""
+        """Reads all available messages."""
         try:
             end = self._read + os.eventfd_read(self._published)
         except BlockingIOError:
@@ -373,7 +374,7 @@ class RingReader(_End):
     def _hand_on(self, number: int, time_ns: int, data: bytes) -> None:
         try:
             self._take(number, time_ns, data)
-        except Exception as error:  # noqa: BLE001 - one message must not end the others
+        except Exception as error:  # noqa: BLE001 - one error must not stop the others
             self._on_fault(error)
 
 

@@ -1,4 +1,4 @@
-"""The bridges as their processes run them."""
+"""Bridges as they run in their processes."""
 
 from __future__ import annotations
 
@@ -15,25 +15,25 @@ from cartwheel.bridges.apart.remote_graph import RemoteGraph
 from cartwheel.errors import Diagnostic, RecordingError
 
 _FRESH, _STALE = 0.05, 1.0
-"""s after which the values of parameters are asked for, and after which their reader waits."""
+"""Age in s at which parameter values are refreshed in the background, and at which reads wait."""
 
 
 class _Bridge(Protocol):
-    """What all of them do."""
+    """Interface that all bridges share."""
 
     def close(self) -> None:
-        """Ends it."""
+        """Closes the bridge."""
 
     def log(self, diagnostic: Diagnostic) -> None:
-        """Says something on ``/rosout``."""
+        """Logs a diagnostic on ``/rosout``."""
 
 
 class _BridgeWire:
-    """A bridge, once it is made.
+    """A bridge in this process.
 
     Args:
-        graph: Of the simulation.
-        link: To its process.
+        graph: Graph of the simulation.
+        link: Link to the simulation's process.
     """
 
     def __init__(self, graph: RemoteGraph, link: Link) -> None:
@@ -42,12 +42,12 @@ class _BridgeWire:
         self._bridge: _Bridge | None = None
 
     def close(self) -> None:
-        """Ends it."""
+        """Closes the bridge."""
         if self._bridge is not None:
             self._bridge.close()
 
     def _offer(self, bridge: _Bridge, start: Callable[[], Any]) -> None:
-        """Lets the simulation's process start it and say things on its ``/rosout``."""
+        """Lets the simulation's process start the bridge and log on its ``/rosout``."""
         self._bridge = bridge
         self._link.handle("start", lambda: self._graph.run(start))
         self._link.handle("log", self._log)
@@ -74,7 +74,7 @@ class Ros1Wire(_BridgeWire):
         self._made = Ros1Bridge
 
     def open(self, options: dict[str, Any]) -> Any:
-        """Makes it; its name, its master's URI and its own."""
+        """Creates the bridge. Returns its name, the master's URI, and its own URI."""
         bridge = self._made(
             self._graph,
             **options,
@@ -101,7 +101,7 @@ class Ros2Wire(_BridgeWire):
         self._made = Ros2Bridge
 
     def open(self, options: dict[str, Any]) -> Any:
-        """Makes it; its name and its middleware's description."""
+        """Creates the bridge. Returns its name and a description of its middleware."""
         from cartwheel.bridges.ros2 import Parameter
 
         values = _Values(self._link, self._graph)
@@ -132,10 +132,11 @@ class Ros2Wire(_BridgeWire):
 
 
 class _Values:
-    """The node's parameters, which the simulation's process has; all are asked for at once.
+    """Cache of the node's parameters, which the simulation's process stores.
 
-    The bridge reads them regularly. It does not wait for the answer, since nothing is sent or
-    received meanwhile, and on a busy computer the answer takes as long as several images.
+    The bridge reads them regularly, and fetches all values with one request. It does not wait
+    for the response, because it could not send or receive messages meanwhile. On a busy computer a
+    response takes as long as several images.
     """
 
     def __init__(self, link: Link, graph: RemoteGraph) -> None:
@@ -144,9 +145,9 @@ class _Values:
         self._values: dict[str, Any] = {}
         self._since = -math.inf
         self._asked: Future[Any] | None = None
-        """A request that is not answered yet, and was made after the last change here."""
+        """A pending request that was made after the last change in this process."""
         self._lock = threading.Lock()
-        """Held for an instant only; the answers come on the link's thread."""
+        """Held only briefly. Responses arrive on the link's thread."""
 
     def get(self, name: str) -> Any:
         age = time.monotonic() - self._since
@@ -163,7 +164,7 @@ class _Values:
             self._asked, self._since = None, -math.inf
 
     def _answered(self, asked: Future[Any]) -> None:
-        """On the link's thread; a request that failed is made again."""
+        """Handles a response on the link's thread. A failed request is repeated later."""
         with self._lock:
             if self._asked is asked:
                 self._asked = None
@@ -185,7 +186,7 @@ class FoxgloveWire(_BridgeWire):
         self._made = FoxgloveBridge
 
     def open(self, options: dict[str, Any]) -> None:
-        """Makes it."""
+        """Creates the bridge."""
         bridge = self._made(
             self._graph,
             **options,
@@ -202,7 +203,7 @@ class FoxgloveWire(_BridgeWire):
 
 
 class _Controls:
-    """Time in the simulation's process; see `Controls`."""
+    """Controls for time in the simulation's process; see `Controls`."""
 
     def __init__(self, link: Link, graph: RemoteGraph) -> None:
         self._link = link
@@ -210,27 +211,27 @@ class _Controls:
 
     @property
     def time_ns(self) -> int:
-        """That of the message that has just come."""
+        """Time of the message that was just received."""
         return self._graph.time_ns
 
     def state(self) -> Any:
-        """How it goes now."""
+        """Current state."""
         return self._link.ask("state")
 
     def pause(self) -> None:
-        """Holds it."""
+        """Pauses the simulation."""
         self._link.ask("pause")
 
     def resume(self) -> None:
-        """Lets it go on."""
+        """Resumes the simulation."""
         self._link.ask("resume")
 
     def set_speed(self, speed: float | None) -> None:
-        """Sets the wanted real-time factor."""
+        """Sets the target real-time factor."""
         self._link.ask("set_speed", speed)
 
     def seek(self, time_ns: int) -> None:
-        """Jumps."""
+        """Jumps to a time."""
         self._link.ask("seek", time_ns)
 
 
@@ -241,7 +242,7 @@ class RecordingWire:
         from cartwheel.bridges.recording import Recorder
         from cartwheel.messages.store import loaded
 
-        # Takes 0.3 s of a core, while the simulation's process builds the world.
+        # Loading takes 0.3 s of CPU time, while the simulation's process builds the world.
         loaded()
         self._made = Recorder
         self._graph = graph
@@ -249,7 +250,7 @@ class RecordingWire:
         self._recorder: Recorder | None = None
 
     def open(self, options: dict[str, Any]) -> None:
-        """Makes it."""
+        """Creates the recorder."""
         link, graph = self._link, self._graph
 
         def failed(error: RecordingError) -> None:
@@ -266,6 +267,6 @@ class RecordingWire:
         link.handle("start", lambda: graph.run(recorder.start))
 
     def close(self) -> Any:
-        """Ends it; a `Summary`."""
+        """Closes the recorder. Returns a `Summary`."""
         recorder, self._recorder = self._recorder, None
         return None if recorder is None else self._graph.run(recorder.close).result()

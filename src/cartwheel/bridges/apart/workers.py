@@ -1,4 +1,4 @@
-"""A bounded number of threads for what takes long."""
+"""A bounded pool of threads for slow work."""
 
 from __future__ import annotations
 
@@ -7,14 +7,15 @@ from collections import deque
 from collections.abc import Callable
 
 THREADS, WAITING = 64, 1000
-"""Jobs at a time, and jobs that wait for their turn."""
+"""Maximum number of running jobs and of queued jobs."""
 
 
 class Workers:
-    """Runs each job on a thread, which ends when no job waits. Nothing waits for the threads.
+    """Runs each job on a thread, which ends when the queue is empty. Shutdown does not wait for
+    them.
 
     Args:
-        name: Of the threads.
+        name: Name of the threads.
     """
 
     def __init__(self, name: str) -> None:
@@ -24,7 +25,7 @@ class Workers:
         self._count = 0
 
     def run(self, job: Callable[[], None]) -> bool:
-        """Whether the job, which must not raise, is run now or later; from any thread."""
+        """Queues a job, which must not raise. Returns False if the queue is full. Thread-safe."""
         with self._lock:
             if len(self._jobs) >= WAITING:
                 return False

@@ -1,4 +1,4 @@
-"""The graph on Foxglove's WebSocket: for Foxglove, Lichtblick and whatever speaks it."""
+"""The graph on Foxglove's WebSocket protocol, for Foxglove, Lichtblick and compatible clients."""
 
 from cartwheel.bridges.foxglove.bridge import FoxgloveBridge
 from cartwheel.bridges.foxglove.controls import Controls

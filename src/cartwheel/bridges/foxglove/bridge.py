@@ -1,4 +1,4 @@
-"""A server of Foxglove's protocol beside a simulation."""
+"""Foxglove server for a simulation."""
 
 from __future__ import annotations
 
@@ -37,23 +37,23 @@ from cartwheel.gate.listening import hidden_host, listen
 from cartwheel.graph import Service, TopicInfo
 
 PORT = 8765
-"""Foxglove's own."""
+"""Default port of Foxglove."""
 APPS = ("https://app.foxglove.dev", "https://studio.foxglove.dev", "file://")
-"""Origins of the programs that are made for it: Foxglove in the browser, by its new and its old
-address, and the desktop programs of Foxglove and Lichtblick, which are Chromium on files."""
+"""Origins of Foxglove clients: Foxglove in the browser at its new and its old address, and the
+desktop programs of Foxglove and Lichtblick, which run Chromium with local files."""
 BACKLOG = 256
-"""Messages that may wait for a client; the oldest is dropped then."""
+"""Maximum number of queued messages per client. When full, the oldest is dropped."""
 _CHANGES = 64
-"""Channels that are made and closed at a time. The library ends the connection of every client for
-which more than `BACKLOG` notes of such changes wait."""
+"""Maximum number of channels that are opened and closed at a time. The library disconnects
+every client for which more than `BACKLOG` notifications of such changes are queued."""
 _PAUSE = 0.1
-"""s between two looks at what the graph offers."""
+"""Interval in s at which the graph is checked."""
 _STATUSES, _STATUS_RATE = 32, 5.0
-"""Warnings that clients get at once, and in a second: they are notes of the same kind."""
+"""Maximum number of warnings for clients in a burst, and per s, as they count as notifications."""
 _TIME_RATE = 10.0
-"""Hz of wall time at which clients are told the time, at least."""
+"""Minimum rate in Hz of wall time at which clients receive the time."""
 _FINE_TIME_RATE = 50.0
-"""The same at most, while messages go to them."""
+"""Maximum rate in Hz of wall time, while clients receive messages."""
 _STRING = "std_msgs/msg/String"
 _TOLD = 500
 _SLOW = logging.getLogger("foxglove.websocket.connected_client.send_lossy")
@@ -64,24 +64,25 @@ Assets = Callable[[str], bytes | None]
 
 
 class FoxgloveBridge:
-    """Makes topics, services and parameters of a graph those of a Foxglove server.
+    """Offers the topics, services and parameters of a graph on a Foxglove server.
 
-    Everything is lazy: a topic is read while a client reads it. One thread packs and sends;
-    the simulation's only leaves its messages. A client that takes nothing costs memory, up to
-    its backlog, and nobody else anything.
+    The bridge subscribes to a topic only while a client does. One thread packs and sends; the
+    simulation's thread only queues its messages. A client that receives nothing costs memory, up
+    to
+    its backlog, and has no effect on anything else.
 
     Args:
-        graph: Of the simulation.
-        name: What clients show.
-        access: Who may connect; None is whoever is on this computer.
-        port: 0 takes any that is free.
-        controls: Of time.
-        assets: The content of a mesh or texture by its URI; None where there is none.
-        time_range: Of a run that has an end, in ns: clients may then hold and resume it.
-        report: Takes what the user should know, from any thread.
+        graph: Graph of the simulation.
+        name: Server name for clients to display.
+        access: Access rules. None allows all users of this computer.
+        port: Port to listen on. 0 chooses a free port.
+        controls: Controls of simulation time.
+        assets: Returns the content of a mesh or texture by its URI, or None if it does not exist.
+        time_range: Start and end in ns of a run with an end, which clients may pause and resume.
+        report: Receives diagnostics for the user, on any thread.
 
     Raises:
-        CartwheelError: The package foxglove-sdk is missing.
+        CartwheelError: The package foxglove-sdk is not installed.
     """
 
     def __init__(
@@ -117,14 +118,14 @@ class FoxgloveBridge:
         self._pending: set[str] = set()
         self._surveying = False
         self._surveyed = 0.0
-        """When the graph was looked at last; monotonic, in s."""
+        """Time of the last survey of the graph; monotonic, in s."""
         self._warn = Reporter(self._show, _TOLD)
         self._statuses = Budget(_STATUSES, _STATUS_RATE)
         self._told_ns = -1
         self._fine_due = 0.0
         self._log: Log | None = None
         self._shown: tuple[bool, float | None] | None = None
-        """Whether time is held and its pace, as clients were last told."""
+        """Whether time is paused, and its speed, as last sent to clients."""
         self._closed = False
         self._incoming = Incoming(graph, self._warn)
         self._values = Values(
@@ -135,20 +136,20 @@ class FoxgloveBridge:
 
     @property
     def port(self) -> int:
-        """Where it listens, once it is started."""
+        """Port of the server, after `start`."""
         assert self._listener is not None
         return int(self._listener.getsockname()[1])
 
     @property
     def url(self) -> str:
-        """Where clients reach it, once it is started."""
+        """URL for clients, after `start`."""
         return self._access.url("ws", self.port)
 
     def start(self) -> None:
-        """Listens.
+        """Starts to listen.
 
         Raises:
-            CartwheelError: The address cannot be had.
+            CartwheelError: The address is not available.
         """
         import foxglove
         from foxglove.websocket import Capability
@@ -166,7 +167,7 @@ class FoxgloveBridge:
         ]
         if self._time_range is not None:
             capabilities.append(Capability.PlaybackControl)
-        # What it says of clients that leave is not for the terminal.
+        # Its messages about disconnected clients are not for the terminal.
         logging.getLogger("foxglove").addHandler(logging.NullHandler())
         _SLOW.setLevel(logging.INFO)
         _SLOW.addHandler(self._slow)
@@ -191,7 +192,7 @@ class FoxgloveBridge:
                 playback_time_range=self._time_range,
                 message_backlog_size=BACKLOG,
             )
-        except Exception as error:  # whatever the library has for it
+        except Exception as error:  # any error of the library
             self._listener.close()
             raise CartwheelError(
                 f"the Foxglove server cannot start: {error}", code=FOXGLOVE_NOT_STARTED
@@ -212,7 +213,7 @@ class FoxgloveBridge:
         self._gate.start()
 
     def close(self) -> None:
-        """Sends all clients away."""
+        """Disconnects all clients."""
         if self._closed:
             return
         self._closed = True
@@ -229,25 +230,25 @@ class FoxgloveBridge:
         if self._log is not None:
             self._log.close()
         if self._server is not None:
-            # First, so that its farewells still pass the gate.
+            # Stop the server first, so that its closing messages still pass the gate.
             self._server.stop()
         if self._gate is not None:
             self._gate.close()
 
     def log(self, diagnostic: Diagnostic) -> None:
-        """Says something on ``/rosout``; from any thread."""
+        """Logs a diagnostic on ``/rosout``. Callable on any thread."""
         self._jobs.put(lambda: self._log.write(diagnostic) if self._log else None)
 
     # -- from other threads
 
     def _changed(self) -> None:
-        """The graph is locked."""
+        """Called with the graph locked."""
         if not self._surveying:
             self._surveying = True
             self._jobs.put(self._survey)
 
     def _subscribed(self, channel: int, joins: bool) -> None:
-        """On a thread of the server's."""
+        """Called on a thread of the server."""
 
         def note() -> None:
             publication = self._by_channel.get(channel)
@@ -257,12 +258,12 @@ class FoxgloveBridge:
         self._jobs.put(note)
 
     def _wake(self, topic: str) -> None:
-        """On the simulation's thread."""
+        """Called on the simulation's thread."""
         if topic not in self._pending:
             self._pending.add(topic)
             self._jobs.put(lambda: self._send(topic))
 
-    # -- on our thread
+    # -- on the bridge's thread
 
     def _run(self) -> None:
         due = time.monotonic()
@@ -278,14 +279,14 @@ class FoxgloveBridge:
                 job()
             except CartwheelError as error:
                 self._warn(error.diagnostic("warning"))
-            except Exception as error:  # noqa: BLE001 - one topic must not end the others
+            except Exception as error:  # noqa: BLE001 - one error must not stop the others
                 self._warn(BRIDGE_FAULT.because("unexpected error in the bridge", error))
 
     def _tell_time(self) -> None:
         state = self._controls.state()
         self._told_ns = state.time_ns
         self._server.broadcast_time(state.time_ns)
-        # Others hold time as well, or set its pace: what clients show must follow.
+        # Other clients also pause time or set its speed, which must be displayed.
         shown = (state.paused, state.speed)
         if shown != self._shown:
             self._shown = shown
@@ -301,10 +302,10 @@ class FoxgloveBridge:
             publication.send()
 
     def _tell_fine_time(self) -> None:
-        """Tells it before messages go: some clients take the last time told for a message's.
+        """Sends the time before messages, because some clients use it as the time of a message.
 
-        What messages tell of it lags behind; clients take a step back for a jump, and forget
-        what they show.
+        The timestamps in messages lag behind it. Clients treat a step back as a jump, and clear
+        their display.
         """
         time_ns, now = self._controls.time_ns, time.monotonic()
         if time_ns > self._told_ns and now >= self._fine_due:
@@ -312,7 +313,7 @@ class FoxgloveBridge:
             self._server.broadcast_time(time_ns)
 
     def _survey(self) -> None:
-        """Looks at the graph now, or a moment after the last look."""
+        """Updates the channels now, or shortly after the last update."""
         left = self._surveyed + _PAUSE - time.monotonic()
         if left > 0:
             timer = threading.Timer(left, lambda: self._jobs.put(self._mirror))
@@ -322,11 +323,11 @@ class FoxgloveBridge:
             self._mirror()
 
     def _mirror(self) -> None:
-        """Makes the server offer what the graph does, by a number of changes at a time."""
+        """Makes the server offer what the graph offers, a limited number of changes at a time."""
         self._surveying = False
         self._surveyed = time.monotonic()
         topics = offered_by_others(self._graph, READER)
-        topics.pop(LOG, None)  # It is ours.
+        topics.pop(LOG, None)  # The bridge provides this topic itself.
         services = {service.name: service for service in self._graph.services()}
         self._mirror_topics(topics)
         self._mirror_descriptions(topics)
@@ -357,7 +358,7 @@ class FoxgloveBridge:
                 self._publications[name] = publication
                 self._by_channel[publication.channel.id()] = publication
         if changes == _CHANGES:
-            # There may be more.
+            # More changes may remain.
             self._changed()
 
     def _mirror_descriptions(self, topics: dict[str, TopicInfo]) -> None:
@@ -416,7 +417,7 @@ class FoxgloveBridge:
         self._server.publish_connection_graph(graph)
 
     def _warn_of_slow(self, client: str) -> None:
-        # The server knows the gate's end of the connection alone.
+        # The server sees only the gate's end of the connection.
         port = client.rpartition(":")[2]
         known = self._gate.peer(int(port)) if self._gate is not None and port.isdigit() else None
         self._warn(
@@ -427,7 +428,7 @@ class FoxgloveBridge:
         )
 
     def _show(self, diagnostic: Diagnostic) -> None:
-        """Reports a diagnostic to the user and, not too often, to clients."""
+        """Reports a diagnostic to the user and, at a limited rate, to clients."""
         self._report(replace(diagnostic, message=f"Foxglove: {diagnostic.message}"))
         if self._server is not None and not self._closed and self._statuses.take():
             from foxglove import StatusLevel
@@ -436,10 +437,10 @@ class FoxgloveBridge:
 
 
 class _Slow(logging.Handler):
-    """Hears of clients that do not take what they are sent: the library tells it its log alone.
+    """Detects slow clients in the library's log, because the library offers no other notification.
 
     Args:
-        slow: Takes the address of one; on any thread.
+        slow: Called with the address of a slow client, on any thread.
     """
 
     def __init__(self, slow: Callable[[str], None]) -> None:
@@ -453,10 +454,10 @@ class _Slow(logging.Handler):
 
 
 def require() -> None:
-    """Sees that the extra is there.
+    """Checks that the package foxglove-sdk is installed.
 
     Raises:
-        CartwheelError: It is not.
+        CartwheelError: The package is not installed.
     """
     try:
         import foxglove  # noqa: F401

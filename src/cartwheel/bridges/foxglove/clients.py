@@ -1,4 +1,4 @@
-"""What the library remembers of each client, kept within bounds: it has none of its own."""
+"""Limits for what the library stores per client, because the library has no limits."""
 
 from __future__ import annotations
 
@@ -10,18 +10,18 @@ from cartwheel.codes.wires import CLIENT_REQUEST_IGNORED
 from cartwheel.errors import Diagnostic
 
 _MOST, _MOST_BYTES = 1000, 1 << 20
-"""Entries of one kind of a client, and the length of their text."""
+"""Maximum number of entries of one kind per client, and of their characters."""
 _ALL, _ALL_BYTES = 10_000, 16 << 20
-"""The same of all clients together."""
+"""The same limits for all clients together."""
 
 
 class Clients:
-    """Bounds the channels and the watched parameters of clients, together and each.
+    """Limits the channels and the watched parameters of clients, per client and in total.
 
-    A text that asks for more is not handed on: the client stays connected, and is warned.
+    A message that exceeds the limits is not forwarded. The client stays connected, and is warned.
 
     Args:
-        warn: Takes a warning, for clients and the user; on the gate's thread, as all here.
+        warn: Receives warnings for clients and the user. All calls are on the gate's thread.
     """
 
     def __init__(self, warn: Callable[[Diagnostic], None]) -> None:
@@ -30,16 +30,16 @@ class Clients:
         self._parameters = _Total("watched parameters")
 
     def join(self) -> JoinedClient:
-        """A client has connected."""
+        """Adds a client that has connected."""
         return JoinedClient(_Share(self._channels), _Share(self._parameters), self._warn)
 
 
 class JoinedClient:
-    """One of them; see `cartwheel.gate.gate.Client`.
+    """A connected client; see `cartwheel.gate.gate.Client`.
 
     Args:
-        channels: That it advertises.
-        parameters: That it wants to hear of.
+        channels: Channels that the client advertises.
+        parameters: Parameters that the client watches.
         warn: See `Clients`.
     """
 
@@ -51,11 +51,11 @@ class JoinedClient:
         self._warn = warn
 
     def passes(self, text: bytes) -> bool:
-        """Whether the server gets a text."""
+        """Whether to forward a text message to the server."""
         try:
             self._take(json.loads(text.decode()))
         except (ValueError, RecursionError):
-            # Not handed on either: the library may read more than Python does.
+            # Not forwarded, because the library may parse more text as JSON than Python does.
             self._warn(
                 CLIENT_REQUEST_IGNORED.diagnostic(
                     "a client request is ignored because it is not valid JSON"
@@ -72,7 +72,7 @@ class JoinedClient:
         return True
 
     def broke(self, fault: str) -> None:
-        """Warns that it is disconnected."""
+        """Warns that the client is disconnected."""
         self._warn(
             CLIENT_REQUEST_IGNORED.diagnostic(
                 f"a client is disconnected: {fault}", values={"fault": fault}
@@ -80,7 +80,7 @@ class JoinedClient:
         )
 
     def end(self) -> None:
-        """It has gone."""
+        """Releases the entries of a client that has disconnected."""
         self._channels.clear()
         self._parameters.clear()
 
@@ -99,7 +99,7 @@ class JoinedClient:
 
 
 class _FullError(Exception):
-    """There are too many entries."""
+    """The limit on entries is reached."""
 
     def __init__(self, limit: str, text: str) -> None:
         super().__init__(text)
@@ -110,7 +110,7 @@ class _Total:
     """Entries of one kind of all clients.
 
     Args:
-        title: Of the kind, in the plural.
+        title: Plural name of the kind.
     """
 
     def __init__(self, title: str) -> None:
@@ -120,17 +120,17 @@ class _Total:
 
 
 class _Share:
-    """Those of one client."""
+    """Entries of one kind of one client."""
 
     def __init__(self, total: _Total) -> None:
         self._total = total
         self._sizes: dict[str, int] = {}
 
     def add(self, sizes: Mapping[str, int]) -> None:
-        """Adds all or none.
+        """Adds all entries or none.
 
         Raises:
-            _FullError: They are too many, or their text is too long.
+            _FullError: There are too many entries, or their text is too long.
         """
         new = {name: size for name, size in sizes.items() if name not in self._sizes}
         total, size = self._total, sum(new.values())
@@ -151,7 +151,7 @@ class _Share:
         total.size += size
 
     def remove(self, names: Iterable[str]) -> None:
-        """Removes those of these names that there are."""
+        """Removes those of the names that exist."""
         for name in names:
             size = self._sizes.pop(name, None)
             if size is not None:
@@ -159,7 +159,7 @@ class _Share:
                 self._total.size -= size
 
     def clear(self) -> None:
-        """Removes all."""
+        """Removes all entries."""
         self.remove(list(self._sizes))
 
 

@@ -1,4 +1,4 @@
-"""What a client may do to time."""
+"""Time controls for clients."""
 
 from __future__ import annotations
 
@@ -8,32 +8,32 @@ from typing import Protocol
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class TimeState:
-    """How time goes."""
+    """State of simulation time."""
 
     time_ns: int
     paused: bool
     speed: float | None
-    """The wanted real-time factor; None is as fast as it can."""
+    """Target real-time factor. None means as fast as possible."""
 
 
 class Controls(Protocol):
-    """Time in the simulation's hands; called on any thread."""
+    """Control of simulation time. Callable on any thread."""
 
     @property
     def time_ns(self) -> int:
-        """What time it is; asked for each message."""
+        """Simulation time, which is read for each message."""
 
     def state(self) -> TimeState:
-        """How it goes now."""
+        """Current state."""
 
     def pause(self) -> None:
-        """Holds it."""
+        """Pauses time."""
 
     def resume(self) -> None:
-        """Lets it go on."""
+        """Resumes time."""
 
     def set_speed(self, speed: float | None) -> None:
-        """Sets the wanted real-time factor."""
+        """Sets the target real-time factor."""
 
     def seek(self, time_ns: int) -> None:
-        """Jumps: a simulation can to its start alone."""
+        """Jumps to a time. A simulation can jump only to its start."""

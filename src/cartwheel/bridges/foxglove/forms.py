@@ -1,4 +1,4 @@
-"""In what form a type goes to clients."""
+"""Encoding of message types for clients."""
 
 from __future__ import annotations
 
@@ -15,21 +15,23 @@ Encoding = Literal["cdr", "ros1"]
 
 @functools.cache
 def encoding_of(*types: str) -> Encoding:
-    """ROS 2's, but for types that only ROS 1 can have: clients refuse their definitions else.
+    """ROS 2 encoding, except for types with fields that only ROS 1 allows.
+
+    Clients reject ROS 2 definitions of such types.
 
     Args:
-        types: That go together, such as a request and its response.
+        types: Types that need the same encoding, such as a request and its response.
     """
-    # Such as hiStop and Kp: a field of ROS 2 has no capitals.
+    # For example hiStop and Kp: ROS 2 field names have no capitals.
     names = [name for kind in types for name in _fields(kind)]
     return "cdr" if all(name == name.lower() for name in names) else "ros1"
 
 
 def schema_of(kind: str, encoding: Encoding) -> Any:
-    """A type's name and definition, as the server takes them.
+    """Name and definition of a type for the server.
 
     Raises:
-        UnknownNameError: There is no such type.
+        UnknownNameError: The type does not exist.
     """
     import foxglove
 
@@ -42,12 +44,12 @@ def schema_of(kind: str, encoding: Encoding) -> Any:
 
 
 def packed(graph: BridgedGraph, message: Any, encoding: Encoding) -> bytes:
-    """A message's bytes; those that other wires send as well are packed once."""
+    """Bytes of a message. Messages that other wires also send are serialised once."""
     return graph.cdr.encode(message) if encoding == "cdr" else encode_ros1(message)
 
 
 def _fields(kind: str) -> list[str]:
-    """Names of a type's fields, and of those of all types within it."""
+    """Names of the fields of a type and of its nested types."""
     names = []
     for line in ros2_definition(kind).splitlines():
         words = line.split()

@@ -1,4 +1,4 @@
-"""What clients send: messages, requests, values of parameters."""
+"""Messages, service requests and parameter values from clients."""
 
 from __future__ import annotations
 
@@ -25,20 +25,20 @@ from cartwheel.messages.ros1 import decode_ros1, encode_ros1
 from cartwheel.messages.ros2_types import ros2_name
 
 ENCODINGS = ["json", "cdr", "ros1"]
-"""Of messages that clients may send. Lichtblick takes the first, and JSON has fields left out; its
-CDR of a message without one of its arrays is broken."""
+"""Encodings of messages that clients may send. Lichtblick uses the first. JSON allows omitted
+fields, while Lichtblick's CDR of a message with a missing array is invalid."""
 _BACKLOG = 1000
-"""Messages that the simulation has not taken yet."""
+"""Maximum number of messages that the simulation has not processed yet."""
 
 
 def decode(data: bytes, encoding: str, kind: str) -> Any:
-    """A message of bytes that anyone may have sent.
+    """Decodes bytes from a client, which may be malformed.
 
     Raises:
-        CartwheelError: They are none.
+        CartwheelError: The bytes are not a valid message.
     """
     if encoding == "cdr":
-        # Lichtblick sends the whole buffer that a request was written into.
+        # Lichtblick sends the whole buffer into which it wrote a request.
         return decode_cdr(data, kind, padded=True)
     if encoding == "ros1":
         return decode_ros1(data, kind)
@@ -56,30 +56,30 @@ def decode(data: bytes, encoding: str, kind: str) -> Any:
 
 
 class Incoming:
-    """Messages of clients on their way into the graph.
+    """Publishes the messages of clients on the graph.
 
     Args:
-        graph: Where they go.
-        tell: Takes a warning, for clients and the user.
+        graph: Graph to publish on.
+        tell: Receives warnings for clients and the user.
     """
 
     def __init__(self, graph: BridgedGraph, tell: Callable[[Diagnostic], None]) -> None:
         self._graph = graph
         self._tell = tell
         self._channels: dict[tuple[int, int], tuple[str, str, str]] = {}
-        """Topic, encoding and type by client and channel."""
+        """Topic, encoding and type, by client and channel."""
         self._waiting = 0
 
     def advertise(self, client: int, channel: int, topic: str, encoding: str, kind: str) -> None:
-        """A client will send messages on a channel."""
+        """Adds a channel on which a client publishes."""
         self._channels[client, channel] = (topic, encoding, type_name(kind))
 
     def unadvertise(self, client: int, channel: int) -> None:
-        """It will not any more."""
+        """Removes a channel."""
         self._channels.pop((client, channel), None)
 
     def take(self, client: int, channel: int, data: bytes) -> None:
-        """A message."""
+        """Publishes a message of a client."""
         known = self._channels.get((client, channel))
         if known is None:
             return
@@ -105,7 +105,7 @@ class Incoming:
                 return
             message = decode(data, encoding, kind)
             if (kind, types[topic]) == (TWIST, TWIST_STAMPED):
-                # Clients that drive robots know Twist alone.
+                # Clients that drive robots support only Twist.
                 kind, message = TWIST_STAMPED, from_dict(TWIST_STAMPED, {"twist": to_dict(message)})
             self._waiting += 1
             self._graph.publish(topic, kind, message)
@@ -122,15 +122,15 @@ class Incoming:
 
 
 def offered(graph: BridgedGraph, service: Service, tell: Callable[[Diagnostic], None]) -> Any:
-    """A service of the graph as the server takes it; it is called on threads of the server.
+    """A graph service for the server, which calls it on the server's threads.
 
     Args:
-        graph: Whose it is.
-        service: The service.
-        tell: Takes why a call failed, from any thread: not all clients show the answer.
+        graph: Graph with the service.
+        service: Service to offer.
+        tell: Receives the error of a failed call, on any thread. Not all clients show errors.
 
     Raises:
-        UnknownNameError: Its type is not known.
+        UnknownNameError: The service type is unknown.
     """
     import foxglove
 
@@ -153,7 +153,7 @@ def offered(graph: BridgedGraph, service: Service, tell: Callable[[Diagnostic], 
                     f"{service.name} failed", error, values={"service": service.name}
                 )
             )
-            raise  # That is the client's answer.
+            raise  # The client receives this error.
         if request.encoding == "json":
             return json.dumps(to_dict(response)).encode()
         return encode_ros1(response) if request.encoding == "ros1" else encode_cdr(response)

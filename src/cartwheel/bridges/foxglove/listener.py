@@ -1,4 +1,4 @@
-"""What the server calls, on threads of its own: notes for the bridge, and answers."""
+"""Callbacks of the server, called on the server's threads."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from cartwheel.errors import CartwheelError, Diagnostic
 
 
 class Listener:
-    """Takes what clients ask for; nothing here waits for the simulation.
+    """Handles client requests without waiting for the simulation.
 
     Args:
-        incoming: Takes their messages.
-        values: The parameters.
-        controls: Of time.
-        subscribed: Told of each channel that a client begins or ceases to read.
-        tell: Takes a warning.
+        incoming: Receives client messages.
+        values: Parameters.
+        controls: Controls of simulation time.
+        subscribed: Called with each channel that a client subscribes to or unsubscribes from.
+        tell: Receives warnings.
     """
 
     def __init__(
@@ -52,7 +52,7 @@ class Listener:
         self._incoming.unadvertise(client.id, channel)
 
     def on_message_data(self, client: Any, channel: int, data: bytes) -> None:
-        # A copy: the message's arrays are views of it.
+        # Copy the data, because the message's arrays are views of it.
         self._incoming.take(client.id, channel, bytes(data))
 
     def on_get_parameters(self, _: Any, names: list[str], __: str | None = None) -> list[Any]:
@@ -62,16 +62,16 @@ class Listener:
         return self._values.set(values)
 
     def on_parameters_subscribe(self, names: list[str]) -> None:
-        """What is subscribed to is told when it changes."""
+        """Does nothing: the server publishes changes of subscribed parameters."""
 
     def on_parameters_unsubscribe(self, names: list[str]) -> None:
-        """Nothing to do."""
+        """Does nothing."""
 
     def on_connection_graph_subscribe(self) -> None:
-        """The server sends the last one by itself."""
+        """Does nothing: the server itself sends the last connection graph."""
 
     def on_connection_graph_unsubscribe(self) -> None:
-        """Nothing to do."""
+        """Does nothing."""
 
     def on_playback_control_request(self, request: Any) -> Any:
         from foxglove.websocket import PlaybackCommand
@@ -95,7 +95,7 @@ class Listener:
 
 
 def playback_state(state: TimeState, *, did_seek: bool = False, request_id: str | None) -> Any:
-    """How time goes, in the library's words."""
+    """Converts a time state to the library's type."""
     from foxglove.websocket import PlaybackState, PlaybackStatus
 
     return PlaybackState(

@@ -1,4 +1,4 @@
-"""``/rosout``: what the simulation has to say, for clients' panels of logs."""
+"""Diagnostics on ``/rosout``, for the log panels of clients."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ TOPIC, TYPE = "/rosout", "rcl_interfaces/msg/Log"
 NODE = "cartwheel"
 _LEVELS = {"info": 20, "warning": 30, "error": 40}
 _KEPT = 100
-"""Lines."""
+"""Maximum number of stored lines."""
 
 
 class Log:
-    """A channel of diagnostics; on the bridge's thread.
+    """A channel of diagnostics, used on the bridge's thread.
 
-    The first client hears what was said before it came. One that joins others does not: a
-    channel's messages go to all of its readers, who would have each line twice.
+    The first client receives the stored lines. Additional clients do not, because a channel's
+    messages go to all subscribers, which would receive each line twice.
 
     Args:
-        context: foxglove's, of the server.
+        context: foxglove's context of the server.
         time_ns: Simulation time.
     """
 
@@ -39,18 +39,18 @@ class Log:
         self._readers = 0
 
     def join(self) -> None:
-        """A client reads it from now on."""
+        """Called when a client subscribes."""
         self._readers += 1
         if self._readers == 1:
             for time_ns, data in self._said:
                 self.channel.log(data, log_time=time_ns)
 
     def leave(self) -> None:
-        """A client reads it no longer."""
+        """Called when a client unsubscribes."""
         self._readers = max(0, self._readers - 1)
 
     def write(self, diagnostic: Diagnostic) -> None:
-        """Says something."""
+        """Logs a diagnostic."""
         time_ns = self._time_ns()
         origin = diagnostic.origin
         message: Any = message_class(TYPE)(
@@ -68,5 +68,5 @@ class Log:
             self.channel.log(data, log_time=time_ns)
 
     def close(self) -> None:
-        """Takes the channel off the wire."""
+        """Closes the channel."""
         self.channel.close()

@@ -1,4 +1,4 @@
-"""A topic on the wire, read from the graph while a client reads it."""
+"""A topic on Foxglove, subscribed to in the graph while a client subscribes to it."""
 
 from __future__ import annotations
 
@@ -12,22 +12,22 @@ from cartwheel.errors import Diagnostic
 from cartwheel.graph import Mailbox, TopicInfo
 
 READER = "foxglove"
-"""Our name in the graph."""
+"""Node name of the bridge in the graph."""
 _LARGE = {"sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage", "sensor_msgs/msg/PointCloud2"}
 _WAITING, _LARGE_WAITING = 200, 5
-"""Messages that may wait between the simulation's thread and ours."""
+"""Maximum number of queued messages between the simulation's and the bridge's threads."""
 
 
 class Publication:
-    """One channel; its methods run on the bridge's thread, but for `_take`.
+    """A channel. Its methods run on the bridge's thread, except for `_take`.
 
     Args:
-        graph: Where the topic is.
-        info: The topic.
-        context: foxglove's, of the server.
+        graph: Graph with the topic.
+        info: Description of the topic.
+        context: foxglove's context of the server.
         time_ns: Simulation time.
-        wake: Lets the bridge call `send` soon; from any thread.
-        tell: Takes a warning.
+        wake: Makes the bridge call `send` soon. Callable on any thread.
+        tell: Receives warnings.
     """
 
     def __init__(
@@ -63,7 +63,7 @@ class Publication:
         self._told = False
 
     def join(self) -> None:
-        """A client reads it from now on."""
+        """Called when a client subscribes."""
         self._readers += 1
         if self._subscription is None:
             self._subscription = self._graph.subscribe(
@@ -75,13 +75,13 @@ class Publication:
             self.channel.log(data, log_time=time_ns)
 
     def leave(self) -> None:
-        """A client reads it no longer."""
+        """Called when a client unsubscribes."""
         self._readers = max(0, self._readers - 1)
         if not self._readers:
             self._end()
 
     def send(self) -> None:
-        """Sends what waits."""
+        """Sends the queued messages."""
         for time_ns, message in self._box.drain():
             if not self._readers:
                 return
@@ -100,7 +100,7 @@ class Publication:
             )
 
     def close(self) -> None:
-        """Takes the channel off the wire."""
+        """Closes the channel."""
         self._end()
         self.channel.close()
 
@@ -112,6 +112,6 @@ class Publication:
         self._box.drain()
 
     def _take(self, message: Any) -> None:
-        """On the simulation's thread."""
+        """Called on the simulation's thread."""
         self._box.put((self._time_ns(), message))
         self._wake()

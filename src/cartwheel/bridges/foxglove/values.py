@@ -1,4 +1,4 @@
-"""Parameters as clients see them: those of the graph, the robots, and time."""
+"""Parameters for clients: those of the graph, robot descriptions, and time controls."""
 
 from __future__ import annotations
 
@@ -13,26 +13,26 @@ from cartwheel.codes.wires import PARAMETER_REFUSED
 from cartwheel.errors import CartwheelError, Diagnostic, GraphError
 
 _MOST, _MOST_BYTES, _LARGEST = 1000, 4 << 20, 64 << 10
-"""Parameters that clients set, characters of their names and values, and of one of them."""
+"""Limits on parameters that clients set: number, characters in total, and characters of one."""
 _LONGEST_NAME = 256
 PAUSED, SPEED = "/cartwheel/paused", "/cartwheel/speed"
-"""Whether time is held, and how fast it goes; a speed of 0 is as fast as it can."""
+"""Whether time is paused, and the target real-time factor; 0 is as fast as possible."""
 
 
 class _FullError(GraphError):
-    """A parameter is too large, or there are too many."""
+    """A parameter is too large, or there are too many parameters."""
 
     code = PARAMETER_REFUSED
 
 
 class Values:
-    """Reads and sets parameters; on any thread.
+    """Reads and sets parameters. Thread-safe.
 
     Args:
-        graph: Whose parameters.
-        controls: Of time.
-        descriptions: The robots' descriptions by topic.
-        tell: Takes a warning.
+        graph: Graph with the parameters.
+        controls: Controls of simulation time.
+        descriptions: Robot descriptions by topic.
+        tell: Receives warnings.
     """
 
     def __init__(
@@ -52,7 +52,7 @@ class Values:
         self._lock = threading.Lock()
 
     def get(self, names: list[str]) -> list[Any]:
-        """The parameters of those names; all where none is given."""
+        """Parameters with these names, or all parameters if no name is given."""
         from foxglove import Parameter
 
         found = {name: self._one(name) for name in names} if names else dict(self._all())
@@ -61,12 +61,13 @@ class Values:
         return [Parameter(name, value=value) for name, value in values if value is not None]
 
     def set(self, values: list[Any]) -> list[Any]:
-        """Sets parameters; returns what they are then."""
+        """Sets parameters. Returns their resulting values."""
         for value in values:
             try:
                 self._set_one(value.name, value.get_value())
             except _FullError as error:
-                # Without the name: it is one warning, however many parameters there are.
+                # The warning omits the name, so that it is reported once for any number of
+                # parameters.
                 self._tell(error.diagnostic("warning"))
             except CartwheelError as error:
                 self._tell(
@@ -105,7 +106,7 @@ class Values:
                 self._sizes[name] = size
 
     def _room_for(self, name: str, value: Any) -> int:
-        """The size of a parameter; refuses one that would fill the memory."""
+        """Size of a parameter. Rejects a parameter that exceeds the memory limits."""
         size = len(name) + len(repr(value))
         if len(name) > _LONGEST_NAME or size > _LARGEST:
             raise _FullError(
@@ -128,7 +129,7 @@ class Values:
         return size
 
     def _one(self, name: str) -> Any:
-        """A value; None where there is none, or more than one."""
+        """A value, or None if no single parameter has this name."""
         if name in (PAUSED, SPEED):
             state = self._controls.state()
             return state.paused if name == PAUSED else float(state.speed or 0.0)

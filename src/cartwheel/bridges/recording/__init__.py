@@ -1,4 +1,4 @@
-"""Topics to files and back: MCAP, ROS 1's bags, ROS 2's bags."""
+"""Recording and reading topics: MCAP, ROS 1 bags, ROS 2 bags."""
 
 from cartwheel.bridges.recording.formats import ENCODINGS, Encoding
 from cartwheel.bridges.recording.recorder import Recorder

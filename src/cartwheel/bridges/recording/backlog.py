@@ -1,4 +1,4 @@
-"""What waits to be written: bounded, and never dropped."""
+"""Queue of messages to be written. It is bounded, and never drops messages."""
 
 from __future__ import annotations
 
@@ -11,20 +11,20 @@ from typing import Any
 from cartwheel.bridges.packed import Packed
 
 ROOM = 64 << 20
-"""Bytes of messages, about, that may wait."""
+"""Approximate maximum size of queued messages in bytes."""
 COUNT = 20_000
-"""Messages that may wait."""
+"""Maximum number of queued messages."""
 _BATCH = 1000
-"""Messages for which the reader is woken at once."""
+"""Number of queued messages at which the reader is woken at once."""
 _LINGER = 0.02
-"""s that messages lie before they are taken."""
+"""Interval in s at which the reader takes the queued messages."""
 _SMALL = 256
-"""Bytes of a message but for its large array, about."""
+"""Approximate size of a message in bytes, without its large arrays."""
 
 
 @dataclass(frozen=True, slots=True)
 class Item:
-    """A message and what it is one of."""
+    """A message with its topic."""
 
     topic: str
     type: str
@@ -32,7 +32,7 @@ class Item:
     time_ns: int
     message: Any
     begins: bool
-    """Time went back before it: a new file begins."""
+    """Whether time jumped back before this message, so that a new file begins."""
 
 
 class Backlog:
@@ -47,10 +47,10 @@ class Backlog:
         self._changed = threading.Condition()
         self._open = True
         self.waited = 0.0
-        """s of wall time that `put` has waited."""
+        """Wall time in s for which `put` has waited."""
 
     def put(self, item: Item) -> None:
-        """Adds an item as soon as there is room; nothing once it is closed."""
+        """Adds an item as soon as there is space. Does nothing after `close`."""
         size = size_of(item.message)
         with self._changed:
             if self._is_full and self._open:
@@ -64,10 +64,12 @@ class Backlog:
                     self._changed.notify_all()
 
     def get(self, timeout: float) -> list[Item]:
-        """What waits, within `_LINGER` s of its coming; empty after `timeout` s or once closed.
+        """Returns the queued items, at most `_LINGER` s after the first was added.
 
-        Its reader is not woken for each message: two threads that take turns at every message
-        take half as long again for all of them.
+        Returns an empty list after `timeout` s or once closed.
+
+        The reader is not woken for each message, because switching between two threads at every
+        message increases the total time by half.
         """
         deadline = time.monotonic() + timeout
         with self._changed:
@@ -83,7 +85,7 @@ class Backlog:
             return items
 
     def done(self, items: list[Item]) -> None:
-        """They are written, and their room is free again."""
+        """Releases the space of items that were written."""
         with self._changed:
             self._size -= sum(size_of(item.message) for item in items)
             self._changed.notify_all()
@@ -93,7 +95,7 @@ class Backlog:
         return self._open
 
     def close(self) -> None:
-        """Takes no more; what waits can still be got."""
+        """Rejects new items. Queued items can still be read."""
         with self._changed:
             self._open = False
             self._changed.notify_all()
@@ -108,7 +110,7 @@ class Backlog:
 
 
 def size_of(message: Any) -> int:
-    """About how many bytes a message holds: those of the arrays that grow large."""
+    """Approximate size of a message in bytes: the sum of its large arrays."""
     if isinstance(message, Packed):
         return _SMALL + len(message.cdr)
     size = _SMALL

@@ -1,4 +1,4 @@
-"""ROS 1's bags, also those without an index. Source: wiki.ros.org/Bags/Format/2.0."""
+"""Reading ROS 1 bags, even without an index. Source: wiki.ros.org/Bags/Format/2.0."""
 
 from __future__ import annotations
 
@@ -33,10 +33,10 @@ Fields = dict[str, bytes]
 
 @dataclass
 class BagRecording(BlockRecording):
-    """A bag of ROS 1."""
+    """A ROS 1 bag."""
 
     numbers: dict[int, int] = field(default_factory=dict)
-    """Index in `topics` by connection."""
+    """Index in `topics`, by connection."""
 
     def load(self, block: Block) -> list[Recorded]:
         try:
@@ -66,7 +66,7 @@ class BagRecording(BlockRecording):
         return found
 
     def learn(self, head: Fields, data: bytes) -> None:
-        """Keeps a connection."""
+        """Adds a connection."""
         connection = _u32(head, "conn")
         if connection in self.numbers:
             return
@@ -86,10 +86,10 @@ class BagRecording(BlockRecording):
 
 
 def open_bag(path: Path) -> BagRecording:
-    """Finds the chunks of a bag and what they hold.
+    """Finds the chunks of a bag and the topics and times in each chunk.
 
     Raises:
-        RecordingError: It is damaged, or of a version before 2.0.
+        RecordingError: The bag is damaged, or its version is older than 2.0.
     """
     recording = BagRecording(path=path, form="ROS 1 bag", size=path.stat().st_size)
     with path.open("rb") as file:
@@ -105,7 +105,7 @@ def open_bag(path: Path) -> BagRecording:
         try:
             unclear = _scan(file, recording)
             if unclear and not recording.complete:
-                # Its index may be cut off.
+                # Its index may be truncated.
                 unclear[-1] = (unclear[-1][0], {})
             for block, times in unclear:
                 _clear_up(recording, block, times)
@@ -115,12 +115,12 @@ def open_bag(path: Path) -> BagRecording:
                 code=RECORDING_DAMAGED,
                 values={"path": str(path), "byte": file.tell()},
             ) from error
-    # A bag of several publishers of a topic has a connection for each of them.
+    # A bag has one connection per publisher of a topic.
     return recording
 
 
 def _clear_up(recording: BagRecording, block: Block, times: dict[int, list[int]]) -> None:
-    """Counts what a chunk holds; one without an index, or with news, is loaded."""
+    """Counts the messages in a chunk. Loads the chunk if it has no index or new connections."""
     if not times or not set(times) <= set(recording.numbers):
         messages = recording.load(block)
         seen = defaultdict(list)
@@ -167,10 +167,10 @@ def _scan(file: BinaryIO, recording: BagRecording) -> list[tuple[Block, dict[int
 
 
 def fields(data: bytes) -> Fields:
-    """The named values that a record begins with.
+    """Header fields at the start of a record.
 
     Raises:
-        ValueError: They are none.
+        ValueError: The data is not a valid header.
     """
     source = Bytes(data)
     found = {}
@@ -183,7 +183,7 @@ def fields(data: bytes) -> Fields:
 
 
 def op_of(head: Fields) -> int:
-    """What a record is."""
+    """Type of a record."""
     return head.get("op", b"\0")[0]
 
 

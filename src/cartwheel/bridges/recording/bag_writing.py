@@ -1,4 +1,4 @@
-"""ROS 1's bags, version 2.0. Source: wiki.ros.org/Bags/Format/2.0."""
+"""Writing ROS 1 bags, version 2.0. Source: wiki.ros.org/Bags/Format/2.0."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from cartwheel.bridges.recording.sink import Sink
 
 MAGIC = b"#ROSBAG V2.0\n"
 CHUNK = 768 << 10
-"""Bytes of messages that are written together, but for a message that is larger."""
+"""Maximum size of a chunk in bytes. A larger message has its own chunk."""
 _HEADER_SIZE = 4096
-"""Bytes of the first record without its two lengths, as ROS's tools write it in place."""
+"""Size in bytes of the first record without its two lengths, as written by ROS tools."""
 _EARLIEST = 1
-"""ns: what is earlier than ROS 1's first moment, rosbag does not play."""
+"""Earliest timestamp in ns, because rosbag does not play messages before ROS 1's first time."""
 
 BAG_HEADER, CHUNK_OP, CONNECTION, MESSAGE, INDEX, CHUNK_INFO = 3, 5, 7, 2, 4, 6
 
@@ -29,7 +29,7 @@ class _Connection:
     schema: Schema
     count: int = 0
     index: list[tuple[bytes, int]] = field(default_factory=list)
-    """Time and place of its messages in the chunk at hand."""
+    """Time and offset of each message in the current chunk."""
 
     @property
     def record(self) -> bytes:
@@ -47,12 +47,12 @@ class _Connection:
 
 
 class BagWriter:
-    """Writes a bag in chunks without compression, which every ROS 1 reads.
+    """Writes a bag in uncompressed chunks, which all ROS 1 releases can read.
 
-    One whose end is missing has no index yet: ``rosbag reindex`` makes it.
+    A truncated bag has no index. ``rosbag reindex`` restores it.
 
     Args:
-        path: Made anew.
+        path: File to create.
 
     Raises:
         OSError: The file cannot be written.
@@ -68,7 +68,7 @@ class BagWriter:
         self._span: tuple[int, int] | None = None
         self._infos: list[bytes] = []
         self._written: list[tuple[int, int]] = []
-        """Of each chunk in the file: where it begins, and `kept_ns` before it."""
+        """Start of each chunk in the file, and `kept_ns` before it."""
         self._sink = Sink(path)
         self._sink.write(MAGIC + self._bag_header(0))
 
@@ -97,7 +97,7 @@ class BagWriter:
         return len(data)
 
     def attach(self, name: str, media_type: str, data: bytes, time_ns: int) -> None:
-        """A bag has no place for it."""
+        """Does nothing, because bags cannot contain attachments."""
 
     def flush(self) -> None:
         if self._span is None:
@@ -146,7 +146,7 @@ class BagWriter:
         self._sink.salvage(self.close, self._give_back)
 
     def _give_back(self) -> bool:
-        """Takes the last chunk out of the file."""
+        """Removes the last chunk from the file."""
         if not self._written:
             return False
         begin, self.kept_ns = self._written.pop()
@@ -174,7 +174,7 @@ class BagWriter:
 
 
 def header(fields: dict[str, bytes]) -> bytes:
-    """Named values, as records begin with."""
+    """Encodes the header fields of a record."""
     return b"".join(
         _u32(len(name) + 1 + len(value)) + name.encode() + b"=" + value
         for name, value in fields.items()
@@ -182,7 +182,7 @@ def header(fields: dict[str, bytes]) -> bytes:
 
 
 def record(fields: dict[str, bytes], data: bytes) -> bytes:
-    """A whole record."""
+    """Encodes a complete record."""
     head = header(fields)
     return b"".join((_u32(len(head)), head, _u32(len(data)), data))
 

@@ -1,4 +1,4 @@
-"""How chunks are packed. The packers come with rosbags, and are imported when they are needed."""
+"""Compression of chunks. The libraries come with rosbags, and are imported when first used."""
 
 from __future__ import annotations
 
@@ -7,7 +7,8 @@ from collections.abc import Callable
 from typing import Any
 
 MOST_BYTES = 1 << 28
-"""Of one chunk, unpacked: a hundred times what recorders make, and four large point clouds."""
+"""Maximum uncompressed size of a chunk in bytes: a hundred times the usual size of a chunk, and
+enough for four large point clouds."""
 
 
 def _zstd() -> Any:
@@ -19,21 +20,21 @@ def _zstd() -> Any:
 
 
 def prepare() -> None:
-    """Imports what `compress` needs, which may take long on a busy machine."""
+    """Imports what `compress` needs, which may be slow on a busy machine."""
     _zstd()
 
 
 def compress(data: bytes, *, level: int) -> bytes:
-    """Bytes as zstd packs them."""
+    """Compresses bytes with zstd."""
     packed: bytes = _zstd().compress(data, level=level)
     return packed
 
 
 def decompress(data: bytes, kind: str) -> bytes:
-    """Bytes as they were before ``zstd``, ``lz4``, ``bz2`` or nothing (``""``, ``none``).
+    """Decompresses bytes. The kind is ``zstd``, ``lz4``, ``bz2``, ``none`` or empty.
 
     Raises:
-        ValueError: They are damaged, unpack to more than `MOST_BYTES`, or the kind is unknown.
+        ValueError: The data is damaged or exceeds `MOST_BYTES`, or the kind is unknown.
     """
     if kind in ("", "none"):
         return data
@@ -47,14 +48,14 @@ def decompress(data: bytes, kind: str) -> bytes:
 
 
 def _is_stated(data: bytes) -> bool:
-    """Whether the data is one frame of zstd's that states a size within bounds."""
+    """Whether the data is a single zstd frame with a declared size within the limit."""
     zstd = _zstd()
     size = zstd.get_frame_info(data).decompressed_size
     return size is not None and size <= MOST_BYTES and zstd.get_frame_size(data) == len(data)
 
 
 def _unpacker(kind: str) -> tuple[Callable[[], Any], type[Exception]]:
-    """What unpacks one frame step by step, and its error for damage."""
+    """Creates an incremental decompressor for one frame. Returns it with its error class."""
     if kind == "zstd":
         zstd = _zstd()
         return zstd.ZstdDecompressor, zstd.ZstdError

@@ -1,4 +1,4 @@
-"""ROS 2's bags in SQLite, of all versions of their tables."""
+"""Reading ROS 2 bags in SQLite, with all versions of the tables."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from cartwheel.messages import type_name
 
 
 class Db3Recording:
-    """One SQLite file.
+    """An SQLite file.
 
     Args:
-        path: Of it.
-        unpack: Of each message's bytes, for bags that are compressed by message.
+        path: Path of the file.
+        unpack: Decompresses a message, for bags with compressed messages.
 
     Raises:
-        RecordingError: It is no bag of ROS 2.
+        RecordingError: The file is not a ROS 2 bag.
     """
 
     form = "ROS 2 bag, SQLite"
@@ -75,7 +75,7 @@ class Db3Recording:
         try:
             base.execute("SELECT count(*) FROM topics")
         except sqlite3.OperationalError:
-            # Its writer was killed: what it had begun must be taken back first.
+            # The writer was killed: SQLite must first roll back its unfinished transaction.
             base.close()
             base = sqlite3.connect(f"{quoted}?mode=rw", uri=True, check_same_thread=False)
             base.execute("SELECT count(*) FROM topics")
@@ -86,7 +86,7 @@ class Db3Recording:
         base.execute("PRAGMA trusted_schema = OFF")
         base.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, MOST_BYTES)
         views = base.execute("SELECT name FROM sqlite_master WHERE type = 'view'").fetchone()
-        if views:  # which can be queries without end
+        if views:  # a view may be a query that never ends
             raise ValueError(f'it contains the view "{views[0]}", which is not allowed')
         columns = {row[1] for row in base.execute("PRAGMA table_info(topics)")}
         tables = {row[0] for row in base.execute("SELECT name FROM sqlite_master")}
@@ -119,7 +119,8 @@ class Db3Recording:
                     raise ValueError("a message has no timestamp")
                 topic = self.topics[self._numbers[own]]
                 topic.count, topic.first_ns, topic.last_ns = count, first, last
-        # Since the fourth version the metadata is written at the end; before, beside it.
+        # Since version 4, the metadata is written into the file at the end. Before, it was a
+        # separate file.
         self.complete = "metadata" not in tables or bool(
             base.execute("SELECT count(*) FROM metadata").fetchone()[0]
         )

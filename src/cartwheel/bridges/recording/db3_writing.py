@@ -1,4 +1,4 @@
-"""ROS 2's bags in SQLite: one file with all that it needs. Source: rosbag2_storage_sqlite3."""
+"""Writing ROS 2 bags in SQLite as a single file. Source: rosbag2_storage_sqlite3."""
 
 from __future__ import annotations
 
@@ -30,16 +30,16 @@ CREATE INDEX timestamp_idx ON messages (timestamp ASC);
 INSERT INTO schema(schema_version, ros_distro) VALUES (4, 'jazzy');
 """
 _TRANSACTION = 1 << 20
-"""Bytes of messages that are written together."""
+"""Size of a transaction in bytes of messages."""
 
 
 class Db3Writer:
-    """Writes one SQLite file; what was flushed survives a crash of the process.
+    """Writes an SQLite file. Flushed messages survive a crash of the process.
 
     Args:
-        path: Made anew; nothing may be there.
-        notes: Kept among its metadata.
-        pack: Makes the bytes of a message.
+        path: File to create. It must not exist.
+        notes: Stored in the metadata.
+        pack: Serialises a message.
 
     Raises:
         OSError: The file cannot be written.
@@ -54,12 +54,12 @@ class Db3Writer:
         self._types: set[str] = set()
         self._span: tuple[int, int] | None = None
         self._open_size = 0
-        """Bytes of messages that a rollback would take."""
-        # Says itself why it cannot be made, which SQLite does not.
+        """Bytes of messages that a rollback would remove."""
+        # Unlike SQLite, this reports why the file cannot be created.
         path.touch(exist_ok=False)
         path.with_name(f"{path.name}-journal").unlink(missing_ok=True)
         self._base = sqlite3.connect(path, check_same_thread=False, isolation_level=None)
-        # The operating system keeps what it was given; only power failures need more.
+        # The operating system keeps written data. Only a power failure would require more.
         self._run("PRAGMA synchronous=OFF")
         self._run("PRAGMA page_size=65536")
         try:
@@ -100,7 +100,7 @@ class Db3Writer:
         return len(data)
 
     def attach(self, name: str, media_type: str, data: bytes, time_ns: int) -> None:
-        """rosbag2 has no place for it."""
+        """Does nothing, because rosbag2 does not support attachments."""
 
     def flush(self) -> None:
         self._open_size = 0

@@ -1,4 +1,4 @@
-"""Recorded bytes as messages of the graph, of types that the recording itself may define."""
+"""Decoding of recorded messages, whose types may be defined by the recording."""
 
 from __future__ import annotations
 
@@ -18,23 +18,23 @@ from cartwheel.messages.ros1_types import ros1_store
 from cartwheel.messages.ros2_types import twin_name
 
 _LONGEST = 1 << 20
-"""Characters of a definition with all types that it needs."""
+"""Maximum length in characters of a definition with all nested types."""
 _LONGEST_ARRAY = 10_000
-"""Elements of a fixed array of texts or messages."""
+"""Maximum length of a fixed array of strings or messages."""
 _MOST_NUMBERS = 1 << 30
-"""Elements of a fixed array of numbers."""
+"""Maximum length of a fixed array of numbers."""
 _NO_CODE = re.compile(r'"(?:[^"\\]|\\(?:.|\Z))*(?:"|\Z)|//[^\n]*|/\*.*?(?:\*/|\Z)', re.DOTALL)
-"""In IDL: texts and comments. One without an end goes to the end of the text: otherwise each
-place where one begins would be followed to there in vain."""
+"""Strings and comments in IDL. An unterminated one extends to the end of the text. Otherwise the
+search would run to the end of the text for each unterminated start."""
 Decode = Callable[[bytes], Any]
 
 
 def decoder(topic: RecordedTopic) -> Decode:
-    """What makes messages of a topic's bytes; a type that is not known yet becomes it.
+    """Returns the decoder for a topic. A type that is still unknown is registered.
 
     Raises:
-        RecordingError: They are no messages of ROS, or of a type that has our type's name and
-            other fields.
+        RecordingError: The topic does not contain ROS messages, or its type has the name but not
+            the fields of a known type.
     """
     if topic.encoding not in ("cdr", "ros1"):
         raise RecordingError(
@@ -68,7 +68,7 @@ def decoder(topic: RecordedTopic) -> Decode:
         ) from error
     except MemoryError:
         raise
-    except Exception as error:  # rosbags makes code of definitions, and finds faults only there
+    except Exception as error:  # rosbags compiles definitions, and detects errors only then
         raise RecordingError(
             f"the type definition of {topic.name} cannot be used: {error}",
             code=RECORDED_TYPE_UNUSABLE,
@@ -102,7 +102,7 @@ def _learn(topic: RecordedTopic) -> None:
 
 
 def _in_graph(kind: str, topic: RecordedTopic) -> str:
-    """The graph's name of a type of ROS 2, of which ROS 1 may have another of that name."""
+    """The graph's name of a ROS 2 type whose name may have a different meaning in ROS 1."""
     known, twin = store().fielddefs, twin_name(kind)
     if twin not in known:
         return kind
@@ -134,7 +134,7 @@ def _parsed(topic: RecordedTopic) -> dict[str, Any]:
         if topic.schema == "ros2idl":
             return dict(get_types_from_idl(topic.definition))
         return dict(get_types_from_msg(topic.definition, topic.type))
-    except Exception as error:  # whatever the parser meets
+    except Exception as error:  # any error of the parser
         raise RecordingError(
             f"the type definition of {topic.name} cannot be parsed: {error}",
             code=RECORDED_TYPE_UNUSABLE,
@@ -143,7 +143,10 @@ def _parsed(topic: RecordedTopic) -> dict[str, Any]:
 
 
 def _has_nested_parentheses(idl: str) -> bool:
-    """Whether reading it takes 70 times as long for each further pair; ROS writes none."""
+    """Whether the text contains nested parentheses. Each level makes parsing 70 times slower.
+
+    ROS does not write nested parentheses.
+    """
     depth = 0
     for sign in re.findall(r"[()]", _NO_CODE.sub("", idl)):
         depth += 1 if sign == "(" else -1
@@ -153,7 +156,7 @@ def _has_nested_parentheses(idl: str) -> bool:
 
 
 def _check_names(topic: RecordedTopic, name: str, fields: Any) -> None:
-    """Refuses names that are none: classes are made of them, as Python's text."""
+    """Rejects invalid names, because rosbags generates Python code that contains them."""
     words = [*name.split("/"), *(field[0] for field in fields)]
     if not all(word.isidentifier() for word in words):
         raise RecordingError(
@@ -164,7 +167,7 @@ def _check_names(topic: RecordedTopic, name: str, fields: Any) -> None:
 
 
 def _check_arrays(topic: RecordedTopic, name: str, fields: Any) -> None:
-    """Refuses long fixed arrays: rosbags makes a line of code of each text and message in one."""
+    """Rejects long fixed arrays, as rosbags generates code per string or message in them."""
     for field, (kind, inner) in fields:
         if kind != Nodetype.ARRAY:
             continue
@@ -180,7 +183,7 @@ def _check_arrays(topic: RecordedTopic, name: str, fields: Any) -> None:
 
 
 def _check_depth(topic: RecordedTopic, types: dict[str, Any]) -> None:
-    """Refuses types that contain themselves."""
+    """Rejects types that contain themselves."""
     inner = {
         name: {about for _, about in _elements(fields) if about in types}
         for name, (_, fields) in types.items()
@@ -197,7 +200,7 @@ def _check_depth(topic: RecordedTopic, types: dict[str, Any]) -> None:
 
 
 def _check_complete(topic: RecordedTopic, types: dict[str, Any], known: Any) -> None:
-    """Refuses a field of a type that nothing defines, before the others become known."""
+    """Rejects fields with undefined types, before the other types are registered."""
     for name, (_, fields) in types.items():
         for _, used in _elements(fields):
             if used not in types and used not in known:
@@ -209,7 +212,7 @@ def _check_complete(topic: RecordedTopic, types: dict[str, Any], known: Any) -> 
 
 
 def _elements(fields: Any) -> Iterator[tuple[int, Any]]:
-    """Kinds and names of what fields hold, within arrays too."""
+    """Kinds and names of the types of fields and array elements."""
     for _, (kind, about) in fields:
         found = about[0] if kind in (Nodetype.ARRAY, Nodetype.SEQUENCE) else (kind, about)
         if found[0] == Nodetype.NAME:
@@ -217,7 +220,7 @@ def _elements(fields: Any) -> Iterator[tuple[int, Any]]:
 
 
 def _plain(fields: Any) -> Any:
-    """Fields as nested lists: parsers differ in tuples and lists, and in empty types."""
+    """Fields as nested lists, since parsers differ in tuples, lists and empty types."""
     found = [_nested(field) for field in fields]
     return [field for field in found if field[0] != FILLER]
 

@@ -1,4 +1,4 @@
-"""Messages as the bytes of a recording, with the definitions that go with them."""
+"""Encoding of recorded messages, with their definitions."""
 
 from __future__ import annotations
 
@@ -17,35 +17,35 @@ Pack = Callable[[Any], bytes]
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Schema:
-    """A message type as a recording states it."""
+    """A message type in a recording."""
 
     name: str
-    """``pkg/msg/Name``, in ROS 1 ``pkg/Name``."""
+    """``pkg/msg/Name``; in ROS 1 ``pkg/Name``."""
     text: str
-    """With the definitions of all types within it."""
+    """Definition, including all nested types."""
     hash: str
-    """ROS 1's md5 sum, ROS 2's RIHS01."""
+    """md5 sum in ROS 1, RIHS01 in ROS 2."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Codec:
-    """How the messages of an encoding are written."""
+    """Encoder for messages of one encoding."""
 
     messages: str
-    """MCAP's name of it."""
+    """MCAP's name of the message encoding."""
     schemas: str
-    """MCAP's name of its definitions."""
+    """MCAP's name of the schema encoding."""
     encode: Callable[[Any, int], bytes]
-    """Of a message and its number on the topic."""
+    """Encodes a message, with its sequence number on the topic."""
     schema: Callable[[str], Schema]
 
 
 def codec(encoding: Encoding, pack: Pack = encode_cdr) -> Codec:
-    """The codec of an encoding.
+    """Codec of an encoding.
 
     Args:
-        encoding: Which one.
-        pack: Makes ROS 2's bytes.
+        encoding: Encoding of the messages.
+        pack: Serialises a message for ROS 2.
     """
     if encoding == "ros1":
         return _ROS1

@@ -1,4 +1,4 @@
-"""ROS 2's bags as folders, of one file or several."""
+"""Reading ROS 2 bags that are folders with one or several files."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from cartwheel.codes.recording import NOT_A_RECORDING, RECORDING_DAMAGED, RECORD
 from cartwheel.errors import RecordingError
 
 _MOST_METADATA = 1 << 24
-"""Bytes of a ``metadata.yaml``, which states each topic's QoS."""
+"""Maximum size in bytes of ``metadata.yaml``, which contains the QoS of each topic."""
 
 
 class FolderRecording:
-    """Several files as one recording."""
+    """Several files, read as one recording."""
 
     def __init__(self, files: Sequence[Recording], *, complete: bool) -> None:
         self.form = "ROS 2 bag"
@@ -70,21 +70,21 @@ class FolderRecording:
 
 
 def open_folder(path: Path, open_file: Callable[[Path], Recording]) -> Recording:
-    """Opens the files of a folder.
+    """Opens all files of a folder.
 
     Args:
         path: The folder.
-        open_file: Opens one of them, other than a database.
+        open_file: Opens a file that is not a database.
 
     Raises:
-        RecordingError: There are none, or they cannot be read.
+        RecordingError: The folder contains no recording, or a file cannot be read.
     """
     about = _metadata(path)
     stated = about.get("relative_file_paths")
     stated = stated if isinstance(stated, list) else []
     names = [Path(name).name for name in stated if isinstance(name, str)]
-    # All of a bag's files lie in its folder. Some versions also write the folder's name, which
-    # may have changed since, and nobody may name files elsewhere.
+    # All files of a bag are in its folder. Some versions also write the folder's name, which may
+    # have changed since, and a path must not lead out of the folder. So use only the last part.
     files = [path / name for name in names if name]
     for file in files:
         if not file.is_file():

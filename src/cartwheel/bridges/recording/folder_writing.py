@@ -1,4 +1,4 @@
-"""ROS 2's bags as a folder: an MCAP file and what rosbag2 wants to know about it."""
+"""Writing ROS 2 bags as a folder: an MCAP file and rosbag2's metadata."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from cartwheel.bridges.recording.rosbag2_metadata import TopicCount, as_yaml, me
 
 
 class FolderWriter:
-    """Writes the folder; its ``metadata.yaml`` is renewed at each flush.
+    """Writes the folder. Each flush updates its ``metadata.yaml``.
 
     Args:
-        path: Made anew.
-        notes: Kept among its metadata.
-        pack: Makes the bytes of a message.
+        path: Folder to create.
+        notes: Stored in the metadata.
+        pack: Serialises a message.
 
     Raises:
-        OSError: It cannot be written.
+        OSError: The folder cannot be written.
     """
 
     def __init__(self, path: Path, *, notes: Mapping[str, str], pack: Pack) -> None:
@@ -36,7 +36,7 @@ class FolderWriter:
 
     @property
     def kept_ns(self) -> int:
-        """Time of the last message that the operating system has."""
+        """Time of the last message that was passed to the operating system."""
         return self._mcap.kept_ns
 
     def add(self, topic: str, type_name: str, *, latched: bool) -> int:

@@ -1,4 +1,4 @@
-"""What a recording's name says about its form, and where it may be written."""
+"""Recording formats by file name, and checks of the output path."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from cartwheel.codes.recording import (
 from cartwheel.errors import RecordingError
 
 Encoding = Literal["ros1", "ros2"]
-"""Of the messages."""
+"""Encoding of the messages."""
 ENCODINGS: tuple[Encoding, ...] = ("ros2", "ros1")
 
 _NAMES = "Valid names: x.mcap, x.bag (ROS 1), x.db3 (ROS 2), or x for a folder (ROS 2)."
@@ -23,10 +23,10 @@ _BAG2_FILES = {".mcap", ".db3", ".yaml", ".zstd", ".db3-journal"}
 
 
 def form_of(path: Path) -> Literal["mcap", "bag", "db3", "folder"]:
-    """The form that a name asks for.
+    """Format for a file name.
 
     Raises:
-        RecordingError: No form has such a name.
+        RecordingError: The name does not match any format.
     """
     suffix = path.suffix.lower()
     if suffix in (".mcap", ".bag", ".db3"):
@@ -42,10 +42,10 @@ def form_of(path: Path) -> Literal["mcap", "bag", "db3", "folder"]:
 
 
 def encoding_for(path: Path, wanted: Encoding | None) -> Encoding:
-    """The encoding of a recording: `wanted`, or the one usual for its form.
+    """Encoding of a recording: `wanted`, or the default of the format.
 
     Raises:
-        RecordingError: The form cannot hold it.
+        RecordingError: The format does not support this encoding.
     """
     form = form_of(path)
     if wanted is None:
@@ -62,10 +62,10 @@ def encoding_for(path: Path, wanted: Encoding | None) -> Encoding:
 
 
 def check_writable(path: Path, *, overwrite: bool) -> None:
-    """Refuses a place where no recording can begin.
+    """Checks that a recording can be created at a path.
 
     Raises:
-        RecordingError: Something is there already, or the folder takes no file.
+        RecordingError: The path already exists, or the folder is not writable.
     """
     if not path.name:
         raise RecordingError(
@@ -107,7 +107,7 @@ def check_writable(path: Path, *, overwrite: bool) -> None:
 
 
 def exists(path: Path) -> RecordingError:
-    """That something is there already, as an error."""
+    """Error for a path that already exists."""
     return RecordingError(
         f'"{path}" already exists',
         code=RECORDING_EXISTS,
@@ -117,7 +117,7 @@ def exists(path: Path) -> RecordingError:
 
 
 def reason_of(error: OSError) -> str:
-    """What the operating system says, without numbers and names."""
+    """Reason in an operating system error, without number and file name."""
     return error.strerror or str(error)
 
 

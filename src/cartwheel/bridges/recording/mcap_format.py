@@ -1,4 +1,4 @@
-"""The records of MCAP, as far as both ways need them. Source: the MCAP specification."""
+"""MCAP records for reading and writing. Source: the MCAP specification."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ MAGIC = b"\x89MCAP0\r\n"
 
 
 class Op(enum.IntEnum):
-    """What a record is."""
+    """Type of a record."""
 
     HEADER = 0x01
     FOOTER = 0x02
@@ -30,28 +30,28 @@ class Op(enum.IntEnum):
 
 
 RECORD = struct.Struct("<BQ")
-"""Op and length before each record."""
+"""Header of a record: type and length."""
 MESSAGE = struct.Struct("<HIQQ")
-"""Channel, number, log time and publish time before a message's bytes."""
+"""Header of a message: channel, sequence number, log time, publish time."""
 
 
 def text(value: str) -> bytes:
-    """A string."""
+    """Encodes a string."""
     data = value.encode(errors="surrogateescape")
     return struct.pack("<I", len(data)) + data
 
 
 def blob(data: bytes) -> bytes:
-    """Bytes with a 32-bit length."""
+    """Encodes bytes with a 32-bit length."""
     return struct.pack("<I", len(data)) + data
 
 
 def mapping(values: Mapping[str, str]) -> bytes:
-    """Strings by strings."""
+    """Encodes a map of strings."""
     return blob(b"".join(text(key) + text(value) for key, value in values.items()))
 
 
 def record(op: Op, *parts: bytes) -> bytes:
-    """A whole record."""
+    """Encodes a complete record."""
     body = b"".join(parts)
     return RECORD.pack(op, len(body)) + body

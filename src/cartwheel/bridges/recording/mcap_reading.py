@@ -1,4 +1,4 @@
-"""MCAP files, also those whose end is missing."""
+"""Reading MCAP files, even truncated ones."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from cartwheel.errors import RecordingError
 from cartwheel.messages import type_name
 
 _LOOSE = 1 << 20
-"""Bytes of messages outside of chunks that make a block."""
+"""Size of a block in bytes, for messages outside of chunks."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,13 +34,13 @@ class _Schema:
 
 @dataclass
 class _Scan:
-    """What was found so far."""
+    """State of a scan of the file."""
 
     recording: McapRecording
     times: dict[int, list[int]] = field(default_factory=lambda: defaultdict(list))
-    """Of the chunk at hand, by channel."""
+    """Message times in the current chunk, by channel."""
     unclear: list[tuple[Block, set[int]]] = field(default_factory=list)
-    """Chunks and the channels that their indexes name."""
+    """Chunks that must be loaded, and the channels in their indexes."""
 
 
 @dataclass
@@ -49,7 +49,7 @@ class McapRecording(BlockRecording):
 
     schemas: dict[int, _Schema] = field(default_factory=dict)
     numbers: dict[int, int] = field(default_factory=dict)
-    """Index in `topics` by channel."""
+    """Index in `topics`, by channel."""
 
     def load(self, block: Block) -> list[Recorded]:
         with self.path.open("rb") as file:
@@ -63,7 +63,7 @@ class McapRecording(BlockRecording):
         return self.read(Bytes(decompress(body.take(body.number(8)), kind)))
 
     def read(self, records: Bytes) -> list[Recorded]:
-        """The messages among records; schemas and channels are kept."""
+        """Returns the messages in records, and stores their schemas and channels."""
         found = []
         while records:
             op, length = RECORD.unpack(records.take(RECORD.size))
@@ -80,7 +80,7 @@ class McapRecording(BlockRecording):
         return found
 
     def learn(self, op: int, data: bytes) -> None:
-        """Keeps a schema or channel."""
+        """Stores a schema or channel."""
         body = Bytes(data)
         if op == Op.SCHEMA:
             number, name, encoding = body.number(2), body.text(), body.text()
@@ -108,10 +108,10 @@ class McapRecording(BlockRecording):
 
 
 def open_mcap(path: Path) -> McapRecording:
-    """Finds the chunks of a file and what they hold.
+    """Finds the chunks of a file and the topics and times in each chunk.
 
     Raises:
-        RecordingError: It is damaged.
+        RecordingError: The file is damaged.
     """
     recording = McapRecording(path=path, form="MCAP", size=path.stat().st_size)
     scan = _Scan(recording)
@@ -131,7 +131,7 @@ def open_mcap(path: Path) -> McapRecording:
                 values={"path": str(path), "byte": file.tell()},
             ) from error
     if scan.unclear and not recording.complete:
-        # Its index may be cut off.
+        # Its index may be truncated.
         block, _ = scan.unclear[-1]
         scan.unclear[-1] = (block, set())
     for block, channels in scan.unclear:
@@ -140,7 +140,7 @@ def open_mcap(path: Path) -> McapRecording:
 
 
 def _clear_up(recording: McapRecording, block: Block, channels: set[int]) -> None:
-    """Loads a chunk whose channels are stated in it alone, or that has no index."""
+    """Loads a chunk that has no index, or that alone contains the records of its channels."""
     try:
         messages = [] if channels and channels <= set(recording.numbers) else recording.load(block)
     except ValueError as error:

@@ -1,4 +1,4 @@
-"""MCAP files."""
+"""Writing MCAP files."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ from cartwheel.bridges.recording.qos import qos_text
 from cartwheel.bridges.recording.sink import Sink
 
 CHUNK = 1 << 20
-"""Bytes of messages that are compressed together at most, but for a message that is larger."""
+"""Maximum uncompressed size of a chunk in bytes. A larger message has its own chunk."""
 _INDEXES = (Op.ATTACHMENT_INDEX, Op.METADATA_INDEX, Op.CHUNK_INDEX)
 _HEAD = struct.Struct(f"{RECORD.format}{MESSAGE.format.removeprefix('<')}")
 _LEVEL = 1
-"""Of zstd: images of a simulation shrink well at any."""
+"""Compression level of zstd. Simulated images compress well at any level."""
 
 
 @dataclass(slots=True)
@@ -39,34 +39,34 @@ class _Channel:
     record: bytes
     count: int = 0
     index: list[tuple[int, int]] = field(default_factory=list)
-    """Time and place of its messages in the chunk at hand."""
+    """Time and offset of each message in the current chunk."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Written:
-    """A chunk in the file, and what was before it."""
+    """A chunk in the file, and the state before it."""
 
     begin: int
-    """Its place."""
+    """Offset of the chunk."""
     counts: list[int]
-    """Messages of each channel before it."""
+    """Number of messages per channel before the chunk."""
     indexes: int
-    """Index records before it."""
+    """Number of index records before the chunk."""
     span: tuple[int, int] | None
-    """Times of the first and last message before it."""
+    """Times of the first and last message before the chunk."""
 
 
 class McapWriter:
-    """Writes an MCAP file in compressed chunks, each of them whole on the disk or not there.
+    """Writes an MCAP file in compressed chunks. Each chunk on disk is complete.
 
-    A file whose end is missing is read up to its last chunk by what reads MCAP as a stream,
-    and made complete by ``mcap recover``.
+    Readers that support MCAP streams can read a truncated file up to its last chunk.
+    ``mcap recover`` repairs it.
 
     Args:
-        path: Made anew.
-        encoding: Of the messages.
-        notes: Kept as the metadata ``cartwheel``.
-        pack: Makes ROS 2's bytes of a message.
+        path: File to create.
+        encoding: Encoding of the messages.
+        notes: Stored as the metadata record ``cartwheel``.
+        pack: Serialises a message for ROS 2.
 
     Raises:
         OSError: The file cannot be written.
@@ -84,19 +84,19 @@ class McapWriter:
         self._stated: set[int] = set()
         """Channels whose records are in the file."""
         self._chunk: list[bytes] = []
-        """The records of the chunk at hand, in pieces: images are copied once."""
+        """Records of the current chunk, as separate parts, so that images are copied only once."""
         self._size = 0
-        """Bytes of them."""
+        """Size of `_chunk` in bytes."""
         self._span: tuple[int, int] | None = None
-        """Times of the first and last message of the chunk at hand."""
+        """Times of the first and last message in the current chunk."""
         self._whole: tuple[int, int] | None = None
         self._indexes: list[bytes] = []
-        """Of chunks, attachments and metadata, for the end of the file."""
+        """Index records of chunks, attachments and metadata, for the end of the file."""
         self._written: list[_Written] = []
-        """The chunks in the file."""
+        """Chunks in the file."""
         from cartwheel.bridges.recording.compression import prepare
 
-        # Before the run begins, and not at the first flush.
+        # Import it before the simulation starts, instead of at the first flush.
         prepare()
         self._sink = Sink(path)
         self._sink.write(MAGIC + record(Op.HEADER, text(encoding), text("cartwheel")))
@@ -231,12 +231,12 @@ class McapWriter:
 
     @property
     def counts(self) -> list[int]:
-        """Messages of each channel."""
+        """Number of messages per channel."""
         return [channel.count for channel in self._channels]
 
     @property
     def span(self) -> tuple[int, int] | None:
-        """Times of the first and last message in the file, in ns; None where it has none."""
+        """Times of the first and last message in the file in ns; None if it has no messages."""
         return self._whole
 
     def abandon(self) -> None:
@@ -246,13 +246,13 @@ class McapWriter:
         self._sink.salvage(self.close, self._give_back)
 
     def _give_back(self) -> bool:
-        """Takes the last chunk, and what came after it, out of the file."""
+        """Removes the last chunk, and everything after it, from the file."""
         if not self._written:
             return False
         last = self._written.pop()
         self._sink.cut(last.begin)
         del self._indexes[last.indexes :]
-        # Channels that came later hold nothing any more: what they held is cut off already.
+        # Channels that were added later are empty, because their messages are already removed.
         for channel, count in zip(self._channels, last.counts, strict=False):
             channel.count = count
         self._whole = last.span

@@ -1,4 +1,4 @@
-"""Recordings of any form, as their topics and messages."""
+"""Opening recordings of any format."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from cartwheel.errors import RecordingError
 
 
 def open_recording(path: Path | str) -> Recording:
-    """Opens a recording; its content, not its name, says which form it has.
+    """Opens a recording. Its format is detected from its content, not from its name.
 
     Raises:
-        RecordingError: It is none, or cannot be read.
+        RecordingError: The file is not a recording, or cannot be read.
     """
     path = Path(path)
     try:

@@ -1,4 +1,4 @@
-"""Which topics are meant."""
+"""Topic patterns."""
 
 from __future__ import annotations
 
@@ -13,15 +13,16 @@ _REGULAR = "re:"
 
 
 class Patterns:
-    """Topics by name, ``*`` and ``?``, or ``re:`` and a regular expression of the whole name.
+    """Topic patterns: names, ``*`` and ``?``, or ``re:`` and a regular expression for the whole
+    name.
 
-    A pattern after ``!`` leaves out what it matches. Without any other pattern, all are meant.
+    A pattern with a leading ``!`` excludes topics. Without other patterns, all topics match.
 
     Args:
-        patterns: As the user wrote them.
+        patterns: Patterns from the user.
 
     Raises:
-        RecordingError: One is no regular expression, or empty.
+        RecordingError: A pattern is empty, or an invalid regular expression.
     """
 
     def __init__(self, patterns: Sequence[str] = ()) -> None:
@@ -35,7 +36,7 @@ class Patterns:
                 self._wanted[pattern] = _compiled(pattern)
 
     def match(self, topic: str) -> bool:
-        """Whether a topic is meant."""
+        """Whether a topic is selected."""
         if any(pattern.fullmatch(topic) for pattern in self._unwanted):
             return False
         if not self._wanted:

@@ -1,4 +1,4 @@
-"""What ROS 2 wants to know of a topic's publishers, as rosbag2 writes it."""
+"""QoS profiles of topics, in the format of rosbag2."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ _FOREVER = {"sec": 9223372036, "nsec": 854775807}
 
 
 def qos(*, latched: bool) -> list[dict[str, Any]]:
-    """The profile of a topic's publisher."""
+    """QoS profile of a topic's publisher."""
     return [
         {
             "history": "keep_last",
@@ -25,7 +25,7 @@ def qos(*, latched: bool) -> list[dict[str, Any]]:
 
 
 def qos_text(*, latched: bool) -> str:
-    """`qos` as YAML."""
+    """The result of `qos` as YAML."""
     (profile,) = qos(latched=latched)
     lines = []
     for name, value in profile.items():

@@ -1,4 +1,4 @@
-"""What recordings of all forms have: topics, messages, blocks of them."""
+"""Interface of all recordings: topics, messages, and blocks of messages."""
 
 from __future__ import annotations
 
@@ -13,45 +13,45 @@ from cartwheel.codes.recording import RECORDING_DAMAGED
 from cartwheel.errors import RecordingError
 
 _MOST_WAITING = 1 << 30
-"""Bytes of messages that wait until those of overlapping chunks are in order."""
+"""Maximum bytes of messages that are buffered to sort overlapping chunks."""
 
 
 class Recorded(NamedTuple):
-    """A message in a recording."""
+    """A recorded message."""
 
     time_ns: int
     number: int
-    """Of its topic, an index of `Recording.topics`."""
+    """Topic of the message, as an index of `Recording.topics`."""
     data: bytes
 
 
 @dataclass(slots=True)
 class RecordedTopic:
-    """A topic in a recording; one whose type changed is there once for each."""
+    """A recorded topic. A topic whose type changed has one entry per type."""
 
     name: str
     type: str
-    """As ROS 2 names it: ``pkg/msg/Name``."""
+    """ROS 2 name of the type: ``pkg/msg/Name``."""
     encoding: str
-    """``cdr``, ``ros1``, or what is not ROS's."""
+    """``cdr``, ``ros1``, or an encoding that ROS does not use."""
     schema: str
-    """``ros2msg``, ``ros2idl``, ``ros1msg`` or another language of definitions."""
+    """``ros2msg``, ``ros2idl``, ``ros1msg``, or a different definition language."""
     definition: str
     latched: bool = False
     md5: str = ""
-    """Of ROS 1's types, where the recording has it."""
+    """md5 sum of a ROS 1 type, if the recording contains it."""
     count: int = 0
     first_ns: int = 0
     last_ns: int = 0
 
     @property
     def rate(self) -> float | None:
-        """Hz of recorded time; None where there are no two moments."""
+        """Messages per s of recorded time; None if all messages have the same time."""
         span = self.last_ns - self.first_ns
         return (self.count - 1) * 1e9 / span if span > 0 else None
 
     def see(self, times: Collection[int]) -> None:
-        """Counts messages."""
+        """Counts messages by their times."""
         if not times:
             return
         first, last = min(times), max(times)
@@ -60,7 +60,7 @@ class RecordedTopic:
         self.count += len(times)
 
     def join(self, other: RecordedTopic) -> None:
-        """Counts the same topic in another file."""
+        """Adds the counts of the same topic in a different file."""
         if other.count:
             count = self.count + other.count
             self.see([other.first_ns, other.last_ns])
@@ -68,31 +68,31 @@ class RecordedTopic:
 
 
 class Recording(Protocol):
-    """An open recording; for one thread."""
+    """An open recording, for use on one thread."""
 
     form: str
-    """For people: ``MCAP``, ``bag of ROS 1``, ``bag of ROS 2``."""
+    """Format name for users: ``MCAP``, ``bag of ROS 1``, ``bag of ROS 2``."""
     size: int
-    """Bytes."""
+    """Size in bytes."""
     topics: list[RecordedTopic]
     complete: bool
-    """Whether it was ended as it should be; else what there is can be read all the same."""
+    """Whether the recording was closed properly. Incomplete recordings are readable as well."""
     notes: Mapping[str, str]
     attachments: dict[str, int]
-    """Sizes by name."""
+    """Sizes of attachments in bytes, by name."""
 
     def messages(
         self, *, start_ns: int = 0, topics: Collection[int] | None = None
     ) -> Iterator[Recorded]:
-        """The messages in the order of their times, from `start_ns` on, those of `topics` alone."""
+        """Messages of `topics`, or all messages, in the order of time from `start_ns`."""
 
     def close(self) -> None:
-        """Closes its files."""
+        """Closes the files."""
 
 
 @dataclass(slots=True)
 class Block:
-    """Messages that lie together in a file."""
+    """A contiguous group of messages in a file."""
 
     position: int
     end: int
@@ -100,12 +100,12 @@ class Block:
     last_ns: int
     topics: frozenset[int]
     about: Any = None
-    """What the form needs to load it."""
+    """Format-specific data for loading the block."""
 
 
 @dataclass
 class BlockRecording:
-    """A recording of blocks that are loaded one after the other."""
+    """A recording that consists of blocks, which are loaded one by one."""
 
     path: Path
     form: str = ""
@@ -117,10 +117,10 @@ class BlockRecording:
     blocks: list[Block] = field(default_factory=list)
 
     def load(self, block: Block) -> list[Recorded]:
-        """The messages of a block, in the order in which they lie there.
+        """Messages of a block, in file order.
 
         Raises:
-            ValueError: It is damaged.
+            ValueError: The block is damaged.
         """
         raise NotImplementedError
 
@@ -133,7 +133,7 @@ class BlockRecording:
             for block in sorted(self.blocks, key=lambda block: (block.first_ns, block.position))
             if block.last_ns >= start_ns and (wanted is None or block.topics & wanted)
         ]
-        # Blocks may overlap in time: what may still be preceded by the next one waits.
+        # Blocks may overlap in time. Messages wait until no later block can contain earlier ones.
         waiting: list[tuple[int, int, Recorded]] = []
         count = size = 0
         for block in chosen:
@@ -165,14 +165,14 @@ class BlockRecording:
             yield heapq.heappop(waiting)[2]
 
     def close(self) -> None:
-        """Nothing is open between two loads."""
+        """Does nothing, because files are open only while a block is loaded."""
 
 
 class Bytes:
-    """A part of a file that is read from front to back.
+    """Sequential reader for a part of a file.
 
     Raises:
-        ValueError: Whenever it ends too early.
+        ValueError: The data ends too early.
     """
 
     __slots__ = ("data", "offset")
@@ -182,7 +182,7 @@ class Bytes:
         self.offset = offset
 
     def take(self, size: int) -> bytes:
-        """The next bytes."""
+        """Next `size` bytes."""
         end = self.offset + size
         if size < 0 or end > len(self.data):
             raise ValueError("the data is truncated")
@@ -191,15 +191,15 @@ class Bytes:
         return taken
 
     def number(self, size: int) -> int:
-        """An unsigned number of so many bytes."""
+        """Unsigned integer of `size` bytes."""
         return int.from_bytes(self.take(size), "little")
 
     def text(self) -> str:
-        """A string with its length in four bytes."""
+        """String with a 32-bit length."""
         return self.take(self.number(4)).decode(errors="replace")
 
     def mapping(self) -> dict[str, str]:
-        """Strings by strings."""
+        """Map of strings."""
         inner = Bytes(self.take(self.number(4)))
         found = {}
         while inner:
@@ -212,7 +212,7 @@ class Bytes:
 
 
 def span_of(recording: Recording) -> tuple[int, int] | None:
-    """Times of the first and last message in ns."""
+    """Times of the first and last message in ns, or None without messages."""
     filled = [topic for topic in recording.topics if topic.count]
     if not filled:
         return None
@@ -220,7 +220,7 @@ def span_of(recording: Recording) -> tuple[int, int] | None:
 
 
 def is_latched(profiles: str) -> bool:
-    """Whether QoS profiles, as rosbag2 writes them, are those of a latched topic."""
+    """Whether rosbag2's QoS profiles are those of a latched topic."""
     import yaml
 
     try:
@@ -228,5 +228,5 @@ def is_latched(profiles: str) -> bool:
     except yaml.YAMLError:
         return False
     first = found[0] if isinstance(found, list) and found else None
-    # Numbers are those of rmw.
+    # rmw defines the numbers.
     return isinstance(first, dict) and first.get("durability") in ("transient_local", 1)

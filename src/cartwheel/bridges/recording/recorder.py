@@ -1,4 +1,4 @@
-"""Records the topics of a graph."""
+"""Recorder for the topics of a graph."""
 
 from __future__ import annotations
 
@@ -41,29 +41,29 @@ from cartwheel.graph import TopicInfo
 from cartwheel.messages import decode_cdr, encode_cdr, zero
 
 READER = "recorder"
-"""Our name in the graph."""
+"""Node name of the recorder in the graph."""
 FLUSH = 0.5
-"""s of wall time after which what was recorded is handed to the operating system. Half of the
-second that a killed recorder may lose, so that a busy machine has the other half."""
+"""Wall time in s after which recorded data is passed to the operating system. A killed recorder
+may lose at most 1 s. The remaining half is a reserve for busy machines."""
 _TELLING = 1.0
-"""s that the simulation may have waited before that is told."""
+"""Total waiting time of the simulation in s from which it is reported."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Summary:
-    """What was recorded."""
+    """Result of a recording."""
 
     files: tuple[Path, ...]
     messages: int
     topics: int
     size: int
-    """Bytes of the messages."""
+    """Size of the messages in bytes."""
     waited: float
-    """s of wall time that the simulation has waited for the disk."""
+    """Wall time in s for which the simulation has waited for the disk."""
 
 
 class _Tap:
-    """The subscription of one topic."""
+    """Subscription of one topic."""
 
     def __init__(self, recorder: Recorder, graph: BridgedGraph, info: TopicInfo) -> None:
         self.type = info.type
@@ -81,31 +81,31 @@ class _Tap:
         self._recorder.take(self, message)
 
     def close(self) -> None:
-        """Ends it."""
+        """Unsubscribes."""
         self._subscription.close()
 
 
 class Recorder:
-    """Writes every message of some topics to a file, in order, at the simulation's times.
+    """Writes all messages of the selected topics to a file, in order and with simulation time.
 
-    Nothing is dropped: where the file takes less than is published, the simulation waits.
-    What is recorded is what a subscriber sees, so a camera renders while it is recorded, and
-    the latched messages come first. Topics that come later are recorded from then on. Where
-    time goes back, as after a reset, a new file begins.
+    No message is dropped: if the disk is too slow, the simulation waits. The recorder is a
+    subscriber, so a recorded camera renders, and latched messages come first. Topics that appear
+    later are recorded from then on. If time jumps back, for example after a reset, a new file
+    begins.
 
     Args:
-        graph: Whose topics.
+        graph: Graph with the topics.
         path: ``.mcap``, ``.bag``, ``.db3``, or a folder for a ROS 2 bag.
-        time_ns: Simulation time.
-        topics: Patterns; all topics where there are none.
-        encoding: Of the messages; None is what is usual for the form.
-        overwrite: Whether to replace what is there.
-        notes: To be kept with the recording.
-        report: Takes what the user should know, from any thread.
-        on_failure: Told when recording has ended because it could not go on; another thread.
+        time_ns: Returns the simulation time.
+        topics: Patterns; empty for all topics.
+        encoding: Encoding of the messages. None uses the default of the format.
+        overwrite: Whether to replace an existing recording.
+        notes: Text to store with the recording.
+        report: Receives diagnostics for the user, on any thread.
+        on_failure: Called on a separate thread when an error has ended the recording.
 
     Raises:
-        RecordingError: There can be no such recording.
+        RecordingError: The recording cannot be created.
     """
 
     def __init__(
@@ -144,12 +144,12 @@ class Recorder:
         self._topics: set[str] = set()
         self._told_wait = False
         self.failure: RecordingError | None = None
-        """Why it ended, where it could not go on."""
+        """The error that ended the recording, or None."""
         self._thread = threading.Thread(target=self._run, name="recorder", daemon=True)
         check_writable(self.path, overwrite=overwrite)
 
     def start(self) -> None:
-        """Begins; on the owner's thread.
+        """Starts recording. Call it on the owner's thread.
 
         Raises:
             RecordingError: The file cannot be written.
@@ -161,10 +161,10 @@ class Recorder:
         self._thread.start()
 
     def close(self) -> Summary:
-        """Ends, and makes the file complete; on the owner's thread.
+        """Stops recording and completes the file. Call it on the owner's thread.
 
         Raises:
-            RecordingError: It had ended before, because it could not go on.
+            RecordingError: An error had already ended the recording.
         """
         if self._changed in self._graph.on_change:
             self._graph.on_change.remove(self._changed)
@@ -186,7 +186,7 @@ class Recorder:
 
     @property
     def summary(self) -> Summary:
-        """What was recorded so far."""
+        """Result of the recording so far."""
         return Summary(
             files=tuple(self._files),
             messages=self._messages,
@@ -198,7 +198,7 @@ class Recorder:
     # -- on the owner's thread
 
     def take(self, tap: _Tap, message: Any) -> None:
-        """Takes a message; waits where too many are not yet written."""
+        """Queues a message. Waits if too many messages are queued."""
         time_ns = self._time_ns()
         begins = time_ns < self._time
         self._time = time_ns
@@ -221,9 +221,9 @@ class Recorder:
             )
 
     def _changed(self) -> None:
-        """On any thread, the graph locked."""
+        """Called on any thread, with the graph locked."""
         if threading.get_ident() == self._surveyor:
-            return  # our own subscriptions
+            return  # caused by the recorder's own subscriptions
         if not self._survey_due:
             self._survey_due = True
             self._graph.post(self._survey)
@@ -251,9 +251,9 @@ class Recorder:
                 self._taps[name] = _Tap(self, self._graph, info)
 
     def _prepare(self) -> None:
-        """Makes what each type needs: at its first message it would hold up all others.
+        """Prepares the encoding of each type, which would otherwise delay its first message.
 
-        ROS 2's bytes come as they are written; for ROS 1 code is made that reads and writes them.
+        For ROS 1, this generates the code that reads and writes the messages.
         """
         made = codec(self._encoding)
         for tap in self._taps.values():
@@ -287,7 +287,7 @@ class Recorder:
             self._fail(reason_of(error), hint=_HINT)
         except CartwheelError as error:
             self._fail(error.message, hint=error.hint)
-        except Exception as error:  # noqa: BLE001 - the simulation must not wait for ever
+        except Exception as error:  # noqa: BLE001 - the simulation must not wait forever
             self._fail(one_line(error))
 
     def _fail(self, why: str, *, hint: str | None = None) -> None:
@@ -295,7 +295,7 @@ class Recorder:
         if self._writer is not None:
             with suppress(OSError):
                 self._writer.abandon()
-            # Its last chunk may have made room for the file's end.
+            # Its last chunk may have been removed to make space for the end of the file.
             kept = self._writer.kept_ns
         self.failure = RecordingError(
             f'the recording "{self._files[-1]}" stopped at {kept / 1e9:.3f} s: {why}',
@@ -359,7 +359,7 @@ class Recorder:
         return made
 
     def _begin_next(self) -> None:
-        """Time went back: what comes now would lie among what was before."""
+        """Begins a new file, because time jumped back and messages would no longer be in order."""
         if self._writer is not None:
             self._writer.close()
             self._writer = None

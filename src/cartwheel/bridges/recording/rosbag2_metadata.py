@@ -1,4 +1,4 @@
-"""``metadata.yaml`` of a ROS 2 bag, version 9."""
+"""``metadata.yaml`` of ROS 2 bags, version 9."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from cartwheel.bridges.recording.qos import qos
 
 @dataclass(slots=True)
 class TopicCount:
-    """A topic and how many messages of it there are."""
+    """A topic and its number of messages."""
 
     name: str
     type: str
@@ -28,14 +28,14 @@ def metadata(
     span: tuple[int, int] | None,
     notes: Mapping[str, str],
 ) -> dict[str, Any]:
-    """What rosbag2 keeps about a bag of one file.
+    """rosbag2's metadata of a bag with one file.
 
     Args:
-        topics: With messages.
+        topics: Topics with messages.
         storage: ``mcap`` or ``sqlite3``.
-        file: Its name.
+        file: File name.
         span: Times of the first and last message in ns.
-        notes: Free.
+        notes: Custom metadata.
     """
     first, last = span or (0, 0)
     count = sum(topic.count for topic in topics)
@@ -77,7 +77,7 @@ def metadata(
 
 
 def as_yaml(data: Any) -> str:
-    """Plain YAML, without references from one place to another."""
+    """YAML without anchors and aliases."""
     import yaml
 
     class Dumper(yaml.SafeDumper):

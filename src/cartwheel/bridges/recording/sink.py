@@ -1,4 +1,4 @@
-"""A file that is written to its end or not at all."""
+"""An output file to which each write appends all of its bytes or none."""
 
 from __future__ import annotations
 
@@ -9,30 +9,30 @@ from pathlib import Path
 
 
 class Sink:
-    """Bytes to a file without a buffer: what was written is the operating system's.
+    """Unbuffered file output. Written bytes are passed to the operating system at once.
 
-    The file is locked as long as it is open, so that others can see that it is being written.
+    The file is locked while it is open, so that other processes can see that it is being written.
 
     Args:
-        path: Made anew; nothing may be there.
+        path: File to create. It must not exist.
 
     Raises:
-        OSError: It cannot be.
+        OSError: The file cannot be created.
     """
 
     def __init__(self, path: Path) -> None:
         self._file = path.open("xb", buffering=0)
-        # Not on every network's file system: then nobody sees it.
+        # Some network file systems do not support locks.
         with suppress(OSError):
             fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         self.position = 0
-        """Where the next bytes go."""
+        """Offset of the next write."""
 
     def write(self, data: bytes | bytearray | memoryview) -> None:
         """Appends all of the bytes, or none.
 
         Raises:
-            OSError: They do not fit.
+            OSError: The bytes could not be written.
         """
         begin = self.position
         left = memoryview(data)
@@ -45,18 +45,18 @@ class Sink:
         self.position = begin + len(data)
 
     def cut(self, position: int) -> None:
-        """Lets the file end there."""
+        """Truncates the file at an offset."""
         self._file.truncate(position)
         self._file.seek(position)
         self.position = position
 
     def salvage(self, finish: Callable[[], None], give_back: Callable[[], bool]) -> None:
-        """After a write that failed: ends the file by `finish`, or where it is whole.
+        """Ends the file after a failed write: with `finish`, or at the last complete part.
 
         Args:
-            finish: Writes the end.
-            give_back: Makes room for it where there is too little: cuts off the last chunk.
-                Says whether there was one.
+            finish: Writes the end of the file.
+            give_back: Removes the last chunk if there is not enough space for the end. Returns
+                whether a chunk was removed.
         """
         while True:
             whole = self.position
@@ -70,7 +70,7 @@ class Sink:
         self.close()
 
     def rewrite(self, position: int, data: bytes) -> None:
-        """Replaces bytes; the end stays where it is."""
+        """Overwrites bytes inside the file."""
         self._file.seek(position)
         self._file.write(data)
         self._file.seek(self.position)
@@ -81,7 +81,7 @@ class Sink:
 
 
 def is_being_written(path: Path) -> bool:
-    """Whether a `Sink` has that file open, in whichever process."""
+    """Whether a `Sink` in any process has the file open."""
     try:
         with path.open("rb") as file:
             fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB)

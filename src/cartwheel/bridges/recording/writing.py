@@ -1,4 +1,4 @@
-"""A recording that is written, in the form that its name asks for."""
+"""Interface of recording writers, and their selection by file name."""
 
 from __future__ import annotations
 
@@ -20,48 +20,49 @@ from cartwheel.errors import RecordingError
 
 
 class Writer(Protocol):
-    """A file that takes messages, in the order of their times."""
+    """Writes messages to a file in the order of time."""
 
     path: Path
 
     @property
     def kept_ns(self) -> int:
-        """Time of the last message that the operating system has."""
+        """Time of the last message that was passed to the operating system."""
 
     def add(self, topic: str, type_name: str, *, latched: bool) -> int:
-        """A channel for a topic.
+        """Adds a topic. Returns the number of its channel.
 
         Raises:
-            UnknownNameError: The encoding has no such type.
+            UnknownNameError: The encoding does not support the type.
         """
 
     def write(self, channel: int, time_ns: int, message: Any) -> int:
-        """Takes a message of the graph; returns the size of its bytes.
+        """Writes a message of the graph. Returns its size in bytes.
 
         Raises:
-            GraphError: It cannot be encoded; nothing was written.
-            OSError: The file takes no more.
+            GraphError: The message cannot be encoded. Nothing was written.
+            OSError: The file cannot be written.
         """
 
     def attach(self, name: str, media_type: str, data: bytes, time_ns: int) -> None:
-        """Keeps a text beside the messages, where the form can."""
+        """Stores a text next to the messages, if the format supports it."""
 
     def flush(self) -> None:
-        """Hands all that was taken to the operating system: from now on a crash cannot take it.
+        """Passes all messages to the operating system, so that they survive a crash of the
+        process.
 
         Raises:
-            OSError: The file takes no more.
+            OSError: The file cannot be written.
         """
 
     def close(self) -> None:
-        """Makes the file complete.
+        """Completes the file.
 
         Raises:
-            OSError: The file takes no more.
+            OSError: The file cannot be written.
         """
 
     def abandon(self) -> None:
-        """After an `OSError`: saves what was whole before it."""
+        """Saves the complete part of the file after an `OSError`."""
 
 
 def open_writer(
@@ -72,17 +73,17 @@ def open_writer(
     notes: Mapping[str, str],
     pack: Callable[[Any], bytes],
 ) -> Writer:
-    """Begins a recording.
+    """Creates a recording.
 
     Args:
-        path: Its name says its form.
-        encoding: Of its messages.
-        overwrite: Whether to replace what is there.
-        notes: To be kept with it, where the form can.
-        pack: Makes ROS 2's bytes of a message.
+        path: Output path, whose name determines the format.
+        encoding: Encoding of the messages.
+        overwrite: Whether to replace an existing recording.
+        notes: Text to store with the recording, if the format supports it.
+        pack: Serialises a message for ROS 2.
 
     Raises:
-        RecordingError: It cannot be written there.
+        RecordingError: The recording cannot be written at this path.
     """
     check_writable(path, overwrite=overwrite)
     try:
@@ -90,7 +91,7 @@ def open_writer(
             _remove(path)
         return _opened(path, encoding, notes, pack)
     except FileExistsError as error:
-        # Somebody else began to write it just now.
+        # A different process created the file just now.
         raise exists(path) from error
     except OSError as error:
         raise RecordingError(
@@ -101,14 +102,14 @@ def open_writer(
 
 
 def _remove(path: Path) -> None:
-    """Takes away what is to be replaced.
+    """Deletes the recording that will be replaced.
 
     Raises:
-        RecordingError: It is still being recorded.
-        OSError: It stays.
+        RecordingError: The recording is still being written.
+        OSError: The recording cannot be deleted.
     """
     folder = path.is_dir() and not path.is_symlink()
-    # A .db3 is SQLite's, which has locks of its own and forbids us to open it.
+    # SQLite uses its own locks for .db3 files, and does not allow opening them separately.
     written = [one for one in (path.iterdir() if folder else (path,)) if one.suffix != ".db3"]
     if any(one.is_file() and is_being_written(one) for one in written):
         raise RecordingError(

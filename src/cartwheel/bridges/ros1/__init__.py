@@ -1,4 +1,4 @@
-"""The graph as a node of ROS 1."""
+"""The graph as a ROS 1 node."""
 
 from cartwheel.bridges.ros1.bridge import Ros1Bridge
 

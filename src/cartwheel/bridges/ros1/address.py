@@ -1,4 +1,4 @@
-"""Where the master is, and by which address other nodes reach this one."""
+"""Address of the master, and the address under which other nodes reach this node."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ from cartwheel.codes.wires import ROS_URI_INVALID
 from cartwheel.errors import CartwheelError
 
 MASTER_URI = "http://localhost:11311"
-"""Where ``ROS_MASTER_URI`` is not set."""
+"""Default of ``ROS_MASTER_URI``."""
 _LOOPBACK = ("localhost", "::1")
 
 
 def master_uri(special: Mapping[str, str]) -> str:
-    """The master's URI: of ``__master:=`` or the environment.
+    """URI of the master, from ``__master:=`` or the environment.
 
     Raises:
-        CartwheelError: It is none.
+        CartwheelError: The URI is invalid.
     """
     uri = special.get("__master") or os.environ.get("ROS_MASTER_URI") or MASTER_URI
     host_and_port(uri)
@@ -28,10 +28,10 @@ def master_uri(special: Mapping[str, str]) -> str:
 
 
 def host_and_port(uri: str) -> tuple[str, int]:
-    """Of ``http://host:port/``.
+    """Host and port of ``http://host:port/``.
 
     Raises:
-        CartwheelError: It is no such URI.
+        CartwheelError: The URI does not have this form.
     """
     try:
         parts = urlsplit(uri)
@@ -48,10 +48,10 @@ def host_and_port(uri: str) -> tuple[str, int]:
 
 
 def own_host(special: Mapping[str, str], master: str) -> str:
-    """The name or address that goes into our URIs.
+    """Host name or address in the node's URIs.
 
-    As in rospy: ``__hostname``, ``__ip``, ``ROS_HOSTNAME``, ``ROS_IP``, then this computer's
-    name, unless that leads nowhere.
+    The order is the same as in rospy: ``__hostname``, ``__ip``, ``ROS_HOSTNAME``, ``ROS_IP``,
+    then the name of this computer if it can be resolved.
     """
     given = (
         special.get("__hostname")
@@ -70,17 +70,17 @@ def own_host(special: Mapping[str, str], master: str) -> str:
 
 
 def bind_address(host: str) -> str:
-    """What to listen on: this computer alone where our own name means just that."""
+    """Address to listen on: loopback only, if the node's own host is loopback."""
     return "127.0.0.1" if is_loopback(host) else ""
 
 
 def is_loopback(host: str) -> bool:
-    """Whether a name means the computer itself, whichever it is."""
+    """Whether a host name refers to the local computer on any computer."""
     return host in _LOOPBACK or host.startswith("127.")
 
 
 def is_local(host: str) -> bool:
-    """Whether a name or address is this computer's."""
+    """Whether a host name or address is one of this computer."""
     if is_loopback(host) or host == socket.gethostname():
         return True
     try:
@@ -89,7 +89,7 @@ def is_local(host: str) -> bool:
         return False
     if is_loopback(address):
         return True
-    # Only an own address can be bound.
+    # Only addresses of this computer can be bound.
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
         try:
             probe.bind((address, 0))
@@ -99,7 +99,7 @@ def is_local(host: str) -> bool:
 
 
 def _address_towards(host: str, port: int) -> str:
-    """The own address from which a host is reached; nothing is sent."""
+    """Own address on the route to a host. Sends nothing."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
         try:
             probe.connect((host, port))

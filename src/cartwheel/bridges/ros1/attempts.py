@@ -1,4 +1,4 @@
-"""Attempts to reach other nodes, on few threads."""
+"""Connection attempts to other nodes, on a few threads."""
 
 from __future__ import annotations
 
@@ -9,34 +9,34 @@ from collections.abc import Callable
 THREADS = 16
 _PER_HOST = 4
 _HOPELESS = 2
-"""Of both one in so many is for what was in vain the last time."""
+"""Divisor: retries of failed attempts use at most half of both limits."""
 
 Attempt = Callable[[], None]
 
 
 class Attempts:
-    """Runs what may take long; hosts that do not answer hold up no others.
+    """Runs slow connection attempts. Hosts that do not respond do not delay other hosts.
 
-    All hosts have their turns, each with a few attempts at a time. What was in vain the last time
-    has half of the threads at most.
+    Hosts take turns, with a limited number of attempts each. Retries of failed attempts use at
+    most half of the threads.
     """
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
         self._waiting: dict[str, deque[tuple[Attempt, bool]]] = {}
-        """By host: attempts, and whether the last one was in vain."""
+        """By host: attempts, and whether each is a retry of a failed attempt."""
         self._busy: dict[str, int] = {}
         self._hopeless: dict[str, int] = {}
         self._threads = 0
         self._closed = False
 
     def add(self, host: str, attempt: Attempt, *, hopeless: bool) -> None:
-        """Runs an attempt when it is its turn; from any thread, and at once.
+        """Queues an attempt. Returns at once. Callable on any thread.
 
         Args:
-            host: That it tries to reach.
-            attempt: Takes a bounded time.
-            hopeless: Whether the same was in vain the last time.
+            host: Host to connect to.
+            attempt: Connects within a bounded time.
+            hopeless: Whether the previous attempt failed.
         """
         with self._lock:
             if self._closed:
@@ -52,7 +52,7 @@ class Attempts:
         threading.Thread(target=self._run, name="ros1 connect", daemon=True).start()
 
     def close(self) -> None:
-        """Begins no further attempt."""
+        """Starts no more attempts."""
         with self._lock:
             self._closed = True
             self._waiting.clear()
@@ -62,7 +62,7 @@ class Attempts:
             with self._lock:
                 found = self._next()
                 if found is None:
-                    # Whoever is busy with what stands in the way of the rest takes that.
+                    # The threads that use up the limits will run the remaining attempts.
                     self._threads -= 1
                     return
             host, attempt, hopeless = found
@@ -75,13 +75,13 @@ class Attempts:
                         self._count(self._hopeless, host, -1)
 
     def _next(self) -> tuple[str, Attempt, bool] | None:
-        """The attempt whose turn it is; the caller holds the lock."""
+        """Selects the next attempt. The caller holds the lock."""
         for host, queue in self._waiting.items():
             attempt, hopeless = queue[0]
             if self._busy.get(host, 0) >= _PER_HOST or (hopeless and not self._hopes(host)):
                 continue
             queue.popleft()
-            # To the end: the others come first now.
+            # Move the host to the end, so that the other hosts come first.
             del self._waiting[host]
             if queue:
                 self._waiting[host] = queue
@@ -92,7 +92,7 @@ class Attempts:
         return None
 
     def _hopes(self, host: str) -> bool:
-        """Whether one more attempt may be made for what was in vain."""
+        """Whether a failed attempt may be retried now."""
         return (
             sum(self._hopeless.values()) < THREADS // _HOPELESS
             and self._hopeless.get(host, 0) < _PER_HOST // _HOPELESS

@@ -1,4 +1,4 @@
-"""The graph of a simulation as a node of ROS 1."""
+"""The graph of a simulation as a ROS 1 node."""
 
 from __future__ import annotations
 
@@ -41,34 +41,36 @@ from cartwheel.messages.ros1 import ros1_service, ros1_type
 from cartwheel.messages.store import is_ros2_only
 
 READER = "ros1"
-"""Our name in the graph."""
+"""Node name of the bridge in the graph."""
 _FIRST_ANSWER = 3.0
-"""s that the master may take at the start."""
+"""Timeout in s for the master's response at startup."""
 _TOLD = 500
-"""Different warnings; they name nodes, of which any number may come."""
+"""Maximum number of different warnings. They contain node names, whose number is not limited."""
 _LONGEST = 1000
-"""Characters of a warning."""
+"""Maximum length of a warning in characters."""
 
 Report = Callable[[Diagnostic], None]
 
 
 class Ros1Bridge:
-    """Makes topics, services and parameters of a graph those of a ROS 1 node, and back.
+    """Offers the topics, services and parameters of a graph as a ROS 1 node, and receives others'.
 
-    Everything is lazy: the graph is subscribed to while a node is connected. The protocols
-    (TCPROS, the XML-RPC interfaces) are spoken here, so no part of ROS needs to be installed;
-    where no master answers, ROS's own is started.
+    The bridge subscribes to the graph only while a node is connected. It implements the protocols
+    itself (TCPROS, the XML-RPC interfaces), so ROS need not be installed. If no master responds,
+    it
+    starts ROS's own master.
 
     Args:
-        graph: Of the simulation.
-        node: Name of the node, where ``__name:=`` gives no other.
-        arguments: ``name:=value`` as ROS's nodes take them.
-        report: Takes what the user should know, from any thread.
-        time_ns: Simulation time, for the stamps of ``/rosout``.
-        on_end: Takes why another node or user has ended this one; from another thread.
+        graph: Graph of the simulation.
+        node: Name of the node, unless ``__name:=`` overrides it.
+        arguments: ``name:=value`` arguments, as for any ROS node.
+        report: Receives diagnostics for the user, on any thread.
+        time_ns: Returns the simulation time, for timestamps on ``/rosout``.
+        on_end: Called on a separate thread with the reason when a node or user has shut down this
+            node.
 
     Raises:
-        CartwheelError: A name or URI is none.
+        CartwheelError: A name or URI is invalid.
     """
 
     def __init__(
@@ -123,17 +125,17 @@ class Ros1Bridge:
 
     @property
     def name(self) -> str:
-        """The node's name with its namespace."""
+        """Full name of the node, with namespace."""
         return self._names.node
 
     @property
     def has_own_master(self) -> bool:
-        """Whether the master was started here, and ends with us."""
+        """Whether this node started the master, and will stop it."""
         return self._core is not None
 
     @property
     def open_ports(self) -> tuple[int, ...]:
-        """Those that other computers reach; none where our own name is loopback, as in rospy."""
+        """Ports that other computers can reach; none if the own host is loopback, as in rospy."""
         if bind_address(self._host):
             return ()
         own = (host_and_port(self.master_uri)[1],) if self._core is not None else ()
@@ -141,14 +143,14 @@ class Ros1Bridge:
 
     @property
     def uri(self) -> str:
-        """Of the node's XML-RPC interface."""
+        """URI of the node's XML-RPC interface."""
         return self._node.uri
 
     def start(self) -> None:
-        """Joins the master, or starts one; the rest follows on other threads.
+        """Connects to the master, or starts one. The rest follows on other threads.
 
         Raises:
-            CartwheelError: There is no master and none can be started.
+            CartwheelError: No master is running, and none can be started.
         """
         self._join()
         self._graph.parameters.server = self._parameters
@@ -160,11 +162,11 @@ class Ros1Bridge:
         self._registrar.start()
 
     def log(self, diagnostic: Diagnostic) -> None:
-        """Says something on ``/rosout``; from any thread."""
+        """Logs a diagnostic on ``/rosout``. Callable on any thread."""
         self._log.write(diagnostic)
 
     def close(self) -> None:
-        """Leaves the master and all nodes; takes no longer than an instant."""
+        """Unregisters from the master and disconnects from all nodes. Returns at once."""
         if self._closed:
             return
         self._closed = True
@@ -266,7 +268,7 @@ class Ros1Bridge:
     # -- the graph
 
     def _survey(self) -> list[Entry]:
-        """Makes the node offer what the graph does; on the registrar's thread."""
+        """Makes the node offer what the graph offers. Called on the registrar's thread."""
         topics, services = self._graph.topics(), self._graph.services()
         return self._loop.call(lambda: self._mirror(topics, services)).result()
 
@@ -366,12 +368,12 @@ class Ros1Bridge:
         def update() -> None:
             subscription = self._node.subscriptions.get(topic)
             if subscription is not None:
-                # A master that has just begun does not know yet whom we are connected to.
+                # A master that has just started does not know the node's existing connections.
                 subscription.update(uris, drop=False)
 
         self._loop.post(update)
 
-    # -- what the user should know
+    # -- diagnostics
 
     def _is_known(self, info: TopicInfo) -> bool:
         if is_ros2_only(info.type):
@@ -404,7 +406,7 @@ class Ros1Bridge:
         return True
 
     def _warn(self, diagnostic: Diagnostic) -> None:
-        """Reports a warning once; what strangers wrote in it moves no cursor."""
+        """Reports a warning once, with unprintable characters replaced."""
         diagnostic = _printable(diagnostic)
         is_note = diagnostic.severity == "info"
         (self._reporter.always if is_note else self._reporter)(diagnostic)

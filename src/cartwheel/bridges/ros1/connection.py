@@ -1,4 +1,4 @@
-"""A TCP connection that carries blocks with their length in front, as TCPROS does."""
+"""A TCP connection for blocks with a length prefix, as in TCPROS."""
 
 from __future__ import annotations
 
@@ -15,48 +15,49 @@ from cartwheel.bridges.ros1 import header
 
 _LENGTH = struct.Struct("<I")
 HANDSHAKE = 10.0
-"""s within which a connection must have told what it is for."""
+"""Timeout in s for the header of a connection."""
 LARGEST = 64 << 20
-"""Bytes of a message or request that is taken from others."""
+"""Maximum size in bytes of a received message or request."""
 QUEUE_COUNT = 100
 QUEUE_BYTES = 8 << 20
-"""What waits at most for a peer that reads too slowly, whichever comes first."""
+"""Maximum size of the queue for a slow peer. Either limit may apply first."""
 _LEAST = 2
-"""Messages that wait at most in any case, however large they are."""
+"""Number of queued messages that are always allowed, regardless of their size."""
 BLOCK = 60.0
-"""s within which a block that was begun, or the last one of a connection, must be through."""
+"""Timeout in s for receiving a block once it has begun, and for sending the last block."""
 _TURN = 500
-"""Blocks that are taken before everybody else has a turn."""
+"""Number of blocks to process before other connections have a turn."""
 _MOST = 2000
-"""Connections, where the system allows as many files."""
+"""Maximum number of connections, unless the limit on open files is lower."""
 _FILES = 400
-"""Of the process for other things: callers of the XML-RPC interface above all."""
+"""File descriptors reserved for other uses, mainly for clients of the XML-RPC interface."""
 
 
 class Traffic:
-    """What all connections of a node hold together; on the loop's thread."""
+    """Limits for all connections of a node. Used on the loop's thread."""
 
     received_most = 128 << 20
     queued_most = 256 << 20
-    """Bytes. Beyond, a connection that wants more is ended, or keeps the least."""
+    """Maximum bytes. Above them, a receiving connection is closed, and a sending one drops
+    messages."""
 
     def __init__(self) -> None:
         files, _ = resource.getrlimit(resource.RLIMIT_NOFILE)
         self.most = _MOST if files < 0 else max(100, min(_MOST, files - _FILES))
-        """Connections."""
+        """Maximum number of connections."""
         self.connections: dict[Connection, None] = {}
         self.received = 0
-        """Bytes of blocks that are not complete."""
+        """Bytes of incomplete blocks."""
         self.queued = 0
-        """Bytes that wait for peers; those of a message count for each that it waits for."""
+        """Bytes queued for peers. A message counts once for each peer."""
 
     @property
     def full(self) -> bool:
-        """Whether there can be no further connection."""
+        """Whether the limit on connections is reached."""
         return len(self.connections) >= self.most
 
     def sweep(self) -> None:
-        """Ends connections whose peers take too long."""
+        """Closes connections whose peers exceed a timeout."""
         now = time.monotonic()
         for connection in list(self.connections):
             if connection.overdue(now):
@@ -64,15 +65,15 @@ class Traffic:
 
 
 class Connection:
-    """One peer; on the loop's thread.
+    """A connection to a peer. Used on the loop's thread.
 
     Args:
-        loop: Watches it.
-        sock: Connected.
-        traffic: That it is a part of.
-        on_block: Called with each block but the first.
+        loop: Event loop of the connection.
+        sock: Connected socket.
+        traffic: Limits that the connection shares.
+        on_block: Called with each block except the first.
         on_header: Called with the fields of the first block.
-        on_close: Called once, when the connection is over.
+        on_close: Called once, when the connection is closed.
     """
 
     def __init__(
@@ -91,24 +92,24 @@ class Connection:
         self.on_close: Callable[[], None] = lambda: None
         self.on_drop: Callable[[], None] = lambda: None
         self.peer = ""
-        """The name of the node at the other end."""
+        """Name of the connected node."""
         self.sent = 0
-        """Bytes."""
+        """Number of bytes sent."""
         self.dropped = 0
-        """Messages that the peer was too slow for."""
+        """Number of messages dropped because the peer was too slow."""
         self.closed = False
         self._received = bytearray()
         self._queue: deque[memoryview] = deque()
         self._queued = 0
         self._begun = False
-        """Whether a part of the first message in the queue is sent."""
+        """Whether the first queued message is partly sent."""
         self._closing = False
         self._held = False
-        """Whether nothing is to be read for now."""
+        """Whether reading is paused."""
         self._counted = 0
-        """Bytes of `_received` that `Traffic` knows."""
+        """Bytes of `_received` that `Traffic` already counts."""
         self._since: float | None = time.monotonic()
-        """When the header, the present block or the end was begun."""
+        """Start time of the header, of the current block, or of the last send."""
         sock.setblocking(False)
         with contextlib.suppress(OSError):
             sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
@@ -117,7 +118,7 @@ class Connection:
         self._watch()
 
     def send(self, data: bytes) -> None:
-        """Sends a block, its length in front; drops the oldest that waits if need be."""
+        """Sends a block with its length prefix. Drops the oldest queued block if necessary."""
         if self.closed:
             return
         view = memoryview(data)
@@ -135,22 +136,22 @@ class Connection:
         self._shed()
 
     def hold(self) -> None:
-        """Takes no further block until `go_on`."""
+        """Pauses reading until `go_on`."""
         self._held = True
 
     def go_on(self) -> None:
-        """Takes blocks again, soon."""
+        """Resumes reading soon."""
         if self._held and not self.closed:
             self._held = False
             self._loop.post(self._take_blocks)
 
     def refuse(self, reason: str) -> None:
-        """Tells the peer why it gets nothing, and ends the connection."""
+        """Sends an error to the peer, and closes the connection."""
         self.send(header.encode_header({"error": reason}))
         self.finish()
 
     def finish(self) -> None:
-        """Ends the connection when all is sent."""
+        """Closes the connection after all data is sent."""
         if self._queue:
             self._closing = True
             self._since = time.monotonic()
@@ -159,13 +160,13 @@ class Connection:
             self.close()
 
     def overdue(self, now: float) -> bool:
-        """Whether the peer takes too long with its header, with a block, or with the end."""
+        """Whether the peer exceeds the timeout of its header, of a block, or of the last send."""
         if self._since is None:
             return False
         return now - self._since > (HANDSHAKE if self._on_header else BLOCK)
 
     def close(self) -> None:
-        """Ends the connection now."""
+        """Closes the connection now."""
         if self.closed:
             return
         self.closed = True
@@ -198,7 +199,7 @@ class Connection:
             self._read()
 
     def _write(self, view: memoryview) -> memoryview:
-        """Sends what the system takes; returns the rest."""
+        """Sends what the system accepts. Returns the rest."""
         while view:
             try:
                 count = self._sock.send(view)
@@ -257,7 +258,7 @@ class Connection:
         self._take_blocks()
 
     def _take_blocks(self) -> None:
-        """Takes what is complete, but not for too long, and nothing while it is held."""
+        """Processes complete blocks, up to a limit and unless reading is paused."""
         received = self._received
         start = count = 0
         while not (self.closed or self._closing or self._held) and len(received) - start >= 4:
@@ -306,12 +307,12 @@ class Connection:
 
 
 class Listener:
-    """Takes connections on a port of its own; on the loop's thread.
+    """Accepts connections on its own port. Used on the loop's thread.
 
     Args:
-        loop: Watches it.
-        address: To listen on; all of this computer's where empty.
-        on_socket: Gets each connection.
+        loop: Event loop of the socket.
+        address: Address to listen on; empty for all addresses.
+        on_socket: Called with each accepted socket.
     """
 
     def __init__(
@@ -330,7 +331,7 @@ class Listener:
         except BlockingIOError:
             return
         except OSError:
-            # Out of file descriptors, say: look again later, not at once and for ever.
+            # For example, no file descriptor is free. Retry later instead of in a busy loop.
             self._loop.forget(self._sock)
             self._loop.after(0.5, lambda: self._loop.watch(self._sock, READ, self._accept))
             return

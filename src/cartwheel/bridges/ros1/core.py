@@ -1,4 +1,4 @@
-"""A ROS master of our own, where none answers."""
+"""Starts a ROS master if none is running."""
 
 from __future__ import annotations
 
@@ -15,20 +15,20 @@ from cartwheel.codes.wires import ROS_MASTER_NOT_STARTED, ROS_MASTER_UNAVAILABLE
 from cartwheel.errors import CartwheelError
 
 _START = 20.0
-"""s that a master may take to answer."""
+"""Timeout in s for the master to respond."""
 _EXIT = 0.1
-"""s that a child may take to end before it is killed."""
+"""Time in s for a child process to exit before it is killed."""
 _IF_CHILD_OF = '[ "$PPID" = "$0" ] && exec "$@"'
-"""For a shell: runs a program, unless the process of that number has ended already."""
+"""Shell script: runs a program unless the process with the given ID has already exited."""
 _PREFIXES = ("/opt/ros/noetic", "/opt/ros/melodic", "/opt/ros/one", "/usr")
 
 
 class OwnCore:
-    """``rosmaster`` and ``rosout`` as children: what ``roscore`` is, but ended in an instant.
+    """Runs ``rosmaster`` and ``rosout`` as child processes, like ``roscore``, but stops at once.
 
     Args:
-        uri: Where it is to listen.
-        host: Our own name or address. Both listen on loopback alone where it is loopback.
+        uri: URI of the master.
+        host: Own host name or address. If it is loopback, both listen only on loopback.
     """
 
     def __init__(self, uri: str, host: str) -> None:
@@ -39,11 +39,11 @@ class OwnCore:
 
     @property
     def dead(self) -> bool:
-        """Whether the master has ended, by whatever cause."""
+        """Whether the master has exited, for any reason."""
         return self._master is not None and self._master.ended
 
     def start(self) -> None:
-        """Starts both and waits until the master answers.
+        """Starts both and waits until the master responds.
 
         Raises:
             CartwheelError: ROS's master is not installed, or does not start.
@@ -82,7 +82,7 @@ class OwnCore:
             self._rosout = _Child([rosout, "__name:=rosout"], self._environment(rosout))
 
     def stop(self) -> None:
-        """Ends both."""
+        """Stops both."""
         children = [child for child in (self._rosout, self._master) if child is not None]
         for child in children:
             child.process.terminate()
@@ -97,22 +97,23 @@ class OwnCore:
         prefix = Path(program).parents[1]
         modules = prefix / "lib/python3/dist-packages"
         if prefix != Path("/usr") and modules.is_dir():
-            # A distribution that nobody has sourced.
+            # A ROS distribution that was not sourced.
             known = environment.get("PYTHONPATH")
             environment["PYTHONPATH"] = f"{modules}:{known}" if known else str(modules)
         return environment
 
 
 class _Child:
-    """A program that ends with this process, also where this process is killed.
+    """A child process that exits with this process, even if this process is killed.
 
-    The system kills it when the thread that started it ends, so that thread waits for it.
+    The kernel kills the child when the thread that started it exits, so that thread waits for it.
     """
 
     def __init__(self, command: list[str], environment: dict[str, str]) -> None:
         tether = shutil.which("setpriv")
         if tether is not None:
-            # The shell ends where this process was killed before the tether held.
+            # The shell exits if this process was killed before the kernel was set up to kill the
+            # child.
             shell = ["/bin/sh", "-c", _IF_CHILD_OF, str(os.getpid())]
             command = [tether, "--pdeathsig", "KILL", *shell, *command]
         self._command = command
@@ -130,18 +131,18 @@ class _Child:
 
     @property
     def ended(self) -> bool:
-        """Whether it has ended."""
+        """Whether the process has exited."""
         return self.process.poll() is not None
 
     def _run(self) -> None:
         try:
-            self.process = subprocess.Popen(  # noqa: S603 - a program of ROS, found by us
+            self.process = subprocess.Popen(  # noqa: S603 - a ROS program found by Cartwheel
                 self._command,
                 env=self._environment,
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.DEVNULL,
                 stderr=subprocess.DEVNULL,
-                # Ctrl-C in a terminal is for us: we end them when we have said farewell.
+                # Cartwheel handles Ctrl-C in a terminal: it stops them after it has unregistered.
                 start_new_session=True,
             )
         except OSError as error:

@@ -1,4 +1,4 @@
-"""The fields with which a TCPROS connection begins."""
+"""Headers of TCPROS connections."""
 
 from __future__ import annotations
 
@@ -8,16 +8,16 @@ from collections.abc import Mapping
 _LENGTH = struct.Struct("<I")
 
 LIMIT = 128 << 10
-"""Bytes; a definition with all its parts takes some ten thousand."""
+"""Maximum size in bytes. A definition with all nested types has some ten thousand."""
 FIELDS = 100
 
 
 class HeaderError(ValueError):
-    """Bytes that are no header."""
+    """The bytes are not a valid header."""
 
 
 def encode_header(fields: Mapping[str, str]) -> bytes:
-    """The header with its length in front."""
+    """Encodes a header with its length prefix."""
     parts = []
     for name, value in fields.items():
         field = f"{name}={value}".encode()
@@ -27,10 +27,10 @@ def encode_header(fields: Mapping[str, str]) -> bytes:
 
 
 def decode_header(body: bytes | memoryview) -> dict[str, str]:
-    """The fields of a header without its length.
+    """Decodes a header without its length prefix.
 
     Raises:
-        HeaderError: It is none.
+        HeaderError: The bytes are not a valid header.
     """
     fields: dict[str, str] = {}
     data = bytes(body)

@@ -1,4 +1,4 @@
-"""The server side of XML-RPC on the loop: short requests, any of which may be nonsense."""
+"""HTTP server for XML-RPC on the event loop. Requests may be malformed."""
 
 from __future__ import annotations
 
@@ -14,27 +14,27 @@ from cartwheel.bridges.ros1.marshalling import read_values
 
 HEAD_LIMIT = 16 << 10
 BODY_LIMIT = 256 << 10
-"""Bytes; a thousand publishers of a topic take a hundred thousand."""
+"""Maximum size in bytes. A thousand publishers of a topic occupy a hundred thousand."""
 BUSY = 10.0
-"""s that a caller may take to complete a request that it has begun, or to read an answer."""
+"""Timeout in s for completing a request that has begun, and for receiving a response."""
 IDLE = 60.0
-"""s after which a silent connection is closed; whoever calls again opens another."""
+"""Time in s after which an idle connection is closed. Clients reconnect when necessary."""
 _REASON = 500
-"""Characters of a fault."""
+"""Maximum length of a fault in characters."""
 
 Handler = Callable[[str, tuple[Any, ...]], Any]
 
 
 class RpcConnection:
-    """One client of our XML-RPC interface; on the loop's thread.
+    """A client of the node's XML-RPC interface. Used on the loop's thread.
 
-    It does one request at a time. Nothing is read while a request waits to be done or an answer
-    to be sent, so that a client that does not read its answers holds up itself alone.
+    Requests are handled one by one. Nothing is read while a request or response is pending, so a
+    client that does not read its responses blocks only itself.
 
     Args:
-        loop: Watches it.
-        sock: Connected.
-        handle: Answers a method with its arguments; what it raises becomes a fault.
+        loop: Event loop of the connection.
+        sock: Connected socket.
+        handle: Handles a method with its arguments. Its exceptions are returned as faults.
         on_close: Called once at the end.
     """
 
@@ -53,7 +53,7 @@ class RpcConnection:
         self._unsent = memoryview(b"")
         self._closing = False
         self._since = time.monotonic()
-        """When the present request, answer or silence has begun."""
+        """Start time of the current request, response or idle period."""
         self.closed = False
         sock.setblocking(False)
         with contextlib.suppress(OSError):
@@ -61,12 +61,12 @@ class RpcConnection:
         loop.watch(sock, READ, self._ready)
 
     def overdue(self, now: float) -> bool:
-        """Whether the client has taken too long with what it does."""
+        """Whether the client exceeds a timeout."""
         busy = self._received or self._unsent
         return now - self._since > (BUSY if busy else IDLE)
 
     def close(self) -> None:
-        """Ends the connection."""
+        """Closes the connection."""
         if not self.closed:
             self.closed = True
             self._loop.forget(self._sock)
@@ -94,7 +94,7 @@ class RpcConnection:
         self._received += data
 
     def _go_on(self) -> None:
-        """Does the next request; those that follow wait until everybody else had a turn."""
+        """Handles the next request. Later requests wait until other connections had a turn."""
         if self.closed:
             return
         if not self._unsent and not self._closing and self._take_request():
@@ -112,11 +112,11 @@ class RpcConnection:
             self._loop.watch(self._sock, READ, self._ready)
 
     def _is_complete(self) -> bool:
-        """Whether something is there that can be answered, if only by a refusal."""
+        """Whether a complete or invalid request is available."""
         return self._extent() is not None
 
     def _extent(self) -> tuple[int, int, str] | None:
-        """Where the first head and its body end, or a refusal; None where more has to come."""
+        """End of the first header and of its body, or an error status; None if data is missing."""
         end = self._received.find(b"\r\n\r\n", 0, HEAD_LIMIT)
         if end < 0:
             if len(self._received) < HEAD_LIMIT:
@@ -127,7 +127,7 @@ class RpcConnection:
         if not lines[0].startswith("POST ") or not (length.isascii() and length.isdecimal()):
             return 0, 0, "400 Bad Request"
         if "origin" in fields:
-            # A browser's, on behalf of some page: no node of ROS has an origin.
+            # Browsers send this header for web pages. ROS nodes do not.
             return 0, 0, "403 Forbidden"
         if len(length) > 9 or int(length) > BODY_LIMIT:
             return 0, 0, "413 Payload Too Large"
@@ -135,7 +135,7 @@ class RpcConnection:
         return None if len(self._received) < whole else (end, whole, "")
 
     def _take_request(self) -> bool:
-        """Answers the first request; whether there was one."""
+        """Handles the first request. Returns whether there was a request."""
         extent = self._extent()
         if extent is None:
             return False
@@ -158,7 +158,7 @@ class RpcConnection:
             answer = xmlrpc.client.dumps(
                 (self._handle(str(method), arguments),), methodresponse=True, allow_none=False
             )
-        except Exception as error:  # noqa: BLE001 - the caller is told, whatever it was
+        except Exception as error:  # noqa: BLE001 - the client receives any error
             reason = f"{type(error).__name__}: {error}"[:_REASON]
             answer = xmlrpc.client.dumps(xmlrpc.client.Fault(1, reason), methodresponse=True)
         return answer.encode(errors="replace")
@@ -186,7 +186,7 @@ class RpcConnection:
 
 
 def _head(data: bytes | bytearray) -> tuple[list[str], dict[str, str]]:
-    """The lines of a head, and its fields by their names in small letters."""
+    """Request line and headers, whose names are in lower case."""
     lines = data.decode("latin-1").split("\r\n")
     pairs = (line.partition(":") for line in lines[1:])
     return lines, {name.strip().lower(): value.strip() for name, _, value in pairs}

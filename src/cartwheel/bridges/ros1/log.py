@@ -1,4 +1,4 @@
-"""``/rosout``: what this node has to say, at its level."""
+"""Diagnostics on ``/rosout``, filtered by the node's log level."""
 
 from __future__ import annotations
 
@@ -22,17 +22,17 @@ _OF: dict[Literal["info", "warning", "error"], str] = {
     "error": "error",
 }
 _KEPT = 50
-"""Lines for the first who listens: they are said before anybody can be connected."""
+"""Maximum number of lines stored for the first subscriber, as no node can be connected earlier."""
 
 
 class Log:
     """Publishes diagnostics.
 
     Args:
-        loop: Runs it.
-        node: Our name.
-        time_ns: Simulation time.
-        tell: Takes a warning about a subscriber.
+        loop: Event loop of the bridge.
+        node: Name of the node.
+        time_ns: Returns the simulation time.
+        tell: Receives warnings about subscribers.
     """
 
     def __init__(
@@ -60,7 +60,7 @@ class Log:
         self.publication.on_first = self._catch_up
 
     def write(self, diagnostic: Diagnostic) -> None:
-        """Says something; from any thread."""
+        """Logs a diagnostic. Callable on any thread."""
         level = _LEVELS[_OF[diagnostic.severity]]
         if level < _LEVELS[self._level]:
             return
@@ -109,7 +109,7 @@ class Log:
 
 
 class _LogPublication(Publication):
-    """Tells when the first subscriber comes."""
+    """Notifies the log when the first subscriber connects."""
 
     on_first: Callable[[], None]
 

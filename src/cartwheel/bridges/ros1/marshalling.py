@@ -1,4 +1,4 @@
-"""XML-RPC's values from text that anyone may have sent."""
+"""Parsing of XML-RPC values, which may be malformed or malicious."""
 
 from __future__ import annotations
 
@@ -7,25 +7,25 @@ from typing import Any
 from xml.parsers import expat
 
 DEPTH = 64
-"""Elements within each other; a request of ROS has some ten."""
+"""Maximum nesting depth of elements. ROS requests have about ten levels."""
 
 
 class MalformedError(ValueError):
-    """Text that is no XML-RPC."""
+    """The text is not valid XML-RPC."""
 
 
 def read_values(body: bytes) -> tuple[tuple[Any, ...], str | None]:
-    """The values of a request or an answer, and the method of a request.
+    """Values of a request or response, and the method name of a request.
 
-    Unlike `xmlrpc.client.loads`, this refuses entities, which can make little text long, and
-    deep nesting.
+    Unlike `xmlrpc.client.loads`, this rejects entities, which can expand a short text to a long
+    text, and deep nesting.
 
     Raises:
-        xmlrpc.client.Fault: It is the answer of a call that failed.
-        MalformedError: It is no XML-RPC.
+        xmlrpc.client.Fault: The text is the response of a failed call.
+        MalformedError: The text is not valid XML-RPC.
     """
     made = xmlrpc.client.Unmarshaller()
-    made.xml("", None)  # Text comes decoded.
+    made.xml("", None)  # The text is already decoded.
     parser = expat.ParserCreate()
     depth = 0
 
@@ -54,9 +54,9 @@ def read_values(body: bytes) -> tuple[tuple[Any, ...], str | None]:
     except (xmlrpc.client.Fault, MalformedError):
         raise
     except Exception as error:
-        # Whatever the parsers meet: each type of value has errors of its own.
+        # Any error of the parsers: each value type raises different errors.
         raise MalformedError(f"{type(error).__name__}: {str(error)[:200]}") from error
     finally:
-        # It refers to the functions, and they to it.
+        # Break the reference cycle with the functions.
         parser.StartElementHandler = parser.EndElementHandler = None
         parser.CharacterDataHandler = parser.StartDoctypeDeclHandler = None

@@ -1,4 +1,4 @@
-"""Parameters that are kept by the ROS master, and what stands there of this node."""
+"""Parameters on the ROS master, and calls of the master."""
 
 from __future__ import annotations
 
@@ -10,21 +10,21 @@ from cartwheel.bridges.ros1.rpc import Peer, RpcError, UnreachableError, value_o
 
 Call = tuple[str, tuple[Any, ...]]
 _PATIENCE = 2.0
-"""s that whoever reads a parameter waits for the master."""
+"""Timeout in s for reading a parameter from the master."""
 _INT32 = 1 << 31
 
 
 class MasterParameters:
-    """The master's parameters behind the graph's; see `cartwheel.graph.ParameterServer`.
+    """Parameters of the ROS master, as a `cartwheel.graph.ParameterServer`.
 
-    Values are set by the registrar's thread, soon: whoever sets one, the simulation above all,
-    does not wait. Who reads one waits, unless it was set here.
+    The registrar's thread sets values soon, so that the setting thread, usually the simulation's,
+    does not wait. Reading waits for the master, unless the value was just set here.
 
     Args:
-        uri: The master's.
-        node: Our name.
-        outer: The master's name of a parameter.
-        wake: Tells the registrar that there is something to set.
+        uri: URI of the master.
+        node: Name of the node.
+        outer: Returns the master's name of a parameter.
+        wake: Notifies the registrar of new values.
     """
 
     def __init__(
@@ -37,12 +37,12 @@ class MasterParameters:
         self._lock = threading.Lock()
         self._unsent: dict[str, Any] = {}
         self._ours: dict[str, Any] = {}
-        """All that was set here, for the next master."""
+        """All values set by this process, for a restarted master."""
         self.reachable = True
-        """Kept by the registrar: an absent master is not asked."""
+        """Set by the registrar. An unreachable master is not called."""
 
     def get(self, name: str) -> Any:
-        """The value, a mapping for a namespace, or None."""
+        """Value, mapping for a namespace, or None."""
         name = self._outer(name)
         with self._lock:
             if name in self._unsent or not self.reachable:
@@ -50,7 +50,7 @@ class MasterParameters:
         try:
             return self._peer.call("getParam", self._node, name)
         except UnreachableError:
-            # Nobody else is to wait for it, until the registrar has found one that answers.
+            # Other reads must not wait until the registrar has reached the master again.
             self.reachable = False
             with self._lock:
                 return self._ours.get(name)
@@ -58,7 +58,7 @@ class MasterParameters:
             return None
 
     def set(self, name: str, value: Any) -> None:
-        """Stores a value, soon."""
+        """Sets a value soon."""
         name = self._outer(name)
         plain = _plain(value)
         with self._lock:
@@ -67,17 +67,17 @@ class MasterParameters:
         self._wake()
 
     def remember(self) -> None:
-        """All that was set here is to be set again."""
+        """Marks all values of this process to be set again."""
         with self._lock:
             self._unsent = dict(self._ours)
 
     def take(self) -> dict[str, Any]:
-        """What is to be set; see `sent`."""
+        """Values that must be set on the master; see `sent`."""
         with self._lock:
             return dict(self._unsent)
 
     def sent(self, values: Mapping[str, Any]) -> None:
-        """These are set."""
+        """Marks values as set."""
         with self._lock:
             for name, value in values.items():
                 if name in self._unsent and self._unsent[name] is value:
@@ -85,17 +85,17 @@ class MasterParameters:
 
 
 def call_all(peer: Peer, calls: list[Call]) -> list[Any]:
-    """The values of several calls of the master; an `RpcError` in place of one that failed.
+    """Results of several calls of the master, with an `RpcError` in place of each failed call.
 
     Raises:
-        UnreachableError: No answer.
+        UnreachableError: The master does not respond.
     """
     try:
         answers = peer.call_all(calls)
     except UnreachableError:
         raise
     except RpcError:
-        # A master that knows no such calls gets them one by one.
+        # This master does not support combined calls.
         return [_tried(peer, call) for call in calls]
     return [_value(answer) for answer in answers]
 
@@ -117,7 +117,7 @@ def _value(answer: Any) -> Any:
 
 
 def _plain(value: Any) -> Any:
-    """A value that XML-RPC can carry; its integers have 32 bits."""
+    """Converts a value for XML-RPC, whose integers have 32 bits."""
     if hasattr(value, "tolist"):
         value = value.tolist()
     if isinstance(value, Mapping):

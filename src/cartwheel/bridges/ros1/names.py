@@ -1,4 +1,4 @@
-"""A ROS 1 node's name, and what the names of the graph are called under it."""
+"""Names of a ROS 1 node, and the ROS 1 names of the graph's topics, services and parameters."""
 
 from __future__ import annotations
 
@@ -18,27 +18,27 @@ _BASE = re.compile(r"[A-Za-z][A-Za-z0-9_]*\Z")
 _NAME = re.compile(r"[~/]?(?:[A-Za-z][A-Za-z0-9_]*/)*(?:[A-Za-z][A-Za-z0-9_]*)?\Z")
 
 GLOBAL = ("/clock", "/tf", "/tf_static", "/rosout")
-"""Topics that no namespace moves."""
+"""Topics that are never moved into a namespace."""
 PRIVATE = "/gazebo/"
-"""The graph's names of what is Gazebo's own: private names of its node."""
+"""Prefix of Gazebo's own names in the graph, which become private names of the node."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Arguments:
-    """The ``name:=value`` of a command line, as every ROS 1 node takes them."""
+    """The ``name:=value`` arguments of a ROS 1 node."""
 
     remappings: dict[str, str] = field(default_factory=dict)
     parameters: dict[str, Any] = field(default_factory=dict)
-    """Private ones: ``_name:=value``, the value read as YAML."""
+    """Private parameters: ``_name:=value``, with values parsed as YAML."""
     special: dict[str, str] = field(default_factory=dict)
     """``__name``, ``__ns``, ``__log``, ``__ip``, ``__hostname``, ``__master``."""
 
     @classmethod
     def parse(cls, words: Iterable[str]) -> Arguments:
-        """Reads them.
+        """Parses the arguments.
 
         Raises:
-            CartwheelError: A word is no ``name:=value``.
+            CartwheelError: An argument does not have the form ``name:=value``.
         """
         made = cls()
         for word in words:
@@ -59,14 +59,14 @@ class Arguments:
 
 
 class NodeNames:
-    """What a node is called and what it calls others.
+    """Name of a node, and its remapping of other names.
 
     Args:
-        node: Its name, unless ``__name:=`` gives another.
+        node: Name of the node, unless ``__name:=`` overrides it.
         arguments: See `Arguments`.
 
     Raises:
-        CartwheelError: A name is none that ROS accepts.
+        CartwheelError: ROS does not accept a name.
     """
 
     def __init__(self, node: str, arguments: Arguments) -> None:
@@ -90,14 +90,14 @@ class NodeNames:
                 values={"name": space},
             )
         self.node = _join(self.namespace, base)
-        """With its namespace."""
+        """Full name of the node, with namespace."""
         self._remappings = {
             self._resolved(name): self._resolved(value)
             for name, value in arguments.remappings.items()
         }
 
     def outer(self, name: str) -> str:
-        """ROS's name of a topic or service of the graph."""
+        """ROS 1 name of a topic or service in the graph."""
         if name.startswith(PRIVATE):
             full = f"{self.node}/{name.removeprefix(PRIVATE)}"
         elif name in GLOBAL:
@@ -107,11 +107,11 @@ class NodeNames:
         return self._remappings.get(full, full)
 
     def parameter(self, name: str) -> str:
-        """ROS's name of a parameter of the graph: Gazebo's own are private ones of its node."""
+        """ROS 1 name of a parameter. Gazebo's parameters become private names of the node."""
         return f"{self.node}/{name.removeprefix(PRIVATE)}" if name.startswith(PRIVATE) else name
 
     def private(self, name: str) -> str:
-        """The full name of ``~name``."""
+        """Full name of ``~name``."""
         return f"{self.node}/{name}"
 
     def _resolved(self, name: str) -> str:

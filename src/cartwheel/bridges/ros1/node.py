@@ -1,4 +1,4 @@
-"""A ROS 1 node: what it offers, and the interface by which others ask for it."""
+"""A ROS 1 node: its topics and services, and its XML-RPC interface."""
 
 from __future__ import annotations
 
@@ -19,24 +19,24 @@ from cartwheel.codes.wires import PEER_LIMIT
 from cartwheel.errors import Diagnostic
 
 _UNKNOWN = 100
-"""Connections that have not told yet what they are for."""
+"""Maximum number of connections whose header is missing."""
 _CALLERS = 200
-"""Connections to the XML-RPC interface; a caller that loses one opens it again."""
+"""Maximum number of connections to the XML-RPC interface. Clients reconnect when necessary."""
 _SWEEP = 2.0
-"""s between two looks at peers that take too long."""
+"""Interval in s at which timeouts of peers are checked."""
 
 
 class Node:
-    """One node; on the loop's thread.
+    """A ROS 1 node. Used on the loop's thread.
 
     Args:
-        loop: Runs it.
-        name: With its namespace.
-        host: By which others reach us.
-        address: To listen on.
-        master_uri: Of the master.
-        on_shutdown: Told why another wants this node to end.
-        tell: Takes a warning.
+        loop: Event loop of the node.
+        name: Full name, with namespace.
+        host: Host name or address under which other nodes reach this node.
+        address: Address to listen on.
+        master_uri: URI of the master.
+        on_shutdown: Called with the reason when a different node requests a shutdown.
+        tell: Receives warnings.
     """
 
     def __init__(
@@ -67,7 +67,7 @@ class Node:
         self._streams = Listener(loop, address, self._take_stream)
         self._callers_door = Listener(loop, address, self._take_caller)
         self.ports = self._callers_door.port, self._streams.port
-        """Of the XML-RPC interface and of topics and services."""
+        """Ports of the XML-RPC interface, and of topics and services."""
         loop.post(self._sweep)
         self.uri = f"http://{host}:{self._callers_door.port}/"
         self.service_uri = f"rosrpc://{host}:{self._streams.port}"
@@ -85,7 +85,7 @@ class Node:
         }
 
     def close(self) -> None:
-        """Ends all connections."""
+        """Closes all connections."""
         self.attempts.close()
         for publication in self.publications.values():
             publication.close()
@@ -116,7 +116,7 @@ class Node:
         connection.on_close = lambda: self._unknown.pop(connection, None) and None
 
     def _assign(self, connection: Connection, fields: dict[str, str]) -> None:
-        """Gives a connection to what it asks for."""
+        """Assigns a connection to the requested topic or service."""
         self._unknown.pop(connection, None)
         connection.on_close = lambda: None
         if "service" in fields:
@@ -172,7 +172,7 @@ class Node:
         return 1, "", 0
 
     def _shut_down(self, _caller: str, reason: str = "") -> Any:
-        # The answer goes first.
+        # Send the response first.
         self._loop.after(0.05, lambda: self._on_shutdown(str(reason)))
         return 1, "", 0
 

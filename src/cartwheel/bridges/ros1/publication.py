@@ -1,4 +1,4 @@
-"""A topic that this node publishes: from the graph to everybody who is connected."""
+"""A published topic of the node: sends messages from the graph to connected nodes."""
 
 from __future__ import annotations
 
@@ -19,17 +19,17 @@ _LENGTH = struct.Struct("<I")
 
 
 class Publication:
-    """One topic; on the loop's thread.
+    """A published topic. Used on the loop's thread.
 
-    While a node is connected, the graph is subscribed to, and only then.
+    It subscribes to the graph only while a node is connected.
 
     Args:
-        loop: Runs it.
-        topic: ROS's name.
-        type_: Of its messages.
-        latched: Whether who comes later gets the last message.
-        node: Our name.
-        tell: Takes a warning.
+        loop: Event loop of the bridge.
+        topic: ROS name of the topic.
+        type_: Type of the messages.
+        latched: Whether new subscribers receive the last message.
+        node: Name of the node.
+        tell: Receives warnings.
     """
 
     def __init__(
@@ -60,12 +60,12 @@ class Publication:
         )
         self._last: bytes | None = None
         self._missed = 0
-        """Messages that those who have left were too slow for."""
+        """Messages dropped by subscribers that have disconnected."""
         self._seq = 0
         self._faulty = False
 
     def join(self, link: Connection, fields: dict[str, str]) -> None:
-        """Takes a subscriber that has told what it expects."""
+        """Adds a subscriber, after checking the type in its header."""
         wanted = (fields.get("type", "*"), fields.get("md5sum", "*"))
         for word, own in zip(wanted, (self.type.name, self.type.md5), strict=True):
             if word not in ("*", own):
@@ -106,17 +106,17 @@ class Publication:
 
     @property
     def dropped(self) -> int:
-        """Messages that subscribers were too slow for."""
+        """Number of messages dropped because subscribers were too slow."""
         return self._missed + sum(link.dropped for link in self.links[:])
 
     def begin(self) -> None:
-        """The first subscriber is there."""
+        """Called when the first subscriber connects."""
 
     def end(self) -> None:
-        """The last one has gone."""
+        """Called when the last subscriber disconnects."""
 
     def send(self, message: Any) -> None:
-        """Sends a message of the graph to all, serialised once."""
+        """Sends a message of the graph to all subscribers. It is serialised once."""
         self._seq += 1
         try:
             parts = write_ros1(message, seq=self._seq)
@@ -138,7 +138,7 @@ class Publication:
             link.send(data)
 
     def close(self) -> None:
-        """Ends all of its connections."""
+        """Closes all connections of the topic."""
         for link in self.links[:]:
             link.close()
 
@@ -154,11 +154,11 @@ class GraphPublication(Publication):
     """A topic of the graph.
 
     Args:
-        graph: Where it is.
-        source: Its name there.
-        node: By which we subscribe there.
-        ignored: Whether a message came from ROS in the first place.
-        rest: As for `Publication`.
+        graph: Graph with the topic.
+        source: Topic name in the graph.
+        node: Node name of the bridge in the graph.
+        ignored: Whether a message came from ROS, and so must not be sent back.
+        rest: See `Publication`.
     """
 
     def __init__(
@@ -195,7 +195,7 @@ class GraphPublication(Publication):
         self._tap.open()
 
     def end(self) -> None:
-        """Leaves the graph, so that nothing is made for nobody."""
+        """Unsubscribes, so that the graph does not make unused messages."""
         self._tap.close()
         self._last = None
 

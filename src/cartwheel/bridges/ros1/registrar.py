@@ -1,4 +1,4 @@
-"""Keeps the master told what this node offers, also the next master where one is restarted."""
+"""Registers the node's topics and services with the master, and again if the master restarts."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from cartwheel.bridges.ros1.master import Call, MasterParameters, call_all
 from cartwheel.bridges.ros1.rpc import Peer, RpcError, UnreachableError
 
 _INTERVAL = 1.0
-"""s between two looks at the master."""
+"""Interval in s at which the master is checked."""
 _FAREWELL = 0.2
-"""s that the master has for our farewell."""
+"""Timeout in s for unregistering."""
 
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """Something of this node that the master knows or shall know."""
+    """A registration of this node with the master."""
 
     kind: Literal["Publisher", "Subscriber", "Service"]
     name: str
@@ -26,20 +26,21 @@ class Entry:
 
 
 class Registrar:
-    """Registers, on a thread of its own.
+    """Registers the node on a separate thread.
 
     Args:
-        master_uri: Where the master is.
-        node: Our name.
-        uri: Of our XML-RPC interface.
-        service_uri: Of our services.
-        parameters: What is to be set.
-        survey: Brings this node up to date with the graph and returns what it offers now.
-        on_publishers: Gets the publishers of a topic that was subscribed to.
-        on_lost: Told why the master does not answer; it may bring one back.
-        on_found: Told when one answers again.
-        on_taken: Told who took our name.
-        on_fault: Told of what went wrong here.
+        master_uri: URI of the master.
+        node: Name of the node.
+        uri: URI of the node's XML-RPC interface.
+        service_uri: URI of the node's services.
+        parameters: Parameters to set on the master.
+        survey: Updates the node from the graph, and returns its current registrations.
+        on_publishers: Called with the publishers of a subscribed topic.
+        on_lost: Called with the reason when the master does not respond. It may restart the
+            master.
+        on_found: Called when a master responds again.
+        on_taken: Called with the node that has taken this node's name.
+        on_fault: Called with unexpected errors.
     """
 
     def __init__(
@@ -75,21 +76,21 @@ class Registrar:
         self._lost = False
         self._registered: dict[Entry, None] = {}
         self._doubtful: dict[Entry, None] = {}
-        """Registrations without an answer: a master that was frozen may still carry them out."""
+        """Registrations without a response, which a frozen master may still execute later."""
         self._wanted: list[Entry] = []
         self._thread = threading.Thread(target=self._run, name="ros1 registrar", daemon=True)
 
     def start(self) -> None:
-        """Begins."""
+        """Starts the thread."""
         self._event.set()
         self._thread.start()
 
     def wake(self) -> None:
-        """Something has changed; from any thread, and at once."""
+        """Requests an update. Returns at once. Callable on any thread."""
         self._event.set()
 
     def stop(self) -> None:
-        """Takes everything back from the master; soon, whatever the master does."""
+        """Unregisters everything soon, even if the master does not respond."""
         self._stopped = True
         self._event.set()
         free = self._exclusive.acquire(timeout=_FAREWELL)
@@ -99,7 +100,7 @@ class Registrar:
                 calls = [self._unregister(entry) for entry in entries]
                 call_all(Peer(self._master_uri, timeout=_FAREWELL), calls)
         except RpcError:
-            pass  # Whoever comes after us has a master to clean up.
+            pass  # The next node with this name will clean up the registrations.
         finally:
             if free:
                 self._exclusive.release()
@@ -120,11 +121,11 @@ class Registrar:
                         self._match()
                 except UnreachableError as error:
                     self._lose(error)
-                except Exception as error:  # noqa: BLE001 - the next change may go well
+                except Exception as error:  # noqa: BLE001 - the next update may succeed
                     self._on_fault(error)
 
     def _look(self) -> None:
-        """Whether the master still knows us, or another of our name."""
+        """Checks whether the master still has this node, or a different node with its name."""
         try:
             known = self._peer.call("lookupNode", self._node, self._node)
         except UnreachableError:
@@ -132,7 +133,7 @@ class Registrar:
         except RpcError:
             known = None
         if not isinstance(known, str):
-            # Not an address: no other node took the name.
+            # The value is not an address, so no different node has taken the name.
             known = None
         self._parameters.reachable = True
         if known is None and self._registered:
@@ -153,7 +154,7 @@ class Registrar:
         self._on_lost(str(error))
 
     def _match(self) -> None:
-        """Makes what is registered what is wanted, in one call."""
+        """Updates the registrations on the master in one call."""
         if self._stopped:
             return
         wanted = dict.fromkeys(self._wanted)

@@ -1,4 +1,4 @@
-"""Calls of the XML-RPC interfaces of ROS 1's master and nodes."""
+"""XML-RPC calls to the ROS master and to other nodes."""
 
 from __future__ import annotations
 
@@ -15,25 +15,25 @@ from cartwheel.codes.wires import ROS_CALL_FAILED
 from cartwheel.errors import CartwheelError
 
 TIMEOUT = 5.0
-"""s that another node may take to answer."""
+"""Timeout in s for a node's response."""
 LARGEST = 32 << 20
-"""Bytes of an answer; a master keeps descriptions of robots as parameters."""
+"""Maximum size of a response in bytes. Robot descriptions are stored as parameters."""
 _ADDRESSES = 4
-"""Of a name, that are tried."""
+"""Maximum number of addresses of a host name that are tried."""
 
 
 class RpcError(CartwheelError):
-    """A node or master that cannot be reached, or refuses a call."""
+    """A node or master is unreachable, or refused a call."""
 
     code = ROS_CALL_FAILED
 
 
 class UnreachableError(RpcError):
-    """Nobody answers there.
+    """A node or master is unreachable.
 
     Args:
-        message: What was tried.
-        silent: Somebody listens there, but says nothing.
+        message: Description of the attempt.
+        silent: Whether the connection was accepted, but no response arrived.
     """
 
     def __init__(self, message: str, *, silent: bool) -> None:
@@ -42,10 +42,10 @@ class UnreachableError(RpcError):
 
 
 def connect(host: str, port: int, seconds: float) -> socket.socket:
-    """A connection, made within a time whatever addresses the name has.
+    """Opens a connection within a timeout, regardless of the number of addresses.
 
     Raises:
-        OSError: Nobody is there.
+        OSError: No address accepts connections.
     """
     deadline = time.monotonic() + seconds
     try:
@@ -70,11 +70,11 @@ def connect(host: str, port: int, seconds: float) -> socket.socket:
 
 
 class _Socket(socket.socket):
-    """Fails where a whole answer takes too long or is too large, however it is dealt out."""
+    """Fails if a response is too large or takes too long, even if it comes in small parts."""
 
     deadline = 0.0
     left = 0
-    """Bytes."""
+    """Remaining bytes."""
 
     def sendall(self, data: Any, flags: int = 0) -> None:
         self._hurry()
@@ -96,10 +96,10 @@ class _Socket(socket.socket):
 
 
 class _HttpConnection(http.client.HTTPConnection):
-    """A connection with limits for each call; see `begin`."""
+    """An HTTP connection with limits for each call; see `begin`."""
 
     def begin(self, seconds: float, size: int) -> None:
-        """Starts the time of a call and the count of its bytes."""
+        """Resets the time and byte limits for a new call."""
         self._deadline = time.monotonic() + seconds
         self._size = size
         if isinstance(self.sock, _Socket):
@@ -113,13 +113,13 @@ class _HttpConnection(http.client.HTTPConnection):
 
 
 class _Transport(xmlrpc.client.Transport):
-    """Limits the time of a call and the size of its answer."""
+    """Limits the time of a call and the size of its response."""
 
     def __init__(self, timeout: float, largest: int) -> None:
         super().__init__()
         self._timeout = timeout
         self._largest = largest
-        # Requests go in one packet each, but for this.
+        # Do not request compressed responses; `parse_response` rejects them.
         self.accept_gzip_encoding = False
 
     def make_connection(self, host: Any) -> http.client.HTTPConnection:
@@ -133,18 +133,18 @@ class _Transport(xmlrpc.client.Transport):
 
     def parse_response(self, file: Any) -> Any:
         if file.getheader("Content-Encoding"):
-            # A few bytes could be unpacked to any number.
+            # A few bytes can decompress to any size.
             raise ValueError("the response is compressed, although compression was not requested")
         return read_values(file.read())[0]
 
 
 class Peer:
-    """The XML-RPC interface of a node or master; for any thread, one call at a time.
+    """XML-RPC client for a node or master. Thread-safe; calls run one by one.
 
     Args:
-        uri: Its address.
-        timeout: s for a call.
-        largest: Bytes of an answer.
+        uri: URI of the interface.
+        timeout: Timeout of a call in s.
+        largest: Maximum size of a response in bytes.
     """
 
     def __init__(self, uri: str, *, timeout: float = TIMEOUT, largest: int = LARGEST) -> None:
@@ -155,20 +155,20 @@ class Peer:
         )
 
     def call(self, method: str, *arguments: Any) -> Any:
-        """The value of a call's answer.
+        """Calls a method, and returns the value of the response.
 
         Raises:
-            UnreachableError: No answer.
-            RpcError: The answer is no success.
+            UnreachableError: No response arrived.
+            RpcError: The response reports an error.
         """
         return value_of(self._answer(method, arguments))
 
     def call_all(self, calls: Sequence[tuple[str, tuple[Any, ...]]]) -> list[Any]:
-        """Several calls in one; the answers are triples of code, message and value.
+        """Runs several calls in one request. Each response is a triple of code, message and value.
 
         Raises:
-            UnreachableError: No answer.
-            RpcError: It does not know such calls, or fails.
+            UnreachableError: No response arrived.
+            RpcError: The master does not support combined calls, or reports an error.
         """
         packed = [{"methodName": method, "params": list(rest)} for method, rest in calls]
         found = self._answer("system.multicall", (packed,))
@@ -186,7 +186,7 @@ class Peer:
         return answers
 
     def close(self) -> None:
-        """Ends the connection."""
+        """Closes the connection."""
         with self._lock:
             self._proxy("close")()
 
@@ -207,7 +207,7 @@ class Peer:
                     silent=isinstance(error, TimeoutError),
                 ) from None
             except Exception as error:  # noqa: BLE001
-                # Whatever the parsers of HTTP and XML meet in an answer that is none.
+                # Any error of the HTTP and XML parsers for an invalid response.
                 self._proxy("close")()
                 raise RpcError(
                     f"{self.uri} sent an invalid response to {method}: {error}",
@@ -216,10 +216,10 @@ class Peer:
 
 
 def value_of(answer: Any) -> Any:
-    """The value of a triple of code, message and value.
+    """Value of a triple of code, message and value.
 
     Raises:
-        RpcError: It is none, or no success.
+        RpcError: The triple is invalid, or reports an error.
     """
     if not isinstance(answer, list | tuple) or len(answer) != 3:
         raise RpcError(f"expected a response with three elements (got {str(answer)[:80]})")

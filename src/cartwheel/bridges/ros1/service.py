@@ -1,4 +1,4 @@
-"""A service that this node offers."""
+"""A service of the node."""
 
 from __future__ import annotations
 
@@ -15,38 +15,38 @@ from cartwheel.messages.ros1 import Ros1Service, decode_ros1, encode_ros1
 
 _LENGTH = struct.Struct("<I")
 _MOST = 32
-"""Calls at a time."""
+"""Maximum number of simultaneous calls."""
 _MOST_OF_ALL = 64
 _ELEMENTS = 200_000
-"""Of the lists of a request; numbers do not count."""
+"""Maximum number of elements in the lists of a request. Numbers do not count."""
 
 Answer = Callable[[Any], Any]
 
 
 class Calls:
-    """Counts the calls of all services of a node; on the loop's thread."""
+    """Counts the running calls of all services of a node. Used on the loop's thread."""
 
     def __init__(self) -> None:
         self.running = 0
 
     @property
     def full(self) -> bool:
-        """Whether there can be no further call now."""
+        """Whether the limit on calls is reached."""
         return self.running >= _MOST_OF_ALL
 
 
 class OfferedService:
-    """One service; on the loop's thread, but for each call, which has one of its own.
+    """An offered service. Used on the loop's thread, except that each call has its own thread.
 
-    A client gets the answer of one call before its next one is taken.
+    A client's next call begins after the response of its previous call.
 
     Args:
-        loop: Runs it.
-        calls: Of the node.
-        name: ROS's.
-        type_: Of its requests and responses.
-        answer: Takes a request and returns the response; may take long, and raise.
-        node: Our name.
+        loop: Event loop of the node.
+        calls: Call counter of the node.
+        name: ROS name of the service.
+        type_: Service type.
+        answer: Takes a request and returns the response. It may be slow, and may raise.
+        node: Name of the node.
     """
 
     def __init__(
@@ -78,7 +78,7 @@ class OfferedService:
         )
 
     def join(self, link: Connection, fields: dict[str, str]) -> None:
-        """Takes a client that has told what it expects."""
+        """Adds a client, after checking the type in its header."""
         if fields.get("md5sum", "*") not in ("*", self.type.md5):
             link.refuse(
                 f"service {self.name} has type {self.type.name} with md5 sum {self.type.md5},"
@@ -92,12 +92,12 @@ class OfferedService:
         link.send(self._header)
 
     def probe(self, link: Connection) -> None:
-        """Tells what it is to one who does not want to call it."""
+        """Sends the type to a client that only probes the service."""
         link.send(self._header)
         link.finish()
 
     def close(self) -> None:
-        """Ends all of its connections."""
+        """Closes all connections of the service."""
         for link in self._links[:]:
             link.close()
 
@@ -117,7 +117,7 @@ class OfferedService:
             response = self._answer(decode_ros1(data, self.type.request, elements=_ELEMENTS))
             body = encode_ros1(response)
             reply = b"\1" + _LENGTH.pack(len(body)) + body
-        except Exception as error:  # noqa: BLE001 - the caller waits for an answer
+        except Exception as error:  # noqa: BLE001 - the caller waits for a response
             reply = _failure(one_line(error))
 
         def done() -> None:

@@ -1,4 +1,4 @@
-"""A topic that this node subscribes to: from every publisher to the graph."""
+"""A subscribed topic of the node: passes messages from all publishers to the graph."""
 
 from __future__ import annotations
 
@@ -23,19 +23,20 @@ from cartwheel.errors import CartwheelError, Diagnostic
 from cartwheel.messages.ros1 import Ros1Type, decode_ros1
 
 _AGAIN = (0.2, 1.0, 2.0, 5.0)
-"""s until the next attempt to reach a publisher, the last one for all further attempts."""
+"""Delays in s between attempts to connect to a publisher. The last delay repeats."""
 MOST = 256
-"""Publishers of a topic."""
+"""Maximum number of publishers per topic."""
 _LONGEST = 300
-"""Characters of a publisher's URI."""
+"""Maximum length of a publisher's URI in characters."""
 _ANSWER = 64 << 10
-"""Bytes of a publisher's answer."""
+"""Maximum size of a publisher's response in bytes."""
 _ELEMENTS = 200_000
-"""Of the lists of a message: names, points, transforms; numbers do not count."""
+"""Maximum number of elements in the lists of a message (names, points, transforms). Numbers do
+not count."""
 
 
 class _Link:
-    """A publisher and the way to it."""
+    """A publisher and the connection to it."""
 
     def __init__(self, uri: str, host: str) -> None:
         self.uri = uri
@@ -46,19 +47,19 @@ class _Link:
 
 
 class TopicSubscription:
-    """One topic; on the loop's thread, but for reaching publishers.
+    """A subscribed topic. Used on the loop's thread, except for connecting to publishers.
 
     Args:
-        loop: Runs it.
-        traffic: Of the node.
-        attempts: Of the node.
-        topic: ROS's name.
-        type_name: The graph's name of its type.
-        type_: ROS's.
-        node: Our name.
-        own_uri: Ours, which is not subscribed to.
-        deliver: Takes each message, and the bytes that it had.
-        tell: Takes a warning.
+        loop: Event loop of the node.
+        traffic: Connection limits of the node.
+        attempts: Connection attempts of the node.
+        topic: ROS name of the topic.
+        type_name: Type name in the graph.
+        type_: ROS 1 type.
+        node: Name of the node.
+        own_uri: URI of this node, which is not subscribed to.
+        deliver: Called with each message and its size in bytes.
+        tell: Receives warnings.
     """
 
     def __init__(
@@ -89,15 +90,15 @@ class TopicSubscription:
 
     @property
     def connections(self) -> list[tuple[str, Connection]]:
-        """Publishers by their URI, as far as they are connected."""
+        """Connected publishers by URI."""
         return [(link.uri, link.connection) for link in self._links.values() if link.connection]
 
     def update(self, uris: Sequence[str], *, drop: bool = True) -> None:
-        """Connects to these publishers.
+        """Connects to publishers.
 
         Args:
-            uris: Of the nodes that publish.
-            drop: Leave those that are not named.
+            uris: URIs of the publishing nodes.
+            drop: Whether to disconnect from all other publishers.
         """
         named = dict.fromkeys(uri for uri in uris if uri != self._own_uri)
         for uri in [uri for uri in self._links if uri not in named] if drop else ():
@@ -140,7 +141,7 @@ class TopicSubscription:
         self._reach(link)
 
     def close(self) -> None:
-        """Leaves all publishers."""
+        """Disconnects from all publishers."""
         for link in self._links.values():
             self._drop(link)
         self._links.clear()
@@ -156,7 +157,7 @@ class TopicSubscription:
             self._attempts.add(link.host, lambda: self._negotiate(link), hopeless=link.attempts > 0)
 
     def _negotiate(self, link: _Link) -> None:
-        """Asks a publisher for its port and connects; on a thread of the attempts."""
+        """Requests the port of a publisher and connects. Called on a thread of the attempts."""
         if not link.wanted:
             return
         peer = Peer(link.uri, largest=_ANSWER)
