@@ -23,8 +23,8 @@ __version__ = "0.1.0"
 
 
 def __getattr__(name: str) -> Any:
-    # numpy and the physics engine take a tenth of a second to import: the command line first
-    # looks at its arguments, and at Ctrl-C.
+    # The import of numpy and the physics engine takes 0.1 s, but the command line must first parse
+    # its arguments and handle Ctrl-C.
     if name in ("Model", "World"):
         from cartwheel import api
 

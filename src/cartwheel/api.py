@@ -1,4 +1,4 @@
-"""Robots in a few lines of Python: a world, what stands in it, and time."""
+"""The Python API: worlds, models and simulation time."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 class Model:
-    """A model in a world, by its name."""
+    """A handle to a model in a world."""
 
     def __init__(self, world: World, name: str) -> None:
         self._world = world
@@ -33,7 +33,7 @@ class Model:
 
     @property
     def pose(self) -> Pose:
-        """Where its root link is in the world."""
+        """Pose of the root link in the world frame."""
         with self._world.lock:
             self._world.session.simulation.refresh()
             return self._world.session.simulation.pose(self.name)
@@ -44,10 +44,10 @@ class Model:
             simulation.set_pose(self.name, pose)
 
     def joint(self, name: str) -> float:
-        """Position of a joint in rad or m.
+        """Position of a joint, rad or m.
 
         Raises:
-            UnknownNameError: There is no such joint.
+            UnknownNameError: The joint does not exist.
         """
         with self._world.lock:
             return self._world.session.simulation.joint_position(self.name, name)
@@ -57,24 +57,25 @@ class Model:
         self._world.publish(topic, message, **fields)
 
     def delete(self) -> None:
-        """Takes it out of the world."""
+        """Removes the model from the world."""
         with self._world.used() as simulation:
             simulation.delete(self.name)
 
 
 class World:
-    """A simulation that steps when you call `run`.
+    """A simulation that advances when you call `run`.
 
-    Threads may share a world: while one of them is in `run`, the calls of others wait. A forked
-    process has a copy of its own, whose cameras work only if no image was drawn before the fork.
+    Several threads can share a world: while one thread is in `run`, calls from other threads wait.
+    A forked process has its own copy. Its cameras work only if no image was rendered before the
+    fork.
 
     Args:
-        world: ``empty``, another shipped world, a file, or a description.
-        seed: Of all noise: the same seed and commands give the same bits.
-        strict: Every warning about a file is an error.
-        lenient: Plugins that name what their model does not have are left out, and reported, as
-            in `cartwheel run`; else `spawn` refuses the model.
-        bridge: Files of ros_gz_bridge, whose names topics have.
+        world: ``empty``, the name of another built-in world, a file, or a description.
+        seed: Seed for all noise. The same seed and commands give identical results.
+        strict: Treat every warning about a file as an error.
+        lenient: Skip plugins that refer to missing parts of their model and report a warning, as in
+            `cartwheel run`. Otherwise `spawn` raises an error.
+        bridge: Configuration files of ros_gz_bridge, which define topic names.
 
     Raises:
         DescriptionError: The world's file cannot be used.
@@ -112,7 +113,7 @@ class World:
 
     @contextlib.contextmanager
     def used(self) -> Iterator[Simulation]:
-        """The simulation, for this thread alone meanwhile.
+        """Exclusive access to the simulation for this thread.
 
         Raises:
             SimulationError: The world is closed.
@@ -124,22 +125,22 @@ class World:
 
     @property
     def graph(self) -> Graph:
-        """Its topics and services."""
+        """The world's topics and services."""
         return self.session.graph
 
     @property
     def time(self) -> float:
-        """Simulated seconds."""
+        """Simulation time, s."""
         return self.session.simulation.time_ns / NANOSECONDS
 
     @property
     def models(self) -> tuple[str, ...]:
-        """Names of what stands in it."""
+        """Names of the models in the world."""
         return self.session.simulation.models
 
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
-        """What was reported about the files."""
+        """Diagnostics reported so far."""
         return self.session.diagnostics
 
     def spawn(
@@ -157,25 +158,26 @@ class World:
         package_path: Sequence[Path] = (),
         controllers: Sequence[str | Path] = (),
     ) -> Model:
-        """Puts a model in the world.
+        """Spawns a model.
 
         Args:
             robot: A xacro, URDF or SDF file, or a description.
-            name: In this world; the description's own when None.
-            x: m, with y and z the place of its root link; its file's where all are zero.
-            y: m.
-            z: m.
-            roll: rad, with pitch and yaw about the world's axes.
-            pitch: rad.
-            yaw: rad.
-            arguments: Of the xacro file.
-            package_path: Folders in which packages are looked for first.
-            controllers: YAML files of ros_control or ros2_control: their controllers start.
+            name: Name in this world; None for the description's name.
+            x: x coordinate of the root link, m. The file's pose is used if all values are zero.
+            y: y coordinate, m.
+            z: z coordinate, m.
+            roll: Rotation about the world's x axis, rad.
+            pitch: Rotation about the world's y axis, rad.
+            yaw: Rotation about the world's z axis, rad.
+            arguments: Arguments of the xacro file.
+            package_path: Folders to search for packages first.
+            controllers: YAML files for ros_control or ros2_control, whose controllers are started.
 
         Raises:
             DescriptionError: The file cannot be used.
-            WorldError: The name is taken, or the model cannot be built.
-            PluginError: It has no manager of controllers, or their file makes no sense.
+            WorldError: The name is in use, or the model cannot be built.
+            PluginError: A plugin cannot be used, the model has no controller manager, or a
+                controller file is invalid.
         """
         if not isinstance(robot, RobotDescription):
             robot = descriptions.load_robot(robot, arguments=arguments, package_path=package_path)
@@ -186,17 +188,17 @@ class World:
             return Model(self, self.session.spawn(robot, name=name, pose=pose, controllers=files))
 
     def model(self, name: str) -> Model:
-        """A model that stands in the world.
+        """Returns a handle to a model in the world.
 
         Raises:
-            UnknownNameError: There is none of that name.
+            UnknownNameError: No model has this name.
         """
         with self.lock:
             self.session.simulation.pose(name)
         return Model(self, name)
 
     def run(self, seconds: float) -> None:
-        """Lets simulated time go on, as fast as it can.
+        """Advances the simulation as fast as possible.
 
         Raises:
             SimulationError: The simulation diverged, or the world is closed.
@@ -211,16 +213,16 @@ class World:
                     self.session.close()
 
     def publish(self, topic: str, message: Any = None, **fields: Any) -> None:
-        """Publishes on a topic that exists.
+        """Publishes a message on an existing topic.
 
         Args:
-            topic: Its name.
-            message: A message or a mapping of its fields; zeros without either.
-            fields: Instead of it, its fields, nested ones joined by ``_``: ``linear_x=0.5``.
+            topic: Topic name.
+            message: A message or a mapping of its fields. The default message contains zeros.
+            fields: The fields instead of `message`. Join nested names with ``_``: ``linear_x=0.5``.
 
         Raises:
-            UnknownNameError: There is no such topic.
-            GraphError: A field that the type does not have.
+            UnknownNameError: The topic does not exist.
+            GraphError: The message type does not have a given field.
         """
         kind = self.graph.topic(topic).type
         if fields:
@@ -232,10 +234,10 @@ class World:
     def subscribe(
         self, topic: str, callback: Callable[[Any], None], *, type: str | None = None
     ) -> None:
-        """Calls `callback` with each message, within `run`.
+        """Calls `callback` with each message during `run`.
 
-        What it raises ends that `run`, as soon as the step that has begun is made. The next one
-        goes on from there.
+        An exception in the callback stops `run` after the current step. The next `run` continues
+        from there.
         """
         simulation = self.session.simulation
 
@@ -248,15 +250,15 @@ class World:
         self.graph.subscribe(topic, guarded, type_name=type_name(type) if type else None)
 
     def mailbox(self, topic: str, *, size: int = 1000) -> Mailbox:
-        """Keeps the topic's messages to be read after `run`.
+        """Buffers the topic's messages, to be read after `run`.
 
-        Its `get` waits only where another thread runs the world: in the thread that does, no
-        message comes while it waits, so that an empty mailbox gives None at once.
+        `get` waits only if a different thread runs the world. In the thread that runs it, no
+        message can arrive while `get` waits, so an empty mailbox returns None at once.
         """
         return self.graph.mailbox(topic, size=size, can_come=self._run_by_another)
 
     def _run_by_another(self) -> bool:
-        """Whether another thread that still lives ran the world last."""
+        """Whether a different thread ran the world last and is still alive."""
         owner = self.session.simulation.owner
         return owner != threading.get_ident() and any(
             thread.ident == owner for thread in threading.enumerate()
@@ -271,16 +273,18 @@ class World:
         encoding: Encoding | None = None,
         overwrite: bool = False,
     ) -> Iterator[Recorder]:
-        """Records what is published within a ``with`` block.
+        """Records messages within a ``with`` block.
 
         Args:
             file: ``.mcap``, ``.bag``, ``.db3``, or a folder for a ROS 2 bag.
-            topics: Patterns such as ``/camera/*``, ``re:/imu|/odom``, ``!/tf``; all where empty.
-            encoding: Of the messages in a ``.mcap``: ``ros2`` or ``ros1``.
-            overwrite: Replace what is there.
+            topics: Patterns such as ``/camera/*``, ``re:/imu|/odom``, ``!/tf``; empty for all
+                topics.
+            encoding: Message encoding in ``.mcap`` files: ``ros2`` or ``ros1``.
+            overwrite: Replace an existing file.
 
         Raises:
-            RecordingError: It cannot be written; at the end also where it broke off.
+            RecordingError: The file cannot be written. Failures during the recording are raised
+                when the block ends.
         """
         from cartwheel.bridges.recording import Recorder
         from cartwheel.plugins.robot_descriptions import RobotDescriptions
@@ -309,15 +313,15 @@ class World:
             robots.close()
 
     def reset(self) -> None:
-        """Takes time and every model back to the start."""
+        """Resets simulation time and all models to their initial state."""
         with self.used() as simulation:
             simulation.reset()
 
     def close(self) -> None:
-        """Ends the run and all topics; what was simulated can still be read.
+        """Stops the simulation and closes all topics; recorded values stay readable.
 
-        Called within `run`, it ends that run first. The memory is freed with the last reference
-        to the world.
+        When called within `run`, it stops that run first. The memory is freed with the last
+        reference to the world.
         """
         with self.lock:
             if self._running:

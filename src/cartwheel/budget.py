@@ -1,4 +1,4 @@
-"""How often something may happen."""
+"""Rate limits for events."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ import time
 
 
 class Budget:
-    """Allows a number of events at once, and a rate in the long run; from any thread.
+    """Limits events to a burst and a long-term rate. Thread-safe.
 
     Args:
-        most: Events at once.
-        rate: Hz in the long run.
+        most: Maximum number of events in a burst.
+        rate: Long-term rate, Hz.
     """
 
     def __init__(self, most: int, rate: float) -> None:
@@ -20,7 +20,7 @@ class Budget:
         self._lock = threading.Lock()
 
     def take(self) -> bool:
-        """Whether an event may happen now; it counts then."""
+        """Counts an event if the budget allows it; returns whether it does."""
         with self._lock:
             now = time.monotonic()
             self._left = min(self._most, self._left + (now - self._since) * self._rate)

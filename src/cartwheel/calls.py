@@ -1,4 +1,4 @@
-"""Functions that one thread runs for another."""
+"""Functions that one thread runs for another thread."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from typing import TypeVar
 S = TypeVar("S")
 T = TypeVar("T")
 Post = Callable[[Callable[[], None]], None]
-"""Leaves a function with the thread that is to run it."""
+"""Queues a function for the thread that runs it."""
 
 
 def answered(post: Post, function: Callable[[], T]) -> Future[T]:
-    """Has a function run, and gives its result or its error as soon as it is there.
+    """Queues a function and returns a future for its result or error.
 
-    A caller that loses patience may cancel it: it is then not run, unless it has begun.
+    The caller can cancel the future as long as the function has not started.
     """
     future: Future[T] = Future()
 
@@ -32,7 +32,7 @@ def answered(post: Post, function: Callable[[], T]) -> Future[T]:
 
 
 def mapped(future: Future[S], function: Callable[[S], T]) -> Future[T]:
-    """What a function makes of another future's result, or that one's error or its own."""
+    """A future for the result of a function applied to another future's result, or for an error."""
     made: Future[T] = Future()
 
     def take(done: Future[S]) -> None:

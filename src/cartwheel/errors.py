@@ -1,4 +1,4 @@
-"""The errors a user sees: what is wrong, where, and what to write instead."""
+"""Errors and diagnostics: what is wrong, where, and what to write instead."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ from cartwheel.budget import Budget
 Severity = Literal["info", "warning", "error"]
 
 _SIMILAR = 0.6
-"""How alike two names are at least, where one is proposed for the other."""
+"""Minimum similarity of two names for a suggestion."""
 _LONGEST = 500
-"""Characters of a name that is shown whole and compared with others."""
+"""Maximum length of a name that is shown in full and compared with other names."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Origin:
-    """The place in a user's file that made an element."""
+    """The location of an element in a user's file."""
 
     file: str
     line: int = 0
-    """One-based; 0 where only the file is known."""
+    """One-based; 0 if only the file is known."""
     stack: tuple[str, ...] = ()
     """Calls of the enclosing xacro macros, innermost first, each as ``file:line macro``."""
 
@@ -33,14 +33,15 @@ class Origin:
 
 
 Value = str | float | bool | tuple[str, ...] | tuple[float, ...] | None
-"""What a diagnostic is about, for programs: a name, a number in SI units, several of one kind."""
+"""A value in a diagnostic: a name, a number in SI units, or several values of the same kind."""
 Place = Literal["", "element", "attribute", "inside", "after", "line"]
-"""Where the text of a fix goes.
+"""Where to insert the text of a fix.
 
-``element`` replaces the element at the diagnostic's line; ``attribute`` replaces its attribute of
-the same name, or is added to it; ``inside`` goes in before its closing tag; ``after`` follows
-it. In YAML ``line`` replaces the line behind its indentation, and ``after`` is a new line below,
-with the same indentation. Empty: the text shows what to write, but no exact place is known.
+``element`` replaces the element at the diagnostic's line. ``attribute`` replaces the attribute with
+the same name in that element, or is added to the element. ``inside`` is inserted before the
+element's closing tag, and ``after`` behind the element. In YAML, ``line`` replaces the line except
+for its indentation, and ``after`` is a new line below with the same indentation. If empty, the text
+shows what to write, but the exact location is unknown.
 """
 
 
@@ -50,12 +51,12 @@ _CODES: dict[str, Code] = {}
 
 @dataclass(frozen=True, slots=True)
 class Code:
-    """One kind of diagnostic. `cartwheel.codes` holds all of them and their explanations.
+    """A kind of diagnostic. `cartwheel.codes` contains all codes and their explanations.
 
     Args:
         number: Such as ``CW204``. Published numbers never change and are never reused.
         name: Such as ``wheel-separation-mismatch``.
-        severity: The default one.
+        severity: The default severity.
         summary: What is reported, as a phrase.
     """
 
@@ -71,7 +72,7 @@ class Code:
         return f"{self.number} {self.name}"
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """For other processes: each code is there once, so that it can be compared by ``is``."""
+        """Unpickles to the existing instance, so that codes can be compared with ``is``."""
         return _same_code, (self.number, self.name, self.severity, self.summary)
 
     def diagnostic(
@@ -86,17 +87,17 @@ class Code:
         instead: str = "",
         place: Place = "",
     ) -> Diagnostic:
-        """A diagnostic of this kind.
+        """Creates a diagnostic with this code.
 
         Args:
-            message: One sentence without place and code.
-            origin: The place in the user's file.
+            message: One sentence without location and code.
+            origin: The location in the user's file.
             hint: The likely fix, as a sentence.
-            severity: Where it differs from the code's.
+            severity: None for the code's default severity.
             mark: The text in the source line that the caret points to; by default the whole tag.
-            values: What the message names, for programs: tests, rules, JSON.
-            instead: The text to write.
-            place: Where `instead` goes.
+            values: Names and numbers in the message, for programs, tests, rules and JSON.
+            instead: The replacement text.
+            place: Where to insert `instead`.
         """
         return Diagnostic(
             code=self,
@@ -120,16 +121,16 @@ class Code:
         severity: Severity | None = None,
         values: Mapping[str, Value] | None = None,
     ) -> Diagnostic:
-        """A diagnostic of this kind with its cause.
+        """Creates a diagnostic with this code and its cause.
 
         Args:
-            message: What failed; the error's own message follows it.
-            error: What was raised.
-            origin: The place if the error has none.
-            hint: Instead of the error's.
-            severity: Where it differs from the code's.
-            values: For programs. The error's values are added, and ``cause``: the number of its
-                code, or its text.
+            message: What failed; the error's message is appended.
+            error: The cause.
+            origin: The location if the error has none.
+            hint: Replaces the error's hint.
+            severity: None for the code's default severity.
+            values: For programs. The error's values are added, and ``cause``: the error's code
+                number, or its text.
         """
         if not isinstance(error, CartwheelError):
             cause = one_line(error)
@@ -140,7 +141,7 @@ class Code:
                 severity=severity,
                 values={**(values or {}), "cause": cause},
             )
-        # An error without a code of its own is another one if its message is.
+        # Unclassified errors differ if their messages differ.
         cause = error.message if error.code is UNCLASSIFIED else error.code.number
         return self.diagnostic(
             f"{message}: {error.message}",
@@ -153,7 +154,7 @@ class Code:
 
 
 def known_code(number: str) -> Code | None:
-    """The code with a number, if this process has it."""
+    """The code with this number, or None if it does not exist in this process."""
     return _CODES.get(number)
 
 
@@ -164,38 +165,38 @@ def _same_code(number: str, name: str, severity: Severity, summary: str) -> Code
 
 
 UNCLASSIFIED = Code("CW000", "unclassified", "error", "a diagnostic without a specific code")
-"""Of diagnostics that have no code yet."""
+"""Code for diagnostics without a specific code."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Diagnostic:
-    """Something a user should know: about a file, a plugin, a wire or the run."""
+    """A diagnostic about a file, a plugin, a wire protocol or the simulation."""
 
     severity: Severity
     message: str
-    """One sentence without place and code."""
+    """One sentence without location and code."""
     code: Code = UNCLASSIFIED
     origin: Origin | None = None
     hint: str = ""
     """The likely fix, as a sentence."""
     values: Mapping[str, Value] = field(default_factory=dict, compare=False)
-    """What the message names, for programs."""
+    """Names and numbers in the message, for programs."""
     mark: str = ""
     """The text in the source line that the caret points to; empty for the whole tag."""
     instead: str = ""
-    """The text to write."""
+    """The replacement text."""
     place: Place = ""
-    """Where `instead` goes."""
+    """Where to insert `instead`."""
     also: tuple[Diagnostic, ...] = ()
-    """Further diagnostics of this code at the same place, as a macro makes them."""
+    """Additional diagnostics with this code at the same location, for example from one macro."""
     details: str = field(default="", compare=False)
-    """A Python traceback, for the author of the code that failed."""
+    """A Python traceback, for the author of the failing code."""
 
     @property
     def kind(self) -> tuple[object, ...]:
-        """Equal for diagnostics that differ only in the names and numbers they are about.
+        """Equal for diagnostics that differ only in their names and numbers.
 
-        A tag or an attribute is part of the kind. Without a code, so is the message.
+        A tag or an attribute is part of the kind. For unclassified diagnostics, so is the message.
         """
         fixed = (self.values.get("tag"), self.values.get("attribute"))
         message = self.message if self.code is UNCLASSIFIED else ""
@@ -203,14 +204,14 @@ class Diagnostic:
 
     @property
     def text(self) -> str:
-        """Message, hint and number of the code in one line without place, for logs."""
+        """Message, hint and code number on one line without location, for logs."""
         hint = f". {self.hint}" if self.hint else ""
         code = f" [{self.code.number}]" if self.code is not UNCLASSIFIED else ""
         return f"{self.message}{hint}{code}"
 
     @property
     def sorted_values(self) -> tuple[tuple[str, Value], ...]:
-        """The values by name, to compare diagnostics."""
+        """The values sorted by name, to compare diagnostics."""
         return tuple(sorted(self.values.items(), key=lambda item: item[0]))
 
     @property
@@ -225,14 +226,15 @@ class Diagnostic:
 
 
 class CartwheelError(Exception):
-    """Base of every error that the user can correct; the command line prints it and exits with 2.
+    """Base class of errors that the user can correct. The command line prints them and exits with
+    2.
 
     Args:
-        message: One sentence without place and code.
-        code: Its kind; by default that of the class.
-        origin: The place in the user's file.
+        message: One sentence without location and code.
+        code: The diagnostic code; None for the class's default.
+        origin: The location in the user's file.
         hint: The likely fix, as a sentence.
-        values: What the message names, for programs.
+        values: Names and numbers in the message, for programs.
         mark: The text in the source line that the caret points to.
     """
 
@@ -258,7 +260,7 @@ class CartwheelError(Exception):
         super().__init__(message)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """For other processes: subclasses have other arguments."""
+        """Supports pickling: subclasses have different constructor arguments."""
         state = {
             "code": self.code,
             "origin": self.origin,
@@ -277,7 +279,7 @@ class CartwheelError(Exception):
         return text
 
     def diagnostic(self, severity: Severity = "error") -> Diagnostic:
-        """The same as a diagnostic, for what goes on in spite of it or shows it."""
+        """Converts the error to a diagnostic, to report it without raising it."""
         return Diagnostic(
             code=self.code,
             severity=severity,
@@ -304,7 +306,7 @@ class WorldError(CartwheelError):
 
 
 class SimulationError(CartwheelError):
-    """A simulation that cannot go on."""
+    """A simulation that cannot continue."""
 
 
 class DivergedError(SimulationError):
@@ -312,11 +314,11 @@ class DivergedError(SimulationError):
 
 
 class PluginError(CartwheelError):
-    """A plugin or sensor whose parameters make no sense."""
+    """A plugin or sensor with invalid parameters."""
 
 
 class GraphError(CartwheelError):
-    """A topic, service or message that does not fit."""
+    """An invalid topic, service or message."""
 
 
 class RecordingError(CartwheelError):
@@ -324,17 +326,17 @@ class RecordingError(CartwheelError):
 
 
 class ControlError(CartwheelError):
-    """A running simulation that cannot be reached or refuses a request."""
+    """A running simulation that cannot be reached or rejects a request."""
 
 
 class StaticModelError(PluginError):
-    """A plugin would drive a joint of a model that is static."""
+    """A plugin that would drive a joint of a static model."""
 
 
 class UnknownNameError(CartwheelError):
-    """A name that does not exist; says which do and which was likely meant.
+    """An unknown name; the message lists existing names or suggests the likely one.
 
-    Its values are ``kind``, ``name`` and ``meant``: the likely one, or empty.
+    The values are ``kind``, ``name`` and ``meant``, the likely name or an empty string.
     """
 
     def __init__(
@@ -359,7 +361,9 @@ class UnknownNameError(CartwheelError):
 
 
 def one_line(error: Exception) -> str:
-    """An error on one line: ours with place and hint, others with their class."""
+    """An error on one line: with location and hint, or with its class if it is not a
+    CartwheelError.
+    """
     if not isinstance(error, CartwheelError):
         return f"{type(error).__name__}: {error}"
     place = f"{error.origin}: " if error.origin else ""
@@ -374,16 +378,16 @@ def fault(
     code: Code = UNCLASSIFIED,
     values: Mapping[str, Value] | None = None,
 ) -> Diagnostic:
-    """The diagnostic for code that raised an error, with the traceback in its details.
+    """Creates a diagnostic for code that raised an error, with the traceback as details.
 
     Args:
-        message: What failed; the error's own message follows it.
-        error: What was raised.
-        origin: The place in the user's file; that of the error where it has one.
-        code: The kind of diagnostic.
+        message: What failed; the error's message is appended.
+        error: The error.
+        origin: The location in the user's file, if the error has none.
+        code: The diagnostic code.
         values: For programs. ``cause`` is added: the number of the error's code, or its class.
     """
-    import traceback  # only at a fault: its import would slow every start
+    import traceback  # Imported only for faults, because the import would delay every start.
 
     said, place, cause = f"{type(error).__name__}: {error}", origin, type(error).__name__
     if isinstance(error, CartwheelError):
@@ -400,29 +404,29 @@ def fault(
 
 
 class Once:
-    """Chooses which warnings are shown: each once, and different ones at a bounded rate.
+    """Selects the warnings to show: each one once, and different warnings at a limited rate.
 
-    Two warnings are the same if their codes, places and values are. Values may hold names that a
-    stranger chose, so their number is bounded, but a warning that comes after a flood is still
-    shown. Those left out are counted. From any thread.
+    Two warnings are the same if their codes, locations and values are equal. Values may contain
+    names chosen by remote clients, so the number of warnings is limited, but a warning after a
+    flood is still shown. Suppressed warnings are counted. Thread-safe.
 
     Args:
-        most: Different warnings at once; after these, one every 10 s.
+        most: Different warnings in a burst; after that, one every 10 s.
     """
 
     PAUSE = 10.0
-    """s between two warnings in the long run."""
+    """Interval between warnings after the burst, s."""
 
     def __init__(self, most: int) -> None:
         self._budget = Budget(most, 1 / self.PAUSE)
         self._most = most
         self._shown: dict[int, None] = {}
-        """Hashes of the latest warnings, since their values may be long."""
+        """Hashes of the latest warnings, because their values may be long."""
         self._left_out = 0
         self._lock = threading.Lock()
 
     def __call__(self, diagnostic: Diagnostic) -> Diagnostic | None:
-        """The warning to show, with the number of those left out; None if it is not shown.
+        """Returns the warning with the number of suppressed warnings, or None if it is suppressed.
 
         The number is also in its values, as ``left_out``.
         """
@@ -441,11 +445,11 @@ class Once:
         )
 
     def allows(self, key: Hashable) -> bool:
-        """The same for a warning that is not made yet: whether it is shown."""
+        """Whether a warning with this key is shown, before the warning is created."""
         return self._take(hash(key)) is not None
 
     def _take(self, key: int) -> int | None:
-        """The number left out before; -1 with the last that is shown at once; None if it is not."""
+        """Number of warnings suppressed before; -1 for the last in a burst; None if suppressed."""
         with self._lock:
             if key in self._shown:
                 return None
@@ -462,12 +466,12 @@ class Once:
 
 
 class Reporter:
-    """Reports each diagnostic once, as `Once` chooses them; from any thread.
+    """Reports each diagnostic once, as selected by `Once`. Thread-safe.
 
     Args:
-        report: Takes those that are shown.
+        report: Called with each diagnostic to show.
         most: As for `Once`.
-        title: Where they come from; it precedes each message.
+        title: The source of the diagnostics, as a prefix to each message.
     """
 
     def __init__(
@@ -478,12 +482,12 @@ class Reporter:
         self._before = f"{title}: " if title else ""
 
     def __call__(self, diagnostic: Diagnostic) -> None:
-        """Reports a diagnostic unless it has been reported."""
+        """Reports a diagnostic that has not been reported yet."""
         if shown := self._once(diagnostic):
             self.always(shown)
 
     def always(self, diagnostic: Diagnostic) -> None:
-        """Reports a diagnostic even if it has been reported."""
+        """Reports a diagnostic even if it has been reported before."""
         self._report(replace(diagnostic, message=f"{self._before}{diagnostic.message}"))
 
 
@@ -494,24 +498,24 @@ def _identity(diagnostic: Diagnostic) -> int:
 
 
 def likely(name: str, existing: Iterable[str], *, cutoff: float = 0.75) -> str:
-    """A sentence that names the likely meant one of `existing`, or nothing."""
+    """A sentence that suggests the most similar name in `existing`, or an empty string."""
     meant = meant_one(name, existing, cutoff=cutoff)
     return f'Did you mean "{meant}"?' if meant else ""
 
 
 def meant_one(name: str, existing: Iterable[str], *, cutoff: float = 0.75) -> str:
-    """The likely meant one of `existing`, or nothing."""
+    """The most similar name in `existing`, or an empty string."""
     close = _close(name, list(existing), cutoff)
     return close[0] if close else ""
 
 
 def meant(name: str, existing: Iterable[str]) -> str:
-    """The likely meant one of `existing`, which `suggestion` names; empty where none is alike."""
+    """The name that `suggestion` suggests; empty if no name is similar."""
     return meant_one(name, existing, cutoff=_SIMILAR)
 
 
 def suggestion(name: str, existing: Iterable[str]) -> str:
-    """A sentence that names the likely meant one of `existing`, or lists them."""
+    """A sentence that suggests the most similar name in `existing`, or lists all names."""
     known = list(existing)
     return _suggested(_close(name, known, _SIMILAR), known)
 
@@ -526,7 +530,7 @@ def _suggested(close: Sequence[str], known: Sequence[str]) -> str:
 
 
 def _close(name: str, known: list[str], cutoff: float) -> list[str]:
-    """The likely one; none for a name of megabytes, which others may ask for."""
+    """The most similar name; empty for overlong names, which remote clients may send."""
     if len(name) > _LONGEST:
         return []
     return difflib.get_close_matches(name, known, n=1, cutoff=cutoff)

@@ -1,8 +1,8 @@
-"""Poses and rotations: the only place where quaternion orders are converted.
+"""Poses and rotations. Only this module converts between quaternion orders.
 
-Quaternions are ``(x, y, z, w)`` as in ROS; MuJoCo's ``(w, x, y, z)`` passes through
-`to_wxyz` and `from_wxyz`. Roll, pitch and yaw are fixed-axis angles as in URDF and SDF:
-``R = Rz(yaw) Ry(pitch) Rx(roll)``. Metres and radians.
+Quaternions are ``(x, y, z, w)`` as in ROS. `to_wxyz` and `from_wxyz` convert to and from MuJoCo's
+``(w, x, y, z)``. Roll, pitch and yaw are fixed-axis angles as in URDF and SDF: ``R = Rz(yaw)
+Ry(pitch) Rx(roll)``. Units are metres and radians.
 """
 
 from __future__ import annotations
@@ -23,12 +23,12 @@ IDENTITY: Quat = (0.0, 0.0, 0.0, 1.0)
 
 
 def to_wxyz(q: Sequence[float]) -> Quat:
-    """``(x, y, z, w)`` to MuJoCo's and viser's ``(w, x, y, z)``."""
+    """Converts ``(x, y, z, w)`` to the ``(w, x, y, z)`` of MuJoCo and viser."""
     return (float(q[3]), float(q[0]), float(q[1]), float(q[2]))
 
 
 def from_wxyz(q: Sequence[float]) -> Quat:
-    """MuJoCo's and viser's ``(w, x, y, z)`` to ``(x, y, z, w)``."""
+    """Converts the ``(w, x, y, z)`` of MuJoCo and viser to ``(x, y, z, w)``."""
     return (float(q[1]), float(q[2]), float(q[3]), float(q[0]))
 
 
@@ -46,11 +46,11 @@ def quat_from_rpy(roll: float, pitch: float, yaw: float) -> Quat:
 
 
 def rpy_from_quat(q: Sequence[float]) -> Vec3:
-    """Fixed-axis roll, pitch, yaw in radians; pitch within ±π/2."""
+    """Fixed-axis roll, pitch and yaw in radians; pitch is within ±π/2."""
     x, y, z, w = q
     sin_pitch = max(-1.0, min(1.0, 2 * (w * y - z * x)))
     if abs(sin_pitch) > 1 - 1e-12:
-        # Gimbal lock: roll and yaw turn about the same axis, so all of it is yaw.
+        # Gimbal lock: roll and yaw rotate about the same axis, so roll is set to zero.
         yaw = math.atan2(-2 * (x * y - w * z), 1 - 2 * (x * x + z * z))
         return 0.0, math.copysign(math.pi / 2, sin_pitch), yaw
     return (
@@ -61,13 +61,13 @@ def rpy_from_quat(q: Sequence[float]) -> Vec3:
 
 
 def yaw_of(q: Sequence[float]) -> float:
-    """Heading in radians of a rotation, about the world's z axis."""
+    """Heading of a rotation about the world's z axis, rad."""
     x, y, z, w = q
     return math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
 
 
 def quat_multiply(a: Sequence[float], b: Sequence[float]) -> Quat:
-    """Rotation `b` first, then `a`."""
+    """The rotation `b` followed by `a`."""
     ax, ay, az, aw = a
     bx, by, bz, bw = b
     return (
@@ -84,7 +84,7 @@ def quat_conjugate(q: Sequence[float]) -> Quat:
 
 
 def quat_normalize(q: Sequence[float]) -> Quat:
-    """A unit quaternion; raises ValueError for one of length zero or not finite."""
+    """Normalizes a quaternion; raises ValueError if its length is zero or not finite."""
     norm = math.sqrt(sum(c * c for c in q))
     if not math.isfinite(norm) or norm < 1e-12:
         raise ValueError("a quaternion of length zero is not a rotation")
@@ -93,7 +93,7 @@ def quat_normalize(q: Sequence[float]) -> Quat:
 
 
 def rotate(q: Sequence[float], v: Sequence[float]) -> Vec3:
-    """Vector `v` turned by rotation `q`."""
+    """Rotates vector `v` by `q`."""
     x, y, z, w = q
     vx, vy, vz = v
     tx, ty, tz = 2 * (y * vz - z * vy), 2 * (z * vx - x * vz), 2 * (x * vy - y * vx)
@@ -105,7 +105,7 @@ def rotate(q: Sequence[float], v: Sequence[float]) -> Vec3:
 
 
 def quat_from_axis_angle(axis: Sequence[float], angle: float) -> Quat:
-    """Rotation by `angle` radians about `axis`, of any length but zero."""
+    """Rotation by `angle` radians about `axis`, which can have any nonzero length."""
     norm = math.sqrt(sum(c * c for c in axis))
     if norm < 1e-12:
         raise ValueError("an axis of length zero has no direction")
@@ -143,10 +143,10 @@ def matrix_from_quat(q: Sequence[float]) -> Array:
 
 
 def quat_between(source: Sequence[float], target: Sequence[float]) -> Quat:
-    """The shortest rotation that turns direction `source` into direction `target`."""
+    """The shortest rotation from direction `source` to direction `target`."""
     a = np.asarray(source, dtype=float)
     b = np.asarray(target, dtype=float)
-    # By the largest part first: the squares of tiny or huge ones leave the range of numbers.
+    # Scale by the largest component first: squares of tiny or huge values under- or overflow.
     a, b = a / np.abs(a).max(), b / np.abs(b).max()
     a, b = a / np.linalg.norm(a), b / np.linalg.norm(b)
     w = 1 + float(a @ b)
@@ -159,30 +159,30 @@ def quat_between(source: Sequence[float], target: Sequence[float]) -> Quat:
 
 @dataclass(frozen=True, slots=True)
 class Pose:
-    """A frame within another: position in metres, orientation ``(x, y, z, w)``."""
+    """The pose of a frame in another frame: position in metres, orientation ``(x, y, z, w)``."""
 
     position: Vec3 = (0.0, 0.0, 0.0)
     orientation: Quat = IDENTITY
 
     @classmethod
     def from_xyz_rpy(cls, xyz: Sequence[float], rpy: Sequence[float] = (0, 0, 0)) -> Pose:
-        """A pose as URDF's ``<origin xyz rpy>`` and SDF's ``<pose>`` state it."""
+        """A pose from the values of URDF's ``<origin xyz rpy>`` or SDF's ``<pose>``."""
         x, y, z = (float(c) for c in xyz)
         return cls((x, y, z), quat_from_rpy(*(float(a) for a in rpy)))
 
     @property
     def x(self) -> float:
-        """Metres."""
+        """x coordinate, m."""
         return self.position[0]
 
     @property
     def y(self) -> float:
-        """Metres."""
+        """y coordinate, m."""
         return self.position[1]
 
     @property
     def z(self) -> float:
-        """Metres."""
+        """z coordinate, m."""
         return self.position[2]
 
     @property
@@ -196,18 +196,18 @@ class Pose:
         return yaw_of(self.orientation)
 
     def __matmul__(self, other: Pose) -> Pose:
-        """`other`, given in this frame, in the frame that this one is given in."""
+        """Transforms `other` from this frame to the frame in which this pose is given."""
         dx, dy, dz = rotate(self.orientation, other.position)
         x, y, z = self.position
         return Pose((x + dx, y + dy, z + dz), quat_multiply(self.orientation, other.orientation))
 
     def inverse(self) -> Pose:
-        """The outer frame within this one."""
+        """The pose of the outer frame in this frame."""
         q = quat_conjugate(self.orientation)
         x, y, z = rotate(q, self.position)
         return Pose((-x, -y, -z), q)
 
     def apply(self, point: Sequence[float]) -> Vec3:
-        """A point of this frame in the outer one."""
+        """Transforms a point from this frame to the outer frame."""
         dx, dy, dz = rotate(self.orientation, point)
         return (self.position[0] + dx, self.position[1] + dy, self.position[2] + dz)

@@ -1,4 +1,4 @@
-"""Everything of one simulation put together: world, graph, plugins, clock."""
+"""A complete simulation: world, graph, plugins and clock."""
 
 from __future__ import annotations
 
@@ -22,23 +22,23 @@ from cartwheel.simulation.clock import Task
 from cartwheel.simulation.pacing import Pacer
 
 CLOCK_RATE = 100.0
-"""Hz of simulation time."""
+"""Default rate of ``/clock``, Hz of simulation time."""
 
 
 class Session:
     """A simulation with its graph.
 
     Args:
-        world: What stands in it from the start.
-        seed: Of all noise.
+        world: The world at startup.
+        seed: Seed for all noise.
         strict: Treat every warning about a file as an error.
-        lenient: Leave out, and report, plugins that name what their model does not have, as
-            Gazebo does; else such a model is refused.
-        bridge: Files of ros_gz_bridge, whose names topics have.
-        allow_path: Folders whose files clients of its services may name.
+        lenient: Skip plugins that refer to missing parts of their model and report a warning, as
+            Gazebo does. Otherwise such a model is rejected.
+        bridge: Configuration files of ros_gz_bridge, which define topic names.
+        allow_path: Folders with files that clients of the session's services may load.
 
     Raises:
-        CartwheelError: One of these cannot be used.
+        CartwheelError: The world or a configuration file cannot be used.
     """
 
     def __init__(
@@ -81,19 +81,21 @@ class Session:
         frame_prefix: str = "",
         controllers: Sequence[Path] = (),
     ) -> str:
-        """`Simulation.spawn`, strict where the session is; on the owner's thread.
+        """Spawns a model as `Simulation.spawn` does; in strict mode, warnings are errors.
+
+        Call it on the owner's thread.
 
         Args:
-            description: Of the model.
-            name: In this world; the description's own when None.
-            pose: Of its root link; the description's own when None.
-            namespace: Of its topics and services, where a plugin names none; ROS 1's spawn_model
-                says "/" as well. "" leaves it to each plugin.
-            frame_prefix: Of its frames.
-            controllers: YAML files whose controllers its manager starts by itself.
+            description: The model's description.
+            name: Name in this world; None for the description's name.
+            pose: Pose of the root link; None for the description's pose.
+            namespace: Default namespace of topics and services, as "/" in ROS 1's spawn_model. ""
+                leaves the default to each plugin.
+            frame_prefix: Prefix of frame names.
+            controllers: YAML files whose controllers the model's controller manager starts.
 
         Raises:
-            PluginError: It has no manager of controllers to start them.
+            PluginError: The model has no controller manager.
         """
         before = len(self.simulation.diagnostics)
         files = ControllerFiles.of(self.graph)
@@ -122,7 +124,7 @@ class Session:
         return spawned
 
     def report_unbridged(self) -> None:
-        """Tells what the files of ros_gz_bridge name and is not there; on the owner's thread."""
+        """Reports missing topics listed in ros_gz_bridge files. Call it on the owner's thread."""
         before = len(self.simulation.diagnostics)
         names = {topic.name for topic in self.graph.topics()}
         for fault in GzBridge.of(self.graph).faults(names):
@@ -130,22 +132,22 @@ class Session:
         self._check(before)
 
     def set_clock_rate(self, rate: float) -> None:
-        """Tells the time `rate` times a second of it; on the owner's thread.
+        """Sets the publish rate of ``/clock``. Call it on the owner's thread.
 
         Args:
-            rate: Hz of simulation time; 0 or more than there are steps is every step.
+            rate: Hz of simulation time; 0 or more than the step rate publishes at every step.
         """
         self.simulation.unschedule(self._clock_task)
         self._clock_task = self._schedule_clock(rate)
 
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
-        """All that was reported so far."""
+        """Diagnostics reported so far."""
         return tuple(self.simulation.diagnostics)
 
     @property
     def notes(self) -> dict[str, str]:
-        """What made this simulation, for those who keep its messages."""
+        """Version, world, seed, step length and models, as metadata for recordings."""
         import cartwheel
 
         simulation = self.simulation
@@ -158,7 +160,7 @@ class Session:
         }
 
     def pacer(self, *, until_ns: int | None = None) -> Pacer:
-        """Runs the session against the wall clock."""
+        """Creates a pacer that runs the session against the wall clock."""
         return Pacer(self.simulation, until_ns=until_ns, strict=self.strict)
 
     def _subscriber_failed(self, subscription: Subscription, error: Exception) -> None:
@@ -166,7 +168,7 @@ class Session:
         self.simulation.fail(what, error)
 
     def close(self) -> None:
-        """Ends the run; see `Simulation.close`."""
+        """Stops the simulation; see `Simulation.close`."""
         self.simulation.close()
         ControllerFiles.of(self.graph).loaded.clear()
         self.graph.close()

@@ -1,7 +1,7 @@
-"""YAML that strangers wrote: a loader with bounds, and files of bounded size.
+"""Loads untrusted YAML with limits on file size and number of values.
 
-PyYAML's own loader follows aliases without end: 400 bytes can stand for more values than memory
-holds, as soon as something walks over them.
+PyYAML's own loader expands aliases without limit: 400 bytes can represent more values than fit into
+memory when something iterates over them.
 """
 
 from __future__ import annotations
@@ -14,18 +14,18 @@ if TYPE_CHECKING:
     import yaml
 
 MAX_BYTES = 2_000_000
-"""Of a file. The largest parameter files of public robots have 100 kB."""
+"""Maximum file size. The largest parameter files of public robots are 100 kB."""
 MAX_DEPTH = 50
 MAX_VALUES = 200_000
-"""In a text, those that aliases stand for included."""
+"""Maximum number of values in a document, including values repeated by aliases."""
 
 
 def read(path: Path, limit: int = MAX_BYTES) -> str:
     """The text of a YAML file.
 
     Raises:
-        OSError: It cannot be read, is not a regular file, or is larger than the limit.
-        UnicodeDecodeError: It is no UTF-8.
+        OSError: The file cannot be read, is not a regular file, or is larger than the limit.
+        UnicodeDecodeError: The file is not valid UTF-8.
     """
     if not path.exists():
         raise FileNotFoundError(2, "No such file or directory", str(path))
@@ -39,10 +39,10 @@ def read(path: Path, limit: int = MAX_BYTES) -> str:
 
 
 def load(text: str) -> Any:
-    """What a text of YAML says: mappings, lists, texts, numbers, dates.
+    """Loads a YAML document: mappings, lists, strings, numbers and dates.
 
     Raises:
-        yaml.YAMLError: It is no YAML, or exceeds the bounds.
+        yaml.YAMLError: The YAML is invalid or exceeds the limits.
     """
     import yaml
 
@@ -51,9 +51,9 @@ def load(text: str) -> Any:
 
 @lru_cache(maxsize=1)
 def loader() -> type[yaml.SafeLoader]:
-    """A `yaml.SafeLoader` with bounds, for ``yaml.load`` and ``yaml.compose``.
+    """A `yaml.SafeLoader` class with limits, for ``yaml.load`` and ``yaml.compose``.
 
-    It is made at the first use: importing yaml takes a while.
+    It is created at first use because importing yaml is slow.
     """
     import yaml
 
@@ -96,9 +96,9 @@ def loader() -> type[yaml.SafeLoader]:
         def construct_object(self, node: Any, deep: bool = False) -> Any:
             try:
                 return super().construct_object(node, deep)
-            except (ValueError, OverflowError) as error:  # a date such as 2001-99-99
+            except (ValueError, OverflowError) as error:  # an invalid date such as 2001-99-99
                 problem = str(error)
-            except (LookupError, TypeError, AttributeError):  # such as !!int of an empty text
+            except (LookupError, TypeError, AttributeError):  # such as !!int with an empty text
                 problem = f'expected a value of type "{node.tag.rpartition(":")[2]}"'
             raise yaml.constructor.ConstructorError(None, None, problem, node.start_mark)
 

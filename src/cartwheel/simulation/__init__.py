@@ -1,4 +1,4 @@
-"""The one thread that owns the physics."""
+"""The simulation, which a single thread owns."""
 
 import cartwheel.world  # noqa: F401 - imports MuJoCo as it must be
 from cartwheel.simulation.handles import CameraHandle, JointHandle, LinkHandle, MotorHandle

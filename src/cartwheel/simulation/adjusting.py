@@ -1,4 +1,4 @@
-"""Gravity and lights of a compiled model, changed in place."""
+"""Changes gravity and lights in a compiled model."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from cartwheel.world.lights import shine
 
 
 def adjust(engine: Engine, world: WorldDescription) -> bool:
-    """Makes the engine's model one of another world, where no more differs than can be changed.
+    """Applies a world to the engine's model if they differ only in gravity and lights.
 
     Returns:
-        Whether it could; nothing has changed where not.
+        Whether the world was applied; otherwise the model is unchanged.
     """
     before = engine.world
     if replace(world, gravity=before.gravity, lights=before.lights) != before:
@@ -24,7 +24,7 @@ def adjust(engine: Engine, world: WorldDescription) -> bool:
     model = engine.model
     if world.gravity != before.gravity:
         model.opt.gravity[:] = world.gravity
-        # What the engine finds awake and asleep at once, it wakes.
+        # The engine wakes trees that are marked as both awake and asleep.
         engine.data.tree_awake[:] = 1
     for index, light in enumerate(world.lights):
         for name, value in shine(light).items():
@@ -34,6 +34,6 @@ def adjust(engine: Engine, world: WorldDescription) -> bool:
 
 
 def _kept(light: Light) -> tuple[object, ...]:
-    """What of a light is compiled in."""
+    """The properties of a light that are compiled into the model."""
     spot = (light.spot_angle, light.spot_inner, light.spot_falloff)
     return light.name, light.type, light.range, *spot

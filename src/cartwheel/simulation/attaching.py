@@ -1,7 +1,7 @@
-"""Fixed joints that are made and undone while time goes on, between links of any models.
+"""Fixed joints that can be added and removed at run time, between links of any models.
 
-Each is a weld that was compiled in without anything to hold; whom it holds is told to it while it
-runs. It lasts over spawning and deleting, until one of the two links is gone.
+Each joint is a weld that is compiled in without bodies; its bodies are set at run time. It persists
+when models are spawned or deleted, until one of its two links is removed.
 """
 
 from __future__ import annotations
@@ -17,40 +17,40 @@ from cartwheel.world.entry import SHIFT, scoped
 
 _OBJ = mujoco.mjtObj
 _POSE = slice(3, 10)
-"""Of a weld's numbers: where the second body is in the first."""
+"""Elements in a weld's data: pose of the second body in the first."""
 _EQUALITY = mujoco.mjtConstraint.mjCNSTR_EQUALITY.value
 _NEVER = -1e9
-"""m, a margin at which nothing touches."""
+"""Contact margin at which nothing collides, m."""
 
 
 @dataclass(frozen=True, slots=True)
 class Held:
-    """Two links and how they are held."""
+    """Two attached links and their relative pose."""
 
     holder: str
-    """Scoped name; "world" is the world itself."""
+    """Scoped link name; "world" for the world itself."""
     link: str
     pose: Pose
-    """Of the link in its holder."""
+    """Pose of the link in its holder."""
     collides: bool
-    """Whether the link goes on touching others."""
+    """Whether the link still collides."""
 
 
 class AttachmentHandle:
-    """Holds a link in another one, or in the world, as a fixed joint would.
+    """Attaches a link to another link or to the world, as a fixed joint does.
 
     Args:
-        name: Of the weld.
+        name: Name of the weld.
     """
 
     def __init__(self, name: str) -> None:
         self.name = name
         self.held: Held | None = None
-        """None while it holds nothing."""
+        """None while nothing is attached."""
         self._kept: list[tuple[Any, int, float]] = []
 
     def bind(self, model: Any, data: Any) -> None:
-        """Resolves the names in a compiled model; lets go where one of the two is gone."""
+        """Resolves the names in a compiled model; detaches if a link was removed."""
         self._model, self._data = model, data
         self._kept = []
         self.id = mujoco.mj_name2id(model, _OBJ.mjOBJ_EQUALITY, self.name)
@@ -65,23 +65,23 @@ class AttachmentHandle:
     def hold(
         self, holder: tuple[str, str] | None, link: tuple[str, str], *, collides: bool = True
     ) -> None:
-        """Holds a link where it is now; what was held before is let go.
+        """Attaches a link at its current pose; detaches the previous link.
 
         Args:
-            holder: Model and link that it is held in; None is the world.
-            link: Model and link; must stand in the world, as the holder must.
-            collides: Whether the link goes on touching others.
+            holder: Model and link to attach to; None for the world.
+            link: Model and link to attach. Both links must exist.
+            collides: Whether the link still collides.
         """
         self.release()
         one, two = "world" if holder is None else scoped(*holder), scoped(*link)
-        # What was last computed may be of the state before.
+        # The computed poses may belong to an earlier state.
         mujoco.mj_kinematics(self._model, self._data)
         pose = self._pose(self._body(one)).inverse() @ self._pose(self._body(two))
         self.held = Held(one, two, pose, collides)
         self._take(self.held)
 
     def shift(self, step: Vec3) -> None:
-        """Moves the place that the link is held at, m in the holder's axes."""
+        """Moves the attached link's target position, m in the holder's axes."""
         held = self.held
         if held is not None:
             x, y, z = np.add(held.pose.position, step).tolist()
@@ -90,22 +90,22 @@ class AttachmentHandle:
             self._model.eq_data[self.id, _POSE][:3] = moved.position
 
     def link_pose(self) -> Pose:
-        """Of the link that is held, in the world."""
+        """World pose of the attached link."""
         assert self.held is not None
         return self._pose(self._body(self.held.link))
 
     def force(self) -> Array:
-        """What it exerts on the link, N in the world's axes, shape (3,); 0 while it holds none."""
+        """Force on the attached link, N in world axes, shape (3,); 0 while nothing is attached."""
         data = self._data
         rows = np.flatnonzero((data.efc_type == _EQUALITY) & (data.efc_id == self.id))
         if self.held is None or len(rows) < 3:
             return np.zeros(3)
-        # The first three rows are the places', along the world's axes.
+        # The first three rows are the translational constraints, along the world's axes.
         exerted: Array = -data.efc_force[rows[:3]]
         return exerted
 
     def release(self) -> None:
-        """Lets go."""
+        """Detaches the link."""
         self.held = None
         if self.id >= 0:
             self._data.eq_active[self.id] = 0
@@ -121,14 +121,15 @@ class AttachmentHandle:
         self._data.eq_active[self.id] = 1
         for tree in {int(model.body_treeid[each]) for each in (body, self._body(held.holder))}:
             if tree >= 0:
-                # Asleep it would be no load to its holder, and would stay where it is let go.
+                # While asleep, the link would not load its holder and would float after it is
+                # released.
                 self._set(model.tree_sleep_policy, tree, mujoco.mjtSleepPolicy.mjSLEEP_NEVER.value)
                 self._data.tree_awake[tree] = 1
         if not held.collides:
             self._pass_through(body)
 
     def _pass_through(self, body: int) -> None:
-        """Ends the body's touching: in general, and in the pairs that are stated by themselves."""
+        """Disables the body's collisions, in general and in explicit contact pairs."""
         model = self._model
         geoms = set(np.flatnonzero(model.geom_bodyid == body).tolist())
         for geom in geoms:
@@ -151,23 +152,23 @@ class AttachmentHandle:
 
 
 class SurroundingsHandle:
-    """All links in the world, whichever model they are of."""
+    """All links in the world, in any model."""
 
     links: tuple[tuple[str, str], ...] = ()
-    """Model and link of each."""
+    """Model and link names."""
     moving: frozenset[tuple[str, str]] = frozenset()
-    """Those that can move at all."""
+    """The links that can move."""
 
     def bind(self, model: Any, data: Any) -> None:
-        """Sees what stands in a compiled model."""
+        """Finds the links in a compiled model."""
         found = {}
         for body in range(1, model.nbody):
             name = mujoco.mj_id2name(model, _OBJ.mjOBJ_BODY, body)
             if mujoco.mj_name2id(model, _OBJ.mjOBJ_TENDON, name) >= 0:
-                # The rotor of a motor.
+                # the rotor of a motor
                 continue
             if mujoco.mj_name2id(model, _OBJ.mjOBJ_JOINT, scoped(name, SHIFT)) >= 0:
-                # The tyre of a wheel that slips.
+                # the tyre of a wheel with slip
                 continue
             owner, _, link = name.partition("::")
             found[owner, link] = body
@@ -178,7 +179,7 @@ class SurroundingsHandle:
         self._data = data
 
     def pose(self, model: str, link: str) -> Pose | None:
-        """Of a link in the world; None where there is none of that name."""
+        """World pose of a link; None if the link does not exist."""
         body = self._found.get((model, link))
         if body is None:
             return None
@@ -186,7 +187,7 @@ class SurroundingsHandle:
         return Pose((x, y, z), from_wxyz(self._data.xquat[body].tolist()))
 
     def distances(self, point: Vec3) -> Array:
-        """From a point in the world to the frames of all `links`, m, shape (links,)."""
+        """Distances from a point in the world to the frames of all `links`, m, shape (links,)."""
         places: Array = self._data.xpos[self._bodies].reshape(-1, 3)
         away: Array = np.linalg.norm(places - np.asarray(point), axis=1)
         return away

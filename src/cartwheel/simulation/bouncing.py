@@ -1,9 +1,8 @@
-"""Bodies that bounce: Newton's law of impact, which a soft contact cannot keep at any step.
+"""Restitution by Newton's law of impact, which soft contacts cannot satisfy at any time step.
 
-What meets faster than a surface's threshold is given the velocity with which it parts, as ODE
-does. The impulse is that of all contacts of the moment together, with Coulomb's friction, against
-the inertia of all bodies and joints; what holds bodies otherwise, such as a weld, answers in the
-steps after it.
+Bodies that meet faster than a surface's threshold get the rebound velocity, as in ODE. The impulse
+is solved for all simultaneous contacts together, with Coulomb friction, against the inertia of all
+bodies and joints. Other constraints, such as welds, react in the following steps.
 """
 
 from __future__ import annotations
@@ -18,21 +17,21 @@ from cartwheel.geometry import Array
 from cartwheel.world.contact import Bounce
 
 _STEPS_OF_FALL = 2.0
-"""What gravity gives in so many steps is a body that rests, whatever a surface's threshold."""
+"""Steps of free fall whose speed counts as resting, regardless of a surface's threshold."""
 _SWEEPS = 200
-"""Of the solver, at most: contacts of one body share its impulse."""
+"""Maximum iterations of the solver, because contacts of one body share its impulse."""
 _SETTLED = 1e-9
-"""m/s, by which no contact's velocity is changed any more."""
+"""Convergence tolerance for contact velocities, m/s."""
 _SINGULAR = 1e-12
-"""Of an inverse mass: a contact that nothing can move."""
+"""Minimum inverse mass; below it, a contact cannot move."""
 
 
 class Bounces:
-    """The impacts of one model's surfaces.
+    """Impacts of a model's surfaces.
 
     Args:
-        model: MuJoCo's.
-        surfaces: Those that bounce.
+        model: The MuJoCo model.
+        surfaces: Surfaces with restitution.
     """
 
     def __init__(self, model: Any, surfaces: Sequence[Bounce]) -> None:
@@ -44,14 +43,14 @@ class Bounces:
             self._threshold[geom] = each.threshold
 
     def apply(self, model: Any, data: Any) -> bool:
-        """Throws back what meets in the present state.
+        """Applies restitution to the contacts in the current state.
 
         Args:
-            model: MuJoCo's.
-            data: After a forward pass; positions and velocities may change.
+            model: The MuJoCo model.
+            data: The MuJoCo data after a forward pass; positions and velocities may change.
 
         Returns:
-            Whether anything was: the pass must be made anew.
+            Whether anything changed; the forward pass must then be repeated.
         """
         if data.ncon == 0:
             return False
@@ -72,7 +71,7 @@ class Bounces:
         friction = data.contact.friction[meeting][:, :2]
         impulse = _impulse(jacobian @ response.T, speeds, wanted, friction)
         change = impulse[:, None] * response
-        # It met within the last step: what it is thrown by moves it from then on.
+        # The impact was within the last step, so the rebound velocity applies from then on.
         since = np.minimum(data.contact.dist[meeting] / speeds[::3], model.opt.timestep)
         shift = np.maximum(since, 0.0).repeat(3) @ change
         mujoco.mj_integratePos(model, data.qpos, shift, 1.0)
@@ -81,7 +80,7 @@ class Bounces:
 
 
 def _rows(model: Any, data: Any, index: int) -> Array:
-    """How fast two bodies part at a contact, along its normal and both tangents, by `qvel`."""
+    """Jacobian of the relative velocity at a contact, along its normal and both tangents."""
     contact = data.contact[index]
     jacobians = []
     for geom in contact.geom:
@@ -92,16 +91,16 @@ def _rows(model: Any, data: Any, index: int) -> Array:
 
 
 def _impulse(inverse_mass: Array, speeds: Array, wanted: Array, friction: Array) -> Array:
-    """The impulses that bring speeds to those that are wanted, within what contacts can bear.
+    """Solves for the impulses that produce the wanted velocities within the contact limits.
 
     Args:
-        inverse_mass: Speed of each row by the impulse on each, 1/kg.
-        speeds: m/s before, for each contact along the normal and both tangents.
-        wanted: m/s after.
-        friction: Of each contact, along both tangents.
+        inverse_mass: Velocity of each row per impulse on each row, 1/kg.
+        speeds: Velocities before the impact, m/s; normal and two tangents per contact.
+        wanted: Velocities after the impact, m/s.
+        friction: Friction coefficients along both tangents of each contact.
 
     Returns:
-        N s: along a normal not below 0, across it no more than friction bears.
+        Impulses, N s: normal impulses are nonnegative, tangential impulses are limited by friction.
     """
     impulse = np.zeros_like(speeds)
     diagonal = np.maximum(np.diag(inverse_mass), _SINGULAR)

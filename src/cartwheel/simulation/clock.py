@@ -1,4 +1,4 @@
-"""Simulation time in integer nanoseconds, and what is due when."""
+"""Simulation time in integer nanoseconds, and the schedule of tasks."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ NANOSECONDS = 1_000_000_000
 _NEVER = 1 << 40
 """Steps."""
 _FINEST = 1_000_000
-"""Of the denominators of rates."""
+"""Maximum denominator of rates."""
 SLOWEST = 1 / _FINEST
-"""Hz; tasks of lower rates run at this one."""
+"""Hz; tasks with lower rates run at this rate."""
 _KEPT = 1 << 15
-"""Steps of a cycle."""
+"""Maximum number of cached steps in a cycle."""
 
 
 def to_ns(seconds: float) -> int:
@@ -23,23 +23,22 @@ def to_ns(seconds: float) -> int:
 
 
 def always() -> bool:
-    """Of a task that has something to do whenever it is due."""
+    """The default for `Task.active`: the task runs whenever it is due."""
     return True
 
 
 class Task:
-    """Something done at a rate, at fixed multiples of its period since time zero.
+    """A task that runs at a rate, at fixed multiples of its period since time zero.
 
-    A due time that falls between two steps is met at the next step, without drift: the
-    mean rate is the stated one, and all tasks of one rate fall on the same steps whenever
-    their model was spawned.
+    A due time between two steps is handled at the next step, without drift. The mean rate is exact,
+    and all tasks with the same rate run in the same steps, whenever their model was spawned.
 
     Args:
-        rate: Hz; 0 is every step.
+        rate: Hz; 0 runs at every step.
         before: Writes controls, before the step that starts at the due time; or None.
-        after: Reads the state of the due time and publishes; or None.
-        active: Whether there is anything to do; asked when it is due.
-        order: Tasks of one time run in this order.
+        after: Reads the state at the due time and publishes; or None.
+        active: Whether the task has anything to do; called when the task is due.
+        order: Tasks due at the same time run in this order.
     """
 
     __slots__ = ("active", "after", "before", "order", "owner", "period_ns", "rate")
@@ -59,29 +58,29 @@ class Task:
         self.active = active
         self.order = order
         self.owner: object = None
-        """The plugin that asked for it; None where it is the simulation's own."""
+        """The plugin that owns the task; None for the simulation's own tasks."""
         self.period_ns = Fraction(0)
         if rate > 0:
-            # Not infinite: a rate of no more than there are steps is every step. Not zero, which
-            # is what the slowest ones would be rounded to.
+            # Limit the rate from above, where every step is due, and from below, where the fraction
+            # would be rounded to zero.
             fast = Fraction(min(rate, NANOSECONDS)).limit_denominator(_FINEST)
             self.period_ns = NANOSECONDS / max(fast, Fraction(1, _FINEST))
 
     def forget(self) -> None:
-        """Does nothing any more, and refers to nobody."""
+        """Deactivates the task and clears its references."""
         self.before = self.after = None
         self.active = always
 
     def period(self, step_ns: int) -> Fraction:
-        """In steps; a rate faster than the step runs every step."""
+        """Period in steps; at least 1."""
         return max(self.period_ns / step_ns, Fraction(1))
 
 
 class Beat:
-    """The steps at which the tasks of one period are due: ⌈k period - offset⌉ for k = 0, 1, 2 …
+    """The steps at which tasks with one period are due: ⌈k period - offset⌉ for k = 0, 1, 2 …
 
     Args:
-        period: In steps, 1 or more.
+        period: Steps, at least 1.
         offset: Steps of this length between time zero and step zero.
     """
 
@@ -90,7 +89,7 @@ class Beat:
     def __init__(self, period: Fraction, offset: Fraction = Fraction(0)) -> None:
         self.period = period
         self.cycle = period.numerator
-        """Steps after which the due ones come again."""
+        """Number of steps after which the due steps repeat."""
         if period == 1:
             offset = Fraction(0)
         self._denominator = math.lcm(period.denominator, offset.denominator)
@@ -104,9 +103,9 @@ class Beat:
 
 
 class Schedule:
-    """Tasks by period: what is due together comes again after a cycle of all periods.
+    """Tasks by period, with a cached cycle of all periods.
 
-    So a step costs one look into a table, however many tasks and periods there are.
+    Each step needs one table lookup, regardless of the number of tasks and periods.
 
     Args:
         tasks: In any order.
@@ -123,16 +122,16 @@ class Schedule:
         ]
         self._cycle = math.lcm(*(beat.cycle for beat in self._beats))
         self._met: dict[int, tuple[tuple[Task, ...], int]] = {}
-        """What was found at steps of the cycle: due tasks, and steps to the next ones."""
+        """Cache by step in the cycle: due tasks, and the number of steps to the next due tasks."""
         self._together: dict[int, tuple[Task, ...]] = {}
-        """Tasks of the periods that are due together, by the bits of these periods."""
+        """Cache of tasks that are due together, by a bit mask of their periods."""
 
     def at(self, step: int) -> tuple[tuple[Task, ...], int]:
-        """The tasks due at a step, in their order, and the next step at which any are."""
+        """The tasks due at a step, in order, and the next step with due tasks."""
         place = step % self._cycle
         met = self._met.get(place)
         if met is None:
-            # Odd rates make long cycles.
+            # Unusual rates produce long cycles.
             if len(self._met) >= _KEPT:
                 self._met.clear()
             met = self._met[place] = self._look(step)

@@ -1,4 +1,4 @@
-"""Contacts with their forces, as the last forward pass found them."""
+"""Contacts and their forces from the last forward pass."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ _GEOM = mujoco.mjtObj.mjOBJ_GEOM
 
 
 def read_contacts(model: Any, data: Any, names: Collection[str]) -> list[Contact]:
-    """The contacts of the named geoms; each has the named one as its `first`.
+    """Contacts of the named geoms, with the named geom as `first`.
 
-    A contact between two named geoms comes once for each of them.
+    A contact between two named geoms is returned once for each of them.
     """
     wanted = {}
     for name in names:
@@ -37,12 +37,12 @@ def read_contacts(model: Any, data: Any, names: Collection[str]) -> list[Contact
             continue
         contact = data.contact[index]
         if contact.efc_address < 0:
-            # Within the margin but without force.
+            # Within the margin, but without force.
             continue
         six = np.zeros(6)
         mujoco.mj_contactForce(model, data, index, six)
-        # Rows of the frame are the normal and two tangents; the normal points from one to
-        # two, and the force is what one exerts on two.
+        # The rows of the frame are the normal and two tangents. The normal points from the first
+        # geom to the second, and the force acts on the second.
         frame = contact.frame.reshape(3, 3)
         force, torque = frame.T @ six[:3], frame.T @ six[3:]
         position, normal, depth = contact.pos.copy(), frame[0].copy(), -float(contact.dist)

@@ -1,9 +1,9 @@
-"""Turns the frames of contacts, so that friction's two coefficients count where they should.
+"""Rotates contact frames so that both friction coefficients apply in the right direction.
 
-The engine lays the first tangent of a contact along the world's y axis, whatever touches. Its
-functions that find contacts stand in a table by the types of the two shapes, which is there to be
-written to: around those that matter a function is put here that says where the first tangent is.
-The table is the process's, so each function looks up whose contact it is.
+MuJoCo aligns the first tangent of a contact with the world's y axis. Its collision functions are in
+a public, writable table indexed by the two shape types. This module wraps the relevant entries to
+set the first tangent. The table is shared by the whole process, so each wrapper looks up the model
+of the contact.
 """
 
 from __future__ import annotations
@@ -23,9 +23,9 @@ from cartwheel.errors import SimulationError
 from cartwheel.world.pairs import Alignment
 
 _TYPES = int(mujoco.mjtGeom.mjGEOM_SDF) + 1
-"""Types of shapes that collide: rows and columns of the table."""
+"""Number of colliding shape types: rows and columns of the table."""
 _NUMBERS = 10
-"""Of a contact as it is found: distance, position, normal, first tangent."""
+"""Values per contact: distance, position, normal, first tangent."""
 _Found = ctypes.c_double * _NUMBERS
 _Collide = ctypes.CFUNCTYPE(
     ctypes.c_int,
@@ -37,7 +37,7 @@ _Collide = ctypes.CFUNCTYPE(
     ctypes.c_double,
 )
 _ALONG_NORMAL = 1e-3
-"""Of a direction: less than that across the normal says nothing."""
+"""Minimum component of a direction perpendicular to the normal."""
 _STEEP = math.sqrt(0.5)
 _CHECK = """<mujoco><worldbody><geom type="plane" size="1 1 1"/>
 <body pos="0 0 0.09"><freejoint/><geom type="capsule" size="0.1 0.2" zaxis="1 2 0"/></body>
@@ -45,15 +45,15 @@ _CHECK = """<mujoco><worldbody><geom type="plane" size="1 1 1"/>
 
 
 class Directions:
-    """Where friction counts of one model and its data, for as long as it is kept.
+    """Friction directions of one model and its data, active while this object exists.
 
     Args:
-        model: MuJoCo's.
-        data: MuJoCo's.
-        alignments: The pairs whose coefficients differ by direction; mostly none.
+        model: The MuJoCo model.
+        data: The MuJoCo data.
+        alignments: Pairs with direction-dependent coefficients; usually empty.
 
     Raises:
-        SimulationError: The engine's contacts are not those that this is written for.
+        SimulationError: The engine's contact layout is not supported.
     """
 
     def __init__(self, model: Any, data: Any, alignments: Sequence[Alignment]) -> None:
@@ -72,15 +72,15 @@ class Directions:
         _TABLE.serve(data, self, kinds)
 
     def tangent(self, first: int, second: int, normal: Sequence[float]) -> list[float] | None:
-        """Along which the first coefficient of a contact counts, across its normal.
+        """The tangent along which the first friction coefficient of a contact applies.
 
         Args:
-            first: Geom.
-            second: Geom.
-            normal: Unit vector, in the world.
+            first: Geom index.
+            second: Geom index.
+            normal: Unit vector in world axes.
 
         Returns:
-            None where these two have no rule, or where the direction is along the normal.
+            None if this pair has no alignment, or if the direction is parallel to the normal.
         """
         rule = self._rules.get((first, second))
         if rule is None:
@@ -88,7 +88,7 @@ class Directions:
         body, x, y, z, across = rule
         a, b, c = normal
         if body < 0:
-            # ODE's own choice.
+            # the choice that ODE makes
             x, y, z = (0.0, -c, b) if abs(c) > _STEEP else (-b, a, 0.0)
         else:
             r = self._turns[body].tolist()
@@ -106,17 +106,17 @@ class Directions:
 
 
 class _Table:
-    """The engine's table of functions that find contacts."""
+    """The engine's table of collision functions."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
         self._served: weakref.WeakValueDictionary[int, Directions] = weakref.WeakValueDictionary()
         self._functions: dict[tuple[int, int], Any] = {}
-        """Ours; the engine keeps but an address."""
+        """References to our functions; the engine stores only addresses."""
         self._entries: Any = None
 
     def serve(self, data: Any, directions: Directions, kinds: set[tuple[int, int]]) -> None:
-        """Asks a model's directions from now on, at contacts of these types of shapes."""
+        """Registers a model's directions for contacts of these shape types."""
         with self._lock:
             if self._entries is None:
                 self._entries = _entries()
@@ -146,10 +146,10 @@ class _Table:
 
 
 def _entries() -> Any:
-    """The engine's table, after a look at whether what stands in it does what is expected.
+    """The engine's table, after a test that its entries work as expected.
 
     Raises:
-        SimulationError: It does not.
+        SimulationError: The table's layout is unexpected.
     """
     library = ctypes.CDLL(str(_library()))
     entries = (ctypes.c_void_p * (_TYPES * _TYPES)).in_dll(library, "mjCOLLISIONFUNC")
@@ -157,7 +157,7 @@ def _entries() -> Any:
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
     kinds = [int(kind) for kind in model.geom_type]
-    # The engine itself lays the tangent along a capsule's axis: two contacts, one at each end.
+    # Reference case: two contacts, one at each end of a capsule, with tangents along its axis.
     buffer = (ctypes.c_double * (_NUMBERS * 8))()
     find = _Collide(entries[kinds[0] * _TYPES + kinds[1]] or 0)
     count = find(model._address, data._address, ctypes.addressof(buffer), 0, 1, 0.0)
@@ -179,7 +179,7 @@ def _entries() -> Any:
 
 
 def _library() -> Path:
-    """The engine's library, which is loaded already."""
+    """The engine's library, which is already loaded."""
     folder = Path(mujoco.__file__).parent
     found = sorted(
         path

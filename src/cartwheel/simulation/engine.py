@@ -1,4 +1,4 @@
-"""The compiled model, its state and its time: what the simulation's thread owns."""
+"""The compiled model with its state and time, owned by the simulation's thread."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from cartwheel.world.pairs import Alignment
 
 _OBJ = mujoco.mjtObj
 _STILL: Vec3 = (0.0, 0.0, 0.0)
-# By number: numpy's integers equal the enumeration's, yet do not find them in a mapping.
+# Keyed by number: numpy integers equal the enum members, but hash differently.
 _STATE_SIZES = {mujoco.mjtJoint.mjJNT_FREE.value: (7, 6), mujoco.mjtJoint.mjJNT_BALL.value: (4, 3)}
 
 
@@ -31,8 +31,8 @@ class Engine:
     """MuJoCo's model and data with integer time.
 
     Args:
-        world: Its step length counts.
-        seed: Of all noise.
+        world: The world; sets the time step.
+        seed: Seed for all noise.
     """
 
     def __init__(self, world: WorldDescription, seed: int) -> None:
@@ -42,41 +42,41 @@ class Engine:
         self.time_ns = 0
         """Simulation time."""
         self.step = 0
-        """Steps made since `origin_ns`."""
+        """Steps since `origin_ns`."""
         self.origin_ns = 0
-        """When the present length of a step began to count; time zero at first."""
+        """The time of the last change of the step length; initially zero."""
         self.commanded = 0
-        """How often something from outside moved, pushed or drove anything."""
+        """Number of external actions: moves, pushes and drive commands."""
         self.rewinds = 0
-        """How often time went back to zero."""
+        """Number of time resets."""
         self.model: Any = None
         self.data: Any = None
         self.renderer = Renderer()
         self.diagnostics: list[Diagnostic] = list(world.diagnostics)
         self.on_diagnostic: list[Callable[[Diagnostic], None]] = []
         self.on_fault: Callable[[object, Exception], None] = _raise
-        """Called with a plugin that failed, and its error."""
+        """Called with a failed plugin and its error."""
         self.on_tasks: list[Callable[[], None]] = []
-        """Called after a task was changed for another."""
+        """Called after a task was replaced."""
         self.on_entries: list[Callable[[], None]] = []
-        """Called after something more was asked to be built into a model that stands already."""
+        """Called after an addition to a model that is already compiled."""
         self.entries: Sequence[ModelEntry] = ()
-        """The models that stand in the world."""
+        """The models in the world."""
         self._orders = itertools.count()
 
     def close(self) -> None:
-        """Frees what drawing holds; calls nobody any more."""
+        """Frees rendering resources and removes all callbacks."""
         self.renderer.close()
         self.on_fault = _raise
         for listeners in (self.on_diagnostic, self.on_tasks, self.on_entries):
             listeners.clear()
 
     def steps_until(self, time_ns: int) -> int:
-        """Steps that bring time to `time_ns`, or just beyond it."""
+        """Number of steps until `time_ns` is reached or just exceeded."""
         return -((self.time_ns - time_ns) // self.step_ns)
 
     def set_step(self, step_ns: int) -> None:
-        """Makes steps of another length from now on; the model must be compiled for it."""
+        """Changes the step length; the model must be compiled for it."""
         self.origin_ns, self.step, self.step_ns = self.time_ns, 0, step_ns
 
     def task(
@@ -87,7 +87,7 @@ class Engine:
         after: Callable[[], None] | None,
         active: Callable[[], bool],
     ) -> Task:
-        """A task that runs after all that were made before it; see `Task`."""
+        """Creates a task that runs after all earlier tasks; see `Task`."""
         return Task(
             rate=rate,
             before=before,
@@ -97,7 +97,7 @@ class Engine:
         )
 
     def report(self, diagnostic: Diagnostic) -> None:
-        """Keeps a diagnostic, and passes it to all callbacks."""
+        """Stores a diagnostic and passes it to all callbacks."""
         self.diagnostics.append(diagnostic)
         for callback in self.on_diagnostic:
             callback(diagnostic)
@@ -105,12 +105,12 @@ class Engine:
     def replace(
         self, model: Any, alignments: Sequence[Alignment] = (), bounces: Sequence[Bounce] = ()
     ) -> None:
-        """Goes on with another model, with the state of every joint that both have.
+        """Replaces the model and keeps the state of every joint that exists in both models.
 
         Args:
-            model: MuJoCo's.
-            alignments: In which directions friction counts.
-            bounces: The surfaces that bounce.
+            model: The MuJoCo model.
+            alignments: Friction directions.
+            bounces: Surfaces with restitution.
         """
         model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_AUTORESET
         data = mujoco.MjData(model)
@@ -125,10 +125,10 @@ class Engine:
         self.renderer.bind(model)
 
     def forward(self) -> None:
-        """Makes poses, contacts and forces those of the present state; changes no state.
+        """Computes poses, contacts and forces for the current state, which does not change.
 
         Raises:
-            SimulationError: The contacts need more memory than there is.
+            SimulationError: There is not enough memory for the contacts.
         """
         try:
             mujoco.mj_forward(self.model, self.data)
@@ -136,18 +136,18 @@ class Engine:
             raise self._exhausted(error) from None
 
     def locate(self) -> None:
-        """Makes poses and velocities those of the present state, and nothing else."""
+        """Computes only poses and velocities for the current state."""
         mujoco.mj_kinematics(self.model, self.data)
         mujoco.mj_comPos(self.model, self.data)
         mujoco.mj_comVel(self.model, self.data)
 
     def advance(self, count: int, *, forwarded: bool) -> None:
-        """Makes steps.
+        """Runs simulation steps.
 
         Args:
             count: At least 1.
-            forwarded: The forward pass of the present state is done: of the first step only
-                the integration is missing. Both ways give the same bits.
+            forwarded: Whether the forward pass of the current state is done, so that the first step
+                only integrates. The results are bit-identical in both cases.
         """
         self.step += count
         self.time_ns += count * self.step_ns
@@ -178,7 +178,7 @@ class Engine:
         )
 
     def rewind(self, *, keep_time: bool = False) -> None:
-        """Everything where it was placed, and time zero unless it shall go on."""
+        """Resets all joints to their initial state, and time to zero unless `keep_time` is set."""
         time = self.data.time
         mujoco.mj_resetData(self.model, self.data)
         if keep_time:
@@ -189,55 +189,57 @@ class Engine:
         self.forward()
 
     def body_id(self, model: str, link: str) -> int:
-        """The index of a link."""
+        """The index of a link's body."""
         return int(mujoco.mj_name2id(self.model, _OBJ.mjOBJ_BODY, scoped(model, link)))
 
     def joint_id(self, model: str, joint: str) -> int:
-        """The index of a joint, or -1; a free model's root has one of its link's name."""
+        """The index of a joint, or -1; the free joint of a model's root is named after its link."""
         return int(mujoco.mj_name2id(self.model, _OBJ.mjOBJ_JOINT, scoped(model, joint)))
 
     def link_pose(self, model: str, link: str) -> Pose:
-        """A link's frame in the world, as of the last forward pass."""
+        """A link's frame in the world, from the last forward pass."""
         body = self.body_id(model, link)
         x, y, z = self.data.xpos[body].tolist()
         return Pose((x, y, z), from_wxyz(self.data.xquat[body].tolist()))
 
     def model_pose(self, entry: ModelEntry) -> Pose:
-        """A model's frame in the world: it goes with its canonical link, a URDF's root."""
+        """A model's frame in the world, fixed to its canonical link (the root link in URDF)."""
         link = self.link_pose(entry.name, entry.description.canonical_link)
         return link @ entry.description.canonical_pose.inverse()
 
     def free_joint(self, model: str, link: str) -> int:
-        """The index of the joint that leaves a link free in the world, or -1."""
+        """The index of the free joint of a link, or -1."""
         joint = self.joint_id(model, link)
         free = joint >= 0 and self.model.jnt_type[joint] == mujoco.mjtJoint.mjJNT_FREE
         return joint if free else -1
 
     def place(self, joint: int, pose: Pose, linear: Vec3 = _STILL, angular: Vec3 = _STILL) -> None:
-        """Moves the body of a free joint, and sets the motion of its frame.
+        """Moves the body of a free joint and sets its frame's velocity.
 
         Args:
-            joint: Index.
-            pose: In the world.
-            linear: m/s, in the world's axes.
-            angular: rad/s, in the world's axes.
+            joint: Joint index.
+            pose: Pose in the world.
+            linear: m/s, in world axes.
+            angular: rad/s, in world axes.
         """
         position, velocity = self.model.jnt_qposadr[joint], self.model.jnt_dofadr[joint]
         self.data.qpos[position : position + 3] = pose.position
         self.data.qpos[position + 3 : position + 7] = to_wxyz(pose.orientation)
         self.data.qvel[velocity : velocity + 3] = linear
-        # MuJoCo keeps a free body's turning in the body's own axes.
+        # MuJoCo uses body axes for a free body's angular velocity.
         turning = rotate(quat_conjugate(pose.orientation), angular)
         self.data.qvel[velocity + 3 : velocity + 6] = turning
         self.forward()
 
     def set_joint(self, joint: int, position: float) -> None:
-        """Turns a joint of one degree of freedom, and stops it."""
+        """Sets the position of a joint with one degree of freedom and stops the joint."""
         self.data.qpos[self.model.jnt_qposadr[joint]] = position
         self.data.qvel[self.model.jnt_dofadr[joint]] = 0.0
 
     def joint_state(self, model: str, joint: str) -> tuple[list[float], list[float]]:
-        """Positions in rad or m and rates of a joint's axes; none where it turns about no axis."""
+        """Positions in rad or m and velocities of a joint's axes; empty for joints without hinge
+        axes.
+        """
         positions, rates = [], []
         for name in (joint, f"{joint}::axis2"):
             index = self.joint_id(model, name)
@@ -247,7 +249,7 @@ class Engine:
         return positions, rates
 
     def joint_position(self, joint: int) -> float:
-        """Of a joint of one degree of freedom, rad or m."""
+        """Position of a joint with one degree of freedom, rad or m."""
         return float(self.data.qpos[self.model.jnt_qposadr[joint]])
 
 
@@ -256,7 +258,7 @@ def _raise(_: object, error: Exception) -> None:
 
 
 def _carry_over(old_model: Any, old: Any, model: Any, data: Any) -> None:
-    """Copies the state of every joint that both models have, by name."""
+    """Copies the state of every joint that exists in both models, by name."""
     data.time = old.time
     for index in range(model.njnt):
         name = mujoco.mj_id2name(model, _OBJ.mjOBJ_JOINT, index)

@@ -1,4 +1,4 @@
-"""Wrenches on links and efforts on joints, for a stated span of simulation time."""
+"""Wrenches on links and efforts on joints for an interval of simulation time."""
 
 from __future__ import annotations
 
@@ -17,27 +17,27 @@ _NEVER = 1 << 40
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Push:
-    """One wrench or effort."""
+    """A wrench or an effort."""
 
     model: str
     part: str
-    """A link, or a joint."""
+    """A link or a joint."""
     turns: bool
     """Whether it is an effort on a joint."""
     value: Array
-    """Shape (6,), force and torque in the world's axes at the centre of mass; or (1,), effort."""
+    """Shape (6,): force and torque in world axes at the centre of mass; or (1,): effort."""
     start_ns: int
     end_ns: int | None
 
     def weight(self, time_ns: int, step_ns: int) -> float:
-        """The share of the step at `time_ns` during which it acts."""
+        """The fraction of the step at `time_ns` during which the push acts."""
         end = time_ns + step_ns
         if self.end_ns is not None:
             end = min(end, self.end_ns)
         return max(0, end - max(time_ns, self.start_ns)) / step_ns
 
     def steady(self, time_ns: int, step_ns: int) -> int:
-        """Steps from `time_ns` on during which the weight stays what it is there; 1 or more."""
+        """Number of steps from `time_ns` with a constant weight; at least 1."""
         if self.start_ns > time_ns:
             return max(1, (self.start_ns - time_ns) // step_ns)
         if self.end_ns is None:
@@ -46,23 +46,24 @@ class Push:
 
 
 class Forces:
-    """Applies pushes over exactly their time, and costs nothing while there are none.
+    """Applies pushes for their exact duration, at no cost while there are none.
 
-    A push that begins or ends within a step acts with the share of the step, so that what a
-    body gains is force times duration, whatever the step. For the simulation's thread alone.
+    A push that begins or ends within a step is scaled by its fraction of the step, so that the
+    impulse is force times duration, whatever the step length. Use it only on the simulation's
+    thread.
 
     Args:
-        engine: Whose bodies are pushed.
+        engine: The engine with the pushed bodies.
     """
 
     def __init__(self, engine: Engine) -> None:
         self._engine = engine
         self._pushes: list[Push] = []
         self._due = 0
-        """The step at which something changes next."""
+        """The step of the next change."""
         self._wrenches: dict[int, Array] = {}
         self._efforts: dict[int, Array] = {}
-        """What is pushed now, by body and by degree of freedom."""
+        """Current pushes by body and by degree of freedom."""
 
     @property
     def active(self) -> bool:
@@ -79,15 +80,15 @@ class Forces:
         start_ns: int = 0,
         duration_ns: int | None = None,
     ) -> None:
-        """Pushes a link at its centre of mass.
+        """Applies a force and torque at a link's centre of mass.
 
         Args:
-            model: Name of the model.
-            link: Name of its link.
-            force: N, in the world's axes.
-            torque: N m, in the world's axes.
-            start_ns: Simulation time; now when it is past.
-            duration_ns: None is without end, 0 is one step.
+            model: Model name.
+            link: Link name.
+            force: N, in world axes.
+            torque: N m, in world axes.
+            start_ns: Simulation time; a past time means now.
+            duration_ns: None for no end, 0 for one step.
 
         Raises:
             CartwheelError: A number is not finite or too large.
@@ -104,35 +105,36 @@ class Forces:
         start_ns: int = 0,
         duration_ns: int | None = None,
     ) -> None:
-        """Drives a joint of one degree of freedom by N m or N; see `wrench`."""
+        """Applies an effort to a joint with one degree of freedom, N m or N; see `wrench`."""
         number(effort, f'the effort on joint "{joint}"', most=STRONGEST)
         self._add(model, joint, np.array([effort], dtype=float), start_ns, duration_ns)
 
     def clear_wrenches(self, model: str, link: str) -> None:
-        """Ends all pushes on a link."""
+        """Removes all pushes on a link."""
         self._keep(lambda push: push.turns or (push.model, push.part) != (model, link))
 
     def clear_efforts(self, model: str, joint: str) -> None:
-        """Ends all efforts on a joint."""
+        """Removes all efforts on a joint."""
         self._keep(lambda push: not push.turns or (push.model, push.part) != (model, joint))
 
     def drop(self, model: str) -> None:
-        """Ends what acts on a model that leaves the world."""
+        """Removes all pushes on a deleted model."""
         self._keep(lambda push: push.model != model)
 
     def forget(self) -> None:
-        """Ends all of them."""
+        """Removes all pushes."""
         self._keep(lambda _: False)
 
     def bind(self) -> None:
-        """Goes on in a state that was made anew, where nothing is pushed yet."""
+        """Recomputes all forces after the engine's state was replaced, in which no force acts yet.
+        """
         self._wrenches, self._efforts, self._due = {}, {}, 0
 
     def serve(self) -> int:
-        """Makes the forces those of the step that begins now.
+        """Sets the forces for the step that begins now.
 
         Returns:
-            The step at which something changes next.
+            The step of the next change.
         """
         engine = self._engine
         if engine.step < self._due:
@@ -186,10 +188,11 @@ class Forces:
 
 
 def _exchange(rows: Array, old: dict[int, Array], new: dict[int, Array]) -> None:
-    """Takes what was given to rows, and gives them the new; others may have given as well."""
+    """Replaces our old contributions to each row with new ones; rows may have other contributions.
+    """
     for index in sorted(old.keys() | new.keys()):
         row = rows[index]
         before, after = old.get(index, 0.0), new.get(index, 0.0)
         row += np.subtract(after, before)
-        # What is left of rounding would keep a body awake.
+        # Rounding errors would keep a body awake.
         row[np.abs(row) <= 1e-14 * (np.abs(before) + np.abs(after))] = 0.0

@@ -1,4 +1,4 @@
-"""Stops a run that diverges, and says what most likely made it."""
+"""Stops a diverging simulation and reports the likely cause."""
 
 from __future__ import annotations
 
@@ -14,24 +14,24 @@ from cartwheel.codes import world as world_codes
 from cartwheel.errors import DivergedError, Origin
 
 _KEPT = 40
-"""States, one for each check."""
+"""Number of stored states, one per check."""
 _DUMPS = 3
-"""Files that one simulation leaves: one that recovers can diverge as often as somebody likes."""
+"""Maximum number of dump files per simulation, because divergence may recur without limit."""
 _HUGE = 1e10
-"""m, m/s or rad/s: what the engine itself takes for diverged."""
+"""m, m/s or rad/s; the engine's own threshold for divergence."""
 _WARNING = mujoco.mjtWarning
 _UNSTABLE = {_WARNING.mjWARN_BADQPOS, _WARNING.mjWARN_BADQVEL, _WARNING.mjWARN_BADQACC}
 
 
 def _swallow(message: str) -> None:
-    """The engine's own report, which names no simulation; its counts in the data do."""
+    """Discards the engine's log message, which has no simulation; the data contains the counts."""
 
 
 class Guard:
-    """Watches one simulation's state and the engine's warnings, and keeps the last states.
+    """Checks a simulation's state and the engine's warnings, and stores the last states.
 
-    The engine would write its warnings to a file in the current folder and, left alone,
-    quietly start a diverged simulation anew.
+    Without it, the engine writes warnings to a file in the current folder and silently resets a
+    diverged simulation.
     """
 
     def __init__(self) -> None:
@@ -41,32 +41,32 @@ class Guard:
         self._dumps = 0
 
     def bind(self, model: Any, data: Any) -> None:
-        """Goes on with a new model, which has moved the indices."""
+        """Continues with a new model, whose indices differ."""
         self._model, self._data = model, data
         self._qpos, self._qvel = data.qpos, data.qvel
         self._counts = data.warning.number
         self.forget()
 
     def keep(self) -> None:
-        """Remembers the state for the dump."""
+        """Stores the current state for the dump."""
         self._states.append((self._data.time, self._qpos.copy(), self._qvel.copy()))
 
     def forget(self) -> None:
-        """Drops what was kept: time began anew."""
+        """Discards the stored states after a time reset."""
         self._states.clear()
         self._seen.clear()
 
     def check(self, place_of: Callable[[str], Origin | None] = lambda _: None) -> list[str]:
-        """The engine's new warnings after which a run goes on; usually none.
+        """New engine warnings that do not stop the simulation; usually empty.
 
         Args:
-            place_of: The place in a file of the link of a body. It is not kept: it would keep
+            place_of: Returns the origin of a body's link. It is not stored, because it would keep
                 its simulation alive.
 
         Raises:
             DivergedError: The state is no longer finite.
         """
-        # One number that is not finite spoils the sum: cheaper than a look at each.
+        # A non-finite value makes the sum non-finite: cheaper than checking each value.
         with np.errstate(over="ignore", invalid="ignore"):
             size = self._qpos.dot(self._qpos) + self._qvel.dot(self._qvel)
         if not size < _HUGE**2:
@@ -101,7 +101,7 @@ class Guard:
         return self._error(file.name, place_of)
 
     def _error(self, states: str, place_of: Callable[[str], Origin | None]) -> DivergedError:
-        """The error, with the file of the last states where there is one."""
+        """The error, with the file of the last states if it was written."""
         body = self._culprit()
         name = mujoco.mj_id2name(self._model, mujoco.mjtObj.mjOBJ_BODY, body) or "world"
         return DivergedError(
@@ -114,7 +114,7 @@ class Guard:
         )
 
     def _culprit(self) -> int:
-        """The body that moved fastest when all was still finite, of those that no longer are."""
+        """Of the bodies that are no longer finite, the fastest one in the last finite state."""
         model, data = self._model, self._data
         if not model.nv:
             return 0

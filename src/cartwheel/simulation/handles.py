@@ -1,7 +1,7 @@
-"""Parts of a running model that plugins hold: names resolved once for each compiled model.
+"""Handles to parts of the model for plugins, with names resolved once per compiled model.
 
-Spawning and deleting compile anew and move every index; the simulation binds all handles
-again, so a plugin keeps its handle for its life. For the simulation's thread alone.
+Spawning and deleting recompile the model and change every index. The simulation binds all handles
+again, so a plugin can keep its handles. Use them only on the simulation's thread.
 """
 
 from __future__ import annotations
@@ -40,8 +40,8 @@ class LinkHandle:
     """A link's frame and motion.
 
     Args:
-        model: Name of the model.
-        link: Name of the link.
+        model: Model name.
+        link: Link name.
     """
 
     def __init__(self, model: str, link: str) -> None:
@@ -57,7 +57,7 @@ class LinkHandle:
         self._spatial = data.cvel[self.id]
         self._centre = data.subtree_com[model.body_rootid[self.id]]
         self.moves = bool(model.body_treeid[self.id] >= 0)
-        """Whether it can move at all: neither static nor bolted to the world."""
+        """Whether the link can move: it is neither static nor fixed to the world."""
 
     @property
     def pose(self) -> Pose:
@@ -65,13 +65,13 @@ class LinkHandle:
         return Pose(*self.place())
 
     def place(self) -> tuple[Vec3, Quat]:
-        """Position and orientation of `pose`, as bare numbers for what is read at high rates."""
+        """Position and orientation of `pose` as plain tuples, for high-rate access."""
         x, y, z = self._position.tolist()
         qw, qx, qy, qz = self._quaternion.tolist()
         return (x, y, z), (qx, qy, qz, qw)
 
     def motion(self, *, local: bool) -> tuple[Vec3, Vec3]:
-        """`velocity` as bare numbers."""
+        """`velocity` as plain tuples."""
         if local:
             mujoco.mj_objectVelocity(self._model, self._data, _XBODY, self.id, self._six, 1)
             wx, wy, wz, vx, vy, vz = self._six.tolist()
@@ -79,13 +79,13 @@ class LinkHandle:
         return self.motion_at(self._position.tolist())
 
     def motion_at(self, point: Sequence[float]) -> tuple[Vec3, Vec3]:
-        """Velocity of a point of the link, and its turning, in the world's axes.
+        """Linear velocity of a point on the link and the link's angular velocity, in world axes.
 
         Args:
             point: In the world, m.
         """
-        # What mj_objectVelocity does without turning, for less than the call costs: MuJoCo
-        # keeps a body's velocity as that of the point at the centre of mass of its model.
+        # Equivalent to mj_objectVelocity in world axes, but cheaper. MuJoCo stores a body's
+        # velocity at the centre of mass of its kinematic tree.
         wx, wy, wz, vx, vy, vz = self._spatial.tolist()
         x, y, z = point
         cx, cy, cz = self._centre.tolist()
@@ -97,27 +97,28 @@ class LinkHandle:
         )
 
     def velocity(self, *, local: bool) -> tuple[Array, Array]:
-        """Linear velocity of the link's origin in m/s and angular in rad/s, each shape (3,).
+        """Linear velocity of the link's origin in m/s and angular velocity in rad/s, each shape
+        (3,).
 
         Args:
-            local: In the link's axes; else in the world's.
+            local: Use the link's axes instead of the world's.
         """
         linear, angular = self.motion(local=local)
         return np.array(linear), np.array(angular)
 
     def proper_acceleration(self, offset: Sequence[float] = (0.0, 0.0, 0.0)) -> Array:
-        """What an accelerometer reads: m/s², link axes, gravity's reaction included, shape (3,).
+        """Acceleration as measured by an accelerometer, with gravity: m/s², link axes, shape (3,).
 
         Args:
-            offset: Where it sits in the link, m.
+            offset: The accelerometer's position in the link, m.
         """
         return self._acceleration(offset)[0]
 
     def acceleration(self, offset: Sequence[float] = (0.0, 0.0, 0.0)) -> tuple[Vec3, Vec3]:
-        """How a point of the link gains speed and turning: m/s² and rad/s², in the world's axes.
+        """Linear and angular acceleration of a point on the link, m/s² and rad/s², in world axes.
 
         Args:
-            offset: Of the point in the link, m.
+            offset: The point in the link, m.
         """
         proper, angular = self._acceleration(offset)
         turn: Array = self._data.xmat[self.id].reshape(3, 3)
@@ -126,14 +127,14 @@ class LinkHandle:
         return (ax, ay, az), (wx, wy, wz)
 
     def _acceleration(self, offset: Sequence[float]) -> tuple[Array, Array]:
-        """`proper_acceleration`, and that of the turning in rad/s², link axes."""
+        """`proper_acceleration` and the angular acceleration in rad/s², link axes."""
         if not self.moves:
-            # The engine works out nothing for what cannot move: it bears its weight.
+            # The engine computes no acceleration for fixed bodies, so only gravity remains.
             turn: Array = self._data.xmat[self.id].reshape(3, 3)
             weight: Array = -turn.T @ self._model.opt.gravity
             return weight, np.zeros(3)
         six = np.zeros(6)
-        # Fills the accelerations of all bodies, which stepping alone does not need.
+        # Computes the accelerations of all bodies, which stepping alone does not need.
         mujoco.mj_rnePostConstraint(self._model, self._data)
         mujoco.mj_objectAcceleration(self._model, self._data, _XBODY, self.id, six, 1)
         acceleration: Array = six[3:]
@@ -146,12 +147,13 @@ class LinkHandle:
         return acceleration, six[:3]
 
     def reaction(self, point: Sequence[float] = (0.0, 0.0, 0.0)) -> tuple[Array, Array]:
-        """What the link exerts on its parent through their joint: force in N, torque in N m.
+        """Force in N and torque in N m that the link exerts on its parent through their joint.
 
-        Each has shape (3,), in the link's axes; the torque is about `point`, in the link, m.
+        Each has shape (3,), in the link's axes. The torque is about `point`, given in the link
+        frame, m.
         """
         mujoco.mj_rnePostConstraint(self._model, self._data)
-        # MuJoCo keeps what the parent exerts on the link, about the model's centre of mass.
+        # MuJoCo stores the parent's action on the link, about the tree's centre of mass.
         torque, force = self._data.cfrc_int[self.id, :3], self._data.cfrc_int[self.id, 3:]
         turn: Array = self._data.xmat[self.id].reshape(3, 3)
         about = self._position + turn @ np.asarray(point, dtype=float)
@@ -159,37 +161,37 @@ class LinkHandle:
         return -turn.T @ force, -turn.T @ torque
 
     def load(self) -> tuple[Array, Array]:
-        """What contacts, pushes and attachments exert on the link: force in N, torque in N m.
+        """Force in N and torque in N m on the link from contacts, pushes and attachments.
 
-        Each has shape (3,), in the world's axes; the torque is about its centre of mass.
+        Each has shape (3,), in world axes. The torque is about the link's centre of mass.
         """
         mujoco.mj_rnePostConstraint(self._model, self._data)
-        # MuJoCo keeps it about the model's centre of mass.
+        # MuJoCo stores it about the tree's centre of mass.
         torque, force = self._data.cfrc_ext[self.id, :3], self._data.cfrc_ext[self.id, 3:]
         arm = self._data.xipos[self.id] - self._centre
         return force.copy(), torque - np.cross(arm, force)
 
     @property
     def gravity(self) -> list[float]:
-        """What pulls at the world's bodies, m/s², in the world's axes."""
+        """Gravity, m/s², in world axes."""
         pull: list[float] = self._model.opt.gravity.tolist()
         return pull
 
     @property
     def mass(self) -> float:
-        """kg."""
+        """Mass, kg."""
         return float(self._model.body_mass[self.id])
 
     @property
     def inertia(self) -> Array:
-        """About the link's own axes, at its centre of mass, kg m², shape (3,)."""
+        """Principal moments of inertia about the centre of mass, kg m², shape (3,)."""
         turn = matrix_from_quat(from_wxyz(self._model.body_iquat[self.id].tolist()))
         moments: Array = (turn**2) @ self._model.body_inertia[self.id]
         return moments
 
 
 class JointHandle:
-    """A joint of one degree of freedom."""
+    """A joint with one degree of freedom."""
 
     def __init__(self, model: str, joint: str) -> None:
         self.model_name = model
@@ -200,7 +202,7 @@ class JointHandle:
         self.id = mujoco.mj_name2id(model, _OBJ.mjOBJ_JOINT, scoped(self.model_name, self.name))
         self._data = data
         self._qpos, self._qvel = data.qpos, data.qvel
-        # Python's own floats, for less than an index costs.
+        # Returns Python floats, and is cheaper than indexing.
         self._position_at, self._velocity_at = data.qpos.item, data.qvel.item
         rotor = scoped(self.model_name, self.name, ROTOR)
         self._motor = mujoco.mj_name2id(model, _OBJ.mjOBJ_TENDON, rotor)
@@ -215,16 +217,18 @@ class JointHandle:
         self._slides = bool(model.jnt_type[self.id] == _JOINT.mjJNT_SLIDE)
         self._zero = float(model.qpos0[self._position_index])
         self.lightness = float(model.dof_invweight0[self._velocity_index])
-        """rad/s² for 1 N m, or m/s² for 1 N, with all that it carries, where it was spawned."""
+        """Acceleration per effort, 1/(kg m²) or 1/kg, with everything that the joint carries, where
+        it was spawned.
+        """
 
     @property
     def places(self) -> tuple[int, int]:
-        """Where its position and its velocity stand among those of the model."""
+        """Indices of the position and the velocity in the model's arrays."""
         return self._position_index, self._velocity_index
 
     @property
     def position(self) -> float:
-        """rad or m."""
+        """Position, rad or m."""
         read = self._position_at
         position: float = read(self._position_index)
         return position
@@ -235,7 +239,7 @@ class JointHandle:
 
     @property
     def velocity(self) -> float:
-        """rad/s or m/s."""
+        """Velocity, rad/s or m/s."""
         read = self._velocity_at
         velocity: float = read(self._velocity_index)
         return velocity
@@ -246,7 +250,7 @@ class JointHandle:
 
     @property
     def effort(self) -> float:
-        """What drives it, N m or N: a motor, a servo or a commanded effort."""
+        """Effort of the joint's drive in N m or N: a motor, a servo or a commanded effort."""
         data = self._data
         effort = float(data.qfrc_actuator[self._velocity_index])
         if self._motor >= 0:
@@ -255,9 +259,9 @@ class JointHandle:
         return effort
 
     def child_place(self) -> tuple[Vec3, Quat]:
-        """Position and orientation of the child link in the parent link, where it is turned to.
+        """Position and orientation of the child link in the parent link.
 
-        From the joint's position alone: exact wherever in the world the two are.
+        Computed only from the joint's position, so it is exact anywhere in the world.
         """
         read = self._position_at
         moved = read(self._position_index) - self._zero
@@ -270,7 +274,7 @@ class JointHandle:
         turn = quat_multiply(self._rest_turn, (x * sin, y * sin, z * sin, math.cos(moved / 2)))
         if not self._off_centre:
             return self._rest, turn
-        # The anchor stays where it is.
+        # The anchor is fixed.
         px, py, pz = self._rest
         ax, ay, az = rotate(self._rest_turn, self._anchor)
         dx, dy, dz = rotate(turn, self._anchor)
@@ -278,44 +282,44 @@ class JointHandle:
 
 
 class JointsHandle:
-    """Joints that are read together, for less than they cost one by one.
+    """Several joints that are read together, which is cheaper than reading each one.
 
     Args:
-        joints: Of one model; each bound before this is.
+        joints: Joints of one model, bound before this handle.
     """
 
     def __init__(self, joints: Sequence[JointHandle]) -> None:
         self._joints = tuple(joints)
 
     def bind(self, model: Any, data: Any) -> None:  # noqa: ARG002 - all handles bind alike
-        """Takes the places of their numbers in a compiled model."""
+        """Stores the joints' indices in a compiled model."""
         self._qpos, self._qvel = data.qpos, data.qvel
         places = [joint.places for joint in self._joints]
         self._positions_at = np.array([position for position, _ in places], dtype=np.intp)
         self._velocities_at = np.array([velocity for _, velocity in places], dtype=np.intp)
 
     def positions(self) -> Array:
-        """rad or m, a new array of shape (joints,)."""
+        """Positions, rad or m; a new array of shape (joints,)."""
         positions: Array = self._qpos[self._positions_at]
         return positions
 
     def velocities(self) -> Array:
-        """rad/s or m/s, a new array of shape (joints,)."""
+        """Velocities, rad/s or m/s; a new array of shape (joints,)."""
         velocities: Array = self._qvel[self._velocities_at]
         return velocities
 
     def efforts(self) -> Array:
-        """N m or N, a new array of shape (joints,); see `JointHandle.effort`."""
+        """Efforts, N m or N; a new array of shape (joints,); see `JointHandle.effort`."""
         return np.array([joint.effort for joint in self._joints])
 
 
 class MotorHandle:
-    """A joint driven at a velocity with limited effort; at zero it brakes.
+    """A joint driven at a velocity with limited effort; it brakes at zero velocity.
 
-    Dry friction between the joint and a rotor that turns at the wanted velocity: exact below
-    the limit, and at the limit the joint slips. A servo as strong as most motors are would, on
-    a wheel as light as most are, swing past its target at each step. Gazebo's physics drives
-    joints by the same kind of constraint.
+    Dry friction acts between the joint and a rotor that turns at the target velocity. The joint
+    velocity is exact below the effort limit; at the limit, the joint slips. A servo with the
+    strength of a typical motor would overshoot at each step on a light wheel. Gazebo's physics
+    drives joints with the same kind of constraint.
     """
 
     def __init__(self, model: str, motor: Motor) -> None:
@@ -332,17 +336,17 @@ class MotorHandle:
 
     @property
     def turns(self) -> bool:
-        """Whether it is told to turn."""
+        """Whether the commanded velocity is nonzero."""
         return self.target != 0.0
 
     def command(self, target: float) -> None:
-        """Sets the target, rad/s or m/s."""
+        """Sets the target velocity, rad/s or m/s."""
         self.target = target
         self._qvel[self._dof] = target
 
 
 class CameraHandle:
-    """A camera that the renderer can look through."""
+    """A camera for the renderer."""
 
     def __init__(self, model: str, name: str, intrinsics: CameraIntrinsics) -> None:
         self.model_name = model

@@ -1,4 +1,4 @@
-"""Which numbers a simulation takes from outside: checked once, for all who bring them."""
+"""Limits for numbers from outside the simulation, checked in one place for all callers."""
 
 from __future__ import annotations
 
@@ -10,20 +10,20 @@ from cartwheel.errors import CartwheelError
 from cartwheel.geometry import Pose, Quat, quat_normalize
 
 FARTHEST = 1e6
-"""m, rad, m/s or rad/s: 1e10 is where the engine takes a state for diverged."""
+"""m, rad, m/s or rad/s; the engine considers a state diverged at 1e10."""
 STRONGEST = 1e10
 """N or N m."""
 SLOWEST, FASTEST = 1e-6, 1e6
 """Real-time factors."""
 MOST_STEPS = 1_000_000_000
-"""Single steps that may be asked for at a time."""
+"""Maximum number of single steps in one request."""
 
 
 def number(value: float, name: str, *, most: float = FARTHEST) -> float:
-    """A finite number.
+    """Checks that a number is finite and within the limit, and returns it.
 
     Raises:
-        CartwheelError: It is not finite, or beyond what can be simulated.
+        CartwheelError: The number is not finite, or exceeds the limit.
     """
     value = float(value)
     if not math.isfinite(value):
@@ -42,16 +42,16 @@ def _out_of_range(name: str, wanted: str, value: float) -> CartwheelError:
 
 
 def numbers(values: Sequence[float], name: str, *, most: float = FARTHEST) -> None:
-    """Checks some that belong together; see `number`."""
+    """Checks several related numbers; see `number`."""
     for value in values:
         number(value, name, most=most)
 
 
 def rotation(parts: Sequence[float], name: str) -> Quat:
-    """A unit quaternion of four numbers.
+    """Converts four numbers to a unit quaternion.
 
     Raises:
-        CartwheelError: One is not finite, or all are zero.
+        CartwheelError: A number is not finite, or all are zero.
     """
     for part, axis in zip(parts, "xyzw", strict=True):
         number(part, f"{name}.{axis}")
@@ -64,7 +64,7 @@ def rotation(parts: Sequence[float], name: str) -> Quat:
 
 
 def check_pose(pose: Pose, name: str) -> None:
-    """Refuses a pose with a number that cannot be simulated.
+    """Rejects a pose with a number that cannot be simulated.
 
     Raises:
         CartwheelError: See `number`.
@@ -74,10 +74,10 @@ def check_pose(pose: Pose, name: str) -> None:
 
 
 def check_speed(speed: float | None) -> None:
-    """Refuses what is no real-time factor; None is as fast as it can.
+    """Rejects an invalid real-time factor; None means as fast as possible.
 
     Raises:
-        CartwheelError: It is outside of what can be kept to.
+        CartwheelError: The factor is outside `SLOWEST` to `FASTEST`.
     """
     if speed is not None and not SLOWEST <= speed <= FASTEST:
         raise CartwheelError(
@@ -89,10 +89,10 @@ def check_speed(speed: float | None) -> None:
 
 
 def check_steps(count: int) -> None:
-    """Refuses a number of single steps that is too large.
+    """Rejects an invalid number of single steps.
 
     Raises:
-        CartwheelError: It is not from 1 to `MOST_STEPS`.
+        CartwheelError: The number is not between 1 and `MOST_STEPS`.
     """
     if not 1 <= count <= MOST_STEPS:
         raise CartwheelError(

@@ -1,4 +1,4 @@
-"""Immutable copies of an engine's state, by the names of links and joints."""
+"""Immutable copies of an engine's state, by link and joint names."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from cartwheel.world.entry import ModelEntry
 
 
 class Observer:
-    """Knows where each link and joint of one compiled model stands in the engine's arrays.
+    """Maps the links and joints of a compiled model to the engine's arrays.
 
     Args:
-        engine: With the model that was compiled of the entries.
+        engine: The engine with the model compiled from the entries.
         entries: The models in the world.
-        version: Of the scene.
+        version: The scene version.
     """
 
     def __init__(self, engine: Engine, entries: Sequence[ModelEntry], version: int) -> None:
@@ -48,7 +48,7 @@ class Observer:
     def snapshot(
         self, *, run_state: RunState, speed: float | None, real_time_factor: float
     ) -> Snapshot:
-        """The present state."""
+        """The current state."""
         engine = self._engine
         mujoco.mj_kinematics(engine.model, engine.data)
         return Snapshot(

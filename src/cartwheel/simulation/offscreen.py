@@ -1,4 +1,4 @@
-"""OpenGL without a window: one context, in threads and after a fork."""
+"""OpenGL without a window: one context, shared by threads and safe after a fork."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ _BACKENDS = {"egl": "mujoco.egl", "osmesa": "mujoco.osmesa"}
 
 
 class NoOpenGLError(SimulationError):
-    """OpenGL is missing on this machine."""
+    """OpenGL is not available on this machine."""
 
     code = world_codes.OPENGL_MISSING
 
 
 class ForkedError(SimulationError):
-    """OpenGL was opened before this process was forked."""
+    """OpenGL was used before this process was forked."""
 
     code = world_codes.OPENGL_FORKED
 
@@ -40,25 +40,26 @@ class ForkedError(SimulationError):
 
 
 class _Process:
-    """What this process knows of OpenGL."""
+    """The OpenGL state of this process."""
 
     opened: ClassVar[bool] = False
     forked: ClassVar[bool] = False
-    """Whether a parent had opened it: the driver's threads do not survive a fork, and the next
-    call would wait for them for ever."""
+    """Whether the parent process had opened OpenGL. The driver's threads do not survive a fork, and
+    the next call would wait for them forever.
+    """
     contexts: ClassVar[weakref.WeakSet[OffscreenContext]] = weakref.WeakSet()
 
 
 class OffscreenContext:
-    """An OpenGL context: EGL, else OSMesa; MUJOCO_GL names one of them.
+    """An OpenGL context: EGL, otherwise OSMesa. MUJOCO_GL selects one of them.
 
     Args:
-        width: Of the first image, pixels.
-        height: Of it.
+        width: Width of the first image, pixels.
+        height: Height of the first image, pixels.
 
     Raises:
-        NoOpenGLError: Neither can be opened.
-        ForkedError: This process was forked from one that had opened OpenGL.
+        NoOpenGLError: Neither library can be opened.
+        ForkedError: This process was forked from a process that had opened OpenGL.
     """
 
     def __init__(self, width: int, height: int) -> None:
@@ -71,12 +72,12 @@ class OffscreenContext:
 
     @contextlib.contextmanager
     def current(self) -> Iterator[None]:
-        """Makes the context current on this thread, and on none afterwards.
+        """Makes the context current on this thread within a ``with`` block.
 
-        A context that stayed current on one thread could not be used on another.
+        A context that stays current on one thread cannot be used on another thread.
 
         Raises:
-            ForkedError: This process was forked since.
+            ForkedError: This process was forked after the context was created.
         """
         if self._gl is None:
             raise ForkedError
@@ -88,7 +89,7 @@ class OffscreenContext:
                 _make_none_current(self._gl)
 
     def release(self, drawing: Any) -> None:
-        """Frees an `MjrContext` of this context."""
+        """Frees an `MjrContext` that belongs to this context."""
         if self._gl is None:
             _keep_for_ever(drawing)
             return
@@ -96,13 +97,13 @@ class OffscreenContext:
             drawing.free()
 
     def free(self) -> None:
-        """Frees the context; from any thread."""
+        """Frees the context. Thread-safe."""
         if self._gl is not None:
             self._gl.free()
             self._gl = None
 
     def abandon(self) -> None:
-        """In a forked process: never touches the context again."""
+        """Ensures that a forked process never uses the context again."""
         if self._gl is not None:
             _keep_for_ever(self._gl)
             self._gl = None
@@ -131,14 +132,14 @@ def _open(width: int, height: int) -> Any:
 
 def _make_none_current(context: Any) -> None:
     egl = sys.modules.get("mujoco.egl")
-    # OSMesa's contexts move between threads by themselves.
+    # OSMesa contexts can be used from any thread.
     if egl is not None and isinstance(context, egl.GLContext):
         none = egl.EGL.EGL_NO_SURFACE
         egl.EGL.eglMakeCurrent(egl.EGL_DISPLAY, none, none, egl.EGL.EGL_NO_CONTEXT)
 
 
 def _keep_for_ever(item: Any) -> None:
-    """Its destructor would call into OpenGL."""
+    """Keeps an object alive whose destructor would call OpenGL."""
     ctypes.pythonapi.Py_IncRef(ctypes.py_object(item))
 
 
@@ -151,7 +152,7 @@ def _after_fork() -> None:
     for context in _Process.contexts:
         context.abandon()
     if egl is not None:
-        # MuJoCo's own farewell to the display would wait for the threads, too.
+        # MuJoCo's exit handler would also wait for the threads.
         atexit.unregister(egl.EGL.eglTerminate)
 
 

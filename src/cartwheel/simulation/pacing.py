@@ -1,4 +1,4 @@
-"""Runs a simulation against the wall clock, and shows its state to listeners."""
+"""Runs a simulation against the wall clock and passes its state to listeners."""
 
 from __future__ import annotations
 
@@ -13,22 +13,22 @@ from cartwheel.simulation.simulation import Simulation
 from cartwheel.simulation.snapshot import RunState, Snapshot
 
 _PATIENCE = 0.25
-"""s of wall time that a slow simulation may lag before the lag is given up."""
+"""Wall time by which a simulation may lag before the lag is dropped, s."""
 _COMMANDS = 0.05
-"""s of wall time that commands of other threads may take between two steps."""
+"""Maximum wall time for commands from other threads between two steps, s."""
 _SLICE = 0.01
-"""s of wall time between two looks at the clock while running as fast as possible."""
+"""Wall time between two looks at the clock while running as fast as possible, s."""
 _WINDOW = 1.0
-"""s of wall time over which the real-time factor is measured."""
+"""Wall time over which the real-time factor is measured, s."""
 
 _LONGEST_TURN_NS = 50_000_000
-"""Simulation time of one turn at most while it is paced."""
+"""Maximum simulation time per iteration while paced."""
 
 Listener = Callable[[Snapshot], None]
 
 
 class _Frames:
-    """A listener and when it sees the next snapshot."""
+    """A listener and the time of its next snapshot."""
 
     def __init__(self, listener: Listener, rate: float) -> None:
         self.listener = listener
@@ -38,30 +38,30 @@ class _Frames:
 
 @dataclass(frozen=True, slots=True)
 class _Anchor:
-    """The wall time and simulation time from which a speed is counted."""
+    """The wall time and simulation time from which a speed is measured."""
 
     wall: float
     time_ns: int
     speed: float
 
     def time_at(self, wall: float) -> int:
-        """Where simulation time should be."""
+        """The simulation time due at a wall time."""
         return self.time_ns + int((wall - self.wall) * self.speed * NANOSECONDS)
 
     def wall_at(self, time_ns: int) -> float:
-        """When simulation time should be there."""
+        """The wall time at which a simulation time is due."""
         return self.wall + (time_ns - self.time_ns) / NANOSECONDS / self.speed
 
 
 class Pacer:
-    """Steps a simulation at its wanted speed; on the thread that owns it.
+    """Steps a simulation at its target speed. Use it on the thread that owns the simulation.
 
-    Pacing and listeners change nothing of what is simulated: only when.
+    Pacing and listeners never change the simulation results.
 
     Args:
-        simulation: To run.
-        until_ns: Simulation time at which the run ends; None never.
-        strict: End with the first divergence, also where `Simulation.recover` could go on.
+        simulation: The simulation to run.
+        until_ns: Simulation time at which to stop; None runs until stopped.
+        strict: Stop at the first divergence, even if `Simulation.recover` could continue.
     """
 
     def __init__(
@@ -76,17 +76,17 @@ class Pacer:
         simulation.on_reset.append(self._restart)
 
     def add_listener(self, listener: Listener, *, rate: float = 30.0) -> None:
-        """Calls `listener` with a snapshot at `rate` Hz of wall time, on the owner's thread.
+        """Calls `listener` with snapshots at `rate` Hz of wall time, on the owner's thread.
 
-        It must return at once: hand the snapshot to another thread.
+        The listener must return at once, for example by passing the snapshot to another thread.
         """
         self._frames += (_Frames(listener, rate),)
 
     def run(self) -> None:
-        """Runs until the time is reached or the simulation is stopped.
+        """Runs until the target time is reached or the simulation is stopped.
 
         Raises:
-            SimulationError: The simulation diverged, and nothing from outside had moved it.
+            SimulationError: The simulation diverged without any external action.
         """
         simulation = self._simulation
         simulation.command_time = _COMMANDS
@@ -100,16 +100,16 @@ class Pacer:
             turn()
 
     def _run_on(self) -> None:
-        """One turn of a running simulation: steps, listeners, sleep."""
+        """One iteration while running: steps, listeners, sleep."""
         simulation = self._simulation
         now_ns = simulation.time_ns
         anchor = self._anchored(time.perf_counter())
         if anchor is None:
-            # As many steps as fit into a slice at the speed of late; then look again.
+            # Run the steps that fit into a slice at the recent speed, then look at the clock again.
             speed = max(simulation.real_time_factor, 1.0)
             goal_ns = now_ns + max(simulation.step_ns, int(_SLICE * NANOSECONDS * speed))
         else:
-            # A slow simulation still looks at the clock, the commands and the listeners.
+            # A slow simulation must still handle the clock, commands and listeners.
             goal_ns = min(anchor.time_at(time.perf_counter()), now_ns + _LONGEST_TURN_NS)
         if self.until_ns is not None:
             goal_ns = min(goal_ns, self.until_ns)
@@ -124,10 +124,10 @@ class Pacer:
             simulation.wait(min(next_step, self._next_frame(now + 0.1)) - now)
 
     def _hold(self) -> None:
-        """One turn of a paused simulation: single steps that were asked for, listeners, sleep."""
+        """One iteration while paused: requested single steps, listeners, sleep."""
         simulation = self._simulation
         if simulation.steps_allowed:
-            # Many of them take some turns, so that listeners see what goes on.
+            # Split long requests into several iterations, so that listeners see the progress.
             most_ns = max(simulation.step_ns, _LONGEST_TURN_NS)
             wanted_ns = simulation.steps_allowed * simulation.step_ns
             self._advance(simulation.time_ns + min(wanted_ns, most_ns))
@@ -148,12 +148,13 @@ class Pacer:
                 raise
 
     def _anchored(self, now: float) -> _Anchor | None:
-        """What to keep to: counted anew after a change of speed or a lag; None without a speed."""
+        """The anchor for pacing, reset after a speed change or a lag; None without a target speed.
+        """
         simulation, anchor = self._simulation, self._anchor
         if simulation.speed is None:
             self._anchor = None
         else:
-            # Two steps of a slow motion may take longer than patience lasts.
+            # In slow motion, two steps may exceed the default patience.
             patience = max(_PATIENCE, 2 * simulation.step_ns / NANOSECONDS / simulation.speed)
             if (
                 anchor is None

@@ -1,4 +1,4 @@
-"""A model's part of the simulation: all that its plugins may touch."""
+"""The interface between plugins and the simulation."""
 
 from __future__ import annotations
 
@@ -45,15 +45,15 @@ from cartwheel.world.tyres import axle_of
 
 T = TypeVar("T")
 _DRIVE_WEIGHTS = 5.0
-"""What a servo of a whole model may push, in its weights: well above any friction."""
+"""Maximum force of a whole-model servo, as a multiple of the weight: well above any friction."""
 _DRIVE_BAND = 0.05
-"""m/s or rad/s of difference at which it pushes with all of that."""
+"""Velocity error at which the servo reaches its maximum force, m/s or rad/s."""
 _DRIVE_ARM = 0.1
-"""m; the least arm of that push that its torque corresponds to."""
+"""Minimum lever arm for the maximum torque, m."""
 
 
 class Part:
-    """What a plugin gets of the simulation; for the simulation's thread alone."""
+    """A plugin's access to its model in the simulation. Use it only on the simulation's thread."""
 
     def __init__(
         self, engine: Engine, entry: ModelEntry, *, namespace: str = "", frame_prefix: str = ""
@@ -61,9 +61,9 @@ class Part:
         self._engine = engine
         self._entry = entry
         self.namespace = namespace
-        """Of topics and services whose plugin names none; "" where nobody said one."""
+        """Default namespace of topics and services; "" if not set."""
         self.frame_prefix = frame_prefix
-        """Of all frames: ROS 1's tf_prefix."""
+        """Prefix of all frames, as ROS 1's tf_prefix."""
         self.handles: list[Handle | RayHandle] = []
         self.tasks: list[Task] = []
         self.diagnostics: list[Diagnostic] = []
@@ -71,7 +71,7 @@ class Part:
         """Plugins and their handles."""
         self.spawned = False
         self.read_sensors: set[str] = set()
-        """Names of sensors that a plugin of the model reads: they need none of their own."""
+        """Sensors that a plugin of the model publishes, so that no default plugin is needed."""
 
     @property
     def name(self) -> str:
@@ -80,7 +80,7 @@ class Part:
 
     @property
     def start(self) -> Pose:
-        """Of the model's frame in the world, where it was spawned."""
+        """Spawn pose of the model's frame in the world."""
         return self._entry.pose
 
     @property
@@ -89,36 +89,36 @@ class Part:
 
     @property
     def world(self) -> WorldDescription:
-        """The world that the model stands in, as described."""
+        """The description of the world that contains the model."""
         return self._engine.world
 
     @property
     def driven(self) -> bool:
-        """Whether a plugin of this model turns a joint at this moment."""
+        """Whether a plugin of this model currently drives a joint."""
         return any(
             handle.turns for handle in self.handles if isinstance(handle, MotorHandle | ServoHandle)
         )
 
     @property
     def time_ns(self) -> int:
-        """Simulation time of the state that is being read or controlled."""
+        """Simulation time of the current state."""
         return self._engine.time_ns
 
     @property
     def seconds(self) -> float:
-        """The same in s."""
+        """Simulation time of the current state, s."""
         return self._engine.time_ns / NANOSECONDS
 
     def models(self) -> dict[str, Pose]:
-        """All models in the world, this one among them, with their frames, by name."""
+        """Poses of all models in the world by name, including this one."""
         engine = self._engine
         return {entry.name: engine.model_pose(entry) for entry in engine.entries}
 
     def link(self, name: str, *, origin: Origin | None = None) -> LinkHandle:
-        """A link of this model.
+        """A handle to a link of this model.
 
         Raises:
-            UnknownNameError: There is none; placed at `origin`.
+            UnknownNameError: The link does not exist; the error has this `origin`.
         """
         if self.description.link(name) is None:
             raise UnknownNameError(
@@ -133,10 +133,10 @@ class Part:
         return handle
 
     def joint(self, name: str, *, origin: Origin | None = None) -> JointHandle:
-        """A joint of this model that moves.
+        """A handle to a movable joint of this model.
 
         Raises:
-            UnknownNameError: There is none; placed at `origin`.
+            UnknownNameError: The joint does not exist; the error has this `origin`.
             StaticModelError: The model is static.
         """
         movable = [joint.name for joint in self.description.joints if joint.drivable]
@@ -160,7 +160,7 @@ class Part:
         return handle
 
     def together(self, joints: Sequence[JointHandle]) -> JointsHandle:
-        """Joints of this model, to be read at once."""
+        """A handle to several joints of this model that are read together."""
         handle = JointsHandle(joints)
         self.handles.append(handle)
         return handle
@@ -168,10 +168,10 @@ class Part:
     def velocity_motor(
         self, joint: str, *, max_effort: float | None, origin: Origin | None = None
     ) -> MotorHandle:
-        """A servo that holds a joint's velocity with at most `max_effort` N m or N.
+        """A motor that holds a joint's velocity with at most `max_effort` N m or N.
 
-        Two that ask for the same joint share the motor of the first. Where a servo has it
-        already, it is that of both; see `ServoHandle`.
+        Several requests for the same joint share the first motor. If a servo already drives the
+        joint, the motor is shared; see `ServoHandle`.
         """
         self.joint(joint, origin=origin)
         motor = self._entry.motors.get(joint)
@@ -194,15 +194,15 @@ class Part:
         beyond: bool = False,
         origin: Origin | None = None,
     ) -> ServoHandle:
-        """A joint's drive that takes efforts, velocities or positions.
+        """A joint drive with effort, velocity or position commands.
+
+        If a drive plugin already drives the joint, the motor is shared; see `ServoHandle`.
 
         Args:
-            joint: Its name.
-            max_effort: N m or N; no more than the joint's own limit.
-            beyond: Whether it holds positions and velocities with more than that limit as well.
-            origin: Who asks for it.
-
-        Where a drive turns the joint already, its motor is that of both; see `ServoHandle`.
+            joint: Joint name.
+            max_effort: N m or N; at most the joint's own limit.
+            beyond: Whether positions and velocities may use more than the joint's limit.
+            origin: Origin of the request, for errors.
         """
         self.joint(joint, origin=origin)
         made = Motor(joint=joint, mode="servo", max_effort=max_effort, beyond=beyond)
@@ -216,7 +216,7 @@ class Part:
         return handle
 
     def _share(self, motor: Motor, max_effort: float | None, origin: Origin | None) -> Motor:
-        """Makes a joint's motor that of a drive, of its strength, and of a servo."""
+        """Shares a joint's motor between a drive, which sets its strength, and a servo."""
         shared = replace(motor, mode="servo", max_effort=max_effort)
         self._entry.motors[motor.joint] = shared
         for handle in self.handles:
@@ -235,10 +235,10 @@ class Part:
         )
 
     def mimic(self, joint: str, mimic: Mimic, *, origin: Origin | None = None) -> None:
-        """Makes a joint follow another one.
+        """Makes a joint follow another joint.
 
         Raises:
-            UnknownNameError: One of the two does not exist or does not move; placed at `origin`.
+            UnknownNameError: A joint does not exist or cannot move; the error has this `origin`.
         """
         for name in (joint, mimic.joint):
             self.joint(name, origin=origin)
@@ -247,14 +247,14 @@ class Part:
     def body_drive(
         self, *, gains: tuple[float, float] | None = None, origin: Origin | None = None
     ) -> BodyDriveHandle:
-        """A servo that moves the model as a whole, by its canonical link.
+        """A servo that moves the whole model by its canonical link.
 
-        It pushes at the centre of mass.
+        Its force acts at the centre of mass.
 
         Args:
-            gains: Force in N s/m and torque in N m s/rad, without a limit; None is as stiff as
-                can be, with at most `_DRIVE_WEIGHTS` times the model's weight.
-            origin: Place of an error.
+            gains: Force gain in N s/m and torque gain in N m s/rad, without a limit. None is as
+                stiff as possible, with at most `_DRIVE_WEIGHTS` times the model's weight.
+            origin: Origin for errors.
 
         Raises:
             PluginError: The model cannot move, or has no mass.
@@ -300,10 +300,10 @@ class Part:
         return handle
 
     def wrench(self, link: str, *, origin: Origin | None = None) -> WrenchHandle:
-        """A push on a link.
+        """A wrench on a link.
 
         Raises:
-            UnknownNameError: There is no such link; placed at `origin`.
+            UnknownNameError: The link does not exist; the error has this `origin`.
         """
         self.link(link, origin=origin)
         handle = WrenchHandle(self.name, link)
@@ -311,15 +311,15 @@ class Part:
         return handle
 
     def feel(self, link: str) -> None:
-        """What lies on a link stays awake: asleep it would press on nothing that stands."""
+        """Keeps bodies in contact with the link awake, because sleeping bodies exert no force."""
         self._entry.felt.append(link)
 
     def slip(self, link: str, *, radius: float, origin: Origin | None = None) -> SlipHandle:
         """A wheel's slip on the ground.
 
         Raises:
-            UnknownNameError: There is no such link; placed at `origin`.
-            PluginError: It is no wheel, or slips by another plugin already.
+            UnknownNameError: The link does not exist; the error has this `origin`.
+            PluginError: The link is not a wheel, or another plugin already sets its slip.
         """
         self.link(link, origin=origin)
         joint = next((each for each in self.description.joints if each.child == link), None)
@@ -343,7 +343,7 @@ class Part:
         return handle
 
     def attachment(self) -> AttachmentHandle:
-        """A fixed joint to be made and undone at any time, between links of any models."""
+        """A fixed joint between links of any models, which can be added and removed at any time."""
         name = scoped(self.name, "attachment", str(len(self._entry.attachments)))
         self._entry.attachments.append(name)
         handle = AttachmentHandle(name)
@@ -354,7 +354,7 @@ class Part:
         return handle
 
     def surroundings(self) -> SurroundingsHandle:
-        """All links in the world, those of other models among them."""
+        """All links in the world, including those of other models."""
         handle = SurroundingsHandle()
         self.handles.append(handle)
         return handle
@@ -394,7 +394,7 @@ class Part:
         return handle
 
     def locate(self) -> None:
-        """Before a step: makes what links tell of themselves that of now, not a step old."""
+        """Before a step: updates link poses and velocities, which otherwise lag by one step."""
         self._engine.locate()
 
     def schedule(
@@ -405,13 +405,13 @@ class Part:
         after: Callable[[], None] | None = None,
         active: Callable[[], bool] = always,
     ) -> Task:
-        """Does something at a rate in Hz; 0 is every step. See `Task`."""
+        """Schedules callbacks at a rate in Hz; 0 is every step. See `Task`."""
         task = self._engine.task(rate, before=before, after=after, active=active)
         self.tasks.append(task)
         return task
 
     def reschedule(self, task: Task, rate: float) -> Task:
-        """The task at another rate from now on; the given one is void."""
+        """Replaces a task with one at a different rate; the given task becomes invalid."""
         made = self._engine.task(rate, before=task.before, after=task.after, active=task.active)
         made.order, made.owner = task.order, task.owner
         self.tasks[self.tasks.index(task)] = made
@@ -420,16 +420,16 @@ class Part:
         return made
 
     def period_ns(self, rate: float) -> int:
-        """The mean time between the turns of a task of a rate in Hz; 0 is every step."""
+        """The mean period of a task with a rate in Hz; 0 is every step."""
         if rate <= 0:
             return self._engine.step_ns
         return max(self._engine.step_ns, round(NANOSECONDS / max(rate, SLOWEST)))
 
     def random(self, name: str) -> np.random.Generator:
-        """The noise of this moment, a sequence of its own for each named user.
+        """A random generator for the noise at the current time, separate for each `name`.
 
-        It depends on the seed, the time and the two names alone: who else draws, who listens
-        and since when change nothing. Take a new one for each measurement.
+        It depends only on the seed, the time, the model's name and `name`. Other random generators
+        and subscribers have no effect. Create a new generator for each measurement.
         """
         words = [
             self._engine.seed,
@@ -440,12 +440,15 @@ class Part:
         return np.random.default_rng(words)
 
     def contacts(self, collisions: Collection[str]) -> list[Contact]:
-        """Contacts of these collisions (``link::collision``), each the `first` of its contact."""
+        """Contacts of these collisions (``link::collision``), each with the collision as `first`.
+        """
         names = {scoped(self.name, collision) for collision in collisions}
         return read_contacts(self._engine.model, self._engine.data, names)
 
     def made(self, make: Callable[[], T]) -> T:
-        """A plugin, which owns what it asks for meanwhile; nothing is left of one that fails."""
+        """Creates a plugin, which owns everything it requests; all of it is undone if creation
+        fails.
+        """
         handles, tasks = len(self.handles), len(self.tasks)
         with self._undone_on_error():
             plugin = make()
@@ -455,7 +458,7 @@ class Part:
         return plugin
 
     def disable(self, plugin: object) -> None:
-        """Ends what a plugin does: its tasks, and what its motors and forces do."""
+        """Disables a plugin: removes its tasks and stops its motors and forces."""
         for task in self.tasks:
             if task.owner is plugin:
                 task.forget()
@@ -472,12 +475,12 @@ class Part:
                     handle.apply((0.0,) * 3, (0.0,) * 3)
 
     def fail(self, plugin: object, error: Exception) -> None:
-        """A plugin of this model failed outside of its tasks: it is disabled."""
+        """Disables a plugin of this model that failed outside its tasks."""
         self._engine.on_fault(plugin, error)
 
     @contextlib.contextmanager
     def _undone_on_error(self) -> Iterator[None]:
-        """Takes back what was asked for in between where that ends in an error."""
+        """Undoes all requests within a ``with`` block that raises an error."""
         entry = self._entry
         lists: tuple[list[Any], ...] = (
             self.handles,
@@ -501,10 +504,10 @@ class Part:
             raise
 
     def render(self, camera: CameraHandle) -> Image:
-        """An image through a camera, shape (height, width, 3), RGB.
+        """An image from a camera, shape (height, width, 3), RGB.
 
         Raises:
-            SimulationError: No OpenGL, or opened before a fork; says what to do.
+            SimulationError: OpenGL is missing, or was opened before a fork. The hint gives the fix.
         """
         return self._engine.renderer.render(self._engine.data, camera)
 
@@ -512,16 +515,16 @@ class Part:
         """The image, and depths along the camera's axis in m, shape (height, width).
 
         Raises:
-            SimulationError: No OpenGL, or opened before a fork; says what to do.
+            SimulationError: OpenGL is missing, or was opened before a fork. The hint gives the fix.
         """
         return self._engine.renderer.render_with_depth(self._engine.data, camera)
 
     def count_command(self) -> None:
-        """Something from outside acts on the model; see `Simulation.recover`."""
+        """Counts an external action on the model; see `Simulation.recover`."""
         self._engine.commanded += 1
 
     def report(self, diagnostic: Diagnostic) -> None:
-        """Tells the user something about this model; also while it runs."""
+        """Reports a diagnostic about this model, at startup or at run time."""
         if self.spawned:
             self._engine.report(diagnostic)
         else:

@@ -1,4 +1,4 @@
-"""Puts a model somewhere else with all that belongs to it."""
+"""Moves a model with all its links."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from cartwheel.world.entry import ModelEntry
 
 
 def place_model(engine: Engine, entry: ModelEntry, pose: Pose, linear: Vec3, angular: Vec3) -> None:
-    """Moves a free model as one body: its free links keep their places to each other.
+    """Moves a free model as a rigid body: its free links keep their relative poses.
 
     Args:
-        engine: With the model in it.
+        engine: The engine with the model.
         entry: The model.
-        pose: Of its frame in the world.
-        linear: m/s, of the frame's origin, in the world's axes.
-        angular: rad/s, in the world's axes.
+        pose: Pose of its frame in the world.
+        linear: Velocity of the frame's origin, m/s, in world axes.
+        angular: rad/s, in world axes.
     """
     engine.forward()
     description = entry.description
@@ -39,7 +39,7 @@ def place_model(engine: Engine, entry: ModelEntry, pose: Pose, linear: Vec3, ang
 
 
 def with_mimics(description: RobotDescription, positions: Mapping[str, float]) -> dict[str, float]:
-    """The positions, and those of the joints that mimic them, one of another too."""
+    """The positions, extended by joints that mimic them directly or indirectly."""
     found = dict(positions)
     mimics = {joint.name: joint.mimic for joint in description.joints if joint.mimic is not None}
     for _ in mimics:

@@ -1,4 +1,4 @@
-"""What moves whole models and links from outside: a servo, and a force."""
+"""External servos and forces on whole models and links."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _FREE: tuple[float | None, ...] = (None,) * 6
 
 
 class BodyDriveHandle:
-    """A servo that moves a whole model by its root link; free until it is commanded."""
+    """A servo that moves a whole model by its root link; inactive until the first command."""
 
     def __init__(self, model: str, drive: BodyDrive) -> None:
         self.model_name = model
@@ -24,7 +24,7 @@ class BodyDriveHandle:
         self._velocity: tuple[float | None, ...] = _FREE
         self._level = True
         self._rows = range(0)
-        """Of its actuators; empty until the model is built."""
+        """Actuator ids; empty until the model is compiled."""
 
     def bind(self, model: Any, data: Any) -> None:
         """Resolves the names in a compiled model."""
@@ -50,12 +50,12 @@ class BodyDriveHandle:
         *,
         level: bool = True,
     ) -> None:
-        """Sets the velocity of the link's origin, in the link's axes, until the next command.
+        """Sets the velocity of the link's origin until the next command, in the link's axes.
 
         Args:
-            linear: m/s; None leaves that direction free.
-            angular: rad/s; None leaves that direction free.
-            level: The axes turn with the link's heading alone, z is up.
+            linear: m/s; None leaves a direction free.
+            angular: rad/s; None leaves a direction free.
+            level: Use axes that follow only the link's heading, with z up.
         """
         self._velocity = (*linear, *angular)
         self._level = level
@@ -75,7 +75,7 @@ class BodyDriveHandle:
             self._gain[row, 0], self._bias[row, 2] = gain, -gain
 
     def hold(self) -> None:
-        """Aims the servos; before each step, since their axes are the world's."""
+        """Updates the actuators; called before each step, because they act in world axes."""
         if self._velocity == _FREE or not self._rows:
             return
         turn = from_wxyz(self._turned.tolist())
@@ -83,16 +83,16 @@ class BodyDriveHandle:
         wanted = [value or 0.0 for value in self._velocity]
         turning = rotate(turn, self._angular.tolist())
         spin = rotate(axes, wanted[3:])
-        # The servo sits at the centre of mass, which turns about the link's origin.
+        # The servo acts at the centre of mass, which rotates about the link's origin.
         arm = rotate(turn, self.drive.centre)
         target = np.array([*(rotate(axes, wanted[:3]) + np.cross(spin, arm)), *spin])
         now = np.array([*(self._linear + np.cross(turning, arm)), *turning])
-        # A limit on the force itself would let a servo overshoot by what a step can do.
+        # With a limit on the force itself, the servo would overshoot within a step.
         self._ctrl[:] = now + np.clip(target - now, -self.drive.band, self.drive.band)
 
 
 class WrenchHandle:
-    """A force and torque on a link from outside, that last until they are changed."""
+    """An external force and torque on a link, which act until they are changed."""
 
     def __init__(self, model: str, link: str) -> None:
         self.model_name = model
@@ -103,15 +103,15 @@ class WrenchHandle:
         """Resolves the name in a compiled model."""
         body = mujoco.mj_name2id(model, _OBJ.mjOBJ_BODY, scoped(self.model_name, self.name))
         self._total = data.xfrc_applied[body]
-        # Others push the same link with handles of their own.
+        # Other handles may push the same link.
         self._total += self._given
 
     def apply(self, force: Sequence[float], torque: Sequence[float]) -> None:
-        """Force in N at the link's centre of mass, torque in N m, both in the world's axes."""
+        """Sets the force in N at the centre of mass and the torque in N m, both in world axes."""
         self._total -= self._given
         self._given = np.array([*force, *torque], dtype=float)
         self._total += self._given
 
     def forget(self) -> None:
-        """After a reset, which has taken every push away."""
+        """Clears the wrench after a reset, which removed all forces."""
         self._given = np.zeros(6)

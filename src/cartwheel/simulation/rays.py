@@ -1,4 +1,4 @@
-"""Rays from a link into the world: what laser scanners and sonars measure with."""
+"""Rays from a link into the world, for laser scanners and sonars."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from cartwheel.world.entry import scoped
 from cartwheel.world.visuals import HIDDEN_GROUP, VISUAL_GROUP
 
 _NO_LIMIT = 1e10
-"""m: the engine's own cutoff would lose planes whose frame is farther away."""
+"""m; the engine's own cutoff would miss planes whose frame is farther away."""
 _AXES = np.vstack([np.eye(3), -np.eye(3)])
 _MESH = mujoco.mjtGeom.mjGEOM_MESH
 _BUNDLE_RAYS = 64
@@ -23,15 +23,15 @@ _MOST_BUNDLES = 48
 _SLACK = 1e-6
 """rad."""
 _FIRST_SHAPES = 16
-"""That are cast at first; then twice as many each time."""
+"""Number of geoms tested first; doubled in each iteration."""
 _WORTH_SORTING = 50_000
-"""Rays of a bundle times all shapes: with fewer, casting all at once takes less time."""
+"""Rays times geoms; below it, testing all geoms at once is faster."""
 _ROUNDING = 1e-6
 """m."""
 
 
 class _Bundles:
-    """Rays sorted into groups of like directions, so that few shapes concern a group.
+    """Rays grouped by similar directions, so that few geoms are relevant to each group.
 
     Args:
         directions: Unit vectors, shape (n, 3).
@@ -41,40 +41,40 @@ class _Bundles:
         count = len(directions)
         azimuth = np.arctan2(directions[:, 1], directions[:, 0])
         self.order: Any = np.argsort(azimuth, kind="stable")
-        """The index of each ray before it was sorted."""
+        """The original index of each sorted ray."""
         self.directions: Array = directions[self.order]
         number = min(max(1, count // _BUNDLE_RAYS), _MOST_BUNDLES)
         edges = np.linspace(0, count, number + 1).astype(int).tolist()
         self.parts = [slice(*pair) for pair in itertools.pairwise(edges)]
-        """The sorted rays of each bundle."""
+        """The range of sorted rays in each bundle."""
         sums = np.array([self.directions[part].sum(axis=0) for part in self.parts])
         lengths = np.linalg.norm(sums, axis=1)
         self.axes: Array = sums / np.maximum(lengths, 1e-9)[:, None]
-        """Of the cones that hold the bundles, shape (bundles, 3)."""
+        """Axes of the cones around the bundles, shape (bundles, 3)."""
         cosines = [
             (self.directions[part] @ axis).min()
             for part, axis in zip(self.parts, self.axes, strict=True)
         ]
         self.angles: Array = np.arccos(np.clip(cosines, -1.0, 1.0)) + _SLACK
-        """Between a cone's axis and its edge, rad, shape (bundles,)."""
-        # Rays all around have no middle: their cone is the whole sphere.
+        """Half-angles of the cones, rad, shape (bundles,)."""
+        # Rays in all directions have no mean direction, so their cone is the whole sphere.
         self.angles[lengths < 1e-6] = np.pi
 
 
 class RayHandle:
-    """A bundle of rays that start in one point of a link.
+    """A bundle of rays from one point on a link.
 
-    A shape of the own model that encloses the point is looked past: it is the sensor's housing.
-    So is what of the own model lies nearer than `minimum`. Everything else is seen.
+    The rays ignore geoms of the same model that enclose the point, such as the sensor's housing,
+    and geoms of the same model nearer than `minimum`. They hit everything else.
 
     Args:
-        model: Name of the model.
-        link: Name of the link.
-        pose: Of the sensor in the link.
+        model: Model name.
+        link: Link name.
+        pose: Pose of the sensor in the link.
         directions: Unit vectors in the sensor's axes, shape (n, 3).
-        minimum: Nearest distance that is measured, in m.
-        maximum: Farthest distance that is measured, in m; may be inf.
-        visuals: See visuals, as a GPU does, instead of collisions.
+        minimum: Minimum measured distance, m.
+        maximum: Maximum measured distance, m; may be inf.
+        visuals: Hit visuals, as a GPU sensor does, instead of collisions.
     """
 
     def __init__(
@@ -112,18 +112,18 @@ class RayHandle:
         own = np.array([model.body(i).name.startswith(prefix) for i in range(model.nbody)])
         self._own = own[model.geom_bodyid]
         retros = model.geom_user[:, 0] if model.nuser_geom else np.zeros(model.ngeom)
-        # One more, for the geom -1 of a ray that hits nothing.
+        # One more entry, for geom -1 of a ray without a hit.
         self._retros = np.append(retros, 0.0)
-        # Found at the first cast: poses of the new model are not computed yet.
+        # Determined at the first cast, because the new model has no computed poses yet.
         self._housing = None
 
     def cast(self) -> tuple[Array, Array]:
-        """Measures along all rays, as of the last forward pass.
+        """Casts all rays in the state of the last forward pass.
 
         Returns:
-            Distances in m, shape (n,): -inf where something is nearer than `minimum`, inf where
-            nothing is within `maximum` (REP 117). And the laser_retro of what each ray hit,
-            shape (n,), 0 where it hit nothing.
+            Distances in m, shape (n,): -inf for hits nearer than `minimum`, inf without a hit
+            within `maximum` (REP 117); and the laser_retro of each hit, shape (n,), 0 without a
+            hit.
         """
         turn = self._data.xmat[self._body].reshape(3, 3)
         start = self._data.xpos[self._body] + turn @ self._offset
@@ -137,8 +137,8 @@ class RayHandle:
         distances[:] = -1.0
         geoms[:] = -1
         try:
-            # The engine's quick tests for whole bodies miss shapes: they forget that a body may
-            # be turned. Without trees it makes none; the bundles take their place.
+            # The engine's bounding tests for bodies ignore the body's rotation and miss geoms.
+            # Without tree addresses, it skips these tests; the bundles replace them.
             trees[:] = -1
             open_groups = saved_groups.copy()
             open_groups[self._housing] = HIDDEN_GROUP
@@ -204,7 +204,7 @@ class RayHandle:
                 yield part, visible
 
     def _box_distances(self, start: Array) -> Array:
-        """How far each geom's bounding box is, in m, rounded down; 0 and less inside."""
+        """Lower bounds of the distances to each geom's bounding box, m; 0 or less inside."""
         data, boxes = self._data, self._model.geom_aabb
         turns = data.geom_xmat.reshape(-1, 3, 3)
         place = np.einsum("gji,gj->gi", turns, start - data.geom_xpos) - boxes[:, :3]
@@ -225,11 +225,10 @@ class RayHandle:
         open_groups: Any,
         all_counts: Any,
     ) -> None:
-        """Fills in distances and geoms, some shapes at a time.
+        """Fills in distances and geoms, in batches of geoms from near to far.
 
-        A ray that has hit something before the nearest of the others goes no further. The engine
-        asks each shape of each body for each ray, so bodies without a shape that counts have none
-        for that time.
+        A ray with a hit nearer than all remaining geoms is finished. The engine tests all geoms of
+        all bodies for each ray, so the geoms of irrelevant bodies are hidden meanwhile.
         """
         model = self._model
         groups, counts = model.geom_group, model.body_geomnum
@@ -254,7 +253,7 @@ class RayHandle:
                 going = going[(known < 0) | (known > near[first])]
 
     def _cast(self, start: Array, rays: Array, distances: Array, geoms: Any) -> None:
-        """Fills in distances, -1 where nothing is hit, and the geoms that are."""
+        """Fills in distances, -1 without a hit, and the geoms that were hit."""
         mujoco.mj_multiRay(
             self._model,
             self._data,
@@ -271,10 +270,10 @@ class RayHandle:
         )
 
     def _enclosing(self, start: Array) -> Array:
-        """The geoms that ride with the sensor and have its start inside.
+        """Geoms that move with the sensor and contain its origin.
 
-        From the inside of a convex shape every ray hits it, from the outside none does in two
-        opposite senses. Of a mesh it says that there are walls on all sides.
+        From inside a convex shape, every ray hits it; from outside, two opposite rays cannot both
+        hit it. For a mesh, the test finds walls on all sides.
         """
         model = self._model
         rigid = model.body_weldid[model.geom_bodyid] == model.body_weldid[self._body]

@@ -1,4 +1,4 @@
-"""Camera images by MuJoCo's renderer, without a display or a GPU."""
+"""Camera images from MuJoCo's renderer, without a display or a GPU."""
 
 from __future__ import annotations
 
@@ -16,20 +16,20 @@ from cartwheel.simulation.offscreen import OffscreenContext
 from cartwheel.world.visuals import HIDDEN_GROUP, VISUAL_GROUP
 
 _WALL = 0.99
-"""Of the far distance, where a wall is put behind everything."""
+"""Distance of the background wall, as a fraction of the far distance."""
 _FULL = 255
 
 _PIXEL = np.dtype((np.void, 3))
-"""Three bytes as one value: numpy fills those by a mask many times faster."""
+"""Three bytes as one value: numpy applies masks to such values many times faster."""
 
 Image = np.ndarray[tuple[int, int, int], np.dtype[np.uint8]]
 Depth = np.ndarray[tuple[int, int], np.dtype[np.float32]]
 
 
 class Renderer:
-    """Draws what cameras see. OpenGL is opened at the first image.
+    """Renders camera images. OpenGL is opened at the first image.
 
-    Any thread may draw, one at a time: the context is current only while an image is drawn.
+    Any thread may render, one at a time: the context is current only while an image is rendered.
     """
 
     def __init__(self) -> None:
@@ -48,14 +48,14 @@ class Renderer:
         self._perturb = mujoco.MjvPerturb()
 
     def bind(self, model: Any) -> None:
-        """Draws this model from now on."""
+        """Sets the model to render."""
         self._model = model
         self._background = _background(model)
         self._opaque = _opaque(model)
         self._drop_scene()
 
     def close(self) -> None:
-        """Frees everything."""
+        """Frees all resources."""
         self._drop_scene()
         self._model = None
         if self._gl is not None:
@@ -63,27 +63,28 @@ class Renderer:
             self._gl = None
 
     def render(self, data: Any, camera: CameraHandle) -> Image:
-        """An image through a camera of the bound model, shape (height, width, 3), RGB.
+        """An image from a camera in the bound model, shape (height, width, 3), RGB.
 
         Raises:
-            NoOpenGLError: OpenGL is missing; says what to install.
-            ForkedError: This process was forked from one that had opened OpenGL.
+            NoOpenGLError: OpenGL is missing; the hint says what to install.
+            ForkedError: This process was forked from a process that had opened OpenGL.
         """
         pixels, _ = self._draw(data, camera)
         return np.ascontiguousarray(pixels[::-1])
 
     def render_with_depth(self, data: Any, camera: CameraHandle) -> tuple[Image, Depth]:
-        """The image, and how far ahead what each pixel shows is: m, shape (height, width).
+        """The image, and the depth of each pixel: m, shape (height, width).
 
-        Along the camera's axis, not along the pixel's ray; inf where nothing is.
+        Depths are along the camera's axis, not along the pixel's ray; inf where nothing is visible.
 
         Raises:
-            NoOpenGLError: OpenGL is missing; says what to install.
-            ForkedError: This process was forked from one that had opened OpenGL.
+            NoOpenGLError: OpenGL is missing; the hint says what to install.
+            ForkedError: This process was forked from a process that had opened OpenGL.
         """
         pixels, buffer = self._draw(data, camera)
         lens = camera.intrinsics
-        # The buffer holds near (far - z) / (z (far - near)): 1 at the near plane, 0 at the far.
+        # The buffer contains near (far - z) / (z (far - near)): 1 at the near plane, 0 at the far
+        # plane.
         with np.errstate(divide="ignore"):
             depths = np.float32(lens.near * lens.far) / (
                 np.float32(lens.near) + buffer[::-1] * np.float32(lens.far - lens.near)
@@ -92,7 +93,7 @@ class Renderer:
         return np.ascontiguousarray(pixels[::-1]), depths
 
     def _draw(self, data: Any, camera: CameraHandle) -> tuple[Image, Depth]:
-        """Pixels and the depth buffer, both from the lowest row upwards."""
+        """Pixels and the depth buffer, both with the lowest row first."""
         with self._opened(camera.intrinsics.width, camera.intrinsics.height):
             return self._draw_in_context(data, camera)
 
@@ -115,14 +116,14 @@ class Renderer:
         return pixels, buffer
 
     def _show(self, data: Any, camera: CameraHandle, hidden: Any = None) -> None:
-        """Puts what is in view of the model into the scene, before the lens.
+        """Adds the visible geoms in front of the camera to the scene.
 
-        The engine draws what is behind the camera as well, so it is not told of that.
+        The engine also draws geoms behind the camera, so they are omitted here.
 
         Args:
-            data: Of the bound model.
-            camera: Whose view it is.
-            hidden: Geoms to leave out, shape (ngeom,).
+            data: Data of the bound model.
+            camera: The camera.
+            hidden: Mask of geoms to omit, shape (ngeom,).
         """
         lens, groups = camera.intrinsics, self._model.geom_group
         saved = groups.copy()
@@ -141,8 +142,8 @@ class Renderer:
             )
         finally:
             groups[:] = saved
-        # Clip planes are each camera's own; MuJoCo has one pair for all. The frustum's
-        # other numbers are given at the near plane.
+        # Cameras have individual clip planes, but MuJoCo has one pair for all. The other frustum
+        # values apply at the near plane.
         half = lens.near * math.tan(lens.horizontal_fov / 2) * lens.height / lens.width
         for view in self._scene.camera:
             view.frustum_near, view.frustum_far = lens.near, lens.far
@@ -150,16 +151,16 @@ class Renderer:
             view.frustum_center = 0.0
 
     def _shoot(self, pixels: Image, buffer: Depth | None) -> None:
-        """Draws the scene and reads the picture, and the depth buffer where one is given."""
+        """Draws the scene and reads the image, and the depth buffer if one is given."""
         viewport = mujoco.MjrRect(0, 0, pixels.shape[1], pixels.shape[0])
         mujoco.mjr_render(viewport, self._scene, self._context)
         mujoco.mjr_readPixels(pixels, buffer, viewport, self._context)
 
     def _transmitted(self, data: Any, camera: CameraHandle) -> Image:
-        """How much of the background shows through what is transparent, of 255.
+        """The fraction of the background visible through transparent geoms, from 0 to 255.
 
-        What is transparent leaves no depth, and the engine draws it before black. Here it is drawn
-        black and alone, before a white wall.
+        Transparent geoms leave no depth, and the engine draws them in front of black. Here they are
+        drawn alone in black, in front of a white wall.
         """
         self._show(data, camera, hidden=self._opaque)
         scene, lens = self._scene, camera.intrinsics
@@ -186,11 +187,11 @@ class Renderer:
 
     @contextlib.contextmanager
     def _opened(self, width: int, height: int) -> Iterator[None]:
-        """The context, current on this thread."""
+        """Opens the context if needed and makes it current on this thread."""
         if self._gl is None:
             self._gl = OffscreenContext(width, height)
-            # A script may end without closing its world: before Python takes OpenGL's modules
-            # apart, and not while it does.
+            # A script may exit without closing its world. Free the context before Python unloads
+            # OpenGL's modules.
             weakref.finalize(self, self._gl.free)
         with self._gl.current():
             yield
@@ -199,12 +200,12 @@ class Renderer:
         if self._scene is None:
             self._scene = mujoco.MjvScene(self._model, maxgeom=self._model.ngeom + 100)
             flags = self._scene.flags
-            # The engine draws its sky as a dome of 0.7 of the far distance, which hides what
-            # stands beyond.
+            # The engine draws its sky as a dome at 0.7 of the far distance, which hides farther
+            # geoms.
             for flag in ("SHADOW", "REFLECTION", "FOG", "HAZE", "SKYBOX"):
                 flags[getattr(mujoco.mjtRndFlag, f"mjRND_{flag}")] = 0
             self._context = mujoco.MjrContext(self._model, mujoco.mjtFontScale.mjFONTSCALE_50)
-            # Zero is the far end, where few bits count for much.
+            # Zero is the far end, where floating-point values have the highest resolution.
             self._context.readDepthMap = mujoco.mjtDepthMap.mjDEPTH_ZEROFAR.value
             self._size = (self._context.offWidth, self._context.offHeight)
             mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN.value, self._context)
@@ -228,7 +229,7 @@ def _background(model: Any) -> Any:
 
 
 def _out_of_view(model: Any, data: Any, camera: CameraHandle) -> Any:
-    """Which geoms lie wholly outside what the camera sees, by their spheres, shape (ngeom,)."""
+    """Mask of geoms whose bounding spheres are completely out of view, shape (ngeom,)."""
     lens = camera.intrinsics
     radius = model.geom_rbound
     axes = data.cam_xmat[camera.id].reshape(3, 3)
@@ -238,11 +239,11 @@ def _out_of_view(model: Any, data: Any, camera: CameraHandle) -> Any:
     out = (-back + radius < lens.near) | (-back - radius > lens.far)
     out |= np.abs(right) + wide * back > radius * math.hypot(1.0, wide)
     out |= np.abs(up) + high * back > radius * math.hypot(1.0, high)
-    # An endless plane has no sphere.
+    # An infinite plane has no bounding sphere.
     return out & (radius > 0)
 
 
 def _opaque(model: Any) -> Any:
-    """Which visuals hide what is behind them, shape (ngeom,); None where all do."""
+    """Mask of opaque visuals, shape (ngeom,); None if all are opaque."""
     transparent = (model.geom_group == VISUAL_GROUP) & (model.geom_rgba[:, 3] < 1)
     return ~transparent if transparent.any() else None

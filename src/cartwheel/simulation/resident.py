@@ -1,4 +1,4 @@
-"""A model that stands in a simulation, with its plugins."""
+"""A model in a simulation, with its plugins."""
 
 from __future__ import annotations
 
@@ -17,31 +17,31 @@ from cartwheel.simulation.part import Part
 from cartwheel.world.entry import ModelEntry
 
 _WEAKEST = 1e-9
-"""N m or N, of a motor that shall give none."""
+"""Effort limit of a motor with no effort, N m or N."""
 
 
 class Behaviour(Protocol):
-    """What a plugin is to the simulation."""
+    """The simulation's interface to a plugin."""
 
     def reset(self) -> None:
-        """Everything goes back to the start; time as well, or it goes on."""
+        """The simulation was reset to its initial state; time may continue or restart."""
 
     def close(self) -> None:
-        """The model leaves the world."""
+        """The model is removed from the world."""
 
 
 Attach = Callable[[Part], list[Behaviour]]
-"""Makes the plugins of a model that is about to be spawned."""
+"""Creates the plugins of a model that is about to be spawned."""
 
 
 def title(behaviour: object) -> str:
-    """A plugin as the user knows it."""
+    """A plugin's name for messages."""
     found = getattr(behaviour, "title", None)
     return found if isinstance(found, str) else f"plugin {type(behaviour).__name__}"
 
 
 def place(behaviour: object) -> Origin | None:
-    """Of the tag that made a plugin."""
+    """The origin of a plugin's tag."""
     return getattr(getattr(behaviour, "tag", None), "origin", None)
 
 
@@ -53,22 +53,23 @@ class Resident:
         self.part = part
         self.behaviours: list[Behaviour] = []
         self.drives: dict[str, MotorHandle] = {}
-        """Of joints that are driven and by no plugin."""
+        """Motorised joints that no plugin drives."""
         self.start: Pose = entry.pose
-        """Where a reset returns it."""
+        """The pose after a reset."""
 
     def motorise(self, joint: str, max_effort: float | None) -> bool:
-        """Gives a joint a motor, or its motor another limit.
+        """Adds a motor to a joint, or changes its motor's limit.
 
         Args:
-            joint: Of one degree of freedom.
-            max_effort: N m or N; None leaves it as it is; 0 takes away what no plugin has made.
+            joint: A joint with one degree of freedom.
+            max_effort: N m or N. None keeps an existing limit; 0 removes a motor that no plugin
+                created.
 
         Returns:
-            Whether the model must be compiled anew.
+            Whether the model must be recompiled.
 
         Raises:
-            UnknownNameError: There is no such joint.
+            UnknownNameError: The joint does not exist.
             WorldError: A plugin drives it by effort or position.
         """
         motors = self.entry.motors
@@ -91,12 +92,12 @@ class Resident:
         return True
 
     def close(self) -> None:
-        """Ends its plugins."""
+        """Closes all plugins."""
         for behaviour in self.behaviours:
             self._close(behaviour)
 
     def end(self, plugin: object) -> None:
-        """Ends one of its plugins; nothing happens where it has none such."""
+        """Closes a plugin; does nothing if it does not belong to this model."""
         for behaviour in self.behaviours:
             if behaviour is plugin:
                 self.behaviours.remove(behaviour)
@@ -112,10 +113,10 @@ class Resident:
             self.part.report(fault(text, error, place(behaviour), code=running.PLUGIN_FAILED))
 
     def forget(self) -> None:
-        """After `close`: lets go of plugins, and they of all that they have.
+        """After `close`: clears all references between plugins and parts.
 
-        Plugins and their parts refer to each other, which would keep the engine's memory until
-        Python's collector comes.
+        Plugins and their parts refer to each other, and these cycles would keep the engine's memory
+        allocated until Python's garbage collector runs.
         """
         for behaviour in self.behaviours:
             vars(behaviour).clear()
@@ -127,7 +128,7 @@ class Resident:
 
 
 def world_resident(engine: Engine) -> Resident:
-    """What the world itself has: no links, but plugins, and what they ask for."""
+    """The world's own resident: no links, but plugins and their handles."""
     nothing = RobotDescription(
         name="", links=(), static=True, canonical_link="", origin=Origin(file=engine.world.name)
     )

@@ -1,4 +1,4 @@
-"""Whether time goes on and how fast, and what other threads ask of the one that owns it."""
+"""The run state and speed of a simulation, and requests from other threads to its owner."""
 
 from __future__ import annotations
 
@@ -20,83 +20,86 @@ T = TypeVar("T")
 
 
 class Run:
-    """Something that goes on in time, owned by one thread.
+    """A process in simulation time, owned by one thread.
 
-    The owner alone calls its methods; others use `post` and `call`.
+    Only the owner calls its methods; other threads use `post` and `call`.
     """
 
     def __init__(self) -> None:
         self.run_state = RunState.RUNNING
         self.speed: float | None = 1.0
-        """The wanted real-time factor; None is as fast as it can."""
+        """The target real-time factor; None is as fast as possible."""
         self.real_time_factor = 0.0
-        """Measured; 0 while paused."""
+        """The measured real-time factor; 0 while paused."""
         self.steps_allowed: int | None = None
-        """Steps until a paused run pauses again; None while it is not stepping singly."""
+        """Steps until the run pauses again; None if it is not single-stepping."""
         self.on_reset: list[Callable[[], None]] = []
-        """Called after time went back to the start."""
+        """Called after time was reset."""
         self.owner: int | None = None
-        """The thread that ran it last; None while none has."""
+        """The thread that ran it last; None if none has."""
         self.closed = False
-        """Whether it has ended for good."""
+        """Whether it is closed permanently."""
         self.command_time = math.inf
-        """s of wall time that posted functions may take before time goes on. A pacer bounds it:
-        threads that post without a pause would hold time."""
+        """Maximum wall time for posted functions between steps, s. Pacers limit it, because threads
+        that post continuously would stop simulation time.
+        """
         self.commands: queue.SimpleQueue[Callable[[], None]] = queue.SimpleQueue()
 
     def pause(self) -> None:
-        """Holds time."""
+        """Pauses the simulation."""
         if self.run_state is RunState.RUNNING:
             self.run_state = RunState.PAUSED
             self.steps_allowed = None
 
     def resume(self) -> None:
-        """Lets time go on."""
+        """Resumes the simulation."""
         if self.run_state is RunState.PAUSED:
             self.run_state = RunState.RUNNING
             self.steps_allowed = None
 
     def stop(self) -> None:
-        """Ends the run, also where it sleeps; from any thread."""
+        """Stops the run, even while it sleeps. Thread-safe."""
         self.run_state = RunState.STOPPED
         self.post(lambda: None)
 
     def set_speed(self, speed: float | None) -> None:
-        """Sets the wanted real-time factor; None is as fast as it can.
+        """Sets the target real-time factor; None is as fast as possible.
 
         Raises:
-            CartwheelError: It is outside of `limits.SLOWEST` and `limits.FASTEST`.
+            CartwheelError: The factor is outside `limits.SLOWEST` to `limits.FASTEST`.
         """
         check_speed(speed)
         self.speed = speed
 
     def post(self, function: Callable[[], None]) -> None:
-        """Runs a function on the owner's thread, before the next step; from any thread.
+        """Queues a function for the owner's thread, to run before the next step. Thread-safe.
 
-        Nothing is run after the end.
+        Nothing runs after the run was closed.
         """
         if not self.closed:
             self.commands.put(function)
 
     def call(self, function: Callable[[], T]) -> Future[T]:
-        """Like `post`, with the result or the error; from any thread.
+        """Like `post`, but returns a future for the result or error. Thread-safe.
 
         Raises:
-            SimulationError: It has ended for good.
+            SimulationError: The run is closed.
         """
         if self.closed:
             raise SimulationError("the simulation is closed", code=world_codes.SIMULATION_CLOSED)
         return answered(self.post, function)
 
     def end(self) -> None:
-        """Takes no commands any more, and calls nobody; those that came last are run."""
+        """Closes the run: executes pending commands, then rejects new ones and removes all
+        callbacks.
+        """
         self.closed = True
         self.command_time = math.inf
         self.drain()
         self.on_reset.clear()
 
     def drain(self) -> None:
-        """Runs what other threads posted, for `command_time` at most."""
+        """Runs posted functions for at most `command_time`."""
         self.owner = threading.get_ident()
         end = time.perf_counter() + self.command_time
         while not self.commands.empty():
@@ -105,7 +108,7 @@ class Run:
                 return
 
     def wait(self, seconds: float) -> None:
-        """Sleeps, unless something is posted, which is run."""
+        """Sleeps until the timeout; a posted function wakes it and is run."""
         if seconds <= 0:
             return
         try:
@@ -115,7 +118,7 @@ class Run:
         self._obey(command)
 
     def command_failed(self, error: Exception) -> None:
-        """What to do about a posted function that raised an error."""
+        """Handles an error raised by a posted function."""
         raise error
 
     def _obey(self, command: Callable[[], None]) -> None:

@@ -1,4 +1,4 @@
-"""Models put into each other come apart at a walking pace."""
+"""Separates overlapping models at walking pace."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ from cartwheel.codes import world as world_codes
 from cartwheel.errors import Diagnostic, Origin
 
 DEEP = 0.005
-"""m; no contact between models that met in motion gets that deep."""
+"""m; contacts between models that collide in motion are never this deep."""
 _SPEED = 0.5
-"""m/s of each model's root and of each of its slides, at most, while it overlaps another."""
+"""m/s; maximum speed of a model's root and prismatic joints while it overlaps another model."""
 _TURN = 2.0
-"""rad/s, of its root and of each of its hinges."""
+"""rad/s; maximum for its root and revolute joints."""
 
 
 class Separation:
-    """Holds the speed of models that were put where another one stands.
+    """Limits the speed of models that were placed inside another model.
 
-    A contact is undone within hundredths of a second, which from a depth of decimetres
-    would throw both across the room.
+    The contact forces act within hundredths of a second. At a depth of decimetres, they would throw
+    both models across the room.
     """
 
     def __init__(self) -> None:
@@ -35,21 +35,21 @@ class Separation:
         return bool(self._roots)
 
     def forget(self) -> None:
-        """Ends it: time went back."""
+        """Stops all separations, after a time reset."""
         self._roots.clear()
 
     def resume(self, model: Any, data: Any) -> None:
-        """Goes on in a model that was compiled anew, with whatever overlaps there."""
+        """Continues after the model was recompiled, with any remaining overlaps."""
         if self._roots:
             self._roots = {root for one, two, _ in _deep(model, data) for root in (one, two)}
 
     def begin(self, model: Any, data: Any, placed: set[int]) -> list[tuple[str, float]]:
-        """Looks for overlaps of a model that was just put somewhere.
+        """Finds overlaps of a model that was just placed.
 
         Args:
-            model: Compiled.
-            data: After a forward pass.
-            placed: The ids of its root bodies.
+            model: The compiled model.
+            data: Data after a forward pass.
+            placed: Ids of the placed model's root bodies.
 
         Returns:
             The bodies that it overlaps, each once, with the depth in m.
@@ -65,7 +65,7 @@ class Separation:
         return sorted(found.items())
 
     def limit(self, model: Any, data: Any) -> None:
-        """Takes off the speed that the last step gave; ends when nothing overlaps any more."""
+        """Limits the speeds after a step; a separation ends when nothing overlaps any more."""
         roots = {root for one, two, _ in _deep(model, data) for root in (one, two)}
         self._roots &= roots
         for root in sorted(self._roots):
@@ -80,7 +80,7 @@ class Separation:
                 speed = float(np.linalg.norm(data.qvel[part]))
                 if speed > most:
                     data.qvel[part] *= most / speed
-            # Limbs that are pushed out throw the rest after them.
+            # Limbs that are pushed out pull the rest along.
             limbs = slice(start + 6, start + int(model.tree_dofnum[model.body_treeid[root]]))
             most_of_each = np.where(_turns(model, limbs), _TURN, _SPEED)
             data.qvel[limbs] = np.clip(data.qvel[limbs], -most_of_each, most_of_each)
@@ -89,13 +89,13 @@ class Separation:
 def overlap(
     name: str, z: float, overlaps: Sequence[tuple[str, float]], *, origin: Origin | None
 ) -> Diagnostic:
-    """The diagnostic for a model that was put into others.
+    """The diagnostic for a model that was placed inside others.
 
     Args:
-        name: Of the model.
-        z: m, of its frame.
+        name: Model name.
+        z: Height of its frame, m.
         overlaps: The bodies that it overlaps, with the depth in m.
-        origin: The place of the model.
+        origin: Origin of the model.
     """
     others = ", ".join(f"{other} by {depth * 100:.0f} cm" for other, depth in overlaps)
     floor = max((d for other, d in overlaps if other.startswith("ground")), default=0.0)
@@ -113,12 +113,12 @@ def overlap(
 
 
 def _turns(model: Any, dofs: slice) -> Any:
-    """Which degrees of freedom turn; all others slide."""
+    """Mask of rotational degrees of freedom; all others are translational."""
     return model.jnt_type[model.dof_jntid[dofs]] != mujoco.mjtJoint.mjJNT_SLIDE
 
 
 def _deep(model: Any, data: Any) -> list[tuple[int, int, float]]:
-    """Pairs of root bodies that overlap deeply, and how deeply in m."""
+    """Pairs of root bodies that overlap deeply, with the depth in m."""
     if data.ncon == 0:
         return []
     distances = data.contact.dist

@@ -1,4 +1,4 @@
-"""A joint that is driven by effort, velocity or position, whichever is commanded."""
+"""A joint with effort, velocity or position commands."""
 
 from __future__ import annotations
 
@@ -13,23 +13,23 @@ _OBJ = mujoco.mjtObj
 Mode = Literal["idle", "effort", "velocity", "position"]
 
 POSITION_BANDWIDTH = 50.0
-"""1/s: an error of position falls to 1/e in 20 ms."""
+"""1/s; a position error decreases to 1/e in 20 ms."""
 _BRAKING = 0.5
-"""Of the effort, what a joint that is far from its position plans to brake with."""
+"""Fraction of the effort that is used to plan braking far from the target position."""
 
 
 class ServoHandle:
-    """Gives an effort, or holds a velocity or a position with limited effort.
+    """Applies an effort, or holds a velocity or position with limited effort.
 
-    Velocities and positions are held by dry friction with a rotor, as by a `MotorHandle`: exact
-    below the limit, whatever the joint bears.
+    Velocities and positions are held by dry friction with a rotor, as in a `MotorHandle`: exact
+    below the effort limit, whatever the load.
 
-    A drive may turn the same joint, as in Gazebo, where each joint has one motor and takes efforts
-    beside it: then the motor is the drive's as long as no velocity or position is commanded here.
+    A drive plugin may drive the same joint. As in Gazebo, the joint then has one motor plus
+    efforts: the drive uses the motor while no velocity or position is commanded here.
     """
 
     shared = False
-    """Whether a drive turns the joint as well."""
+    """Whether a drive plugin also drives the joint."""
 
     def __init__(self, model: str, motor: Motor) -> None:
         self.model_name = model
@@ -65,11 +65,13 @@ class ServoHandle:
         self._give("idle", 0.0, 0.0)
 
     def command_effort(self, effort: float, *, damping: float = 0.0) -> None:
-        """Gives N m or N, less what a damping in N m s/rad or N s/m takes."""
+        """Applies an effort in N m or N, minus the damping in N m s/rad or N s/m times the
+        velocity.
+        """
         self._give("effort", effort, damping)
 
     def command_velocity(self, velocity: float) -> None:
-        """Holds rad/s or m/s."""
+        """Holds a velocity in rad/s or m/s."""
         self._limit = math.inf
         self._turn("velocity", velocity)
 
@@ -81,13 +83,13 @@ class ServoHandle:
         max_velocity: float = math.inf,
         max_effort: float = math.inf,
     ) -> None:
-        """Goes to rad or m, and stays there.
+        """Moves to a position in rad or m and holds it.
 
         Args:
-            position: Where to.
-            velocity: By which the position goes on to change, rad/s or m/s.
-            max_velocity: Of the joint, rad/s or m/s.
-            max_effort: N m or N, where it is to be less than the motor's.
+            position: Target position.
+            velocity: Velocity of the target itself, rad/s or m/s.
+            max_velocity: Maximum joint velocity, rad/s or m/s.
+            max_effort: N m or N, if lower than the motor's limit.
         """
         self._target, self._rate = position, velocity
         self._fastest, self._limit = max_velocity, max_effort
@@ -95,16 +97,16 @@ class ServoHandle:
 
     @property
     def turns(self) -> bool:
-        """Whether it gives an effort or turns the joint."""
+        """Whether it applies an effort or drives the joint."""
         return self.mode != "idle" and (self._law[0] != 0.0 or self._turning != 0.0)
 
     @property
     def follows(self) -> bool:
-        """Whether `follow` has anything to do."""
+        """Whether `follow` must be called."""
         return self.mode == "position"
 
     def follow(self) -> None:
-        """Leads the joint on to its position; called at every step."""
+        """Moves the joint toward its target position; called at every step."""
         self._target += self._rate * self._step
         self._lead()
 

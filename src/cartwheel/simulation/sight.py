@@ -1,4 +1,4 @@
-"""What stands between a point and a model: for views of it."""
+"""Line-of-sight tests, to choose views of a model."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ _GROUPS[VISUAL_GROUP] = 1
 
 
 def in_sight(model: Any, data: Any, name: str, eyes: Sequence[Vec3], target: Vec3) -> list[bool]:
-    """Whether nothing but a model's own visuals lies between each point and a target.
+    """For each point, whether only the model's own visuals lie between the point and a target.
 
     Args:
         model: The compiled world.
-        data: Its state, as of a forward pass.
-        name: Of the model that may be in the way.
-        eyes: Where to look from, m, in the world.
-        target: Where to look at, m, in the world.
+        data: Its state after a forward pass.
+        name: The model whose visuals are ignored.
+        eyes: Viewpoints in the world, m.
+        target: The target in the world, m.
     """
     own = scoped(name, "")
     hit = np.zeros(1, dtype=np.int32)

@@ -1,4 +1,4 @@
-"""Finds what breaks or misleads in a description, with the text to write instead."""
+"""Finds errors and misleading values in a description and suggests replacement text."""
 
 from cartwheel.description.check.checking import REPORTED, RULES, Report, check
 from cartwheel.description.check.rule import Rule

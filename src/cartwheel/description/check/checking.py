@@ -1,4 +1,4 @@
-"""Checks a description: reads it in spite of its errors, and applies all rules."""
+"""Checks a description: reads as much of it as possible and applies every rule."""
 
 from __future__ import annotations
 
@@ -58,31 +58,32 @@ RULES: tuple[Rule, ...] = (
     *tags.RULES,
     *xacro_use.RULES,
 )
-"""All rules, by subject."""
+"""All rules, grouped by subject."""
 REPORTED = tuple(
     code for module in ("files", "robot", "tags", "devices") for code in codes_of(module)
 )
-"""The codes that a check can report: those of its rules, and those of what reads descriptions."""
+"""Every code that a check can report, from the rules and from the description readers."""
 MAX_FAILURES = 30
-"""After so many things that cannot be read the rest is hardly worth a look."""
+"""Unreadable elements to remove before giving up: the rest of such a file is rarely useful."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Report:
-    """What a check found."""
+    """The result of a check."""
 
     file: str
     name: str
-    """The robot's or world's; empty where it could not be read."""
+    """Name of the robot or world; empty if the description could not be read."""
     findings: tuple[Diagnostic, ...]
-    """In the order of their places."""
+    """Sorted by file and line."""
     files: tuple[str, ...] = ()
-    """All files that were read for it: included ones, and those of controllers."""
+    """Every file that was read, including included files and controller files."""
     complete: bool
-    """False where it could not be read in spite of all: rules that need it were left out."""
+    """False if the description could not be read; rules that need its contents were then skipped.
+    """
 
     def count(self, severity: str) -> int:
-        """How many findings of that severity there are."""
+        """Number of findings with this severity."""
         return sum(finding.severity == severity for finding in self.findings)
 
 
@@ -94,27 +95,27 @@ def check(
     known: PluginKnowledge | None = None,
     controller_files: Sequence[Path] = (),
 ) -> Report:
-    """Looks for what breaks or misleads in a description.
+    """Checks a description for errors and misleading values.
 
     Args:
         path: As for `load`.
-        arguments: The values of ``name:=value``.
+        arguments: Values of ``name:=value`` arguments.
         package_path: As for `load`.
-        known: What is known of plugins; without it their parameters are not looked at.
-        controller_files: Files of controllers, in place of those that lie near the robot.
+        known: Information about plugins; plugin parameters are not checked without it.
+        controller_files: Controller files to use instead of those found near the robot.
 
     Raises:
-        DescriptionError: it is no description, or its XML or xacro cannot be read.
+        DescriptionError: The file is not a description, or its XML or xacro cannot be read.
     """
     opened = open_description(path, arguments or {}, package_path)
     if nodes.children(opened.root, "light") and _is_empty(opened.root):
-        # A lamp, which worlds include: there is nothing to say of it.
+        # A light model, as worlds include it: no rule applies.
         name = nodes.name_of(nodes.children(opened.root, "light")[0])
         return Report(file=opened.files[0], name=name, findings=(), complete=True)
     if opened.root.tag not in ("robot", "sdf", "gazebo") or _is_empty(opened.root):
-        understand(opened)  # says what it is instead
+        understand(opened)  # raises an error that says what the file contains
     subject = _subject(opened, known, controller_files)
-    # Numbers near the largest overflow; no finding comes of what is not a number.
+    # Numbers near the largest float overflow; rules report nothing about non-finite results.
     with np.errstate(all="ignore"):
         findings = _distinct(
             [
@@ -172,14 +173,14 @@ def _subject(opened: Opened, known: PluginKnowledge | None, given: Sequence[Path
 def _read(
     opened: Opened, tree: Node, mended: set[str], cut: set[str], gaps: list[Origin]
 ) -> tuple[RobotDescription | WorldDescription | None, list[Diagnostic]]:
-    """Reads a tree, without what keeps it from being read.
+    """Reads a tree, removing each element that raises an error.
 
     Args:
         opened: The description.
-        tree: Of it, from which parts are cut.
-        mended: Links whose inertia is replaced, added to.
-        cut: Links from which something is cut, added to.
-        gaps: Places of elements that lack what is cut, and of their holders, added to.
+        tree: Its tree; unreadable elements are removed in place.
+        mended: Links whose inertia was replaced; extended in place.
+        cut: Links that lost an element; extended in place.
+        gaps: Origins of the parents and grandparents of removed elements; extended in place.
     """
     failures: list[Diagnostic] = []
     holed: set[int] = set()
@@ -189,7 +190,7 @@ def _read(
             return understand(attempt), failures
         except DescriptionError as error:
             node = nodes.at(tree, error.origin) if error.origin is not None else None
-            # What lacks a part that was cut out before has nothing new to say.
+            # Ignore errors caused by the earlier removal of a child element.
             if node is None or id(node) not in holed:
                 failures.append(error.diagnostic())
             parent = nodes.parent_of(tree, node) if node is not None else None
@@ -205,7 +206,7 @@ def _read(
 
 
 def _left_out(root: Node, read: RobotDescription | WorldDescription | None) -> set[str]:
-    """The links of SDF that lack what its readers left out."""
+    """SDF links with elements that the readers ignored."""
     holders: dict[int, set[str]] = {}
     for link in nodes.walk(root):
         for node in nodes.walk(link) if link.tag == "link" else ():
@@ -228,14 +229,14 @@ def _links_around(tree: Node, wanted: Node) -> set[str]:
 
 
 def _is_empty(root: Node) -> bool:
-    """Whether there is nothing to check: a file of macros, or a document without a model."""
+    """Whether there is nothing to check: a macro-only file, or a document without a model."""
     if root.tag == "robot":
         return not nodes.children(root, "link")
     return not nodes.children(root, "model") and not nodes.children(root, "world")
 
 
 def _distinct(findings: Iterable[Diagnostic]) -> list[Diagnostic]:
-    """Each once; those of one kind that one line of a macro makes for several parts as one."""
+    """Removes duplicates; findings of one kind from one macro line become a single finding."""
     distinct: dict[tuple[object, ...], Diagnostic] = {}
     for each in findings:
         key = each.identity
@@ -248,7 +249,7 @@ def _distinct(findings: Iterable[Diagnostic]) -> list[Diagnostic]:
 
 
 def place(finding: Diagnostic, order: Mapping[str, int]) -> tuple[int, str, int]:
-    """The key that sorts findings by file, in an order of files, and by line."""
+    """Sort key: the file's index in `order`, then the line."""
     if finding.origin is None:
         return (-1, "", 0)
     file = finding.origin.file

@@ -1,4 +1,4 @@
-"""Joints that plugins, transmissions and ros2_control name."""
+"""Joint names in plugins, transmissions and ros2_control tags."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def plugin_joint_unknown(subject: Subject) -> Iterator[Diagnostic]:
                     near = spelling.meant(name, robot.joint_names)
                     text = " ".join(element.text.split()).replace(name, near or name)
                     yield devices_codes.PLUGIN_JOINT_UNKNOWN.diagnostic(
-                        # What another plugin means by its tags is not certain.
+                        # The tags of unsupported plugins may have a different meaning.
                         severity=None if _is_simulated(subject, tag, sensor) else "warning",
                         message=f'<{element.tag}> refers to the joint "{name}", which does not '
                         "exist",
@@ -133,7 +133,7 @@ def _driven_by(subject: Subject, what: str) -> Iterator[tuple[Robot, Element]]:
 
 
 def is_known(name: str, robot: Robot, subject: Subject) -> bool:
-    """Whether a joint has that name, with or without its scope."""
+    """Whether a joint with this name exists, with or without its scope."""
     if name in robot.joint_names or name.rpartition("::")[2] in robot.joint_names:
         return True
     if subject.is_urdf:

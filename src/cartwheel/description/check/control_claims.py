@@ -1,4 +1,4 @@
-"""Which joints a controller commands, and by what."""
+"""The joints that a controller commands, and through which interfaces."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ STEERED_BY_ONE = (
     "ackermann_steering_controller/AckermannSteeringController",
     "steer_drive_controller/SteerDriveController",
 )
-"""Of ROS 1."""
+"""ROS 1 controllers."""
 STEERED = (
     "ackermann_steering_controller/AckermannSteeringController",
     "bicycle_steering_controller/BicycleSteeringController",
     "tricycle_steering_controller/TricycleSteeringController",
 )
-"""Of ROS 2."""
+"""ROS 2 controllers."""
 TRAJECTORY = "joint_trajectory_controller/JointTrajectoryController"
 CORNERS = ("front_left", "front_right", "back_left", "back_right")
 ROS2_CORNERS = ("front_left", "front_right", "rear_left", "rear_right")
 _BY_NAME = ("position", "velocity", "effort")
-"""Packages such as ``effort_controllers``, whose name is the interface."""
+"""Packages such as ``effort_controllers``, which are named after the interface."""
 _INTERFACES = {
     "PositionJointInterface": ("position",),
     "VelocityJointInterface": ("velocity",),
@@ -40,7 +40,7 @@ _INTERFACES = {
 _SIMULATED = re.compile(
     r"(?i:gazebo|gz_ros2|ign_ros2|ignition|mock|fake|generic|simul)|Sim(System)?$"
 )
-"""Hardware of ros2_control that is none: of a real robot the tags for it may be others."""
+"""Simulated ros2_control hardware: a real robot's tags may describe different interfaces."""
 _STANDARD_HARDWARE = ("gazebo_ros_control/DefaultRobotHWSim", "DefaultRobotHWSim", "")
 
 
@@ -52,12 +52,12 @@ class Claim:
     interface: str
     """``position``, ``velocity`` or ``effort``."""
     value: Value
-    """Where it is named."""
+    """The value that contains the joint's name."""
     controller: Controller
 
 
 def claims(controller: Controller) -> list[Claim]:
-    """What a controller claims; nothing of one whose joints are not written or not known."""
+    """The joints that a controller commands; joints set by a launch file are omitted."""
     return [
         Claim(joint=value.text.strip(), interface=interface, value=value, controller=controller)
         for value, interface in _claims(controller)
@@ -96,19 +96,19 @@ def _claims(controller: Controller) -> Iterator[tuple[Value, str]]:
 
 
 def wheels_of(controller: Controller, side: str) -> list[Value]:
-    """The joints of a differential drive's side."""
+    """The wheel joints on one side of a differential drive."""
     return controller.values(f"{side}_wheel_names", f"{side}_wheel")
 
 
 def wheel_at(controller: Controller, corner: str) -> Value | None:
-    """The joint of a mecanum drive's wheel."""
+    """The joint of one wheel of a mecanum drive."""
     return controller.value(
         f"{corner}_wheel_command_joint_name", f"{corner}_wheel_name", f"{corner}_wheel_joint"
     )
 
 
 def traction(controller: Controller) -> list[Value]:
-    """The driven wheels' joints of a drive that steers."""
+    """The joints of the driven wheels of a steered drive."""
     driven = "rear" if front_steers(controller) else "front"
     return controller.values(
         "traction_joint_name", "traction_joints_names", f"{driven}_wheels_names", "rear_wheel"
@@ -116,7 +116,7 @@ def traction(controller: Controller) -> list[Value]:
 
 
 def steering(controller: Controller) -> list[Value]:
-    """The steered joints of a drive that steers."""
+    """The steered joints of a steered drive."""
     steered = "front" if front_steers(controller) else "rear"
     return controller.values(
         "steering_joint_name", "steering_joints_names", f"{steered}_wheels_names", "front_steer"
@@ -124,13 +124,13 @@ def steering(controller: Controller) -> list[Value]:
 
 
 def front_steers(controller: Controller) -> bool:
-    """Whether the front axle is the one that steers."""
+    """Whether the front axle is steered."""
     value = controller.value("front_steering")
     return value is None or value.text.strip().lower() != "false"
 
 
 def offers(robot: Robot, *, ros2: bool) -> dict[str, list[tuple[str, Element]]]:
-    """By joint the interfaces that the robot offers to controllers, with the element of each."""
+    """The interfaces that the robot offers to controllers, by joint, each with its element."""
     found: dict[str, list[tuple[str, Element]]] = {}
     described = robot.description
     for held in described.ros2_control if ros2 else described.transmissions:
@@ -156,7 +156,7 @@ def offers(robot: Robot, *, ros2: bool) -> dict[str, list[tuple[str, Element]]]:
 
 
 def has_standard_hardware(robot: Robot, *, ros2: bool) -> bool:
-    """Whether its tags offer to controllers what they say: those for a simulation do."""
+    """Whether the hardware provides the interfaces listed in the tags, as in simulation."""
     if ros2:
         plugins = [each.find("hardware/plugin") for each in robot.description.ros2_control]
         return any(each is None or _SIMULATED.search(each.text) for each in plugins)
@@ -169,7 +169,9 @@ def has_standard_hardware(robot: Robot, *, ros2: bool) -> bool:
 
 
 def gains_missing(controller: Controller) -> list[tuple[str, Value]]:
-    """The joints whose PID has no gain ``p``, and where they are named; "" for the only one."""
+    """Joints without a PID gain ``p``, each with its value; "" if the controller has a single
+    joint.
+    """
     kind = controller.kind
     package, _, name = kind.partition("/")
     if controller.file.is_ros2:
@@ -206,5 +208,5 @@ def gains_missing(controller: Controller) -> list[tuple[str, Value]]:
 
 def _positive(controller: Controller, path: str) -> bool:
     value = controller.value(path)
-    # What a launch file puts in is not known here.
+    # A value set by a launch file is unknown here.
     return value is not None and ("$" in value.text or bool(nodes.number(value.text)))

@@ -1,4 +1,4 @@
-"""Files of controllers, read so that each value knows its line."""
+"""Controller parameter files, parsed so that each value has a line number."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from cartwheel.errors import Diagnostic, Origin
 _MAX_BYTES = 1_000_000
 _ROS2 = "ros__parameters"
 _DEEPEST = 4
-"""Namespaces around a controller of ROS 1."""
+"""Maximum nesting of namespaces around a ROS 1 controller."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Value:
-    """A scalar of a file."""
+    """A scalar in a file."""
 
     text: str
     file: ControlFile
@@ -30,16 +30,16 @@ class Value:
 
     @property
     def origin(self) -> Origin:
-        """Its line."""
+        """The value's file and line."""
         return self.file.origin(self.node)
 
     @property
     def number(self) -> float | None:
-        """A finite number, None for all else."""
+        """The value if it is a finite number, otherwise None."""
         return nodes.number(self.text)
 
     def replaced(self, text: str) -> str:
-        """What its line says with another value, without the indentation."""
+        """The source line with the value replaced, without indentation."""
         start, end = self.node.start_mark, self.node.end_mark
         line = self.file.lines[start.line]
         last: int = end.column if end.line == start.line else len(line)
@@ -49,22 +49,22 @@ class Value:
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Controller:
-    """What a file says of one controller."""
+    """The parameters of one controller."""
 
     name: str
     type: Value
     parameters: tuple[Any, ...]
-    """Mappings, of which a later one adds to the ones before."""
+    """Parameter mappings; later mappings extend earlier ones."""
     file: ControlFile
 
     @property
     def kind(self) -> str:
-        """Its type as ``package/Class``."""
+        """The controller type as ``package/Class``."""
         text: str = self.type.text
         return text.strip().replace("::", "/")
 
     def node(self, path: str) -> Any:
-        """What stands under names with slashes between them; ROS 2 writes dots, too."""
+        """The node at a path with slashes; dots in ROS 2 parameter names are supported."""
         for mapping in reversed(self.parameters):
             found = _find(mapping, path.split("/"))
             if found is not None:
@@ -72,7 +72,7 @@ class Controller:
         return None
 
     def value(self, *paths: str) -> Value | None:
-        """The first scalar that stands under one of these names."""
+        """The first scalar at any of these paths."""
         for path in paths:
             node = self.node(path)
             if node is not None and node.id == "scalar":
@@ -80,7 +80,7 @@ class Controller:
         return None
 
     def values(self, *paths: str) -> list[Value]:
-        """The scalars of the first of these lists that is written; a scalar is a list of one."""
+        """The scalars of the first of these lists that is present; a scalar is a list of one."""
         for path in paths:
             node = self.node(path)
             if node is not None and node.id in ("scalar", "sequence"):
@@ -93,29 +93,29 @@ class Controller:
         return []
 
     def has(self, path: str) -> bool:
-        """Whether something stands there."""
+        """Whether the path exists."""
         return self.node(path) is not None
 
 
 def _start_of(path: Path) -> str:
-    """The text of a file, as far as it is looked at."""
+    """The beginning of a file, up to the size limit."""
     with path.open("rb") as file:
         return file.read(_MAX_BYTES).decode("utf-8", "replace")
 
 
 @dataclass(kw_only=True, eq=False)
 class ControlFile:
-    """A file of controllers' parameters."""
+    """A file with controller parameters."""
 
     path: Path
     named: bool
-    """Whether the robot or the user names it; else it only lies near the robot."""
+    """Whether the robot or the user refers to the file; otherwise it was found near the robot."""
     element: Element | None = None
-    """The tag that names it."""
+    """The tag that refers to the file."""
 
     @cached_property
     def lines(self) -> list[str]:
-        """The file's text."""
+        """The lines of the file."""
         try:
             return _start_of(self.path).splitlines()
         except OSError:
@@ -123,25 +123,25 @@ class ControlFile:
 
     @cached_property
     def root(self) -> Any:
-        """The tree of nodes; None for an empty file, or one with a `problem`."""
+        """The root node; None if the file is empty or has a `problem`."""
         return None if isinstance(self._composed, Diagnostic) else self._composed
 
     @property
     def problem(self) -> Diagnostic | None:
-        """Why it cannot be read."""
+        """Why the file cannot be read, or None."""
         return self._composed if isinstance(self._composed, Diagnostic) else None
 
     @property
     def is_ros2(self) -> bool:
-        """Whether its parameters are those of ROS 2's nodes."""
+        """Whether the file contains ROS 2 node parameters."""
         return any(True for _ in _ros2_nodes(self.root, ()))
 
     @cached_property
     def controllers(self) -> tuple[Controller, ...]:
-        """All that have a type."""
+        """All controllers with a type."""
         if self.is_ros2:
             return tuple(self._of_ros2())
-        # A file may be one controller, whose name is the launch file's business.
+        # The file may hold a single controller, whose name is set by a launch file.
         one = self._controller(self.path.stem, self.root)
         return (one,) if one is not None else tuple(self._of_ros1(self.root, ()))
 
@@ -151,7 +151,7 @@ class ControlFile:
 
     @cached_property
     def _composed(self) -> Any:
-        # Only robots with controllers pay for the import.
+        # Import yaml only for robots with controllers: the import is slow.
         import yaml
 
         try:
@@ -177,7 +177,7 @@ class ControlFile:
                 yield from self._of_ros1(value, (*path, name))
 
     def _controller(self, name: str, node: Any) -> Controller | None:
-        """A mapping as a controller of ROS 1, where it is one."""
+        """Reads a mapping as a ROS 1 controller; None if it has no controller type."""
         kind = _find(node, ["type"]) if node is not None else None
         if kind is None or kind.id != "scalar" or "/" not in kind.value.replace("::", "/"):
             return None
@@ -211,14 +211,14 @@ class ControlFile:
 
 
 def pairs(node: Any) -> list[tuple[Any, Any]]:
-    """A mapping's keys and values; none of anything else."""
+    """The key-value pairs of a mapping; empty for any other node."""
     if node is None or node.id != "mapping":
         return []
     return [(key, value) for key, value in node.value if key.id == "scalar"]
 
 
 def _find(node: Any, words: list[str]) -> Any:
-    """What stands under words, which dots may join."""
+    """The node at a path; dots in keys may join several path elements."""
     if not words:
         return node
     for count in range(1, len(words) + 1):

@@ -1,4 +1,4 @@
-"""Which files hold a robot's controllers: named ones, or those that a launch file could name."""
+"""Finds the controller files of a robot: files it refers to, or files a launch file may load."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ def control_files(
     given: Sequence[Path],
     search: Callable[[Path, Sequence[str]], Sequence[Path]] | None,
 ) -> list[tuple[Robot, ControlFile]]:
-    """The files of each robot.
+    """The controller files of each robot.
 
     Args:
-        robots: Of the description.
-        packages: Where files are looked for.
-        given: By the user, in place of what would be found.
-        search: Finds those of a robot that leaves them to its launch files; None finds none.
+        robots: Robots in the description.
+        packages: Resolves package URIs.
+        given: Files from the user; no other files are searched.
+        search: Finds files for robots whose controllers a launch file loads; None to skip.
     """
     found = []
     for robot in robots:
@@ -46,7 +46,7 @@ def control_files(
 
 
 def named_files(robot: Robot) -> Iterator[Element]:
-    """The tags that name a file of controllers."""
+    """Tags that refer to a controller file."""
     for tag, _ in robot.plugins():
         if "ros2_control" in tag.filename:
             for element in tag.element.find_all("parameters"):
@@ -55,7 +55,7 @@ def named_files(robot: Robot) -> Iterator[Element]:
 
 
 def resolved(packages: Packages, element: Element) -> Path | Diagnostic:
-    """The file that a tag names, or why there is none."""
+    """The file that a tag refers to, or a diagnostic if it cannot be found."""
     try:
         return packages.resolve(element.text.strip(), element.origin, what="file")
     except DescriptionError as error:
@@ -69,20 +69,20 @@ def resolved(packages: Packages, element: Element) -> Path | Diagnostic:
 
 
 def is_of_ros1(robot: Robot) -> bool:
-    """Whether ROS 1's controllers move it."""
+    """Whether ROS 1 controllers move the robot."""
     return any(
         "ros_control" in tag.filename and "ros2" not in tag.filename for tag, _ in robot.plugins()
     )
 
 
 def _plain(path: Path) -> Path:
-    """The file of ``NAME=FILE``, by which a controller without a name gets one."""
+    """The path in ``NAME=FILE``, which names the controller in a file without one."""
     name, _, file = str(path).partition("=")
     return Path(file) if name and file and not path.exists() else path
 
 
 def _belongs(path: Path, robot: Path) -> bool:
-    """Whether a file's package is the robot's own, or one that is named after it."""
+    """Whether a file is in the robot's package, or in a package named after it."""
     ours, theirs = (_package(each.absolute()) for each in (robot, path))
     if ours is None or theirs is None:
         return ours == theirs

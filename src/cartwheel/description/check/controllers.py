@@ -1,4 +1,4 @@
-"""Files of controllers, against the joints and interfaces that the robot has."""
+"""Controller files compared with the robot's joints and interfaces."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ _OF_OTHER_ROS = {
         "JointStateController",
     },
 }
-"""By whether it is ROS 2's: types that the other ROS has, and what they are called here."""
+"""Controller types of the other ROS version and their equivalents, by whether the file is ROS 2."""
 _GAINS = "{p: 100.0, i: 0.0, d: 1.0}"
 _TUNED = "Tune the gains: p in N m per rad, d in N m s per rad."
 
@@ -85,7 +85,7 @@ def controller_joint_unknown(subject: Subject) -> Iterator[Diagnostic]:
             name = value.text.strip()
             near = spelling.meant(name, robot.joint_names)
             if not near and not file.named:
-                continue  # of another variant of the robot
+                continue  # for a different variant of the robot
             yield devices_codes.CONTROLLER_JOINT_UNKNOWN.diagnostic(
                 severity=_severity(file),
                 message=f'"{key}" refers to the joint "{name}", which does not exist',
@@ -147,7 +147,7 @@ def controller_interface(subject: Subject) -> Iterator[Diagnostic]:
                 claim
                 for claim in found
                 if claim.controller.file.is_ros2 is ros2
-                # A file nearby, none of whose joints can be moved, is for another variant.
+                # A nearby file without any movable joint is for a different variant.
                 and (claim.controller.file.named or claim.controller.file in ours)
             ]
             if asked and has_standard_hardware(robot, ros2=ros2):
@@ -194,7 +194,7 @@ def joint_claimed_twice(subject: Subject) -> Iterator[Diagnostic]:
             for claim in claims(controller):
                 first = holders.setdefault((claim.joint, claim.interface), claim)
                 both = (first.controller.name, controller.name)
-                # Of another type it is an alternative, as a trajectory's is to a position's.
+                # Different types are alternatives, such as a trajectory and a position controller.
                 alike = first.controller.kind == controller.kind
                 if first.controller is controller or not alike or both in told:
                     continue
@@ -218,7 +218,7 @@ def joint_claimed_twice(subject: Subject) -> Iterator[Diagnostic]:
 def _unanswered(
     asked: list[Claim], held: dict[str, list[tuple[str, Element]]], *, ros2: bool
 ) -> Iterator[Diagnostic]:
-    """Joints of which no controller gets what it wants; of several, others may be meant."""
+    """Joints that offer none of the interfaces requested by any of their controllers."""
     joints = dict.fromkeys(claim.joint for claim in asked)
     for joint in joints:
         wanted = [claim for claim in asked if claim.joint == joint]
@@ -291,12 +291,12 @@ def _ros2_joint(claim: Claim) -> str:
 
 
 def _severity(file: ControlFile, severity: Severity = "error") -> Severity:
-    """A file that nobody names may be for another robot."""
+    """The severity for a file: a file that was only found nearby may be for a different robot."""
     return severity if file.named else "warning"
 
 
 def _has_own_line(value: Value) -> bool:
-    """Whether a line can follow it: in `{braces}` none can."""
+    """Whether a line can be inserted below the value; not possible within ``{braces}``."""
     line = value.file.lines[value.node.start_mark.line]
     return "{" not in line
 
@@ -305,13 +305,13 @@ def _controllers(subject: Subject) -> Iterator[Controller]:
     for robot, file in subject.control:
         for controller in file.controllers:
             held = claims(controller)
-            # Of a file that lies nearby only those count that have to do with this robot.
+            # Nearby files are used only if they refer to a joint of this robot.
             if file.named or not held or any(claim.joint in robot.joints for claim in held):
                 yield controller
 
 
 def _joints_in(file: ControlFile) -> Iterator[tuple[str, Value]]:
-    """Every key that holds joints, with the scalars of its value."""
+    """Every key that lists joints, with the scalars in its value."""
     waiting: list[Any] = (
         [file.root]
         if file.is_ros2

@@ -1,4 +1,4 @@
-"""Drive plugins: whether what they say of the wheels is what the joints and wheels say."""
+"""Drive plugins: whether their wheel parameters match the joints and wheels."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from cartwheel.geometry import Pose, matrix_from_quat, rotate
 
 _DIRECTIONS = 32
 _CAMBER = 0.5
-"""Cosine: what is more askew is no wheel's axis."""
+"""Minimum cosine between a wheel axis and the axle."""
 _ROUND = 0.7
-"""The least width of a wheel, of its most."""
+"""Minimum ratio of a wheel's smallest to largest width."""
 _UPRIGHT = {"x": 'rpy="0 1.5708 0"', "y": 'rpy="1.5708 0 0"', "z": 'rpy="0 0 0"'}
-"""By the joint's axis, how a cylinder has to be turned."""
+"""Rotation that aligns a cylinder with the joint axis, by joint axis."""
 
 
 @rule(robot_codes.DRIVE_JOINT_UNKNOWN)
@@ -78,11 +78,11 @@ def wheels_swapped(subject: Subject) -> Iterator[Diagnostic]:
             drive, ("leftJoint", "left_joint", "left_wheel_joint_name", "leftFrontJoint")
         )
         across = poses[0].y - poses[1].y
-        # With the wheels beside each other x is forward, else nobody can tell the sides.
+        # Left and right are known only if the wheels are beside each other, with x forward.
         if element is None or abs(poses[0].x - poses[1].x) > 0.1 * abs(across) or across >= 0:
             continue
         if all(sense < -_CAMBER for sense in _senses(robot, left, right)):
-            continue  # it faces the other way, and is right in all
+            continue  # the robot faces backwards, but is otherwise correct
         yield robot_codes.WHEELS_SWAPPED.diagnostic(
             message=f'the left wheel joint "{left.name}" is at y = {poses[0].y:.3g} m, to the '
             f'right of "{right.name}" at y = {poses[1].y:.3g} m',
@@ -128,9 +128,9 @@ def wheel_axes(subject: Subject) -> Iterator[Diagnostic]:
 
 
 def _senses(robot: Robot, left: Joint, right: Joint) -> list[float]:
-    """How much each wheel's axis points along the axle to the robot's left, -1 to 1.
+    """Component of each wheel's axis toward the robot's left along the axle, from -1 to 1.
 
-    Nothing where nobody can tell.
+    Empty if the sides cannot be determined.
     """
     poses = [wheel_place(robot, joint) for joint in (left, right)]
     across = np.array(poses[0].position) - np.array(poses[1].position)
@@ -145,7 +145,7 @@ def _senses(robot: Robot, left: Joint, right: Joint) -> list[float]:
 
 
 def _not_across(robot: Robot, joint: Joint, pose: Pose, across: Floats) -> Diagnostic:
-    """A wheel whose axis is not that of the axle; without a tag it is x."""
+    """The diagnostic for a wheel whose axis does not lie along the axle; the default axis is x."""
     written = robot.joint_node(joint.name)
     node = nodes.child(written, "axis")
     left = across if across[1] >= 0 else -across
@@ -171,7 +171,7 @@ def wheel_not_round(subject: Subject) -> Iterator[Diagnostic]:
         for joint in wheel_joints(robot):
             link = robot.links[joint.child]
             widths = _widths(robot, joint, robot.collisions)
-            # Of an axis that is wrong itself it is told elsewhere.
+            # Misaligned axes are reported by another rule.
             if widths is None or not is_across(robot, joint) or not robot.whole(link.name):
                 continue
             if widths.min() >= _ROUND * widths.max():
@@ -206,9 +206,9 @@ def wheel_not_round(subject: Subject) -> Iterator[Diagnostic]:
 
 
 def wheel_radius(robot: Robot, joint: Joint) -> float | None:
-    """Half the width of a wheel's collision, or else its visual, across its axis, m.
+    """Half the width of a wheel's collision perpendicular to its axis, m; else of its visual.
 
-    What is fixed to the wheel is part of it: a tyre may be another link than the hub.
+    Links fixed to the wheel are included: the tyre and the hub may be separate links.
     """
     if joint.child not in robot.links:
         return None
@@ -220,7 +220,7 @@ def wheel_radius(robot: Robot, joint: Joint) -> float | None:
 
 
 def wheel_middle(robot: Robot, joint: Joint) -> tuple[float, float, float]:
-    """The middle of a wheel's width in the model's frame, m: its joint may be beside it."""
+    """Centre of a wheel's width in the model frame, m, which may be offset from the joint."""
     place, axis = wheel_place(robot, joint), np.array(joint.axis.xyz)
     for kind in (robot.collisions, robot.visuals):
         cloud = _cloud(robot, joint, kind)
@@ -232,17 +232,17 @@ def wheel_middle(robot: Robot, joint: Joint) -> tuple[float, float, float]:
 
 
 def _widths(robot: Robot, joint: Joint, kind: Mapping[str, list[Solid]]) -> Floats | None:
-    """Of a wheel in directions all around its axis, m; None where it has no such geometry."""
+    """Widths of a wheel in directions around its axis, m; None without geometry of this kind."""
     cloud = _cloud(robot, joint, kind)
     if cloud is None:
         return None
-    # Half its width, not its reach: a wheel may be a millimetre off its axis.
+    # Half the width, not the radius: the wheel may be a millimetre off its axis.
     sideways = _across(np.array(joint.axis.xyz))
     return np.asarray(np.ptp(cloud @ sideways.T, axis=0))
 
 
 def _cloud(robot: Robot, joint: Joint, kind: Mapping[str, list[Solid]]) -> Floats | None:
-    """Points of a wheel in its joint's frame, shape (n, 3), m; None without such geometry."""
+    """Wheel vertices in the joint frame, shape (n, 3), m; None without geometry of this kind."""
     here = wheel_place(robot, joint).inverse()
     clouds = [
         solid.placed(here @ robot.links[name].pose)
@@ -253,7 +253,7 @@ def _cloud(robot: Robot, joint: Joint, kind: Mapping[str, list[Solid]]) -> Float
 
 
 def _across(axis: Floats) -> Floats:
-    """Directions all around an axis, shape (n, 3)."""
+    """Unit vectors perpendicular to an axis, shape (n, 3)."""
     first = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
     first /= np.linalg.norm(first)
     angles = np.linspace(0.0, np.pi, _DIRECTIONS, endpoint=False)[:, None]
@@ -261,26 +261,26 @@ def _across(axis: Floats) -> Floats:
 
 
 def is_across(robot: Robot, joint: Joint) -> bool:
-    """Whether a wheel's axis points to a side of the robot."""
+    """Whether a wheel's axis points sideways."""
     along = rotate(wheel_place(robot, joint).orientation, joint.axis.xyz)
     return abs(along[1]) >= _CAMBER
 
 
 def wheel_links(robot: Robot, joint: Joint) -> list[str]:
-    """The link that a joint turns, and those fixed to it."""
+    """The joint's child link and all links fixed to it."""
     root = robot.rigid_root(joint.child)
     return robot.rigid_groups[root] if root == joint.child else [joint.child]
 
 
 def wheel_joints(robot: Robot) -> list[Joint]:
-    """The joints of the wheels that drive plugins drive."""
+    """The wheel joints of all drive plugins."""
     names = dict.fromkeys(name for drive in robot.drives for name in drive.joints)
     found = [robot.joints[name] for name in names if name in robot.joints]
     return [joint for joint in found if joint.child in robot.links]
 
 
 def lowest(robot: Robot, *links: str) -> float | None:
-    """The height of the lowest point of links' collisions in the model's frame, m."""
+    """Lowest point of the collisions of some links in the model frame, m."""
     box = bounds(
         [solid.placed(robot.links[link].pose) for link in links for solid in robot.collisions[link]]
     )
@@ -288,7 +288,7 @@ def lowest(robot: Robot, *links: str) -> float | None:
 
 
 def wheel_place(robot: Robot, joint: Joint) -> Pose:
-    """Where a wheel's joint is in the model's frame: a link of SDF may have its frame elsewhere."""
+    """Pose of a wheel joint in the model frame; in SDF, the child link's frame may be elsewhere."""
     return robot.links[joint.child].pose @ joint.pose
 
 
@@ -303,7 +303,7 @@ def _drives(subject: Subject) -> Iterator[tuple[Robot, Drive]]:
 
 
 def _pairs(subject: Subject) -> Iterator[tuple[Robot, Drive, Joint, Joint]]:
-    """The two first wheels of each drive; of a differential's with more tags, each pair."""
+    """The first wheel pair of each drive, or every pair of a differential drive with several."""
     for robot, drive in _drives(subject):
         if len(drive.left) != len(drive.right):
             continue

@@ -1,4 +1,4 @@
-"""Frames and topics that plugins name."""
+"""Frame and topic names in plugins."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ from cartwheel.errors import Code, Diagnostic
 _BODIES = ("bodyName", "body_name")
 _FRAMES = ("robotBaseFrame", "robot_base_frame", "frameName", "frame_name")
 _OUTER = frozenset({"world", "map", "odom", "earth", ""})
-"""Frames that are no links by their nature (REP 105)."""
+"""Frames that are not links (REP 105)."""
 
 _TOPIC_TAG = re.compile(
     r"(?i:topic(_?name)?$|^(robot)?_?namespace$|^camera_?name$|^service_?name$|^remapping$)"
 )
 _TOPIC = re.compile(r"[~/]{0,2}([A-Za-z_]\w*(/[A-Za-z_]\w*)*)?/*")
-"""Of both ROS, substitutions in braces apart; a slash at the end does no harm."""
+"""Topic names in both ROS versions, without substitutions; a trailing slash is harmless."""
 
 _TOPICS: dict[str, tuple[tuple[str, ...], ...]] = {
-    # Of each plugin the tags, in both spellings, whose topics it publishes.
+    # Tags with the topics that each plugin publishes, in both spellings.
     "diff_drive": (("odometryTopic", "odometry_topic"),),
     "skid_steer_drive": (("odometryTopic", "odometry_topic"),),
     "planar_move": (("odometryTopic", "odometry_topic"),),
@@ -59,7 +59,7 @@ def frame_unknown(subject: Subject) -> Iterator[Diagnostic]:
             if element.tag not in _FRAMES or name in _OUTER or name in _known(robot):
                 continue
             if name.rpartition("/")[2] in _known(robot):
-                continue  # with a prefix of its own
+                continue  # the frame may have a prefix
             yield _unknown(devices_codes.FRAME_UNKNOWN, robot, element)
 
 
@@ -105,7 +105,7 @@ def topic_invalid(subject: Subject) -> Iterator[Diagnostic]:
             if _TOPIC.fullmatch(target.strip()) and (not arrow or source.strip()):
                 continue
             if "ros" not in tag.filename and not re.search(r"[\s@]", target.strip()):
-                continue  # Gazebo's own transport takes nearly anything
+                continue  # Gazebo's own transport accepts almost any name.
             good = re.sub(r"[^\w/~]+", "_", target.strip())
             good = re.sub(r"(^|/)(?=\d)", r"\1_", good)
             yield devices_codes.TOPIC_INVALID.diagnostic(
@@ -121,7 +121,7 @@ def topic_invalid(subject: Subject) -> Iterator[Diagnostic]:
 
 
 def short_name(tag: PluginTag) -> str:
-    """``diff_drive`` of ``libgazebo_ros_diff_drive.so``."""
+    """``diff_drive`` for ``libgazebo_ros_diff_drive.so``."""
     stem = tag.filename.rsplit("/", 1)[-1].removeprefix("lib").removesuffix(".so")
     return stem.removeprefix("gazebo_ros_")
 

@@ -1,4 +1,4 @@
-"""What Gazebo makes of names: links merged over fixed joints, collisions renamed."""
+"""Names in Gazebo: links merged across fixed joints, and renamed collisions."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from cartwheel.errors import Diagnostic
 
 _LUMP = "_fixed_joint_lump__"
 _LINK_TAGS = ("bodyName", "body_name", "linkName", "link_name")
-"""Tags of plugins that must name a link of the model."""
+"""Plugin tags that must contain a link of the model."""
 _JOINT_TAGS = ("jointName", "joint_name")
 
 
@@ -22,7 +22,7 @@ def contact_collision_unknown(subject: Subject) -> Iterator[Diagnostic]:
     for robot, sensor, asked in _watched(subject):
         name = asked.text.strip()
         if robot.incomplete or sensor.link in robot.cut or not robot.is_placed:
-            continue  # it may be that of a mesh that is missing, or of what cannot be read
+            continue  # the name may belong to a missing mesh or an unreadable element
         if name.rpartition("::")[2] in _spellings(robot):
             continue
         known = {one for names in _gazebo_names(robot).values() for one in names}
@@ -54,7 +54,7 @@ def contact_never_fires(subject: Subject) -> Iterator[Diagnostic]:
         link, index = target
         root = _lump_root(robot, link)
         if root == link:
-            continue  # its own name in some spelling: Gazebo's is not certain
+            continue  # a variant of the collision's own name, which Gazebo may or may not accept
         right = _gazebo_names(robot)[link][index]
         yield devices_codes.CONTACT_NEVER_FIRES.diagnostic(
             message=f'Gazebo 11 merges "{link}" into "{root}" and renames the collision '
@@ -143,7 +143,7 @@ def _named(subject: Subject, tags: tuple[str, ...]) -> Iterator[tuple[Robot, Ele
 
 
 def _spellings(robot: Robot) -> dict[str, tuple[str, int]]:
-    """The link and the number of the collision that each accepted spelling means."""
+    """The link and collision index for each accepted spelling of a name."""
     return {
         name: (link.name, index)
         for link in robot.description.links
@@ -153,7 +153,7 @@ def _spellings(robot: Robot) -> dict[str, tuple[str, int]]:
 
 
 def _gazebo_names(robot: Robot) -> dict[str, list[str]]:
-    """The names of each link's collisions in Gazebo 11, by link."""
+    """Names of the collisions in Gazebo 11, by link."""
     if robot.root is None:
         return {
             link.name: [collision.name for collision in link.collisions]

@@ -1,4 +1,4 @@
-"""Masses and inertias: whether a body can have them, and whether this one would."""
+"""Masses and inertias: whether they are physically possible and plausible for the geometry."""
 
 from __future__ import annotations
 
@@ -23,20 +23,20 @@ from cartwheel.errors import Diagnostic, Origin
 from cartwheel.geometry import Pose, Vec3
 
 TOO_LARGE = 1.5
-"""Times the inertia of the same mass in the farthest corners of the geometry's box."""
+"""Maximum ratio to the inertia of the same mass placed at the corners of the geometry's box."""
 TOO_SMALL = 20.0
-"""Times less than that of a solid of the geometry's shape."""
+"""Maximum ratio of the inertia of a solid of the same shape to the stated inertia."""
 OUTSIDE = 0.25
-"""Of the box's diagonal: how far outside of it a centre of mass is a finding."""
+"""Maximum distance of the centre of mass from the box, as a fraction of the box's diagonal."""
 _LIGHT = 0.01
-"""Of the robot's mass: what weighs less is as good as none, and often stated so."""
+"""Fraction of the robot's mass below which a link's mass hardly matters, and is often arbitrary."""
 DENSEST = 30_000.0
-"""kg/m³; osmium has 22 600."""
+"""kg/m³; the density of osmium is 22,600."""
 _FOAM = 50.0
-"""kg/m³: what is lighter was not stated in grams."""
+"""kg/m³; a mass with a lower density was not stated in grams."""
 _LIGHTEST_IN_KG = 0.1
 _ROUNDED = 1e-9
-"""Relative: what is left of a 0 by rounding."""
+"""Relative rounding error of a value that should be 0."""
 _NEVERTHELESS = (
     "Gazebo Classic simulates this inertia anyway, but gz-sim rejects it. Cartwheel raises the "
     "smaller moments."
@@ -64,7 +64,7 @@ def inertia_impossible(subject: Subject) -> Iterator[Diagnostic]:
             continue
         place = tensor or inertial
         negative = min(moments) < -_ROUNDED * max(moments)
-        # Of what is fixed to something heavier it is but a part of a sum.
+        # The inertia is a small part of the sum with a heavier link that this one is fixed to.
         part = _is_part(subject, name, max(moments))
         yield robot_codes.INERTIA_IMPOSSIBLE.diagnostic(
             severity="info" if part else "error" if negative else None,
@@ -78,7 +78,7 @@ def inertia_impossible(subject: Subject) -> Iterator[Diagnostic]:
 
 
 def _impossible_in_sdf(subject: Subject) -> Iterator[Diagnostic]:
-    """What its reader told of inertias, with that of the geometry."""
+    """Impossible inertias that the SDF reader reported, with a replacement from the geometry."""
     links = {link.name: (robot, link) for robot in subject.robots for link in robot.links.values()}
     for diagnostic in subject.read.diagnostics if subject.read is not None else ():
         values = diagnostic.values
@@ -109,7 +109,7 @@ def mass_not_positive(subject: Subject) -> Iterator[Diagnostic]:
         if place is None or mass is None or mass > 0:
             continue
         if mass == 0 and nodes.name_of(link) in held:
-            continue  # a mere frame; Gazebo adds it to what it is fixed to
+            continue  # a frame without geometry, which Gazebo merges into its parent
         yield robot_codes.MASS_NOT_POSITIVE.diagnostic(
             message=f'link "{nodes.name_of(link)}" has a mass of {mass:g} kg, so Gazebo drops the '
             "link and everything attached to it",
@@ -130,7 +130,7 @@ def inertia_missing(subject: Subject) -> Iterator[Diagnostic]:
         if robot.description.static:
             continue
         for root, parts in robot.rigid_groups.items():
-            # A link of SDF has 1 kg where it states nothing.
+            # An SDF link without an <inertial> has a mass of 1 kg.
             group = [name for name in parts if name not in robot.in_sdf]
             if root == "world" or root in robot.mended or root in robot.in_sdf:
                 continue
@@ -138,7 +138,7 @@ def inertia_missing(subject: Subject) -> Iterator[Diagnostic]:
                 continue
             holder = robot.inbound.get(root)
             if holder is not None and holder.type == "fixed":
-                continue  # it is fixed to the world
+                continue  # fixed to the world
             shaped = next((name for name in group if robot.solids(name)), None)
             link = robot.links[shaped or root]
             what, consequence = f'the root link "{root}"', "does not load the robot"
@@ -282,7 +282,7 @@ def mass_absurd(subject: Subject) -> Iterator[Diagnostic]:
 
 
 def moments_of(inertial: Node) -> Vec3 | None:
-    """The principal moments that an ``<inertial>`` states; None where a number is none."""
+    """Principal moments of an ``<inertial>``; None if a value is not a number."""
     tensor = nodes.child(inertial, "inertia")
     values = {
         key: nodes.number("0" if tensor is None else tensor.attributes.get(key, "0"))
@@ -306,7 +306,7 @@ def _inertials(subject: Subject) -> Iterator[tuple[Node, Node]]:
 
 
 def _judged(subject: Subject) -> Iterator[tuple[Robot, Link, Inertial]]:
-    """Links whose mass their author stated, and that can move."""
+    """Movable links with a mass stated by the author."""
     for robot in subject.robots:
         if robot.description.static:
             continue
@@ -319,12 +319,12 @@ def _judged(subject: Subject) -> Iterator[tuple[Robot, Link, Inertial]]:
 
 
 def _stated(link: Link) -> bool:
-    """Whether its mass is its author's: SDF's 1 kg and an estimate stand for one not stated."""
+    """Whether the author stated the mass; SDF's default of 1 kg and estimates are excluded."""
     return link.inertial is not None and link.inertial.origin is not link.origin
 
 
 def _held(subject: Subject) -> set[str]:
-    """The links that are fixed to another, which then has the inertia of both."""
+    """Links connected by fixed joints, which share one combined inertia."""
     joints, names = nodes.children(subject.root, "joint"), link_names(subject)
     holders = inbound(joints, names)
     found = {name for name, joint in holders.items() if nodes.text_of(joint, "type") == "fixed"}
@@ -332,13 +332,13 @@ def _held(subject: Subject) -> set[str]:
 
 
 def _is_part(subject: Subject, name: str, moment: float) -> bool:
-    """Whether a link's inertia hardly counts beside that of what it is fixed to."""
+    """Whether a link's inertia is negligible compared with the links it is fixed to."""
     robots = [robot for robot in subject.robots if name in robot.links]
     return bool(robots) and not any(_matters(one, one.links[name], moment) for one in robots)
 
 
 def _shape_inertia(robot: Robot, link: Link) -> Inertial | None:
-    """That of a solid of the link's collisions, or else visuals, about their common centre."""
+    """Inertia of a solid with the shape of the link's collisions, or of its visuals."""
     for parts in (link.collisions, link.visuals):
         found = _solid(parts, link.origin)
         if found is not None:
@@ -348,7 +348,7 @@ def _shape_inertia(robot: Robot, link: Link) -> Inertial | None:
 
 
 def _mass_of(subject: Subject, link: Node) -> str:
-    """What gives the inertia that is written with the link's geometry, kg; 0.1 without any."""
+    """Mass for which the geometry has the stated inertia, kg; 0.1 without geometry."""
     moments = moments_of(nodes.child(link, "inertial") or link)
     like = _sketch(subject, nodes.name_of(link))
     whole = sum((like.ixx, like.iyy, like.izz)) if like is not None else 0.0
@@ -371,7 +371,7 @@ def _solid(parts: tuple[Collision, ...] | tuple[Visual, ...], origin: Origin) ->
         return None
     if found is None:
         return None
-    # A surface that is not closed has a volume of any size.
+    # The volume of an open surface is arbitrary.
     return None if impossibility(principal_moments(found.diagonal, found.products)) else found
 
 
@@ -394,7 +394,7 @@ def _mass_text(mass: float, *, sdf: bool) -> str:
 
 def _inertia_text(like: Inertial | None, mass: float, *, sdf: bool = False) -> str:
     if like is None:
-        # A ball of water, for want of any shape.
+        # Without a shape, assume a ball of water.
         moment = 0.4 * mass * (3 * mass / 4000 / math.pi) ** (2 / 3)
         values = dict.fromkeys(("ixx", "iyy", "izz"), moment)
     else:
@@ -420,7 +420,7 @@ def _inertial_text(like: Inertial | None, mass: float) -> str:
 
 
 def _urdf_mass(robot: Robot, link: Link, inertial: Inertial) -> Node | None:
-    """The ``<mass value>`` of a link; None for one of SDF."""
+    """The ``<mass>`` element of a URDF link; None for an SDF link."""
     if link.name in robot.in_sdf:
         return None
     return nodes.child(robot.node_at(inertial.origin), "mass")
@@ -432,7 +432,7 @@ def _inertia_origin(robot: Robot, inertial: Inertial) -> Origin:
 
 
 def _matters(robot: Robot, link: Link, moment: float) -> bool:
-    """Whether an inertia is more than a twentieth of what the whole rigid part has without it."""
+    """Whether an inertia exceeds a twentieth of the inertia of the rest of the rigid group."""
     group = robot.rigid_groups[robot.rigid_root(link.name)]
     others = [
         (other.pose @ other.inertial.pose, other.inertial)

@@ -1,4 +1,4 @@
-"""Limits and axes of joints."""
+"""Joint limits and axes."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _DEGREES = "Are they in degrees? URDF and SDF use radians."
 _TORQUES = ("wheelTorque", "max_wheel_torque")
 _LEAST_DEGREES, _MOST_DEGREES = 30.0, 360.0
 _ENDLESS = frozenset({50.0, 100.0, 200.0, 300.0})
-"""rad, by which a joint that turns without end is given limits all the same."""
+"""rad; limits that stand in for unlimited rotation."""
 
 
 @rule(robot_codes.LIMIT_MISSING)
@@ -69,7 +69,7 @@ def limit_zero(subject: Subject) -> Iterator[Diagnostic]:
     wheels = {name for drive in drives for name in drive.joints}
     yield from _zero_in_sdf(subject, wheels)
     for joint, limit, lower, upper in _ranges(subject):
-        # Of a driven wheel it is said that its joint must be continuous.
+        # For driven wheels, another rule requires a continuous joint.
         if lower == upper and nodes.name_of(joint) not in wheels:
             stated = "lower" in limit.attributes or "upper" in limit.attributes
             yield robot_codes.LIMIT_ZERO.diagnostic(
@@ -140,7 +140,8 @@ def _torque_zero(subject: Subject) -> Iterator[Diagnostic]:
 
 
 def _holding(robot: Robot, name: str, *, slides: bool) -> float:
-    """Twice what holds all that a joint carries, stretched out: N, or N m; at least 10."""
+    """Twice the effort to hold everything a joint carries, fully extended, N or N m; at least 10.
+    """
     joint = robot.joints.get(name)
     if joint is None or joint.child not in robot.links:
         return _LEAST_EFFORT
@@ -196,7 +197,7 @@ def axis_zero(subject: Subject) -> Iterator[Diagnostic]:
 def axis_not_unit(subject: Subject) -> Iterator[Diagnostic]:
     for joint, axis, xyz in _axes(subject):
         length = math.hypot(*xyz)
-        # Three digits, as in 0.577, are as good as a unit vector.
+        # Three digits, as in 0.577, are close enough to a unit vector.
         if length >= 1e-6 and abs(length - 1) > 0.01:
             unit = " ".join(nodes.short(value / length) for value in xyz)
             yield robot_codes.AXIS_NOT_NORMALIZED.diagnostic(
@@ -236,7 +237,7 @@ def limit_degrees(subject: Subject) -> Iterator[Diagnostic]:
 
 
 def _are_degrees(stated: list[float]) -> bool:
-    """Whether absolute values other than 0 are such as people write in degrees."""
+    """Whether the nonzero absolute values look like degrees."""
     if not stated or (len(set(stated)) == 1 and stated[0] in _ENDLESS):
         return False
     return _LEAST_DEGREES <= max(stated) <= _MOST_DEGREES and all(
@@ -248,7 +249,7 @@ def _zero_in_sdf(subject: Subject, wheels: set[str]) -> Iterator[Diagnostic]:
     for joint, axis, lower, upper in _ranges_in_sdf(subject):
         if lower == upper and joint not in wheels:
             yield robot_codes.LIMIT_ZERO.diagnostic(
-                # Models from before SDF 1.5, which had no fixed joints, mean one by it.
+                # Models from before SDF 1.5 use it as a fixed joint, which did not exist then.
                 severity="info",
                 message=f'joint "{joint}" cannot move: both limits are {lower:g}',
                 values={"joint": joint, "lower": lower, "upper": upper},
@@ -274,7 +275,7 @@ def _degrees_in_sdf(subject: Subject) -> Iterator[Diagnostic]:
 
 
 def _ranges_in_sdf(subject: Subject) -> Iterator[tuple[str, Node, float, float]]:
-    """The name, the limit, its lower and its upper value of joints that turn in SDF."""
+    """Name, limit element, lower and upper value of each SDF joint that rotates."""
     if subject.is_urdf:
         return
     for joint in nodes.walk(subject.root):

@@ -1,6 +1,6 @@
-"""Takes out of a URDF's tree what keeps it from being read, so that the rest is checked too.
+"""Removes or repairs elements that prevent reading a URDF, so that the rest is checked too.
 
-Each thing that is mended here is a finding of a rule: a compiler goes on after an error.
+A rule reports each of these faults: like a compiler, the check continues after an error.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ _PLAIN = {"ixx": "1", "iyy": "1", "izz": "1"}
 
 
 def mend(root: Node) -> set[str]:
-    """Mends a tree in place; returns the links whose mass is not the author's any more."""
+    """Repairs a tree in place; returns the links whose inertia was replaced."""
     _drop_second(root, "link")
     _drop_second(root, "joint")
     links = {nodes.name_of(node) for node in nodes.children(root, "link")}
@@ -46,14 +46,14 @@ def mend(root: Node) -> set[str]:
 
 
 def displaced(root: Node, mended: Node) -> set[str]:
-    """The links whose joint is not what its author wrote, or has lost its place."""
+    """Links whose joint was changed or lost its origin."""
     kept, written = _places(mended), _places(root)
     moved = {key for key, had in written.items() if kept.get(key) is not had}
     return {key[2] for key in moved | (kept.keys() - written.keys())}
 
 
 def _places(root: Node) -> dict[tuple[str, str, str], bool]:
-    """Of each joint, by name, parent and child, whether it states a place."""
+    """Whether each joint, by name, parent and child, has an origin."""
     return {
         (nodes.name_of(joint), *ends(joint)): nodes.child(joint, "origin") is not None
         for joint in nodes.children(root, "joint")
@@ -132,7 +132,7 @@ def _mend_tree(root: Node, links: set[str]) -> None:
 
 
 def _mend_inertia(link: Node) -> str:
-    """Its name where something had to be mended."""
+    """Repairs a link's inertia; returns the link's name if it was changed, otherwise ""."""
     inertial = nodes.child(link, "inertial")
     if inertial is None:
         return ""

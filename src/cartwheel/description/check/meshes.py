@@ -1,4 +1,4 @@
-"""Meshes and textures: whether they are there, can be read, and have the size of a robot."""
+"""Meshes and textures: whether they exist, are readable and have a plausible size."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ from cartwheel.description.node import Node
 from cartwheel.errors import DescriptionError, Diagnostic
 
 GIANT = 30.0
-"""Times the size of all the rest of the robot."""
+"""Minimum ratio of an implausibly large shape to the rest of the robot."""
 GIANT_MESH = 6.0
-"""The same of a mesh: a scale is forgotten more easily than a length is mistaken."""
+"""The same for meshes: a missing scale is more common than a wrong length."""
 DWARF = 300.0
 HUGE = 100.0
-"""m: no link of a robot is as long; millimetres were meant."""
+"""m; no robot link is this long, so the unit was probably millimetres."""
 _PACKAGE = re.compile(r"(?:package://|model://|\$\(find )([\w.-]+)")
 _SHOWN = 3
 
@@ -89,14 +89,14 @@ def _absent(subject: Subject) -> Iterator[Diagnostic]:
 
 
 def _of_sdf(subject: Subject, diagnostic: Diagnostic) -> Diagnostic:
-    """A reader's diagnostic of something that is not there, with the URI to write."""
+    """A reader's diagnostic for a missing file, with the corrected URI."""
     node = subject.node_at(diagnostic.origin)
     uri = nodes.child(node, "uri") or (node if node and node.tag == "uri" else None)
     near = str(diagnostic.values.get("meant", ""))
     meant = _meant(subject, uri.text.strip(), uri, near) if uri is not None else ""
     severity = diagnostic.severity
     if diagnostic.code is files_codes.FILE_ON_NETWORK:
-        severity = "info"  # Gazebo downloads it
+        severity = "info"  # Gazebo downloads the file.
     elif diagnostic.values.get("kind") == "model":
         severity = "warning"
     return replace(
@@ -110,7 +110,7 @@ def _of_sdf(subject: Subject, diagnostic: Diagnostic) -> Diagnostic:
 
 
 def _meant(subject: Subject, uri: str, node: Node, near: str) -> str:
-    """The URI with the package or the file that was likely meant, where that exists."""
+    """The URI with the likely package or file name, if that file exists."""
     if not near:
         return ""
     package, name = _PACKAGE.match(uri), Path(uri).name
@@ -152,31 +152,31 @@ def shape_size(subject: Subject) -> Iterator[Diagnostic]:
 
 
 def _factor(solid: Solid, usual: float, others: float, reach: float) -> float | None:
-    """By what a shape should be scaled; None where it looks right.
+    """The factor by which a shape should be scaled; None if its size is plausible.
 
     Args:
         solid: The shape.
-        usual: The median of all shapes.
-        others: The largest of the other links.
-        reach: How far the farthest link is from the robot's frame, m.
+        usual: Median size of all shapes, m.
+        others: Largest size among the other links, m.
+        reach: Distance of the farthest link from the robot's frame, m.
     """
     extent, mesh = solid.extent, isinstance(solid.part.shape, Mesh)
     giant = GIANT_MESH if mesh else GIANT
     if extent > HUGE:
         return 0.001
-    # Two wheels that are giants both are none beside each other, but beside the rest.
+    # Two equally oversized wheels look normal to each other, but not to the rest.
     alone = (extent > 2.0 and extent > giant * others) or (extent > 10.0 and extent > 100 * usual)
-    # A car's body is long, but would be no body any more with a thousandth of its length.
+    # A car body is long, but a thousandth of its length would be too small.
     if alone and extent / 1000 > usual / 100:
         return 0.001
-    # A tiny box or ball stands for nothing on purpose; a tiny mesh was scaled twice.
+    # A tiny box or sphere is often a deliberate placeholder; a tiny mesh was scaled twice.
     if mesh and extent < min(usual / DWARF, 0.001) and usual > 0.01 and reach < 10:
         return 1000.0
     return None
 
 
 def _is_lost(robot: Robot, solid: Solid) -> bool:
-    """Whether a mesh is all that is seen of a link, and a speck beside its collision."""
+    """Whether a link's only visual is a mesh far smaller than the link's collision."""
     seen, felt = robot.visuals[solid.link], robot.collisions[solid.link]
     if not felt or all(one is not solid for one in seen) or not isinstance(solid.part.shape, Mesh):
         return False

@@ -1,4 +1,4 @@
-"""Looks into a tree of elements without counting anything in it as read."""
+"""Reads an element tree without marking any element as used."""
 
 from __future__ import annotations
 
@@ -10,19 +10,19 @@ from cartwheel.errors import Origin
 
 
 def child(node: Node | None, tag: str) -> Node | None:
-    """The first child of that tag."""
+    """The first child with this tag."""
     if node is None:
         return None
     return next((each for each in node.children if each.tag == tag), None)
 
 
 def children(node: Node | None, tag: str) -> list[Node]:
-    """All children of that tag."""
+    """All children with this tag."""
     return [] if node is None else [each for each in node.children if each.tag == tag]
 
 
 def walk(node: Node) -> Iterator[Node]:
-    """The element and all below it, in the file's order."""
+    """An element and all its descendants, in file order."""
     stack = [node]
     while stack:
         found = stack.pop()
@@ -31,22 +31,22 @@ def walk(node: Node) -> Iterator[Node]:
 
 
 def copy(node: Node) -> Node:
-    """A tree of its own; its origins are the same objects."""
+    """A copy of a tree; the origins are shared."""
     return Node(node.tag, node.attributes, node.origin, map(copy, node.children), node.text)
 
 
 def name_of(node: Node) -> str:
-    """The name, empty where there is none."""
+    """The ``name`` attribute, or an empty string."""
     return node.attributes.get("name", "").strip()
 
 
 def text_of(node: Node | None, attribute: str) -> str:
-    """An attribute without the white space around it, empty where there is none."""
+    """An attribute without surrounding white space, or an empty string."""
     return "" if node is None else node.attributes.get(attribute, "").strip()
 
 
 def number(text: str | None) -> float | None:
-    """A finite number, None for all else."""
+    """The text as a finite number, otherwise None."""
     try:
         value = float(text or "")
     except ValueError:
@@ -55,35 +55,35 @@ def number(text: str | None) -> float | None:
 
 
 def numbers(text: str | None, size: int) -> tuple[float, ...] | None:
-    """`size` finite numbers, None for all else."""
+    """Exactly `size` finite numbers, otherwise None."""
     values = [number(word) for word in (text or "").split()]
     found = tuple(value for value in values if value is not None)
     return found if len(found) == len(values) == size else None
 
 
 def at(root: Node | None, origin: Origin) -> Node | None:
-    """The element of that very place."""
+    """The element with exactly this origin."""
     if root is None:
         return None
     return next((node for node in walk(root) if node.origin is origin), None)
 
 
 def parent_of(root: Node, wanted: Node) -> Node | None:
-    """The element that holds another."""
+    """The parent of an element."""
     return next((node for node in walk(root) if any(c is wanted for c in node.children)), None)
 
 
 def written(tag: str, attributes: Mapping[str, str], text: str = "") -> str:
-    """An element without children as text."""
+    """XML text of an element without children."""
     inner = "".join(f' {name}="{value}"' for name, value in attributes.items())
     return f"<{tag}{inner}>{text}</{tag}>" if text else f"<{tag}{inner}/>"
 
 
 def changed(node: Node, **values: str) -> str:
-    """An element without its children as text, some of its attributes changed."""
+    """XML text of an element without its children, with some attributes changed."""
     return written(node.tag, {**node.attributes, **values})
 
 
 def short(value: float) -> str:
-    """A number in as many digits as a description needs."""
+    """A number with as many digits as a description needs."""
     return f"{value:.6g}"

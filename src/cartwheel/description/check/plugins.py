@@ -1,4 +1,4 @@
-"""Plugins and their parameters, against what the plugins themselves read."""
+"""Plugins and their parameters, compared with what the plugins read."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _GAZEBO = frozenset({
     "joint_state_publisher", "joint_pose_trajectory", "hand_of_god", "vacuum_gripper",
     "elevator", "harness", "wheel_slip", "projector", "video", "template",
 })  # fmt: skip
-"""What ``libgazebo_ros_<name>.so`` can be; some resemble each other."""
+"""The names in ``libgazebo_ros_<name>.so``, some of which are similar."""
 _CLASSIC = re.compile(r"(?:lib)?(gazebo_ros_\w+)(?:\.so)?")
 
 
@@ -46,7 +46,7 @@ def plugin_unknown(subject: Subject) -> Iterator[Diagnostic]:
                 continue
             if knowledge.judge(tag, sensor) is not None:
                 continue
-            # Only a spelling error has a likely meant name: other plugins share most of theirs.
+            # Suggest a tag only for misspelt names: other plugins share most of their tags.
             near = meant_one(tag.filename, knowledge.filenames, cutoff=0.92)
             if frames.short_name(tag) in _GAZEBO:
                 near = ""
@@ -75,7 +75,7 @@ def plugin_parameter(subject: Subject) -> Iterator[Diagnostic]:
 
 @rule(devices_codes.PLUGIN_PARAMETER_MISSING)
 def joint_missing(subject: Subject) -> Iterator[Diagnostic]:
-    """Parameters that name no joint, where the plugin's default does not exist either."""
+    """Plugins without a joint parameter whose default joint does not exist either."""
     knowledge = subject.plugins
     if knowledge is None or knowledge.default_joints is None:
         return
@@ -84,7 +84,7 @@ def joint_missing(subject: Subject) -> Iterator[Diagnostic]:
             defaults = [*knowledge.default_joints(tag)]
             if all(is_known(joint, robot, subject) for _, joint in defaults):
                 continue
-            # A misspelt tag is reported itself.
+            # Misspelt tags are reported by another rule.
             misspelt = {each.values.get("meant") for each in knowledge.judge(tag, sensor) or ()}
             for spellings, joint in defaults:
                 if not is_known(joint, robot, subject) and misspelt.isdisjoint(spellings):
@@ -128,15 +128,15 @@ def plugin_obsolete(subject: Subject) -> Iterator[Diagnostic]:
 
 
 def _plain_file(name: str) -> str:
-    """The file of one of Gazebo Classic's plugins for ROS, which its name must be as it is."""
+    """The file name of a Gazebo Classic ROS plugin without its path, as it must be written."""
     match = _CLASSIC.fullmatch(name)
     return name if match is None else f"lib{match[1]}.so"
 
 
 def _advised(tag: PluginTag, diagnostic: Diagnostic) -> Diagnostic:
-    """What a plugin reports of its parameters, with the text to write for a misspelt one."""
+    """A diagnostic about a plugin's parameters, with the corrected tag if it is misspelt."""
     near = str(diagnostic.values.get("meant") or "")
-    # What is written already cannot be what was meant here.
+    # A tag that already exists is not the intended one.
     written = bool(near) and tag.element.find(near) is not None
     if written:
         near = ""
@@ -147,7 +147,7 @@ def _advised(tag: PluginTag, diagnostic: Diagnostic) -> Diagnostic:
         place = True
     return replace(
         diagnostic,
-        # Gazebo's own plugin may know a tag that ours has no use for; a misspelt one is a fault.
+        # Gazebo's plugin may support a tag that ours ignores; a misspelt tag is an error.
         severity=diagnostic.severity if near or diagnostic.severity == "error" else "info",
         hint="" if near or written else diagnostic.hint,
         instead=instead,

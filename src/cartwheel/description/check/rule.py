@@ -1,4 +1,4 @@
-"""The rules that find what breaks or misleads."""
+"""Rules, each of which finds one kind of fault."""
 
 from __future__ import annotations
 
@@ -11,20 +11,20 @@ from cartwheel.description.check.subject import Subject
 from cartwheel.errors import UNCLASSIFIED, Code, Diagnostic, Origin
 
 MOST_FINDINGS = 200
-"""Of one rule. Each may search all names for the one that was meant."""
+"""Maximum findings per rule. Each finding may search all names for a similar one."""
 
 Finder = Callable[[Subject], Iterable[Diagnostic]]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Rule:
-    """Looks for one kind of fault."""
+    """Finds one kind of fault."""
 
     code: Code
     find: Finder
 
     def apply(self, subject: Subject) -> list[Diagnostic]:
-        """Its findings: at most `MOST_FINDINGS`, and one that reports that there are more."""
+        """At most `MOST_FINDINGS` findings, plus one that reports how many were omitted."""
         findings = list(itertools.islice(self.find(subject), MOST_FINDINGS + 1))
         if len(findings) > MOST_FINDINGS:
             findings[-1] = _more(self.code, findings[-1].origin)
@@ -37,11 +37,11 @@ class Rule:
 def limited(
     findings: Iterable[Diagnostic], finish: Callable[[Diagnostic], Diagnostic]
 ) -> Iterator[Diagnostic]:
-    """At most `MOST_FINDINGS` of each code, and one that reports that there are more.
+    """At most `MOST_FINDINGS` findings per code, plus one that reports that there are more.
 
     Args:
-        findings: All of them.
-        finish: What completes those that are kept.
+        findings: All findings.
+        finish: Completes the findings that are kept.
     """
     counts: Counter[Code] = Counter()
     for each in findings:
@@ -62,7 +62,7 @@ def _more(code: Code, origin: Origin | None) -> Diagnostic:
 
 
 def rule(code: Code) -> Callable[[Finder], Rule]:
-    """Makes a rule of the function that finds faults of a kind."""
+    """Decorator that makes a rule from a function that finds one kind of fault."""
 
     def make(find: Finder) -> Rule:
         return Rule(code=code, find=find)

@@ -1,4 +1,4 @@
-"""What a sensor's tags say: types that SDF knows, ranges that leave something to see."""
+"""Sensor tags: types that SDF defines, and ranges that contain something to measure."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ TYPES = (
     "thermal", "thermal_camera", "triggered_camera", "wide_angle_camera", "wideanglecamera",
     "wireless_receiver", "wireless_transmitter",
 )  # fmt: skip
-"""Of SDF 1.11 and before."""
+"""Sensor types up to SDF 1.11."""
 FORMATS = (
     "R8G8B8", "B8G8R8", "L8", "L16", "R16G16B16", "BAYER_RGGB8", "BAYER_BGGR8", "BAYER_GBRG8",
     "BAYER_GRBG8", "R_FLOAT16", "R_FLOAT32", "RGB_FLOAT16", "RGB_FLOAT32", "RGB_INT8", "RGB_INT16",
     "RGB_INT32", "BGR_INT8", "BGR_INT16", "BGR_INT32", "L_INT8", "L_INT16", "RGB8", "BGR8", "MONO8",
     "MONO16", "RGB16", "UNKNOWN_PIXEL_FORMAT", "RGBA_INT8", "BGRA_INT8", "FLOAT32", "32FC1",
 )  # fmt: skip
-"""Of SDF and of its reader in Gazebo."""
+"""Image formats in SDF and in Gazebo's SDF reader."""
 _LISTED = 9
 _TURN = 2 * math.pi + 0.01
 

@@ -1,4 +1,4 @@
-"""Sensors: what they see of the robot that carries them, and how often they look."""
+"""Sensors: how much of their own robot they see, and their update rates."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from cartwheel.geometry import Pose, matrix_from_quat
 CAMERAS = ("camera", "depth", "depth_camera", "rgbd_camera", "multicamera", "wideanglecamera")
 LASERS = ("ray", "gpu_ray", "lidar", "gpu_lidar")
 BLOCKED = 0.6
-"""Of the rays: a robot may see its own bumper or mast, but not nothing else."""
+"""Maximum fraction of blocked rays: a robot may see its bumper or mast, but not only itself."""
 _GRID = 9
 
 
@@ -98,27 +98,27 @@ def _rates(robot: Robot) -> Iterator[Element]:
 class _View:
     kind: Literal["camera", "lidar"]
     pose: Pose
-    """In the link."""
+    """Pose in the link frame."""
     rays: Floats
-    """(n, 3), of unit length, in that pose."""
+    """Unit vectors in the sensor frame, shape (n, 3)."""
     near: float
     far: float
-    """m."""
+    """Maximum range, m."""
     drawn: bool
-    """Whether it sees visuals, which have one side, and not collisions."""
+    """Whether the sensor sees visuals, which are single-sided, instead of collisions."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class _Block:
     share: float
-    """Of the rays that end at the robot itself."""
+    """Fraction of the rays that hit the robot itself."""
     link: str = ""
-    """Where most of them end."""
+    """The link that most of these rays hit."""
     distance: float = 0.0
     farthest: float = 0.0
-    """m, of those that end there."""
+    """Largest distance of such a hit, m."""
     within: bool = False
-    """Whether the sensor is inside of what they end at."""
+    """Whether the sensor is inside the geometry that it hits."""
 
 
 def _views(sensor: Sensor) -> Iterator[_View]:
@@ -178,7 +178,7 @@ def _blocked(robot: Robot, link: str, view: _View) -> _Block:
     frame = robot.links[link].pose @ view.pose
     directions = np.asarray(view.rays @ matrix_from_quat(frame.orientation).T, dtype=np.float64)
     origin = np.array(frame.position) + 0.0
-    # What is farther is the robot's deck or arm, which a sensor may well look down on.
+    # Farther geometry is a deck or an arm, which a sensor may intentionally look down on.
     reach = min(view.far, max(2 * view.near, 0.3, 0.3 * robot.size))
     nearest = np.full(len(view.rays), np.inf)
     hit_by = np.full(len(view.rays), -1)
@@ -188,8 +188,8 @@ def _blocked(robot: Robot, link: str, view: _View) -> _Block:
         if _beyond(vertices, origin, reach):
             continue
         placed[index] = Solid(part=solid.part, link=name, vertices=vertices, faces=solid.faces)
-        # A surface nearer than the near plane is cut away; what lies behind it is seen.
-        # Drawn surfaces have one side; the rays of the physics end at either.
+        # Surfaces in front of the near plane are clipped, so the geometry behind them is visible.
+        # Visuals are single-sided; physics rays hit both sides.
         distances = first_hits(
             origin,
             directions,
@@ -205,7 +205,7 @@ def _blocked(robot: Robot, link: str, view: _View) -> _Block:
         return _Block(share=0.0)
     index = int(np.bincount(hit_by[seen]).argmax())
     solid, of_it = placed[index], seen & (hit_by == index)
-    # From within a ray meets the back of a surface, and no front on its way there.
+    # A ray from inside hits a back face without hitting a front face before it.
     front = first_hits(origin, directions[of_it], solid, front_only=True)
     return _Block(
         share=float(seen.mean()),
@@ -223,7 +223,7 @@ def _beyond(points: Floats, origin: Floats, reach: float) -> bool:
 
 
 def _obstacles(robot: Robot, view: _View) -> list[tuple[str, Solid]]:
-    # Cameras and the lidars of a GPU see what is drawn, a ray of the physics collisions.
+    # Cameras and GPU lidars see visuals; physics rays hit collisions.
     kind = robot.visuals if view.drawn else robot.collisions
     return [(name, solid) for name, solids in kind.items() for solid in solids]
 

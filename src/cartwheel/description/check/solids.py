@@ -1,4 +1,4 @@
-"""The geometry of a robot as triangles, for what a check measures on it."""
+"""The robot's geometry as triangles, for geometric checks."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from cartwheel.description.model import (
 from cartwheel.geometry import Pose, matrix_from_quat
 
 _ON_PLANE = 1e-6
-"""m: so far from a plane of rays is within it."""
+"""m; tolerance for points on a plane of rays."""
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
@@ -37,28 +37,28 @@ class Solid:
     part: Visual | Collision
     link: str
     vertices: Floats
-    """(n, 3), m."""
+    """Shape (n, 3), m."""
     faces: Ints
-    """(m, 3)."""
+    """Vertex indices, shape (m, 3)."""
 
     @cached_property
     def extent(self) -> float:
-        """The longest edge of its box along the link's axes, m."""
+        """Longest edge of its bounding box along the link's axes, m."""
         return float(np.ptp(self.vertices, axis=0).max())
 
     def placed(self, pose: Pose) -> Floats:
-        """The vertices in another frame, of which `pose` is the link's."""
+        """The vertices in the frame in which `pose` is the link's pose."""
         return moved(self.vertices, pose)
 
 
 def moved(points: Floats, pose: Pose) -> Floats:
-    """Points (n, 3) of a frame in the outer one."""
+    """Transforms points of shape (n, 3) from the frame at `pose` to the outer frame."""
     R = matrix_from_quat(pose.orientation)
     return np.asarray(points @ R.T + np.array(pose.position), dtype=np.float64)
 
 
 def solid_of(part: Visual | Collision, link: str) -> Solid | None:
-    """The part's triangles; None for planes and terrain, and for a mesh that cannot be read."""
+    """The triangles of a part; None for planes, terrain and unreadable meshes."""
     found = _triangles(part.shape)
     if found is None:
         return None
@@ -67,7 +67,7 @@ def solid_of(part: Visual | Collision, link: str) -> Solid | None:
 
 
 def bounds(clouds: list[Floats]) -> tuple[Floats, Floats] | None:
-    """The lowest and the highest corner of the box around points; None where there are none."""
+    """Lowest and highest corner of the points' bounding box; None without points."""
     if not clouds:
         return None
     points = np.concatenate(clouds)
@@ -75,19 +75,19 @@ def bounds(clouds: list[Floats]) -> tuple[Floats, Floats] | None:
 
 
 def as_collision(part: Visual | Collision) -> Collision:
-    """A visual as if it were a collision."""
+    """A visual converted to a collision."""
     if isinstance(part, Collision):
         return part
     return Collision(name=part.name, pose=part.pose, shape=part.shape, origin=part.origin)
 
 
 def hull(solid: Solid) -> Solid:
-    """Its vertices without those that share a place, which is all that a convex test needs."""
+    """The solid without duplicate vertices, which is enough for convex tests."""
     return replace(solid, vertices=np.unique(np.round(solid.vertices, 9), axis=0))
 
 
 def _triangles(shape: Shape) -> tuple[Floats, Ints] | None:
-    # Imported here: it costs a tenth of a second.
+    # Imported here because the import takes 0.1 s.
     import trimesh.creation
 
     make = trimesh.creation
@@ -127,26 +127,26 @@ def first_hits(
     within: float = np.inf,
     front_only: bool = False,
 ) -> Floats:
-    """How far each ray goes until it meets a triangle; inf where it meets none.
+    """Distance of each ray to the first triangle that it hits; inf without a hit.
 
     Args:
-        origin: (3,), in the solid's link.
-        directions: (n, 3), of unit length.
-        solid: What they may meet.
-        beyond: Where they begin, m from the origin.
-        within: How far what is met may be; what is farther may be missed.
-        front_only: Whether a triangle seen from behind is not there.
+        origin: Ray origin in the solid's link frame, shape (3,).
+        directions: Unit vectors, shape (n, 3).
+        solid: The triangles.
+        beyond: Minimum distance of a hit from the origin, m.
+        within: Maximum distance; farther hits may be missed, m.
+        front_only: Ignore back faces.
 
     Returns:
-        (n,), m.
+        Distances, shape (n,), m.
     """
     result = np.full(len(directions), np.inf)
     corners = _in_the_way(origin, directions, solid.vertices[solid.faces], within)
-    # Chunks keep the table of rays and triangles within some ten megabytes.
+    # Chunks limit the table of rays and triangles to some 10 MB.
     for start in range(0, len(corners), 4096):
         a, b, c = (corners[start : start + 4096, i] for i in range(3))
         ab, ac, to = b - a, c - a, origin - a
-        # Möller and Trumbore: the ray's parameter and the place in the triangle.
+        # Möller-Trumbore: the ray parameter and the barycentric coordinates.
         normal = np.cross(ab, ac)
         with np.errstate(divide="ignore", invalid="ignore"):
             scale = -1.0 / (directions @ normal.T)
@@ -164,14 +164,14 @@ def first_hits(
 
 
 def _in_the_way(origin: Floats, directions: Floats, corners: Floats, within: float) -> Floats:
-    """The triangles that rays may meet, without those that are obviously elsewhere."""
+    """The triangles that rays may hit; omits those that obviously cannot be hit."""
     low, high = corners.min(axis=1), corners.max(axis=1)
     away = np.maximum(np.maximum(low - origin, origin - high), 0.0)
     corners = corners[np.einsum("ij,ij->i", away, away) <= within * within]
     axis = directions.mean(axis=0)
-    if (directions @ axis > 0).all():  # all of them look one way: what lies behind is not met
+    if (directions @ axis > 0).all():  # All rays point into one half-space.
         corners = corners[(((corners - origin) @ axis) > 0).any(axis=1)]
-    # Rays of one plane meet only what crosses it.
+    # Rays in one plane hit only triangles that cross it.
     _, spread, axes = np.linalg.svd(directions, full_matrices=True)
     if len(spread) < 3 or spread[2] < 1e-6:
         side = (corners - origin) @ axes[2]
@@ -180,22 +180,22 @@ def _in_the_way(origin: Floats, directions: Floats, corners: Floats, within: flo
 
 
 def overlap(a: Floats, b: Floats, shrink: float) -> bool:
-    """Whether the convex hulls of two point clouds still overlap when moved apart by `shrink`.
+    """Whether the convex hulls of two point clouds overlap by more than `shrink`.
 
-    Looks for the point of the two clouds' difference that is nearest to the origin (Gilbert,
-    Johnson and Keerthi): a direction that separates them ends the search.
+    Searches for the point of the Minkowski difference that is nearest to the origin (Gilbert,
+    Johnson and Keerthi), and stops at the first separating direction.
 
     Args:
-        a: (n, 3), m.
-        b: (m, 3), m.
-        shrink: How far they must reach into each other to count, m.
+        a: Shape (n, 3), m.
+        b: Shape (m, 3), m.
+        shrink: Minimum penetration depth, m.
     """
     simplex = (a[0] - b[0])[None, :]
     point = simplex[0]
     for _ in range(60):
         length = float(np.linalg.norm(point))
         if length < 1e-9:
-            # The origin lies within; any direction left is as good as the simplex's own.
+            # The origin is inside, so the simplex's own directions are as good as any.
             return not _parted(a, b, simplex, shrink)
         direction = point / length
         nearest = a[np.argmin(a @ direction)] - b[np.argmax(b @ direction)]
@@ -206,11 +206,11 @@ def overlap(a: Floats, b: Floats, shrink: float) -> bool:
 
 
 def distance(a: Floats, b: Floats) -> float:
-    """How far the convex hulls of two point clouds are from each other, m; 0 where they overlap.
+    """Distance between the convex hulls of two point clouds, m; 0 if they overlap.
 
     Args:
-        a: (n, 3), m.
-        b: (m, 3), m.
+        a: Shape (n, 3), m.
+        b: Shape (m, 3), m.
     """
     simplex = (a[0] - b[0])[None, :]
     point, length = simplex[0], float(np.linalg.norm(simplex[0]))
@@ -227,7 +227,7 @@ def distance(a: Floats, b: Floats) -> float:
 
 
 def _parted(a: Floats, b: Floats, simplex: Floats, shrink: float) -> bool:
-    """Whether one of the obvious directions separates two clouds but for less than `shrink`."""
+    """Whether a candidate direction separates two clouds, up to an overlap of `shrink`."""
     normals = [np.eye(3)]
     for i, j, k in combinations(simplex, 3):
         normals.append(np.cross(j - i, k - i)[None, :])
@@ -242,7 +242,7 @@ def _parted(a: Floats, b: Floats, simplex: Floats, shrink: float) -> bool:
 
 
 def _nearest_point(simplex: Floats) -> tuple[Floats, Floats]:
-    """The point of up to five points' convex hull nearest to the origin, and who spans it."""
+    """The point in the convex hull of up to five points nearest to the origin, and its simplex."""
     best, spanned = min(
         ((p, p[None, :]) for p in simplex), key=lambda each: float(each[0] @ each[0])
     )

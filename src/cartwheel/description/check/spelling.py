@@ -1,4 +1,4 @@
-"""Which existing name a wrong one stands for: near enough to be written in its place."""
+"""Finds the existing name that a wrong name probably means."""
 
 from __future__ import annotations
 
@@ -9,29 +9,29 @@ from collections.abc import Collection, Iterable, Mapping
 from cartwheel.errors import Code, Diagnostic, Origin, Value
 
 _LETTERS_AN_ERROR = 6
-"""So many letters may hold one slip of the keyboard."""
+"""Letters in a name for each allowed typing error."""
 _MOST_ERRORS = 2
 _SHORTEST_WORD = 3
-"""Letters of a word that can hold a slip."""
+"""Minimum letters in a word that may contain a typing error."""
 _SHORTEST = 4
-"""Letters of a part that is enough to know the whole by."""
+"""Minimum letters in a part that identifies the whole name."""
 _SHOWN = 4
 _LISTED = 12
 _LONGEST = 100
-"""Letters of a name that may be misspelt."""
+"""Maximum letters in a name that is compared."""
 _MOST_COMPARED = 1000
 
 
 def meant(name: str, known: Collection[str], *, parts: bool = True) -> str:
-    """The one name that was meant; empty where none or several could be.
+    """The one existing name that was probably meant; empty if there is none or several.
 
-    A slip of the keyboard, another case or other separators, a prefix or suffix too many or too
-    few: all else is another name, which nobody should write instead.
+    Accepted differences are typing errors, letter case, separators and an additional or missing
+    prefix or suffix. Any other difference makes it a different name.
 
     Args:
-        name: As it is written.
-        known: Those that exist.
-        parts: Whether a prefix or suffix may be what is wrong.
+        name: The name in the file.
+        known: Existing names.
+        parts: Whether an additional or missing prefix or suffix is accepted.
     """
     if not name or name in known:
         return ""
@@ -41,7 +41,7 @@ def meant(name: str, known: Collection[str], *, parts: bool = True) -> str:
     if alike:
         return alike[0]
     allowed = min(_MOST_ERRORS, max(1, len(plain) // _LETTERS_AN_ERROR))
-    # Another number is another name: joint_4 is no misspelt joint_3.
+    # A different number is a different name: joint_4 is not a misspelt joint_3.
     digits = re.findall(r"\d+", name)
     slips = sorted(
         (errors, each)
@@ -57,7 +57,7 @@ def meant(name: str, known: Collection[str], *, parts: bool = True) -> str:
 
 
 def nearest(name: str, known: Iterable[str]) -> str:
-    """A sentence for where no name is surely meant: the nearest ones, or those that exist."""
+    """A sentence with the nearest names, or all existing names, if none was clearly meant."""
     names = sorted(set(known) - {""})
     close = difflib.get_close_matches(name, _comparable(name, known), n=_SHOWN, cutoff=0.5)
     shown = ", ".join(close or names[:_LISTED])
@@ -69,7 +69,7 @@ def nearest(name: str, known: Iterable[str]) -> str:
 
 
 def _comparable(name: str, known: Iterable[str]) -> list[str]:
-    """Names among which another is looked for; the time grows with their number and length."""
+    """Limits the names to compare: the time grows with their number and length."""
     if len(name) > _LONGEST:
         return []
     near = {each for each in known if each and abs(len(each) - len(name)) <= _LONGEST}
@@ -87,17 +87,17 @@ def misspelt(
     mark: str,
     values: Mapping[str, Value],
 ) -> Diagnostic:
-    """The diagnostic for an attribute whose name does not exist, with the name that was meant.
+    """The diagnostic for an attribute with an unknown name, with the name that was meant.
 
     Args:
-        code: Its kind.
-        name: As it is written.
-        known: Those that exist.
-        attribute: In which it stands.
+        code: The diagnostic's code.
+        name: The name in the file.
+        known: Existing names.
+        attribute: The attribute that contains the name.
         message: What is wrong.
-        origin: Where.
-        mark: What of the line it is about.
-        values: What the message names; ``meant`` is added.
+        origin: File and line.
+        mark: The text in the line to underline.
+        values: Names and numbers in the message; ``meant`` is added.
     """
     near = meant(name, known)
     return code.diagnostic(
@@ -112,10 +112,10 @@ def misspelt(
 
 
 def _words_alike(name: str, other: str) -> bool:
-    """Whether no word of a name is another word: arm_l is no slip of arm_r, nor of arm_pi_r."""
+    """Whether all words match: arm_l is not a misspelt arm_r or arm_pi_r."""
     ours, theirs = (re.findall(r"[0-9a-z]+", each.lower()) for each in (name, other))
     if len(ours) != len(theirs):
-        # A separator too many or too few, and the letters nearly the same.
+        # One separator more or less, with nearly the same letters.
         return len(_plain(name)) == len(_plain(other))
     return all(
         a == b
@@ -132,15 +132,15 @@ def _plain(name: str) -> str:
 
 
 def _is_part(short: str, long: str) -> bool:
-    """Whether a name is the whole of another but for a prefix or a suffix."""
+    """Whether two names differ only by a prefix or suffix."""
     if len(short) < _SHORTEST:
         return False
-    # A number at its end makes it another: caster_2 is not caster.
+    # A trailing number makes a different name: caster_2 is not caster.
     return bool(re.search(rf"(^|[_/:.]){re.escape(short)}($|[_/:.](?!\d+$))", long))
 
 
 def _errors(a: str, b: str, most: int) -> int:
-    """Letters that are wrong, missing, too many or swapped; more than `most` counts as one more."""
+    """Number of wrong, missing, additional or swapped letters, up to `most` + 1."""
     if abs(len(a) - len(b)) > most:
         return most + 1
     before: list[int] = []

@@ -1,4 +1,4 @@
-"""How the robot stands: friction, collisions of wheels and base, the ground, itself."""
+"""How the robot rests on the ground: friction, wheel and base collisions, self-collisions."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from cartwheel.errors import Diagnostic
 
 SLIPPERY = 0.01
 PENETRATION = 0.002
-"""m that collisions must reach into each other to count."""
+"""Minimum penetration of two collisions that is reported, m."""
 
 
 @rule(robot_codes.WHEEL_FRICTIONLESS)
@@ -183,7 +183,7 @@ def collisions_overlap(subject: Subject) -> Iterator[Diagnostic]:
             ):
                 meshes = any(isinstance(c.shape, Mesh) for c in (*a.collisions, *b.collisions))
                 yield robot_codes.OVERLAPPING_COLLISIONS.diagnostic(
-                    # Gazebo takes a mesh as it is, not its hull.
+                    # Gazebo collides with the mesh itself, not with its convex hull.
                     severity="info" if meshes else None,
                     message=f'the collisions of "{a.name}" and "{b.name}" overlap while all '
                     "joints are at 0, so they push each other apart",
@@ -195,7 +195,7 @@ def collisions_overlap(subject: Subject) -> Iterator[Diagnostic]:
 
 
 def _names_nothing(subject: Subject) -> bool:
-    """Whether a <gazebo> with a friction refers to nothing: it may be of any link."""
+    """Whether a <gazebo> with friction has no reference, so that its link is unknown."""
     known = {nodes.name_of(node) for node in subject.root.children if node.tag in ("link", "joint")}
     return any(
         nodes.child(node, "mu1") is not None and nodes.text_of(node, "reference") not in known
@@ -235,7 +235,7 @@ def _touches_ground(robot: Robot, link: Link, wheels: set[str]) -> bool:
 
 
 def _rolls(robot: Robot, link: Link) -> bool:
-    """A wheel that nobody drives, or a caster: something that is made to touch the ground."""
+    """Whether the link is an undriven wheel or a caster, which is meant to touch the ground."""
     holder = robot.inbound.get(link.name)
     moves = holder is not None and holder.type in ("continuous", "ball", "revolute", "prismatic")
     name = link.name.lower()
@@ -243,7 +243,7 @@ def _rolls(robot: Robot, link: Link) -> bool:
 
 
 def _joined(robot: Robot, a: str, b: str) -> bool:
-    """Whether one joint, over any number of fixed ones, or none holds the two together."""
+    """Whether at most one movable joint, with any number of fixed joints, connects two links."""
     one, other = robot.rigid_root(a), robot.rigid_root(b)
     if one == other:
         return True

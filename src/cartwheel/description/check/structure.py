@@ -1,4 +1,4 @@
-"""Names and the tree: what refers to what, and whether it is there."""
+"""Names and the kinematic tree: references and whether their targets exist."""
 
 from __future__ import annotations
 
@@ -159,7 +159,7 @@ def several_roots(subject: Subject) -> Iterator[Diagnostic]:
     roots = [node for node in links if nodes.name_of(node) not in holders]
     first = main_root(roots, _parts(subject, "joint"))
     known = link_names(subject)
-    # The child of a joint that misspells it is told there.
+    # A joint with a misspelt child link is reported by another rule.
     misspelt = {spelling.meant(ends(joint)[1], known) for joint in _parts(subject, "joint")}
     for node in roots:
         name = nodes.name_of(node)
@@ -229,12 +229,12 @@ def reference_unknown(subject: Subject) -> Iterator[Diagnostic]:
 
 
 def link_names(subject: Subject) -> set[str]:
-    """Of all links of a URDF."""
+    """Names of all links in a URDF."""
     return {nodes.name_of(node) for node in _parts(subject, "link")}
 
 
 def ends(joint: Node) -> tuple[str, str]:
-    """Parent and child link."""
+    """Parent and child link of a joint."""
     return (
         nodes.text_of(nodes.child(joint, "parent"), "link"),
         nodes.text_of(nodes.child(joint, "child"), "link"),
@@ -242,10 +242,10 @@ def ends(joint: Node) -> tuple[str, str]:
 
 
 def rings(holders: Mapping[str, Node]) -> list[list[str]]:
-    """The rings that joints make, each as links from child to parent.
+    """Loops of joints, each as a list of links from child to parent.
 
     Args:
-        holders: The joint that holds each link, as `inbound` finds them.
+        holders: The parent joint of each link, as returned by `inbound`.
     """
     parents = {link: ends(joint)[0] for link, joint in holders.items()}
     found: list[list[str]] = []
@@ -264,7 +264,7 @@ def rings(holders: Mapping[str, Node]) -> list[list[str]]:
 
 
 def inbound(joints: list[Node], links: set[str], *, all_of_them: bool = False) -> dict[str, Node]:
-    """The joint that holds each link; only between links that exist unless all are asked for."""
+    """The parent joint of each link; joints to unknown links only with `all_of_them`."""
     found: dict[str, Node] = {}
     for joint in joints:
         parent, child = ends(joint)
@@ -274,7 +274,7 @@ def inbound(joints: list[Node], links: set[str], *, all_of_them: bool = False) -
 
 
 def main_root(roots: list[Node], joints: list[Node]) -> Node | None:
-    """The root that carries most: the others are those left over."""
+    """The root link with the largest subtree; the other roots are disconnected."""
     if not roots:
         return None
     below: dict[str, list[str]] = {}
@@ -296,7 +296,7 @@ def main_root(roots: list[Node], joints: list[Node]) -> Node | None:
 
 
 def mimic_chain(joints: dict[str, Node], leader: str) -> list[str]:
-    """The joints that a joint follows, beginning with the one that it names."""
+    """The chain of joints that a mimic joint follows, starting with `leader`."""
     chain: list[str] = []
     while leader in joints and leader not in chain:
         chain.append(leader)

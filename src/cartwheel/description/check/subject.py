@@ -1,4 +1,4 @@
-"""What the rules look at: a description as its author wrote it, and what was read of it."""
+"""The input of the rules: a description as written, and the models read from it."""
 
 from __future__ import annotations
 
@@ -30,24 +30,24 @@ from cartwheel.errors import Diagnostic, Origin
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class PluginKnowledge:
-    """What the rooms above know of plugins, passed down by who calls."""
+    """Information about plugins, passed in by the caller from higher layers."""
 
     filenames: tuple[str, ...]
-    """Such as ``libgazebo_ros_camera.so``."""
+    """Plugin files such as ``libgazebo_ros_camera.so``."""
     judge: Callable[[PluginTag, Sensor | None], Iterable[Diagnostic] | None]
-    """What is wrong with a plugin's parameters; None for a plugin that is not known."""
+    """Diagnostics about a plugin's parameters; None for an unknown plugin."""
     default_joints: Callable[[PluginTag], Iterable[tuple[tuple[str, ...], str]]] | None = None
-    """Joints that a plugin uses because no tag names one: the tag's spellings, and the joint."""
+    """Default joints of a plugin: for each, the tag's spellings and the joint's name."""
     controller_types: tuple[str, ...] = ()
-    """Such as ``effort_controllers/JointPositionController``; empty where none is known."""
+    """Types such as ``effort_controllers/JointPositionController``; empty if unknown."""
     controller_files: Callable[[Path, Sequence[str]], Sequence[Path]] | None = None
-    """From a robot's file and its joints to files that a launch file could start."""
+    """Finds the files that a launch file may load, from the robot's file and its joints."""
 
 
 ABSENT = frozenset({FILE_MISSING, FILE_ON_NETWORK})
-"""Codes of files, models and packages that do not exist here."""
+"""Codes for files, models and packages that do not exist locally."""
 GAZEBO_STEP = 0.001
-"""s, where a world states none."""
+"""Default time step, s."""
 DRIVES = ("diff_drive", "diffdrive", "diff-drive")
 SKIDS = ("skid_steer", "skid-steer")
 MULTI_WHEEL = "diffdrive_plugin_multi_wheel"
@@ -64,24 +64,24 @@ class Drive:
 
     tag: PluginTag
     left: tuple[str, ...]
-    """Joints."""
+    """Joint names."""
     right: tuple[str, ...]
 
     @property
     def joints(self) -> tuple[str, ...]:
-        """All of them."""
+        """Left and right joints."""
         return self.left + self.right
 
 
 class Robot:
-    """One model, with what the rules ask of it again and again.
+    """A model, with cached values that several rules use.
 
     Args:
-        description: As it was read.
-        root: The expanded ``<robot>``; None for a model of SDF.
-        mended: Links whose inertia is not the author's any more.
-        cut: Links of which something could not be read.
-        displaced: Links whose joint was: nobody knows where they are.
+        description: The model as read.
+        root: The expanded ``<robot>``; None for an SDF model.
+        mended: Links whose inertia was replaced.
+        cut: Links that lost an unreadable element.
+        displaced: Links whose joint is unreadable, so that their pose is unknown.
     """
 
     def __init__(
@@ -106,22 +106,22 @@ class Robot:
 
     @cached_property
     def collisions(self) -> dict[str, list[Solid]]:
-        """By link."""
+        """Collision geometry by link."""
         return {link.name: self._solids(link, visual=False) for link in self.description.links}
 
     @cached_property
     def visuals(self) -> dict[str, list[Solid]]:
-        """By link."""
+        """Visual geometry by link."""
         return {link.name: self._solids(link, visual=True) for link in self.description.links}
 
     @cached_property
     def in_sdf(self) -> frozenset[str]:
-        """The links that are written in SDF's words: all of a model, or those in a <gazebo>."""
+        """Links written in SDF: all links of an SDF model, or those in a <gazebo> element."""
         return frozenset(self.links) - set(map(nodes.name_of, nodes.children(self.root, "link")))
 
     @cached_property
     def incomplete(self) -> frozenset[str]:
-        """Links of which a mesh is missing: what is measured on the rest says little."""
+        """Links with a missing mesh, whose remaining geometry is not representative."""
         found = set(self.cut)
         for node in nodes.children(self.root, "link"):
             link = self.links.get(nodes.name_of(node))
@@ -135,7 +135,7 @@ class Robot:
 
     @cached_property
     def placed(self) -> frozenset[str]:
-        """Links whose place is the author's."""
+        """Links with a known pose, as the author wrote it."""
         lost, seen = set(self._displaced), set[str]()
         for link in self.links:
             path: dict[str, None] = {}
@@ -149,19 +149,19 @@ class Robot:
 
     @property
     def is_placed(self) -> bool:
-        """Whether all of its links are where the author has them."""
+        """Whether the poses of all links are known."""
         return len(self.placed) == len(self.links)
 
     def whole(self, link: str) -> bool:
-        """Whether all meshes of a link, and of what is fixed to it, are there."""
+        """Whether no mesh is missing in a link and the links fixed to it."""
         return self.incomplete.isdisjoint(self.rigid_groups[self.rigid_root(link)])
 
     def solids(self, link: str) -> list[Solid]:
-        """Collisions and visuals."""
+        """Collisions and visuals of a link."""
         return self.collisions.get(link, []) + self.visuals.get(link, [])
 
     def rigid_root(self, link: str) -> str:
-        """The link that this one is fixed to, itself where it moves."""
+        """The root of the link's rigid group; the link itself if it can move."""
         seen = {link}
         while link in self.inbound and self.inbound[link].type == "fixed":
             parent = self.inbound[link].parent
@@ -173,14 +173,14 @@ class Robot:
 
     @cached_property
     def rigid_groups(self) -> dict[str, list[str]]:
-        """The links of each rigid part, by the link that the others are fixed to."""
+        """The links of each rigid group, by root link."""
         groups: dict[str, list[str]] = {}
         for link in self.links:
             groups.setdefault(self.rigid_root(link), []).append(link)
         return groups
 
     def rigid_cloud(self, link: str) -> list[Floats]:
-        """The geometry of all that is fixed to a link, in that link's frame."""
+        """Geometry of all links in a rigid group, in the given link's frame."""
         here = self.links[link].pose.inverse()
         return [
             solid.placed(here @ self.links[name].pose)
@@ -190,7 +190,9 @@ class Robot:
 
     @cached_property
     def size(self) -> float:
-        """The longest edge of the box around its collisions, or where it has none its visuals."""
+        """Longest edge of the bounding box of all collisions, or of all visuals if there are none,
+        m.
+        """
         for kind in (self.collisions, self.visuals):
             found = bounds(
                 [
@@ -205,7 +207,7 @@ class Robot:
 
     @cached_property
     def drives(self) -> tuple[Drive, ...]:
-        """Plugins that drive wheels, by the tags of both generations of Gazebo."""
+        """Plugins that drive wheels, with the tags of Gazebo Classic and gz-sim."""
         found = []
         for tag in self.description.plugins:
             if MULTI_WHEEL in tag.filename:
@@ -243,7 +245,7 @@ class Robot:
 
     @cached_property
     def joint_names(self) -> frozenset[str]:
-        """Of all joints, those that could not be read as well; scoped ones without scope too."""
+        """Names of all joints, including unreadable ones; scoped names also without their scope."""
         names = {*self.joints, *map(nodes.name_of, nodes.children(self.root, "joint"))}
         return frozenset(names | {name.rpartition("::")[2] for name in names})
 
@@ -257,7 +259,7 @@ class Robot:
         return frozenset(names)
 
     def node_at(self, origin: Origin) -> Node | None:
-        """The element of that very place."""
+        """The element with exactly this origin."""
         return self._nodes.get(id(origin))
 
     @cached_property
@@ -266,19 +268,19 @@ class Robot:
         return {id(node.origin): node for node in tree}
 
     def joint_node(self, name: str) -> Node | None:
-        """The joint as written."""
+        """The joint's element."""
         return next(
             (n for n in nodes.children(self.root, "joint") if nodes.name_of(n) == name), None
         )
 
     def sensors(self) -> Iterator[tuple[Link, Sensor]]:
-        """All of them with their links."""
+        """All sensors, each with its link."""
         for link in self.description.links:
             for sensor in link.sensors:
                 yield link, sensor
 
     def plugins(self) -> Iterator[tuple[PluginTag, Sensor | None]]:
-        """Those of the robot, then those in its sensors."""
+        """Model plugins first, then sensor plugins with their sensors."""
         for tag in self.description.plugins:
             yield tag, None
         for _, sensor in self.sensors():
@@ -293,49 +295,49 @@ class Robot:
 
 @dataclass(kw_only=True)
 class Subject:
-    """A description under check."""
+    """A description to check."""
 
     root: Node
-    """Expanded, as written; nothing in it is counted as read."""
+    """The expanded tree as written; no element is marked as used."""
     files: Sequence[str]
-    """All that xacro read, the one that was named first."""
+    """All files that xacro read, starting with the given one."""
     packages: Packages
     read: RobotDescription | WorldDescription | None = None
-    """None where it could not be read."""
+    """None if the description could not be read."""
     robots: tuple[Robot, ...] = ()
     failures: tuple[Diagnostic, ...] = ()
-    """What ended its reading, apart from what has a rule of its own."""
+    """Errors that prevented reading, except those that have their own rule."""
     gaps: Sequence[Origin] = ()
-    """The places of elements that lack a part that could not be read, and of their holders."""
+    """Origins of elements that lost an unreadable child, and of their parents."""
     plugins: PluginKnowledge | None = None
     control: Sequence[tuple[Robot, ControlFile]] = ()
-    """The files of each robot's controllers."""
+    """Controller files of each robot."""
 
     @property
     def is_urdf(self) -> bool:
-        """Whether it is a URDF, or a xacro of one."""
+        """Whether it is a URDF or a xacro that produces one."""
         return self.root.tag == "robot"
 
     def in_sdf(self, origin: Origin | None) -> bool:
-        """Whether an element of that very place is written in SDF's words."""
+        """Whether the element with this origin is written in SDF."""
         return not self.is_urdf or id(origin) in self._inserted
 
     @cached_property
     def _inserted(self) -> frozenset[int]:
-        """Of the places in a ``<gazebo>`` that refers to nothing."""
+        """Elements in a ``<gazebo>`` without a reference, by the id of their origin."""
         tags = nodes.children(self.root, "gazebo")
         whole = [tag for tag in tags if not nodes.text_of(tag, "reference")]
         return frozenset(id(node.origin) for tag in whole for node in nodes.walk(tag))
 
     @cached_property
     def written(self) -> tuple[Node, ...]:
-        """Each file that xacro read, before its expansion; without those that cannot be read."""
+        """Each readable xacro file before expansion."""
         trees = (xml.readable_file(Path(file)) for file in self.files)
         return tuple(tree for tree in trees if tree is not None)
 
     @cached_property
     def macros(self) -> frozenset[str]:
-        """The names of the macros that its files define."""
+        """Names of the macros defined in its files."""
         return frozenset(
             nodes.name_of(node).removeprefix("xacro:")
             for tree in self.written
@@ -344,11 +346,11 @@ class Subject:
         )
 
     def node_at(self, origin: Origin | None) -> Node | None:
-        """The element of that very place."""
+        """The element with exactly this origin."""
         return None if origin is None else self._at.get(id(origin))
 
     def holder_of(self, node: Node) -> Node | None:
-        """The element that holds another."""
+        """The parent of an element."""
         return self._holders.get(id(node))
 
     @cached_property
@@ -364,12 +366,12 @@ class Subject:
 
     @cached_property
     def joints_written(self) -> frozenset[str]:
-        """The names of all joints in the file, of those that could not be read as well."""
+        """Names of all joints in the file, including unreadable ones."""
         return frozenset(nodes.name_of(n) for n in nodes.walk(self.root) if n.tag == "joint")
 
     @cached_property
     def lacks_models(self) -> bool:
-        """Whether a model that it includes does not exist here, so that its content is unknown."""
+        """Whether an included model is missing, so that its contents are unknown."""
         diagnostics = () if self.read is None else self.read.diagnostics
         return any(
             each.code in ABSENT and each.values.get("kind") == "model" for each in diagnostics
@@ -377,14 +379,14 @@ class Subject:
 
     @property
     def step(self) -> float:
-        """s of the physics, as Gazebo would take it."""
+        """Time step of the physics in Gazebo, s."""
         if isinstance(self.read, WorldDescription) and self.read.physics.max_step_size:
             return self.read.physics.max_step_size
         return GAZEBO_STEP
 
 
 def _texts(tag: PluginTag, *names: str) -> tuple[str, ...]:
-    """The words of the first of these tags that is written; several where it is repeated."""
+    """Words in the first of these tags that is present, from all its occurrences."""
     for name in names:
         found = [text for child in tag.element.find_all(name) if (text := child.text.strip())]
         if found:

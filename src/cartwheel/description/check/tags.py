@@ -1,8 +1,7 @@
-"""The readers' own diagnostics, and tags that only Gazebo ignores.
+"""Diagnostics from the readers, and tags that only Gazebo ignores.
 
-The readers know best what they ignored or could not read. Their diagnostics are findings under
-their own codes, with the text to write where it is known; those whose code has a rule with more
-detail are left to it.
+The readers' diagnostics keep their codes. Replacement text is added where it is known. Diagnostics
+for which a rule gives more detail are left to that rule.
 """
 
 from __future__ import annotations
@@ -20,19 +19,19 @@ from cartwheel.description.node import Node
 from cartwheel.errors import Diagnostic
 
 _ELSEWHERE = frozenset({*codes_of("robot"), devices.CONTACT_COLLISION_UNKNOWN})
-"""Codes whose warnings have a rule with more detail."""
+"""Codes of warnings for which a rule gives more detail."""
 _OF_GAPS = (codes.DEFAULT_USED, codes.TAG_EMPTY)
-"""Codes of elements that lack a part."""
+"""Codes for elements with a missing part."""
 _GUESSED = frozenset({
     codes.TAG_IGNORED, codes.MATERIAL_UNKNOWN, codes.MATERIAL_UNDEFINED, files.ARGUMENT_UNKNOWN,
 })  # fmt: skip
-"""Codes of names that may be misspelt, with the likely meant one in their values."""
+"""Codes for possibly misspelt names, with the likely name in their values."""
 _OF_URDF = (
     "inertial", "visual", "collision", "geometry", "origin", "mass", "inertia", "mesh", "parent",
     "child", "axis", "limit", "dynamics", "mimic", "plugin", "color", "texture",
     "hardwareInterface",
 )  # fmt: skip
-"""Tags that URDF has somewhere, but not in its <robot>."""
+"""Tags that are valid in URDF, but not directly in <robot>."""
 _MOMENTS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 _NAMESPACE = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
 
@@ -100,12 +99,12 @@ def tag_misplaced(subject: Subject) -> Iterator[Diagnostic]:
 
 
 def _has_place(diagnostic: Diagnostic) -> bool:
-    """Whether it is of a tag that belongs to a link or joint."""
+    """Whether the diagnostic is about a tag that belongs in a link or joint."""
     return diagnostic.code is codes.TAG_MISPLACED and "needs" in diagnostic.values
 
 
 def _meant_by(subject: Subject, reference: str, needs: str) -> str:
-    """The link that a joint moves, or the joint that moves a link: the other of the two."""
+    """The link that a joint moves, or the joint that moves a link."""
     for joint in nodes.children(subject.root, "joint"):
         child = nodes.text_of(nodes.child(joint, "child"), "link")
         if needs == "link" and nodes.name_of(joint) == reference:
@@ -116,7 +115,7 @@ def _meant_by(subject: Subject, reference: str, needs: str) -> str:
 
 
 def passed(subject: Subject) -> Iterator[Diagnostic]:
-    """The readers' diagnostics, and what ended their reading, that no rule has in more detail."""
+    """Diagnostics and errors from the readers that no rule reports in more detail."""
     for failure in subject.failures:
         if failure.code not in ABSENT and "moments" not in failure.values:
             yield failure
@@ -124,13 +123,13 @@ def passed(subject: Subject) -> Iterator[Diagnostic]:
 
 
 def _relevant(subject: Subject) -> Iterator[Diagnostic]:
-    """The readers' diagnostics that no rule has in more detail, as they are."""
+    """Unchanged diagnostics from the readers that no rule reports in more detail."""
     gaps = {id(origin) for origin in subject.gaps}
     lacking = {link for robot in subject.robots for link in robot.incomplete}
     for diagnostic in _diagnostics(subject):
         if diagnostic.code in ABSENT or _has_place(diagnostic):
             continue
-        # An element that lacks a part only because it could not be read is no news.
+        # Omit elements that are incomplete only because a part was unreadable.
         follows = "missing" in diagnostic.values and diagnostic.values.get("link") in lacking
         follows |= diagnostic.code in _OF_GAPS and id(diagnostic.origin) in gaps
         if diagnostic.severity == "error" or (diagnostic.code not in _ELSEWHERE and not follows):
@@ -142,13 +141,13 @@ def _diagnostics(subject: Subject) -> tuple[Diagnostic, ...]:
 
 
 def _finished(subject: Subject, diagnostic: Diagnostic) -> Diagnostic:
-    """A reader's diagnostic with its mark, or with the text to write."""
+    """A reader's diagnostic with its mark or replacement text."""
     finish = _marked if diagnostic.severity == "error" else _advised
     return finish(subject, diagnostic)
 
 
 def _marked(subject: Subject, diagnostic: Diagnostic) -> Diagnostic:
-    """An error with its place in the line, or with the end of the joint that is misspelt."""
+    """An error with the marked text, or with the misspelt parent or child of a joint."""
     node = subject.node_at(diagnostic.origin)
     if node is None:
         return diagnostic
@@ -168,7 +167,7 @@ def _marked(subject: Subject, diagnostic: Diagnostic) -> Diagnostic:
 
 
 def _advised(subject: Subject, diagnostic: Diagnostic) -> Diagnostic:
-    """A warning with the text to write, and less severe where it is hardly a fault."""
+    """A warning with replacement text, at a lower severity if it is rarely a fault."""
     if diagnostic.code is files.XACRO_NAMESPACE:
         return replace(diagnostic, instead=_NAMESPACE, place="attribute", hint="")
     if diagnostic.code is codes.NOT_SIMULATED:
@@ -192,11 +191,11 @@ def _advised(subject: Subject, diagnostic: Diagnostic) -> Diagnostic:
             hint="",
         )
     meant = _likely(node, diagnostic)
-    # An attribute too many is mostly a note of its author's; a misspelt one is a fault.
+    # An unknown attribute is usually an author's note; a misspelt attribute is a fault.
     idle = diagnostic.code is codes.TAG_IGNORED and not meant and (
         bool(attribute) or _is_extension(diagnostic)
     )  # fmt: skip
-    # A name such as PR2/Black is of a script that a robot brings along.
+    # Names such as PR2/Black refer to a material script in the robot's package.
     if diagnostic.code is codes.MATERIAL_UNKNOWN:
         idle = not str(values["name"]).startswith("Gazebo/")
     is_tag = diagnostic.code is codes.TAG_IGNORED and not attribute
@@ -218,13 +217,13 @@ def _advised(subject: Subject, diagnostic: Diagnostic) -> Diagnostic:
 
 
 def _likely(node: Node | None, diagnostic: Diagnostic) -> str:
-    """The name that is surely meant; empty where it is only alike."""
+    """The name that was clearly meant; empty if names are only similar."""
     values = diagnostic.values
     meant = str(values.get("meant", ""))
     if diagnostic.code is codes.TAG_IGNORED and "attribute" not in values:
         return meant
     if node is not None and meant in node.attributes:
-        return ""  # it is written already: not a misspelt one
+        return ""  # the attribute already exists, so it was not misspelt
     name = str(values.get("attribute", values.get("name", "")))
     if diagnostic.code is codes.MATERIAL_UNKNOWN and not name.startswith("Gazebo/"):
         return ""
@@ -237,7 +236,7 @@ def _calls_macro(subject: Subject, node: Node, diagnostic: Diagnostic) -> bool:
 
 
 def _from_urdf(subject: Subject, node: Node) -> str:
-    """What SDF writes for an element that has URDF's attributes; empty for any other."""
+    """SDF text for an element with URDF attributes; empty for any other element."""
     known = {"box": ("size",), "sphere": ("radius",), "cylinder": ("radius", "length"),
              "axis": ("xyz",), "inertia": _MOMENTS}.get(node.tag, ())  # fmt: skip
     attributes = {key: value for key, value in node.attributes.items() if key in known}
@@ -250,7 +249,7 @@ def _from_urdf(subject: Subject, node: Node) -> str:
 
 
 def _is_extension(diagnostic: Diagnostic) -> bool:
-    """Whether it is of a tag of <robot> that URDF has nowhere: it is for another program."""
+    """Whether the diagnostic is about a <robot> child unknown to URDF, for another program."""
     values = diagnostic.values
     return values.get("parent") == "robot" and values["tag"] not in _OF_URDF
 

@@ -1,4 +1,4 @@
-"""Numbers in odd units: degrees for radians, millimetres for metres."""
+"""Numbers with wrong units: degrees for radians, millimetres for metres."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from cartwheel.description.node import Node
 from cartwheel.errors import Diagnostic
 
 _ADDED = 4 * math.pi
-"""rad: so far editors let angles run, past a turn."""
+"""rad; editors may accumulate angles up to this value."""
 _ROUNDED = 3e-4
-"""The relative error of degrees in four digits."""
+"""Relative rounding error of degrees with four digits."""
 FARTHEST = 100.0
-"""m between a link and its parent."""
+"""Maximum plausible distance between a link and its parent, m."""
 
 
 @rule(robot_codes.ANGLE_IN_DEGREES)
@@ -71,13 +71,13 @@ def place_millimetres(subject: Subject) -> Iterator[Diagnostic]:
 
 
 def is_converted(angle: float, step: float) -> bool:
-    """Whether an angle is that of a multiple of so many radians in degrees: 57.3 is 1 rad."""
+    """Whether a number is a multiple of `step` radians converted to degrees: 57.3 is 1 rad."""
     steps = math.radians(angle) / step
     return round(steps) != 0 and abs(steps / round(steps) - 1) < _ROUNDED
 
 
 def _is_degrees(value: float) -> bool:
-    """Whether an angle is more than a turn, but not one that an editor has added up."""
+    """Whether an angle exceeds a turn by more than an editor accumulates."""
     return abs(value) > 2 * math.pi + 0.01 and (
         abs(value) >= _ADDED or value == int(value) or is_converted(value, 0.01)
     )

@@ -1,4 +1,4 @@
-"""Stated sizes of wheels against those of the joints and the wheels themselves."""
+"""Stated wheel sizes compared with the joints and wheels."""
 
 from __future__ import annotations
 
@@ -14,13 +14,14 @@ from cartwheel.description.check.wheel_stated import Stated, stated
 from cartwheel.errors import Code, Diagnostic
 
 TOLERANCE = 0.02
-"""Relative: what a tyre's flattening or a rounded number explains."""
+"""Relative tolerance for tyre compression and rounded numbers."""
 _LEAST = 0.001
-"""m, of a distance; half of it of a wheel."""
+"""Minimum difference in a distance, m; half of it for a wheel."""
 WIDEST_SKID = 2.5
-"""Times the track: what skidding wheels are told to be apart so that odometry comes right.
+"""Maximum ratio of the stated wheel separation to the track of a skid-steered robot.
 
-Of a robot not longer than wide; see `_widest`.
+Skid-steered robots need a larger value for correct odometry. This limit applies to robots that are
+not longer than wide; see `_widest`.
 """
 
 
@@ -34,7 +35,7 @@ def wheel_separation(subject: Subject) -> Iterator[Diagnostic]:
             apart, joints = ((each + _mean_between(one, 0)) / 2 for each in (apart, joints))
         if one.skids and min(apart, joints) <= one.value <= _widest(one, apart):
             continue
-        # A wheel may stand beside its joint; who states the distance of the joints meant it.
+        # A wheel may be offset from its joint; either distance is accepted.
         if _differs(one.value, apart, _LEAST) and _differs(one.value, joints, _LEAST):
             far = "far" if one.value > apart else "little"
             said = (
@@ -115,12 +116,12 @@ def _differs(value: float, real: float, least: float) -> bool:
 
 
 def _widest(one: Stated, track: float) -> float:
-    """The most that skidding wheels are rightly said to be apart, m.
+    """Largest plausible wheel separation for a skid-steered robot, m.
 
-    Four wheels that turn on the spot, u the speed of their rims: each slides t/2 - u along and
-    b/2 across, at a turning of 1. Friction against that turns the robot no further where
-    t/2 (t/2 - u) + b/2 b/2 = 0, so that 2 u = t (1 + (b/t)²), which is 2 t where it is as long
-    as wide. What is longer is granted as much beyond that as `WIDEST_SKID` is.
+    Consider four wheels of a robot with track t and wheelbase b that turns on the spot at 1 rad/s,
+    with rim speed u. Each wheel slides by t/2 - u lengthwise and b/2 sideways. The friction torque
+    vanishes where t/2 (t/2 - u) + b/2 b/2 = 0, so that 2 u = t (1 + (b/t)²). This is 2 t for a
+    square robot. The limit for longer robots grows by the same ratio beyond `WIDEST_SKID`.
     """
     along = [
         wheel_place(one.robot, joint).position[0]
@@ -134,7 +135,7 @@ def _widest(one: Stated, track: float) -> float:
 
 
 def _mean_between(one: Stated, axis: int, *, middles: bool = False) -> float:
-    """Between the means of two sets of joints, or of wheels, along an axis of the robot, m."""
+    """Distance between the means of two sets of joints or wheels along a robot axis, m."""
     first, second = (_mean(one.robot, names, axis, middles) for names in (one.first, one.second))
     return 0.0 if first is None or second is None else abs(first - second)
 

@@ -1,4 +1,4 @@
-"""What plugins and controllers say of the wheels they drive: how far apart, how large."""
+"""Wheel separations and sizes stated by plugins and controllers."""
 
 from __future__ import annotations
 
@@ -14,29 +14,29 @@ from cartwheel.description.model import PluginTag
 from cartwheel.errors import Origin, Place
 
 Measure = Literal["apart", "base", "reach", "radius", "diameter"]
-"""``apart`` is across the robot, ``base`` along it; ``reach`` is the half of both together."""
+"""``apart`` is across the robot, ``base`` is along it, and ``reach`` is half their sum."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Stated:
-    """A size that is stated."""
+    """A stated size."""
 
     robot: Robot
     measure: Measure
     label: str
-    """As the file names it."""
+    """The parameter's name in the file."""
     value: float
     written: bool
-    """False where the plugin's default counts."""
+    """False for a plugin's default."""
     first: tuple[str, ...]
-    """Joints: of the left wheels, the front ones, or those whose size it is."""
+    """Joints of the left or front wheels, or of the measured wheels."""
     second: tuple[str, ...] = ()
     skids: bool = False
-    """Whether several wheels of a side slide as it turns."""
+    """Whether several wheels on a side slide during turns."""
     origin: Origin
     mark: str
     write: Callable[[str], str]
-    """The text to write for a number."""
+    """Formats a number as replacement text."""
     place: Place
 
 
@@ -45,10 +45,10 @@ class _Size:
     measure: Measure
     tags: tuple[str, ...]
     first: tuple[str, ...]
-    """Tags of joints; of several spellings the first that is written counts."""
+    """Joint tags; the first spelling present is used."""
     second: tuple[str, ...] = ()
     default: float | None = None
-    """What counts where it is not written; None where nothing then works."""
+    """Default value; None if the plugin does not work without the tag."""
 
 
 _SIDES = (("leftJoint", "left_joint"), ("rightJoint", "right_joint"))
@@ -127,11 +127,11 @@ _PLUGINS: Mapping[str, tuple[_Size, ...]] = {
         _Size(measure="radius", tags=("wheel_radius",), first=_CORNERS[:1], default=0.2),
     ),
 }  # fmt: skip
-"""By a part of the plugin's file name. Defaults as in the plugins."""
+"""Sizes by a part of the plugin's file name, with the plugins' defaults."""
 
 
 def stated(subject: Subject) -> Iterator[Stated]:
-    """All sizes that are stated of a description's wheels."""
+    """All wheel sizes stated in a description."""
     for robot in subject.robots:
         for tag in robot.description.plugins:
             name = tag.filename.replace("ignition-gazebo", "gz-sim")
@@ -153,7 +153,7 @@ def _of_plugin(robot: Robot, tag: PluginTag, size: _Size) -> Iterator[Stated]:
     written = list(tag.element.find_all(name)) if name else []
     for index, element in enumerate(written):
         value = nodes.number(element.text)
-        # Several are of one pair of wheels each.
+        # Repeated tags apply to one wheel pair each.
         pick = slice(index, index + 1) if len(written) > 1 else slice(None)
         if value is None or not first[pick] or (second and not second[pick]):
             continue
@@ -190,7 +190,7 @@ def _of_plugin(robot: Robot, tag: PluginTag, size: _Size) -> Iterator[Stated]:
 
 
 def _is_new(tag: PluginTag) -> bool:
-    """Whether its tags are spelt as in ROS 2."""
+    """Whether the plugin uses ROS 2 tag names."""
     return any("_" in child.tag for child in tag.element.children)
 
 

@@ -1,4 +1,4 @@
-"""What a xacro defines and nothing uses."""
+"""Unused xacro definitions."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def property_twice(subject: Subject) -> Iterator[Diagnostic]:
             waiting: dict[str, Node] = {}
             for node in holder.children:
                 if node.tag != "xacro:property":
-                    waiting.clear()  # it may use any of them
+                    waiting.clear()  # The rest may use any name.
                     continue
                 name, value = nodes.name_of(node), node.attributes.get("value")
                 for used in _WORD.findall(value or node.attributes.get("default", "")):
@@ -95,7 +95,7 @@ def parameter_unused(subject: Subject) -> Iterator[Diagnostic]:
                 continue
             for word in node.attributes.get("params", "").split():
                 name = _PARAMETER.match(word)
-                # What a macro calls sees its parameters too: any use anywhere counts.
+                # Macros called here see the parameters too, so any use counts.
                 if name is not None and name[1] not in uses.words:
                     yield files_codes.PARAMETER_UNUSED.diagnostic(
                         message=f'macro "{nodes.name_of(node)}" never uses its parameter '
@@ -125,12 +125,12 @@ def macro_unused(subject: Subject) -> Iterator[Diagnostic]:
 
 
 def _is_plain(name: str) -> bool:
-    """Whether it is a name itself, not made of others."""
+    """Whether a name is literal, without substitutions."""
     return bool(name) and "$" not in name
 
 
 def _own_trees(subject: Subject) -> list[Node]:
-    """Those that make something of the robot themselves: a library defines more than one needs."""
+    """Files that generate parts of the robot; a library may define more than one robot needs."""
     return [
         tree
         for tree in subject.written
@@ -140,16 +140,16 @@ def _own_trees(subject: Subject) -> list[Node]:
 
 @dataclass(frozen=True, slots=True)
 class _Uses:
-    """What a file uses of the names that files define."""
+    """The names that a file uses."""
 
     words: frozenset[str]
-    """Every word of every expression."""
+    """Every word in every expression."""
     calls: frozenset[str]
-    """The macros that it may call."""
+    """Macros that may be called."""
 
 
 def _uses(subject: Subject) -> _Uses:
-    """Of all files of the robot's packages: a macro may be for another robot of a package."""
+    """Uses in all files of the robot's packages: a macro may be for another robot in a package."""
     folders = {_package(Path(file).absolute()) for file in subject.files}
     paths = dict.fromkeys(Path(file).absolute() for file in subject.files)
     for folder in sorted(folder for folder in folders if folder is not None):
@@ -173,7 +173,7 @@ def _uses_of(path: Path) -> _Uses:
 
 @lru_cache(maxsize=5000)
 def _uses_at(path: Path, _modified: int, _size: int) -> _Uses:
-    """Those of a file in one state: all robots of a package need the same files."""
+    """Uses in one version of a file; cached because a package's robots share files."""
     tree = xml.readable_file(path)
     return _NOTHING if tree is None else _Uses(frozenset(_words(tree)), frozenset(_calls(tree)))
 
@@ -186,7 +186,7 @@ def _package(file: Path) -> Path | None:
 
 
 def _words(tree: Node) -> set[str]:
-    """Every word of every expression."""
+    """Every word in every expression."""
     found: set[str] = set()
     for node in nodes.walk(tree):
         for text in (*node.attributes.values(), node.text):
@@ -199,7 +199,7 @@ def _words(tree: Node) -> set[str]:
         elif tag == "insert_block":
             found.add(nodes.name_of(node))
         elif tag == "macro":
-            # A default such as ^ or ^|0 takes the property of the same name.
+            # A default such as ^ or ^|0 uses the property with the same name.
             for word in node.attributes.get("params", "").split():
                 name, separator, default = word.partition(":=")
                 if separator and default.startswith("^"):
@@ -216,7 +216,7 @@ def _calls(tree: Node) -> set[str]:
         elif _is_call(node):
             found.add(node.tag.removeprefix(PREFIX).rpartition(".")[2])
         else:
-            found.add(node.tag)  # a call in the spelling without a prefix
+            found.add(node.tag)  # a call without the xacro prefix
     return found
 
 
